@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+// Scalars, vectors and index types that the whole physics shares.
+//
+// Units are SI everywhere: metres, kilograms, seconds, newtons, radians. The y axis points up.
+// `Real` is float in use and double in tests and references.
+
+namespace weft {
+
+template <class Real>
+using Vec3 = Eigen::Matrix<Real, 3, 1>;
+
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+
+/// Index of a particle, edge, triangle or hinge. Signed, so that -1 can mean "none".
+using Index = std::int32_t;
+inline constexpr Index kNone = -1;
+
+/// Corner particles of a triangle, counter-clockwise seen from the side its normal points to.
+using Triangle = std::array<Index, 3>;
+
+/// End particles of an edge, smaller index first.
+using Edge = std::array<Index, 2>;
+
+/// Vectors without Eigen's alignment requirement, safe in std::vector.
+template <class Real>
+using Vec3Array = std::vector<Vec3<Real>>;
+
+}  // namespace weft
