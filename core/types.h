@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 // Scalars, vectors and index types that the whole physics shares.
 //

@@ -1,0 +1,169 @@
+#include "core/attachments/grabs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// Part of critical damping of the hand's spring against the mass that it holds.
+constexpr double kGrabDampingRatio = 0.7;
+
+const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "where the held point shall go"};
+
+void validate(const GrabDef& def, std::size_t triangles) {
+  check_field("drag.", {"triangle", 0, static_cast<double>(triangles) - 1, "", "a triangle"},
+              def.triangle);
+  double sum = 0;
+  for (const double w : def.barycentric) {
+    check_field("drag.", {"barycentric", 0, 1, "", "weights of the corners"}, w);
+    sum += w;
+  }
+  check_field("drag.", {"barycentric", 0.999, 1.001, "as their sum", "weights of the corners"}, sum);
+  check_field("drag.", {"radius", 0, 100, "m", "radius of the held disc"}, def.radius);
+  check_field("drag.", {"stiffness", 0, 1e5, "N/m", "stiffness of the hand"}, def.stiffness);
+  check_field("drag.", {"max_force", 0, 1e6, "N", "largest force of the hand"}, def.max_force);
+  check_field("drag.", kTargetInfo, def.target);
+}
+
+/// Smooth weights over the disc around the hit, by mass, so that all of it is carried alike.
+template <class Real>
+void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
+  const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
+  double u = 0, v = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& m = model.material[static_cast<std::size_t>(corners[k])];
+    u += def.barycentric[k] * static_cast<double>(m[0]);
+    v += def.barycentric[k] * static_cast<double>(m[1]);
+  }
+  double sum = 0;
+  std::vector<double> weights;
+  for (Index i = 0; i < model.particle_count(); ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    const double du = static_cast<double>(model.material[p][0]) - u;
+    const double dv = static_cast<double>(model.material[p][1]) - v;
+    const double inside = 1 - (du * du + dv * dv) / (def.radius * def.radius);
+    if (!(inside > 0)) continue;
+    grab.particles.push_back(i);
+    weights.push_back(inside * inside * static_cast<double>(model.mass[p]));
+    sum += weights.back();
+  }
+  for (const double w : weights) grab.weights.push_back(static_cast<Real>(w / sum));
+}
+
+template <class Real>
+void weigh_corners(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
+  const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    grab.particles.push_back(corners[k]);
+    grab.weights.push_back(static_cast<Real>(def.barycentric[k]));
+  }
+}
+
+template <class Real>
+Vec3<Real> weighted_mean(const Grab<Real>& grab, const Vec3Array<Real>& values) {
+  Vec3<Real> sum = Vec3<Real>::Zero();
+  for (std::size_t n = 0; n < grab.particles.size(); ++n)
+    sum += values[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
+  return sum;
+}
+
+/// Inverse of the mass that the hand feels: sum w^2 / m [1/kg].
+template <class Real>
+double inverse_held_mass(const ClothModel<Real>& model, const Grab<Real>& grab) {
+  double sum = 0;
+  for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+    const auto w = static_cast<double>(grab.weights[n]);
+    sum += w * w / static_cast<double>(model.mass[static_cast<std::size_t>(grab.particles[n])]);
+  }
+  return sum;
+}
+
+template <class Real>
+auto find(GrabId id, Grabs<Real>& grabs) {
+  return std::find_if(grabs.list.begin(), grabs.list.end(),
+                      [id](const Grab<Real>& grab) { return grab.id == id; });
+}
+
+}  // namespace
+
+template <class Real>
+GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
+                Grabs<Real>& grabs) {
+  validate(def, model.triangles.size());
+  if (grabs.list.size() >= kMostGrabs)
+    throw DefinitionError("drag", std::to_string(grabs.list.size() + 1),
+                          "at most " + std::to_string(kMostGrabs) + " at once", "release one first");
+  Grab<Real> grab;
+  grab.id = grabs.next_id++;
+  grab.def = def;
+  if (def.radius > 0) weigh_disc(model, def, grab);
+  if (grab.particles.empty()) weigh_corners(model, def, grab);
+  Vec3<Real> hit = Vec3<Real>::Zero();
+  const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
+  for (std::size_t k = 0; k < 3; ++k)
+    hit += state.x[static_cast<std::size_t>(corners[k])] * static_cast<Real>(def.barycentric[k]);
+  grab.offset = hit - weighted_mean(grab, state.x);
+  grab.target = def.target.cast<Real>();
+  grab.target_before = hit;
+  const double per_mass = inverse_held_mass(model, grab);
+  grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
+  grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
+  grabs.list.push_back(std::move(grab));
+  return grabs.list.back().id;
+}
+
+template <class Real>
+bool move_grab(GrabId id, const Vec3d& target, Grabs<Real>& grabs) {
+  const auto found = find(id, grabs);
+  if (found == grabs.list.end()) return false;
+  check_field("drag.", kTargetInfo, target);
+  found->def.target = target;
+  found->target = target.cast<Real>();
+  return true;
+}
+
+template <class Real>
+bool remove_grab(GrabId id, Grabs<Real>& grabs) {
+  const auto found = find(id, grabs);
+  if (found == grabs.list.end()) return false;
+  grabs.list.erase(found);
+  return true;
+}
+
+template <class Real>
+Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x) {
+  return weighted_mean(grab, x) + grab.offset;
+}
+
+template <class Real>
+void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
+                     ParticleFields<Real>& force) {
+  for (Grab<Real>& grab : grabs.list) {
+    const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
+    Vec3<Real> pull = (target - held_point(grab, state.x)) * static_cast<Real>(grab.def.stiffness) -
+                      weighted_mean(grab, state.v) * grab.damping;
+    const auto limit = static_cast<Real>(grab.def.max_force);
+    const Real size = pull.norm();
+    if (size > limit) pull *= limit / size;
+    grab.force = pull;
+    for (std::size_t n = 0; n < grab.particles.size(); ++n)
+      force.add(static_cast<std::size_t>(grab.particles[n]), pull * grab.weights[n]);
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&,    \
+                           Grabs<Real>&);                                                       \
+  template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                                  \
+  template bool remove_grab(GrabId, Grabs<Real>&);                                              \
+  template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                    \
+  template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&,                    \
+                                ParticleFields<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/cloth/cloth_state.h"
+#include "core/cloth/particle_fields.h"
+#include "core/solver/substep_rule.h"
+
+namespace weft {
+
+/// A hand that holds the cloth at a point of a triangle and pulls it towards a target with a damped
+/// spring of bounded force. It never sets a position.
+struct GrabDef {
+  Index triangle = 0;                                    ///< that was hit
+  std::array<double, 3> barycentric = {1.0 / 3, 1.0 / 3, 1.0 / 3};  ///< of the hit, >= 0, sum 1
+  double radius = 0.03;      ///< of the held disc in the fabric [m], 0 to 100; 0: the corners alone
+  double stiffness = 150;    ///< of the spring [N/m], 0 to 1e5
+  double max_force = 50;     ///< [N], 0 to 1e6; beyond it the hand lags
+  Vec3d target = Vec3d::Zero();  ///< where the hit point shall go [m], components within 1e4
+};
+
+using GrabId = std::uint32_t;
+
+template <class Real>
+struct Grab {
+  GrabId id = 0;
+  GrabDef def;
+  std::vector<Index> particles;
+  std::vector<Real> weights;        ///< of the particles, sum 1
+  Vec3<Real> offset;                ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target, target_before; ///< at the end and at the start of the coming tick [m]
+  Real damping = 0;                 ///< of the spring [N s/m]
+  StabilityBound bound;             ///< what it adds to the substep rule
+  Vec3<Real> force = Vec3<Real>::Zero();  ///< on the cloth, in the last substep [N]
+};
+
+template <class Real>
+struct Grabs {
+  std::vector<Grab<Real>> list;  ///< in the order of their making
+  GrabId next_id = 1;
+};
+
+inline constexpr std::size_t kMostGrabs = 256;
+
+/// Takes hold. The target starts where the point is unless `def.target` says otherwise.
+/// Throws DefinitionError if a field is out of range or there are too many grabs.
+template <class Real>
+GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
+                Grabs<Real>& grabs);
+
+/// Moves the target; the hand goes there in a straight line over the coming tick.
+/// Throws DefinitionError if the target is out of range. False if there is no such grab.
+template <class Real>
+bool move_grab(GrabId id, const Vec3d& target, Grabs<Real>& grabs);
+
+/// Lets go. False if there is no such grab.
+template <class Real>
+bool remove_grab(GrabId id, Grabs<Real>& grabs);
+
+/// The point that the hand holds, now [m].
+template <class Real>
+Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x);
+
+/// Adds the hands' forces to `force` [N]: clamp(k (target - p) - c dp/dt) shared by weight.
+/// @param progress  how much of the tick has passed, 0 to 1
+template <class Real>
+void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
+                     ParticleFields<Real>& force);
+
+}  // namespace weft

@@ -1,0 +1,58 @@
+#include "core/attachments/pins.h"
+
+#include <algorithm>
+
+#include "core/definition.h"
+#include "core/error.h"
+
+namespace weft {
+
+template <class Real>
+Pins make_pins(const ClothModel<Real>& model) {
+  Pins pins;
+  pins.pin_count.assign(model.mass.size(), 0);
+  return pins;
+}
+
+template <class Real>
+PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
+              ClothState<Real>& state) {
+  check_field("pin.", {"particle", 0, model.particle_count() - 1.0, "", "index of a particle"},
+              def.particle);
+  check_field("pin.", {"radius", 0, 100, "m", "radius of the pinned disc"}, def.radius);
+  if (pins.list.size() >= kMostPins)
+    throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
+                          "at most " + std::to_string(kMostPins) + " pins", "release some first");
+  Pin pin{pins.next_id++, def, particles_in_disc(model, def.particle, def.radius)};
+  for (const Index i : pin.particles) {
+    const auto p = static_cast<std::size_t>(i);
+    ++pins.pin_count[p];
+    state.inverse_mass[p] = 0;
+    state.v[p].setZero();
+  }
+  pins.list.push_back(std::move(pin));
+  return pins.list.back().id;
+}
+
+template <class Real>
+bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<Real>& state) {
+  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
+                                  [id](const Pin& pin) { return pin.id == id; });
+  if (found == pins.list.end()) return false;
+  for (const Index i : found->particles) {
+    const auto p = static_cast<std::size_t>(i);
+    if (--pins.pin_count[p] == 0) state.inverse_mass[p] = Real(1) / model.mass[p];
+  }
+  pins.list.erase(found);
+  return true;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template Pins make_pins(const ClothModel<Real>&);                                              \
+  template PinId add_pin(const ClothModel<Real>&, const PinDef&, Pins&, ClothState<Real>&);      \
+  template bool remove_pin(const ClothModel<Real>&, PinId, Pins&, ClothState<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

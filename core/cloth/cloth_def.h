@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+
+#include "core/cloth/fabric.h"
+#include "core/definition.h"
+
+namespace weft {
+
+/// How the mass of the cloth is shared among its particles.
+enum class MassLumping {
+  area,   ///< a third of each triangle to its corners, averaged over both diagonals: half on
+          ///< border lines, a quarter on corners
+  equal,  ///< the same for all (the seed's)
+};
+
+/// How the cloth resists bending.
+enum class BendingModel {
+  automatic,  ///< quadratic where it is exact enough, hinges otherwise; see quadratic_bending_fits
+  hinges,     ///< dihedral angles with rest angle and damping (Bridson 2003)
+  quadratic,  ///< constant Hessian on the grid; needs zero rest angles and no bending damping
+};
+
+/// Spring stiffnesses given one by one, as the seed has them, instead of derived from the fabric.
+struct DirectSprings {
+  double structural = 0;  ///< neighbours in a row or column [N/m]
+  double shear = 0;       ///< cell diagonals [N/m]
+  double skip = 0;        ///< every second neighbour, the seed's bending springs [N/m]
+  double dashpot = 0;     ///< along every spring [N s/m]
+};
+
+/// A rectangular cloth of rows x columns particles, flat at rest.
+///
+/// Particle (row r, column c) has index r * columns + c and starts at
+/// origin + u * width * c/(columns-1) + v * height * r/(rows-1).
+struct ClothDef {
+  int rows = 20;     ///< particles along v
+  int columns = 30;  ///< particles along u
+  double width = 1;  ///< extent along u [m]
+  double height = 1; ///< extent along v [m]
+  Vec3d origin = Vec3d::Zero();    ///< where particle 0 starts [m]
+  Vec3d u = Vec3d::UnitX();        ///< direction of a row, warp; normalised when built
+  Vec3d v = -Vec3d::UnitY();       ///< direction of a column, weft; must be normal to u
+  double rest_angle = 0;           ///< of every hinge [rad]
+  double skip_stiffness = 0;       ///< seed's bending springs beside the hinges [N/m]
+  BendingModel bending_model = BendingModel::automatic;
+  MassLumping mass_lumping = MassLumping::area;
+  std::optional<DirectSprings> direct_springs;
+  FabricDef fabric;
+};
+
+/// Describes each field to `visit(info, value)`, without those of the fabric.
+template <class Def, class Visitor>
+void visit_fields_of_cloth(Def& c, Visitor&& visit) {
+  visit(FieldInfo{"rows", 2, 2048, "", "particles along v"}, c.rows);
+  visit(FieldInfo{"columns", 2, 2048, "", "particles along u"}, c.columns);
+  visit(FieldInfo{"width", 1e-3, 100, "m", "extent along u"}, c.width);
+  visit(FieldInfo{"height", 1e-3, 100, "m", "extent along v"}, c.height);
+  visit(FieldInfo{"origin", -100, 100, "m", "where particle 0 starts"}, c.origin);
+  visit(FieldInfo{"u", -1e3, 1e3, "", "direction of a row"}, c.u);
+  visit(FieldInfo{"v", -1e3, 1e3, "", "direction of a column"}, c.v);
+  visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
+  visit(FieldInfo{"skip_stiffness", 0, 1e6, "N/m", "springs to every second neighbour"},
+        c.skip_stiffness);
+}
+
+/// Whether the quadratic form may stand for the hinges: flat at rest and without bending damping.
+inline bool quadratic_bending_fits(const ClothDef& def) {
+  return def.rest_angle == 0 && def.fabric.bending_damping == 0;
+}
+
+/// Checks every range and the combination (u and v independent, direct springs finite).
+/// Throws DefinitionError.
+void validate(const ClothDef& def);
+
+}  // namespace weft

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Everything about a cloth that changes while it moves. Positions and velocities belong to the same
+/// instant at every tick boundary.
+template <class Real>
+struct ClothState {
+  Vec3Array<Real> x;               ///< positions [m]
+  Vec3Array<Real> v;               ///< velocities [m/s]
+  std::vector<Real> inverse_mass;  ///< [1/kg]; 0 for a pinned particle
+};
+
+/// At rest at the model's rest positions, nothing pinned.
+template <class Real>
+ClothState<Real> initial_state(const ClothModel<Real>& model) {
+  ClothState<Real> state;
+  state.x = model.rest_positions;
+  state.v.assign(model.mass.size(), Vec3<Real>::Zero());
+  state.inverse_mass.reserve(model.mass.size());
+  for (const Real mass : model.mass) state.inverse_mass.push_back(Real(1) / mass);
+  return state;
+}
+
+}  // namespace weft

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/definition.h"
+
+namespace weft {
+
+/// The material of a cloth in physical units, independent of any mesh: doubling the resolution does
+/// not change the cloth.
+///
+/// Membrane: the plane-stress tensor has C11 = stretch_warp, C22 = stretch_weft, C12 = C66 = shear,
+/// so the uniaxial modulus along the warp is Y_w - G^2/Y_f.
+/// Bending: energy per area B/2 (warp), B/2 (weft) times curvature squared; in every direction B if
+/// both are equal.
+struct FabricDef {
+  double areal_density = 0.2;      ///< sigma [kg/m^2]
+  double stretch_warp = 400;       ///< Y_w [N/m], along the columns' direction u
+  double stretch_weft = 400;       ///< Y_f [N/m], along the rows' direction v
+  double shear = 40;               ///< G [N/m]
+  double bending_warp = 1e-5;      ///< B_w [N m], curvature along u
+  double bending_weft = 1e-5;      ///< B_f [N m], curvature along v
+  double damping_ratio = 0.05;     ///< dashpot along each spring, as a ratio of the highest mode
+  double bending_damping = 0;      ///< hinge damping per elastic stiffness [s]
+  double thickness = 0.004;        ///< contact distance of the mid-surface from objects [m]
+  double friction = 0.4;           ///< Coulomb coefficient against objects
+  double dissipation = 0;          ///< k_diss of the seed's eq. (10), 0 <= k < 1
+  double air_normal = 1.28;        ///< C_n, drag coefficient of a plate across the wind
+  double air_tangential = 0.01;    ///< c_t, skin friction per area and speed [kg/(m^2 s)]
+};
+
+/// Describes each field to `visit(info, value)`; see definition.h.
+template <class Def, class Visitor>
+void visit_fields_of_fabric(Def& f, Visitor&& visit) {
+  visit(FieldInfo{"areal_density", 1e-3, 100, "kg/m^2", "mass per area"}, f.areal_density);
+  visit(FieldInfo{"stretch_warp", 0, 1e6, "N/m", "stretch stiffness along u"}, f.stretch_warp);
+  visit(FieldInfo{"stretch_weft", 0, 1e6, "N/m", "stretch stiffness along v"}, f.stretch_weft);
+  visit(FieldInfo{"shear", 0, 1e6, "N/m", "shear stiffness"}, f.shear);
+  visit(FieldInfo{"bending_warp", 0, 10, "N m", "bending rigidity along u"}, f.bending_warp);
+  visit(FieldInfo{"bending_weft", 0, 10, "N m", "bending rigidity along v"}, f.bending_weft);
+  visit(FieldInfo{"damping_ratio", 0, 1, "", "spring damping of the highest mode"},
+        f.damping_ratio);
+  visit(FieldInfo{"bending_damping", 0, 10, "s", "hinge damping per elastic stiffness"},
+        f.bending_damping);
+  visit(FieldInfo{"thickness", 1e-4, 0.1, "m", "contact distance from objects"}, f.thickness);
+  visit(FieldInfo{"friction", 0, 10, "", "Coulomb friction against objects"}, f.friction);
+  visit(FieldInfo{"dissipation", 0, 0.999, "", "part of the contact velocity that is lost"},
+        f.dissipation);
+  visit(FieldInfo{"air_normal", 0, 100, "", "drag coefficient across the wind"}, f.air_normal);
+  visit(FieldInfo{"air_tangential", 0, 100, "kg/(m^2 s)", "skin friction along the wind"},
+        f.air_tangential);
+}
+
+}  // namespace weft

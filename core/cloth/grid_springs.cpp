@@ -1,0 +1,90 @@
+#include "core/cloth/grid_springs.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// One spring to each particle (row + dr, column + dc) that exists.
+struct Pattern {
+  SpringKind kind;
+  int dr, dc;
+  double stiffness, damping;
+  bool half_on_border;
+};
+
+bool on_border(const ClothDef& def, int row, int column, const Pattern& p) {
+  if (!p.half_on_border) return false;
+  return p.dr == 0 ? (row == 0 || row == def.rows - 1)
+                   : (column == 0 || column == def.columns - 1);
+}
+
+std::vector<Pattern> patterns(const ClothDef& def) {
+  const double cell_u = def.width / (def.columns - 1);
+  const double cell_v = def.height / (def.rows - 1);
+  using enum SpringKind;
+  if (def.direct_springs) {
+    const DirectSprings& d = *def.direct_springs;
+    return {{warp, 0, 1, d.structural, d.dashpot, false}, {weft, 1, 0, d.structural, d.dashpot, false},
+            {shear, 1, 1, d.shear, d.dashpot, false},     {shear, 1, -1, d.shear, d.dashpot, false},
+            {skip, 0, 2, d.skip, d.dashpot, false},       {skip, 2, 0, d.skip, d.dashpot, false}};
+  }
+  const GridStiffness k = grid_stiffness(def.fabric, cell_u, cell_v);
+  const double s = def.skip_stiffness;
+  return {{warp, 0, 1, k.warp, 0, true},    {weft, 1, 0, k.weft, 0, true},
+          {shear, 1, 1, k.shear, 0, false}, {shear, 1, -1, k.shear, 0, false},
+          {skip, 0, 2, s, 0, true},         {skip, 2, 0, s, 0, true}};
+}
+
+}  // namespace
+
+GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell_v) {
+  const double ratio = cell_u / cell_v;
+  GridStiffness k;
+  k.warp = (fabric.stretch_warp - fabric.shear * ratio * ratio) / ratio;
+  k.weft = (fabric.stretch_weft - fabric.shear / (ratio * ratio)) * ratio;
+  k.shear = fabric.shear * (cell_u * cell_u + cell_v * cell_v) / (2 * cell_u * cell_v);
+  if (k.warp < 0 || k.weft < 0) {
+    const double most = std::min(fabric.stretch_warp / (ratio * ratio),
+                                 fabric.stretch_weft * ratio * ratio);
+    throw DefinitionError("fabric.shear", number_text(fabric.shear),
+                          "0 to " + number_text(most) + " N/m for cells of this shape",
+                          "lower the shear stiffness or make the cells squarer");
+  }
+  return k;
+}
+
+template <class Real>
+std::vector<Spring<Real>> grid_springs(const ClothDef& def, std::vector<SpringKind>& kinds) {
+  const double cell_u = def.width / (def.columns - 1);
+  const double cell_v = def.height / (def.rows - 1);
+  const std::vector<Pattern> all = patterns(def);
+  std::vector<Spring<Real>> springs;
+  kinds.clear();
+  for (int row = 0; row < def.rows; ++row) {
+    for (int column = 0; column < def.columns; ++column) {
+      for (const Pattern& p : all) {
+        const int r = row + p.dr, c = column + p.dc;
+        if (r >= def.rows || c < 0 || c >= def.columns) continue;
+        const double share = on_border(def, row, column, p) ? 0.5 : 1.0;
+        if (p.stiffness == 0 && p.damping == 0) continue;
+        Spring<Real> spring;
+        spring.i = row * def.columns + column;
+        spring.j = r * def.columns + c;
+        spring.rest_length = static_cast<Real>(std::hypot(p.dc * cell_u, p.dr * cell_v));
+        spring.stiffness = static_cast<Real>(share * p.stiffness);
+        spring.damping = static_cast<Real>(share * p.damping);
+        springs.push_back(spring);
+        kinds.push_back(p.kind);
+      }
+    }
+  }
+  return springs;
+}
+
+template std::vector<Spring<float>> grid_springs(const ClothDef&, std::vector<SpringKind>&);
+template std::vector<Spring<double>> grid_springs(const ClothDef&, std::vector<SpringKind>&);
+
+}  // namespace weft

@@ -1,0 +1,95 @@
+#include "core/definition.h"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+double parse_number(const std::string& field, const FieldInfo& info, std::string_view text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, status] = std::from_chars(text.data(), end, value);
+  if (status != std::errc() || stop != end || !std::isfinite(value))
+    throw DefinitionError(field, std::string(text), allowed_values(info), "a finite number");
+  return value;
+}
+
+}  // namespace
+
+std::string number_text(double value) {
+  char buffer[32];
+  const auto [stop, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return status == std::errc() ? std::string(buffer, stop) : std::string("?");
+}
+
+std::string allowed_values(const FieldInfo& info) {
+  std::string text = number_text(info.minimum) + " to " + number_text(info.maximum);
+  if (*info.unit) text += std::string(" ") + info.unit;
+  return text;
+}
+
+void check_field(const std::string& path, const FieldInfo& info, double value) {
+  // Written so that NaN fails as well.
+  if (!(value >= info.minimum && value <= info.maximum))
+    throw DefinitionError(path + info.name, number_text(value), allowed_values(info), info.meaning);
+}
+
+void check_field(const std::string& path, const FieldInfo& info, int value) {
+  check_field(path, info, static_cast<double>(value));
+}
+
+void check_field(const std::string&, const FieldInfo&, bool) {}
+
+void check_field(const std::string& path, const FieldInfo& info, const Vec3d& value) {
+  static constexpr const char* kAxes[] = {"[0]", "[1]", "[2]"};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(value[axis] >= info.minimum && value[axis] <= info.maximum))
+      throw DefinitionError(path + info.name + kAxes[axis], number_text(value[axis]),
+                            allowed_values(info), info.meaning);
+  }
+}
+
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 double& value) {
+  const double parsed = parse_number(path + info.name, info, text);
+  check_field(path, info, parsed);
+  value = parsed;
+}
+
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 int& value) {
+  const double parsed = parse_number(path + info.name, info, text);
+  check_field(path, info, parsed);
+  if (parsed != std::floor(parsed))
+    throw DefinitionError(path + info.name, text, allowed_values(info), "a whole number");
+  value = static_cast<int>(parsed);
+}
+
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 bool& value) {
+  if (text != "true" && text != "false")
+    throw DefinitionError(path + info.name, text, "true or false", info.meaning);
+  value = text == "true";
+}
+
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 Vec3d& value) {
+  Vec3d parsed = Vec3d::Zero();
+  std::string_view rest = text;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t comma = rest.find(',');
+    if ((axis < 2) != (comma != std::string_view::npos))
+      throw DefinitionError(path + info.name, text, "three numbers as x,y,z", info.meaning);
+    parsed[axis] = parse_number(path + info.name, info, rest.substr(0, comma));
+    if (axis < 2) rest.remove_prefix(comma + 1);
+  }
+  check_field(path, info, parsed);
+  value = parsed;
+}
+
+}  // namespace weft

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+
+#include "core/types.h"
+
+// How definitions are described: each definition struct has one function `visit_fields` that names
+// its fields with unit, allowed range and meaning. Validation, `--set key=value` and the listing of
+// what is allowed all walk the same description, so they cannot disagree.
+
+namespace weft {
+
+/// What is allowed for a field and how to speak of it. Both ends of a range are allowed.
+struct FieldInfo {
+  const char* name;     ///< as written in a key, e.g. "areal_density"
+  double minimum;       ///< smallest allowed value (of each component)
+  double maximum;       ///< largest allowed value (of each component)
+  const char* unit;     ///< e.g. "kg/m^2"; empty if it has none
+  const char* meaning;  ///< one clause for people
+};
+
+/// One number with a range. Throws DefinitionError if it is not finite or outside.
+/// @param path   where the field stands, e.g. "fabric." ; put before the name in the error
+void check_field(const std::string& path, const FieldInfo& info, double value);
+void check_field(const std::string& path, const FieldInfo& info, int value);
+void check_field(const std::string& path, const FieldInfo& info, bool value);
+void check_field(const std::string& path, const FieldInfo& info, const Vec3d& value);
+
+/// Reads a value from text ("0.2", "12", "true", "0,-9.81,0") into a field and checks its range.
+/// Throws DefinitionError, with the field untouched, if the text does not fit.
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 double& value);
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 int& value);
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 bool& value);
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 Vec3d& value);
+
+/// The allowed values in words, e.g. "0.001 to 10 kg/m^2".
+std::string allowed_values(const FieldInfo& info);
+
+/// A number as short text that reads back to the same number.
+std::string number_text(double value);
+
+}  // namespace weft

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/cloth/cloth_model.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Keeps divisions by the squared length finite when both ends coincide [m^2]. The dashpot divides
+/// by it twice, so it must not be too small for float (NUMERICS.md a).
+inline constexpr double kSmallestSquaredLength = 1e-14;
+
+/// Force on end i of a spring from x_i to x_j (the opposite acts on j) [N]:
+/// k d (1 - L/l) + c (d . dv) d / l^2, with d = x_j - x_i and l = |d|.
+template <class Real>
+inline Vec3<Real> spring_force(const Spring<Real>& s, const Vec3<Real>& d, const Vec3<Real>& dv) {
+  const Real l2 = d.squaredNorm() + Real(kSmallestSquaredLength);
+  const Real elastic = s.stiffness * (Real(1) - s.rest_length / std::sqrt(l2));
+  const Real damping = s.damping * (d.dot(dv) / l2);
+  return d * (elastic + damping);
+}
+
+/// Elastic energy k/2 (l - L)^2 [J].
+template <class Real>
+inline Real spring_energy(const Spring<Real>& s, const Vec3<Real>& d) {
+  const Real stretch = std::sqrt(d.squaredNorm() + Real(kSmallestSquaredLength)) - s.rest_length;
+  return Real(0.5) * s.stiffness * stretch * stretch;
+}
+
+}  // namespace weft

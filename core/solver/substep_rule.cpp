@@ -1,0 +1,107 @@
+#include "core/solver/substep_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/forces/hinge.h"
+
+namespace weft {
+
+double largest_stable_substep(const StabilityBound& bound) {
+  if (bound.omega2 <= 0)
+    return bound.damping_rate > 0 ? 2 / bound.damping_rate
+                                  : std::numeric_limits<double>::infinity();
+  const double c = bound.damping_rate;
+  // The root in the form that does not cancel: 4 / (c + sqrt(c^2 + 4 omega^2)).
+  return 4 / (c + std::sqrt(c * c + 4 * bound.omega2));
+}
+
+long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest) {
+  const double count = std::ceil(tick_seconds / largest_stable_substep(bound));
+  if (!(count <= kMostSubsteps)) return kMostSubsteps + 1L;
+  return std::max(static_cast<long>(count), static_cast<long>(fewest));
+}
+
+template <class Real>
+void bound_frequencies(ClothModel<Real>& model) {
+  const std::size_t n = model.mass.size();
+  std::vector<double> stretch(n, 0), stretch_damping(n, 0), bend(n, 0), bend_damping(n, 0);
+  for (const Spring<Real>& s : model.springs) {
+    for (const Index end : {s.i, s.j}) {
+      stretch[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.stiffness);
+      stretch_damping[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.damping);
+    }
+  }
+  for (const Hinge<Real>& h : model.hinges) {
+    const auto at = [&](int corner) {
+      return model.rest_positions[static_cast<std::size_t>(h.x[corner])].template cast<double>().eval();
+    };
+    const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));
+    double sum = 0;
+    for (const Vec3d& g : angle.gradient) sum += g.norm();
+    for (int corner = 0; corner < 4; ++corner) {
+      const auto i = static_cast<std::size_t>(h.x[corner]);
+      const double row = angle.gradient[static_cast<std::size_t>(corner)].norm() * sum;
+      bend[i] += static_cast<double>(h.stiffness) * row;
+      bend_damping[i] += static_cast<double>(h.damping) * row;
+    }
+  }
+  const auto largest = [&](const std::vector<double>& rows) {
+    double most = 0;
+    for (std::size_t i = 0; i < n; ++i) most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
+    return most;
+  };
+  model.membrane_omega2 = largest(stretch);
+  model.membrane_damping_rate = largest(stretch_damping);
+  model.bending_omega2 = largest(bend);
+  model.bending_damping_rate = largest(bend_damping);
+}
+
+template <class Real>
+void bound_quadratic_bending(ClothModel<Real>& model) {
+  const int rows = model.rows, columns = model.columns;
+  std::vector<double> row_sum(model.mass.size(), 0);
+  const auto add = [&](int r, int c, double value) {
+    row_sum[static_cast<std::size_t>(r * columns + c)] += value;
+  };
+  const auto half_on = [](int k, int count) { return k == 0 || k == count - 1 ? 0.5 : 1.0; };
+  const auto& q = model.quadratic_bending;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      for (int k = -1; k <= 1; ++k) {
+        const double weight = k == 0 ? 8 : 4;  // |w_i| sum|w| of the stencil 1 -2 1
+        if (c > 0 && c + 1 < columns)
+          add(r, c + k, weight * half_on(r, rows) * static_cast<double>(q.along_u));
+        if (r > 0 && r + 1 < rows)
+          add(r + k, c, weight * half_on(c, columns) * static_cast<double>(q.along_v));
+      }
+      if (r + 1 == rows || c + 1 == columns) continue;
+      for (int k = 0; k < 4; ++k) add(r + k / 2, c + k % 2, 4 * static_cast<double>(q.twist));
+    }
+  }
+  model.bending_omega2 = 0;
+  model.bending_damping_rate = 0;
+  for (std::size_t i = 0; i < row_sum.size(); ++i)
+    model.bending_omega2 =
+        std::max(model.bending_omega2, row_sum[i] / static_cast<double>(model.mass[i]));
+}
+
+template void bound_quadratic_bending(ClothModel<float>&);
+template void bound_quadratic_bending(ClothModel<double>&);
+
+template <class Real>
+void add_spring_damping(ClothModel<Real>& model, double damping_ratio) {
+  if (model.membrane_omega2 <= 0) return;
+  const double beta = 2 * damping_ratio / std::sqrt(model.membrane_omega2);
+  for (Spring<Real>& spring : model.springs)
+    spring.damping = static_cast<Real>(beta * static_cast<double>(spring.stiffness));
+  model.membrane_damping_rate = beta * model.membrane_omega2;
+}
+
+template void bound_frequencies(ClothModel<float>&);
+template void bound_frequencies(ClothModel<double>&);
+template void add_spring_damping(ClothModel<float>&, double);
+template void add_spring_damping(ClothModel<double>&, double);
+
+}  // namespace weft

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+
+namespace weft {
+
+/// Bounds that decide the largest stable substep of the explicit solver.
+struct StabilityBound {
+  double omega2 = 0;        ///< bound of the highest squared frequency, summed over parts [1/s^2]
+  double damping_rate = 0;  ///< bound of the matching damping rates 2 zeta omega [1/s]
+};
+
+/// The largest stable leapfrog substep with lagged damping [s]: the positive root of
+/// dt^2 omega^2 + 2 dt c = 4, which is (sqrt(1 + zeta^2) - zeta) 2/omega for c = 2 zeta omega.
+/// Infinite if nothing pulls.
+double largest_stable_substep(const StabilityBound& bound);
+
+/// Substeps that cut a tick of `tick_seconds` [s] into stable ones; at least `fewest`.
+/// Returns a number above `kMostSubsteps` if the cloth is too stiff for the explicit solver.
+long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
+
+inline constexpr int kMostSubsteps = 20000;
+
+/// Fills the model's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs (Gershgorin
+/// rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state matrix
+/// k g g^T, and the damping rates already in the elements.
+template <class Real>
+void bound_frequencies(ClothModel<Real>& model);
+
+/// Replaces the bending bound by that of the quadratic form: each stencil w with energy k/2 |w x|^2
+/// adds k |w_i| sum|w| to the rows of its particles, 16 k along an axis and 4 k for the twist at most.
+template <class Real>
+void bound_quadratic_bending(ClothModel<Real>& model);
+
+/// Gives every spring the dashpot c = beta k with beta = 2 zeta / omega of the membrane's highest
+/// mode. Without it a shaken cloth keeps its high modes hot for ever (NUMERICS.md d).
+template <class Real>
+void add_spring_damping(ClothModel<Real>& model, double damping_ratio);
+
+}  // namespace weft

@@ -1,0 +1,194 @@
+#include "core/solver/verlet.h"
+
+#include <algorithm>
+
+#include "core/forces/air_pass.h"
+#include "core/forces/bending.h"
+#include "core/forces/stretch.h"
+
+namespace weft {
+namespace {
+
+/// v <- keep v + push (f/m + g)
+template <class Real>
+struct Kick {
+  Real keep, push;
+};
+
+/// The three kicks of a tick. The opening and the closing one together are one full kick.
+template <class Real>
+struct Kicks {
+  Kick<Real> opening, full, closing;
+
+  Kicks(double dt, double drag) {
+    const double lost = 0.5 * drag * dt;
+    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
+    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
+    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt)};
+  }
+};
+
+/// One tick's constant inputs together with what it changes.
+template <class Real>
+struct Tick {
+  const ClothModel<Real>& model;
+  const Surroundings<Real>& surroundings;
+  const SolverDef& solver;
+  Real dt;
+  Grabs<Real>& grabs;
+  Contact<Real>& contact;
+  ClothState<Real>& state;
+  VerletWorkspace<Real>& work;
+  Profile& profile;
+
+  bool pulled() const { return surroundings.air || !grabs.list.empty(); }
+};
+
+template <class Real>
+void evaluate_bending(Tick<Real>& tick) {
+  const std::size_t stencils = quadratic_stencil_count(tick.model);
+  if (stencils > 0) {
+    const StageTimer timer(tick.profile, Stage::bending, stencils);
+    add_quadratic_bending_forces(tick.model, tick.work.x, tick.work.internal);
+  }
+  if (!tick.model.hinges.empty()) {
+    const StageTimer timer(tick.profile, Stage::bending, tick.model.hinges.size());
+    add_hinge_forces(tick.model, tick.work.x, tick.work.v, tick.work.internal);
+  }
+}
+
+/// All forces at the present positions, with `velocity` as seen by dashpots and air.
+template <class Real>
+void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
+  const ClothModel<Real>& model = tick.model;
+  VerletWorkspace<Real>& work = tick.work;
+  {
+    const StageTimer timer(tick.profile, Stage::integration, 0);
+    work.x.copy_from(tick.state.x);
+    work.v.copy_from(velocity);
+    work.internal.set_zero();
+    if (tick.pulled()) work.external.set_zero();
+  }
+  if (!model.springs.empty()) {
+    const StageTimer timer(tick.profile, Stage::stretch, model.springs.size());
+    add_spring_forces(model, work.x, work.v, work.internal);
+  }
+  evaluate_bending(tick);
+  if (tick.surroundings.air) {
+    const StageTimer timer(tick.profile, Stage::air, model.triangles.size());
+    add_air_forces(model, tick.surroundings.wind, tick.surroundings.air_density, work.x, work.v,
+                   work.external);
+  }
+  if (!tick.grabs.list.empty()) {
+    const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
+    add_grab_forces(progress, tick.state, tick.grabs, work.external);
+  }
+}
+
+template <class Real>
+void kick(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from, Vec3Array<Real>& to) {
+  const StageTimer timer(tick.profile, Stage::integration, from.size());
+  const bool pulled = tick.pulled();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Real w = tick.state.inverse_mass[i];
+    if (w == 0) continue;
+    Vec3<Real> a = tick.work.internal.at(i) * w;
+    if (pulled) a += tick.work.external.at(i) * w;
+    to[i] = from[i] * k.keep + (a + tick.surroundings.gravity) * k.push;
+  }
+}
+
+/// Kicks with the dashpots' velocity found by fixed-point sweeps.
+/// @param share  where between the old and the new velocity the instant of the forces lies
+template <class Real>
+void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress) {
+  Vec3Array<Real>& v = tick.state.v;
+  if (tick.solver.damping_sweeps == 1) {
+    evaluate_forces(tick, progress, v);
+    kick(tick, k, v, v);
+    return;
+  }
+  Vec3Array<Real>& estimate = tick.work.velocity;
+  estimate = v;
+  for (int sweep = 1; sweep <= tick.solver.damping_sweeps; ++sweep) {
+    evaluate_forces(tick, progress, estimate);
+    if (sweep == tick.solver.damping_sweeps) break;
+    kick(tick, k, v, estimate);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      estimate[i] = v[i] * (Real(1) - share) + estimate[i] * share;
+  }
+  kick(tick, k, v, v);
+}
+
+template <class Real>
+void drift(Tick<Real>& tick) {
+  const StageTimer timer(tick.profile, Stage::integration, 0);
+  for (std::size_t i = 0; i < tick.state.x.size(); ++i) tick.state.x[i] += tick.state.v[i] * tick.dt;
+}
+
+/// Work of the external forces over the coming drift [J].
+template <class Real>
+double external_work(const Tick<Real>& tick) {
+  if (!tick.pulled()) return 0;
+  double power = 0;
+  for (std::size_t i = 0; i < tick.state.v.size(); ++i)
+    power += static_cast<double>(tick.work.external.at(i).dot(tick.state.v[i]));
+  return power * static_cast<double>(tick.dt);
+}
+
+template <class Real>
+Energies energies_of(Tick<Real>& tick, double& largest_strain) {
+  const StageTimer timer(tick.profile, Stage::diagnostics, 1);
+  ElasticEnergy elastic;
+  add_stretch_energy(tick.model, tick.state.x, elastic);
+  add_bending_energy(tick.model, tick.state.x, elastic);
+  largest_strain = elastic.largest_strain;
+  Energies e;
+  e.stretch = elastic.stretch;
+  e.bending = elastic.bending;
+  const Vec3d g = tick.surroundings.gravity.template cast<double>();
+  for (std::size_t i = 0; i < tick.state.v.size(); ++i) {
+    const auto mass = static_cast<double>(tick.model.mass[i]);
+    e.kinetic += 0.5 * mass * static_cast<double>(tick.state.v[i].squaredNorm());
+    e.gravity -= mass * g.dot(tick.state.x[i].template cast<double>());
+  }
+  return e;
+}
+
+}  // namespace
+
+template <class Real>
+AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
+                             const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
+                             Contact<Real>& contact, ClothState<Real>& state,
+                             VerletWorkspace<Real>& work, Profile& profile) {
+  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs,
+                  contact, state, work, profile};
+  const Kicks<Real> kicks(dt, surroundings.drag);
+  AdvanceResult result;
+  result.before = energies_of(tick, result.largest_strain);
+  evaluate_forces(tick, Real(0), state.v);
+  kick(tick, kicks.opening, state.v, state.v);
+  for (int s = 0; s < substeps; ++s) {
+    contact.resolve(state, tick.dt, profile);
+    result.work += external_work(tick);
+    drift(tick);
+    const bool last = s + 1 == substeps;
+    const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
+    swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
+  }
+  contact.settle(state, tick.dt, profile);
+  result.after = energies_of(tick, result.largest_strain);
+  return result;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template AdvanceResult advance_verlet(const ClothModel<Real>&, const Surroundings<Real>&,      \
+                                        const SolverDef&, double, int, Grabs<Real>&,             \
+                                        Contact<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, \
+                                        Profile&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "core/attachments/grabs.h"
+#include "core/cloth/cloth_model.h"
+#include "core/cloth/cloth_state.h"
+#include "core/cloth/particle_fields.h"
+#include "core/contact/contact.h"
+#include "core/definition.h"
+#include "core/world/profile.h"
+
+namespace weft {
+
+/// Settings of the solver `verlet`.
+struct SolverDef {
+  int min_substeps = 1;    ///< at least so many substeps a tick; the stability rule may ask for more
+  int damping_sweeps = 1;  ///< 1: dashpots see the velocity half a substep ago (first order in the
+                           ///< dashpot term); 2 and more: fixed-point sweeps, second order
+};
+
+/// Describes each field to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_solver(Def& s, Visitor&& visit) {
+  visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps a tick"}, s.min_substeps);
+  visit(FieldInfo{"damping_sweeps", 1, 10, "", "fixed-point sweeps on the dashpots"},
+        s.damping_sweeps);
+}
+
+/// What acts on the cloth from outside during one tick.
+template <class Real>
+struct Surroundings {
+  Vec3<Real> gravity = Vec3<Real>::Zero();  ///< [m/s^2]
+  double drag = 0;                          ///< alpha [1/s]
+  bool air = false;                         ///< evaluate the air forces at all
+  double air_density = 0;                   ///< [kg/m^3]
+  ParticleFields<Real> wind;                ///< at each particle [m/s]; used if `air`
+};
+
+/// Energies at one instant [J].
+struct Energies {
+  double kinetic = 0;
+  double stretch = 0;
+  double bending = 0;
+  double gravity = 0;  ///< -sum m g . x
+  double total() const { return kinetic + stretch + bending + gravity; }
+};
+
+/// What one tick of the solver did.
+struct AdvanceResult {
+  Energies before, after;
+  double work = 0;            ///< done by hands and air over the tick [J]
+  double largest_strain = 0;  ///< at the end
+};
+
+/// Arrays that live from tick to tick so that nothing allocates during a step.
+template <class Real>
+struct VerletWorkspace {
+  ParticleFields<Real> x, v;      ///< positions and velocities as the force loops want them
+  ParticleFields<Real> internal;  ///< forces of springs and bending [N]
+  ParticleFields<Real> external;  ///< forces of hands and air [N]
+  Vec3Array<Real> velocity;       ///< estimate of the velocity that the dashpots see [m/s]
+
+  void resize(std::size_t particles) {
+    for (ParticleFields<Real>* fields : {&x, &v, &internal, &external}) fields->resize(particles);
+    velocity.resize(particles);
+  }
+};
+
+/// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions and
+/// velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet loses
+/// float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 + a dt/2).
+/// Contact corrects the velocities between each kick and drift.
+///
+/// @param dt        substep [s], stable by substep_rule.h
+/// @param substeps  at least 1
+template <class Real>
+AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
+                             const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
+                             Contact<Real>& contact, ClothState<Real>& state,
+                             VerletWorkspace<Real>& work, Profile& profile);
+
+}  // namespace weft

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/definition.h"
+
+namespace weft {
+
+/// What surrounds the cloth.
+struct EnvironmentDef {
+  Vec3d gravity = Vec3d(0, -9.81, 0);  ///< [m/s^2]
+  Vec3d wind = Vec3d::Zero();          ///< mean wind velocity [m/s]
+  double gust_speed = 0;               ///< typical size of the gusts' velocity [m/s]
+  double gust_length = 0.6;            ///< size of an eddy [m]
+  double air_density = 1.225;          ///< rho [kg/m^3]
+  bool still_air = false;              ///< evaluate the air where no wind blows as well
+  double drag = 0;                     ///< alpha, uniform velocity damping [1/s]
+};
+
+/// True if the air forces must be evaluated: something blows, or still air was asked for.
+inline bool has_air(const EnvironmentDef& e) {
+  return e.air_density > 0 && (e.still_air || e.gust_speed > 0 || !e.wind.isZero(0));
+}
+
+/// Describes each field to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_environment(Def& e, Visitor&& visit) {
+  visit(FieldInfo{"gravity", -1000, 1000, "m/s^2", "acceleration of gravity"}, e.gravity);
+  visit(FieldInfo{"wind", -100, 100, "m/s", "mean wind velocity"}, e.wind);
+  visit(FieldInfo{"gust_speed", 0, 100, "m/s", "typical size of the gusts"}, e.gust_speed);
+  visit(FieldInfo{"gust_length", 0.01, 100, "m", "size of an eddy"}, e.gust_length);
+  visit(FieldInfo{"air_density", 0, 1000, "kg/m^3", "density of the air"}, e.air_density);
+  visit(FieldInfo{"still_air", 0, 1, "", "air forces without wind too"}, e.still_air);
+  visit(FieldInfo{"drag", 0, 1000, "1/s", "uniform velocity damping"}, e.drag);
+}
+
+/// Throws DefinitionError if a field is out of range.
+void validate(const EnvironmentDef& def);
+
+}  // namespace weft

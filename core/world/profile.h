@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace weft {
+
+/// The stages of a step, in the order in which a substep meets them.
+enum class Stage : std::uint8_t {
+  attachments,   ///< work: hand forces evaluated
+  air,           ///< work: triangles evaluated
+  stretch,       ///< work: springs evaluated
+  bending,       ///< work: hinges evaluated
+  integration,   ///< work: particles kicked and moved
+  broad_phase,   ///< work: candidate pairs collected
+  narrow_phase,  ///< work: closest points computed
+  contact,       ///< work: contact rows solved
+  friction,      ///< work: friction evaluations (their time is part of contact)
+  diagnostics,   ///< work: checks made
+};
+inline constexpr std::size_t kStageCount = 10;
+
+inline constexpr std::array<const char*, kStageCount> kStageNames = {
+    "attachments", "air",          "stretch", "bending",  "integration",
+    "broad_phase", "narrow_phase", "contact", "friction", "diagnostics"};
+
+struct StageProfile {
+  double seconds = 0;      ///< by the given clock; 0 without one
+  std::uint64_t work = 0;  ///< what was done, counted; the same on every machine
+};
+
+/// What one tick did. The work counts are part of the physics and repeatable; the seconds are for
+/// people and never decide anything.
+struct Profile {
+  std::array<StageProfile, kStageCount> stages{};
+  double (*clock)() = nullptr;  ///< seconds from any origin, given from outside; may be null
+
+  StageProfile& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
+  const StageProfile& operator[](Stage stage) const {
+    return stages[static_cast<std::size_t>(stage)];
+  }
+  void clear() { stages = {}; }
+};
+
+/// Times its own life into a stage and counts its work.
+class StageTimer {
+ public:
+  StageTimer(Profile& profile, Stage stage, std::size_t work)
+      : profile_(profile), stage_(stage), start_(profile.clock ? profile.clock() : 0) {
+    profile_[stage_].work += work;
+  }
+  ~StageTimer() {
+    if (profile_.clock) profile_[stage_].seconds += profile_.clock() - start_;
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  Profile& profile_;
+  Stage stage_;
+  double start_;
+};
+
+}  // namespace weft

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/cloth/particle_fields.h"
+#include "core/types.h"
+#include "core/world/environment.h"
+
+namespace weft {
+
+/// Velocity of the air at each particle [m/s]: the mean wind plus gusts, smooth noise in space that
+/// the mean wind carries along (frozen turbulence, Taylor 1938), so that it is smooth in time too.
+///
+/// @param time  simulated time [s]
+/// @param x     positions [m]
+/// @param wind  result, already of the size of x
+template <class Real>
+void sample_wind(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
+                 ParticleFields<Real>& wind);
+
+}  // namespace weft

@@ -1,0 +1,257 @@
+#include "core/world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/world/state_hash.h"
+#include "core/world/wind.h"
+
+namespace weft {
+namespace {
+
+/// How often a tick that diverged is tried again, each time with twice the substeps.
+constexpr int kMostRetries = 2;
+
+template <class Real>
+double total_mass(const ClothModel<Real>& model) {
+  double sum = 0;
+  for (const Real mass : model.mass) sum += static_cast<double>(mass);
+  return sum;
+}
+
+template <class Real>
+Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
+                           const Runtime& runtime) {
+  ContactDef contact;
+  contact.thickness = def.cloth.fabric.thickness;
+  contact.friction = def.cloth.fabric.friction;
+  contact.dissipation = def.cloth.fabric.dissipation;
+  return Contact<Real>(contact, def.colliders, model.edges, model.triangles, runtime.executor);
+}
+
+/// The validated definition; a helper so that nothing is built from a wrong one.
+const WorldDef& validated(const WorldDef& def) {
+  validate(def);
+  return def;
+}
+
+}  // namespace
+
+std::string describe(const Divergence& d) {
+  const std::string what = d.cause == DivergenceCause::not_finite
+                               ? "a value that is not finite"
+                               : "unexplained energy of " + number_text(d.value) + " J";
+  const std::string done = d.remedy == DivergenceRemedy::more_substeps
+                               ? "repeated with more substeps"
+                               : "went back to the last good state and stopped the cloth";
+  return "tick " + std::to_string(d.tick) + ": " + what + " at particle " +
+         std::to_string(d.particle) + " with " + std::to_string(d.substeps) + " substeps; " + done;
+}
+
+template <class Real>
+World<Real>::World(const WorldDef& def, const Runtime& runtime)
+    : def_(validated(def)),
+      environment_(def.environment),
+      runtime_(runtime),
+      model_(build_cloth<Real>(def.cloth)),
+      contact_(make_contact(def, model_, runtime)),
+      account_(total_mass(model_)) {
+  if (choose_substeps() > kMostSubsteps)
+    throw DefinitionError("fabric", "too stiff for this mesh and tick",
+                          "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
+                          "lower the stiffness or the resolution, or raise tick_rate");
+  const std::size_t n = model_.mass.size();
+  workspace_.resize(n);
+  surroundings_.wind.resize(n);
+  report_.profile.clock = runtime_.clock;
+  reset();
+}
+
+template <class Real>
+void World<Real>::reset() {
+  state_ = initial_state(model_);
+  const PinId next_pin = pins_.next_id;
+  pins_ = make_pins(model_);
+  pins_.next_id = next_pin;
+  grabs_.list.clear();
+  for (const PinDef& pin_def : def_.pins) pin(pin_def);
+  contact_.reset();
+  tick_ = 0;
+  report_ = TickReport{};
+  report_.profile.clock = runtime_.clock;
+  accept_state();
+}
+
+template <class Real>
+void World<Real>::accept_state() {
+  last_good_ = state_;
+  account_.clear();
+}
+
+template <class Real>
+const TickReport& World<Real>::step() {
+  report_.profile.clear();
+  report_.divergence.reset();
+  const int substeps = choose_substeps();
+  blow_wind();
+  contact_.begin_tick(state_, tick_seconds(), report_.profile);
+  advance_or_recover(substeps);
+  finish_targets();
+  report_.tick = ++tick_;
+  report_.time = static_cast<double>(tick_) / def_.tick_rate;
+  return report_;
+}
+
+template <class Real>
+int World<Real>::choose_substeps() const {
+  StabilityBound bound{model_.membrane_omega2 + model_.bending_omega2,
+                       model_.membrane_damping_rate + model_.bending_damping_rate};
+  for (const Grab<Real>& grab : grabs_.list) {
+    bound.omega2 += grab.bound.omega2;
+    bound.damping_rate += grab.bound.damping_rate;
+  }
+  if (has_air(environment_)) {
+    // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
+    double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
+    double speed2 = 0;
+    for (const Vec3<Real>& v : state_.v) speed2 = std::max(speed2, static_cast<double>(v.squaredNorm()));
+    fastest += std::sqrt(speed2);
+    const FabricDef& fabric = model_.fabric;
+    bound.damping_rate += (environment_.air_density * fabric.air_normal * fastest +
+                           fabric.air_tangential) / fabric.areal_density;
+  }
+  const long count = substeps_for(bound, tick_seconds(), def_.solver.min_substeps);
+  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+}
+
+template <class Real>
+void World<Real>::blow_wind() {
+  surroundings_.gravity = environment_.gravity.template cast<Real>();
+  surroundings_.drag = environment_.drag;
+  surroundings_.air_density = environment_.air_density;
+  surroundings_.air = has_air(environment_);
+  if (!surroundings_.air) return;
+  const StageTimer timer(report_.profile, Stage::air, 0);
+  sample_wind(environment_, static_cast<double>(tick_) / def_.tick_rate, state_.x,
+              surroundings_.wind);
+}
+
+template <class Real>
+void World<Real>::advance_or_recover(int substeps) {
+  for (int attempt = 0;; ++attempt) {
+    const AdvanceResult result =
+        advance_verlet(model_, surroundings_, def_.solver, tick_seconds() / substeps, substeps,
+                       grabs_, contact_, state_, workspace_, report_.profile);
+    const StageTimer timer(report_.profile, Stage::diagnostics, 1);
+    const std::optional<Divergence> divergence = examine(result, substeps);
+    report_.substeps = substeps;
+    report_.energies = result.after;
+    report_.work = result.work;
+    report_.largest_strain = result.largest_strain;
+    if (!divergence) {
+      account_.accept(result);
+      last_good_.x = state_.x;
+      last_good_.v = state_.v;
+      return;
+    }
+    report_.divergence = divergence;
+    restore_last_good();
+    contact_.begin_tick(state_, tick_seconds(), report_.profile);
+    if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
+      report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
+      for (Vec3<Real>& v : state_.v) v.setZero();
+      report_.energies.kinetic = 0;
+      accept_state();
+      return;
+    }
+    report_.divergence->remedy = DivergenceRemedy::more_substeps;
+    substeps *= 2;
+  }
+}
+
+template <class Real>
+std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, int substeps) const {
+  Divergence d;
+  d.tick = tick_ + 1;
+  d.substeps = substeps;
+  const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
+                      std::isfinite(result.work);
+  if (finite && !account_.is_runaway(result)) return std::nullopt;
+  d.cause = finite ? DivergenceCause::energy_runaway : DivergenceCause::not_finite;
+  d.value = finite ? account_.unexplained(result) : result.after.total();
+  Real fastest = -1;
+  for (std::size_t i = 0; i < state_.x.size(); ++i) {
+    const Real speed2 = state_.v[i].squaredNorm();
+    if (!std::isfinite(speed2) || !state_.x[i].allFinite()) {
+      d.particle = static_cast<Index>(i);
+      break;
+    }
+    if (speed2 > fastest) {
+      fastest = speed2;
+      d.particle = static_cast<Index>(i);
+    }
+  }
+  return d;
+}
+
+template <class Real>
+void World<Real>::restore_last_good() {
+  state_.x = last_good_.x;
+  state_.v = last_good_.v;
+  for (std::size_t i = 0; i < state_.v.size(); ++i) {
+    if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
+  }
+}
+
+template <class Real>
+void World<Real>::finish_targets() {
+  for (Grab<Real>& grab : grabs_.list) grab.target_before = grab.target;
+}
+
+template <class Real>
+PinId World<Real>::pin(const PinDef& def) {
+  return add_pin(model_, def, pins_, state_);
+}
+
+template <class Real>
+bool World<Real>::unpin(PinId id) {
+  return remove_pin(model_, id, pins_, state_);
+}
+
+template <class Real>
+GrabId World<Real>::grab(const GrabDef& def) {
+  return add_grab(model_, state_, def, grabs_);
+}
+
+template <class Real>
+bool World<Real>::move_grab(GrabId id, const Vec3d& target) {
+  return weft::move_grab(id, target, grabs_);
+}
+
+template <class Real>
+bool World<Real>::release(GrabId id) {
+  return remove_grab(id, grabs_);
+}
+
+template <class Real>
+void World<Real>::set_environment(const EnvironmentDef& environment) {
+  validate(environment);
+  environment_ = environment;
+}
+
+template <class Real>
+std::uint64_t World<Real>::hash() const {
+  return state_hash(state_, pins_, grabs_, tick_);
+}
+
+template <class Real>
+double World<Real>::deepest_penetration() const {
+  return contact_.deepest_penetration(state_.x);
+}
+
+template class World<float>;
+template class World<double>;
+
+}  // namespace weft

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/attachments/grabs.h"
+#include "core/attachments/pins.h"
+#include "core/executor.h"
+#include "core/geometry/bvh.h"
+#include "core/solver/verlet.h"
+#include "core/world/energy_account.h"
+#include "core/world/profile.h"
+#include "core/world/world_def.h"
+
+namespace weft {
+
+/// Why a tick had to be taken back.
+enum class DivergenceCause : std::uint8_t {
+  not_finite,      ///< a position, velocity or energy is NaN or infinite
+  energy_runaway,  ///< more energy than there was and than hands and air did work
+};
+
+/// What was done about it.
+enum class DivergenceRemedy : std::uint8_t {
+  more_substeps,  ///< the tick was done again from the last good state with more substeps
+  stopped_cloth,  ///< the last good state is back, with all velocities zero
+};
+
+/// A blow-up that was seen and taken back in the same tick.
+struct Divergence {
+  DivergenceCause cause = DivergenceCause::not_finite;
+  DivergenceRemedy remedy = DivergenceRemedy::stopped_cloth;
+  std::uint64_t tick = 0;
+  Index particle = kNone;  ///< the first one that is not finite, or the fastest
+  double value = 0;        ///< unexplained energy [J], or the offending number
+  int substeps = 0;        ///< of the last attempt that failed
+};
+
+std::string describe(const Divergence& divergence);
+
+/// What a tick did.
+struct TickReport {
+  std::uint64_t tick = 0;  ///< number of the state that it led to; the start is 0
+  double time = 0;         ///< simulated [s]
+  int substeps = 0;
+  Energies energies;       ///< at the end [J]
+  double work = 0;         ///< by hands and air [J]
+  double largest_strain = 0;
+  std::optional<Divergence> divergence;
+  Profile profile;
+};
+
+/// Where a ray meets the cloth.
+struct ClothHit {
+  double distance = 0;  ///< along the unit direction [m]
+  Index triangle = kNone;
+  std::array<double, 3> barycentric = {};
+  Vec3d position = Vec3d::Zero();
+  Index nearest_particle = kNone;  ///< the corner nearest to the hit
+};
+
+/// What the world takes from outside. Neither changes any result.
+struct Runtime {
+  Executor* executor = nullptr;  ///< runs independent chunks; null: one after the other
+  double (*clock)() = nullptr;   ///< seconds, for the profile alone
+};
+
+/// One cloth with all that acts on it, advanced tick by tick. Not safe for use from several threads
+/// at once. Everything that changes it is called between steps.
+template <class Real>
+class World {
+ public:
+  /// Throws DefinitionError if the definition cannot be built.
+  explicit World(const WorldDef& def, const Runtime& runtime = {});
+
+  /// Advances by one tick of 1 / tick_rate seconds.
+  const TickReport& step();
+
+  /// Back to the start: pins as defined, no grabs, tick 0. The environment stays as it was set.
+  void reset();
+
+  PinId pin(const PinDef& def);
+  bool unpin(PinId id);
+  GrabId grab(const GrabDef& def);
+  bool move_grab(GrabId id, const Vec3d& target);
+  bool release(GrabId id);
+
+  /// Throws DefinitionError if a field is out of range; nothing changes then.
+  void set_environment(const EnvironmentDef& environment);
+
+  /// First triangle of the cloth that the ray meets, from either side.
+  /// @param direction  need not be of unit length
+  /// Throws DefinitionError if the ray is not finite or has no direction.
+  std::optional<ClothHit> pick(const Vec3d& origin, const Vec3d& direction) const;
+
+  /// Hash of all that decides the future: positions, velocities, pins, grabs, tick.
+  std::uint64_t hash() const;
+
+  /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
+  double deepest_penetration() const;
+
+  const WorldDef& def() const { return def_; }
+  const EnvironmentDef& environment() const { return environment_; }
+  const ClothModel<Real>& model() const { return model_; }
+  const ClothState<Real>& state() const { return state_; }
+  /// For tests that put the cloth somewhere; call `accept_state` afterwards.
+  ClothState<Real>& state() { return state_; }
+  /// Declares the present state good, as the one to go back to.
+  void accept_state();
+  const Pins& pins() const { return pins_; }
+  const Grabs<Real>& grabs() const { return grabs_; }
+  const TickReport& report() const { return report_; }
+  const Contact<Real>& contact() const { return contact_; }
+  std::uint64_t tick() const { return tick_; }
+  double tick_seconds() const { return 1 / def_.tick_rate; }
+
+ private:
+  int choose_substeps() const;
+  void blow_wind();
+  void advance_or_recover(int substeps);
+  std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
+  void restore_last_good();
+  void finish_targets();
+
+  WorldDef def_;
+  EnvironmentDef environment_;
+  Runtime runtime_;
+  ClothModel<Real> model_;
+  ClothState<Real> state_;
+  ClothState<Real> last_good_;
+  Pins pins_;
+  Grabs<Real> grabs_;
+  Surroundings<Real> surroundings_;
+  Contact<Real> contact_;
+  VerletWorkspace<Real> workspace_;
+  EnergyAccount account_;
+  TickReport report_;
+  std::uint64_t tick_ = 0;
+};
+
+extern template class World<float>;
+extern template class World<double>;
+
+}  // namespace weft

@@ -1,0 +1,83 @@
+#include "core/world/world_def.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+std::string text_of(double value) { return number_text(value); }
+std::string text_of(int value) { return std::to_string(value); }
+std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(const Vec3d& v) {
+  return number_text(v[0]) + "," + number_text(v[1]) + "," + number_text(v[2]);
+}
+
+/// Number of single-character changes between two words; finds the key that was meant.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
+  std::string all, nearest;
+  std::size_t best = key.size() / 2 + 1;
+  for (const FieldListing& field : list_fields(def)) {
+    all += (all.empty() ? "" : ", ") + field.key;
+    const std::size_t distance = edit_distance(key, field.key);
+    if (distance < best) {
+      best = distance;
+      nearest = field.key;
+    }
+  }
+  return {"key", key, "one of " + all, nearest.empty() ? "" : "did you mean " + nearest + "?"};
+}
+
+}  // namespace
+
+void validate(const EnvironmentDef& def) {
+  visit_fields_of_environment(def, [](const FieldInfo& info, const auto& value) {
+    check_field("environment.", info, value);
+  });
+}
+
+void validate(const WorldDef& def) {
+  visit_fields(def, [](const char* path, const FieldInfo& info, const auto& value) {
+    check_field(path, info, value);
+  });
+  validate(def.cloth);
+}
+
+void set_field(WorldDef& def, const std::string& key, const std::string& text) {
+  bool found = false;
+  visit_fields(def, [&](const char* path, const FieldInfo& info, auto& value) {
+    if (found || key != std::string(path) + info.name) return;
+    found = true;
+    parse_field(path, info, text, value);
+  });
+  if (!found) throw unknown_key(def, key);
+}
+
+std::vector<FieldListing> list_fields(const WorldDef& def) {
+  std::vector<FieldListing> list;
+  visit_fields(def, [&list](const char* path, const FieldInfo& info, const auto& value) {
+    const bool flag = std::is_same_v<std::decay_t<decltype(value)>, bool>;
+    list.push_back({std::string(path) + info.name, text_of(value),
+                    flag ? "true or false" : allowed_values(info), info.meaning});
+  });
+  return list;
+}
+
+}  // namespace weft

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/attachments/pins.h"
+#include "core/cloth/cloth_def.h"
+#include "core/contact/collider.h"
+#include "core/solver/verlet.h"
+#include "core/world/environment.h"
+
+namespace weft {
+
+/// A scene: everything needed to start a world. Built-in scenes come from core/scenes.
+struct WorldDef {
+  std::string name = "unnamed";
+  std::string description;  ///< one sentence on what to look at
+  double tick_rate = 60;    ///< ticks a simulated second [1/s]
+  EnvironmentDef environment;
+  SolverDef solver;
+  ClothDef cloth;
+  std::vector<ColliderDef> colliders;
+  std::vector<PinDef> pins;  ///< made at the start
+};
+
+/// Describes every field of the definition that has a range to `visit(path, info, value)`.
+template <class Def, class Visitor>
+void visit_fields(Def& def, Visitor&& visit) {
+  const auto below = [&visit](const char* path) {
+    return [&visit, path](const FieldInfo& info, auto& value) { visit(path, info, value); };
+  };
+  below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks a simulated second"}, def.tick_rate);
+  visit_fields_of_environment(def.environment, below("environment."));
+  visit_fields_of_solver(def.solver, below("solver."));
+  visit_fields_of_cloth(def.cloth, below("cloth."));
+  visit_fields_of_fabric(def.cloth.fabric, below("fabric."));
+}
+
+/// Checks all ranges and combinations that need no model. Throws DefinitionError.
+void validate(const WorldDef& def);
+
+/// Sets one field by its path, e.g. "fabric.shear" = "20" or "environment.wind" = "3,0,0".
+/// Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
+void set_field(WorldDef& def, const std::string& key, const std::string& text);
+
+/// A field as people see it.
+struct FieldListing {
+  std::string key, value, allowed, meaning;
+};
+
+/// Every field that `set_field` takes, with its present value.
+std::vector<FieldListing> list_fields(const WorldDef& def);
+
+}  // namespace weft
