@@ -140,7 +140,7 @@ Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x) {
 
 template <class Real>
 void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
-                     ParticleFields<Real>& force) {
+                     Vec3Array<Real>& force) {
   for (Grab<Real>& grab : grabs.list) {
     const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
     Vec3<Real> pull = (target - held_point(grab, state.x)) * static_cast<Real>(grab.def.stiffness) -
@@ -150,7 +150,7 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
     if (size > limit) pull *= limit / size;
     grab.force = pull;
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
-      force.add(static_cast<std::size_t>(grab.particles[n]), pull * grab.weights[n]);
+      force[static_cast<std::size_t>(grab.particles[n])] += pull * grab.weights[n];
   }
 }
 
@@ -161,7 +161,7 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
   template bool remove_grab(GrabId, Grabs<Real>&);                                              \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                    \
   template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&,                    \
-                                ParticleFields<Real>&);
+                                Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

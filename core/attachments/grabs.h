@@ -6,7 +6,6 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/cloth/particle_fields.h"
 #include "core/solver/substep_rule.h"
 
 namespace weft {
@@ -68,6 +67,6 @@ Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x);
 /// @param progress  how much of the tick has passed, 0 to 1
 template <class Real>
 void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
-                     ParticleFields<Real>& force);
+                     Vec3Array<Real>& force);
 
 }  // namespace weft

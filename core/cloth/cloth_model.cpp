@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/cloth/grid_springs.h"
 #include "core/error.h"
@@ -131,6 +130,25 @@ void connect_triangles(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
+/// The springs' numbers by kind, unless some of them follow no rule.
+template <class Real>
+void summarise_springs(const ClothDef& def, ClothModel<Real>& model) {
+  if (def.direct_springs || def.skip_stiffness != 0) return;
+  const double cell_u = def.width / (def.columns - 1), cell_v = def.height / (def.rows - 1);
+  const GridStiffness k = grid_stiffness(def.fabric, cell_u, cell_v);
+  GridSprings<Real> springs;
+  springs.warp = static_cast<Real>(k.warp);
+  springs.weft = static_cast<Real>(k.weft);
+  springs.shear = static_cast<Real>(k.shear);
+  springs.rest_warp = static_cast<Real>(cell_u);
+  springs.rest_weft = static_cast<Real>(cell_v);
+  springs.rest_shear = static_cast<Real>(std::hypot(cell_u, cell_v));
+  if (model.membrane_omega2 > 0)
+    springs.damping_per_stiffness =
+        static_cast<Real>(model.membrane_damping_rate / model.membrane_omega2);
+  model.grid_springs = springs;
+}
+
 /// Keeps the hinges or replaces them by the quadratic form.
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
@@ -146,33 +164,6 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
       static_cast<Real>((fabric.bending_warp + fabric.bending_weft) / (cell_u * cell_v))};
   model.hinges.clear();
   bound_quadratic_bending(model);
-}
-
-/// Group numbers of equal parameters, in the order of their first use.
-template <class Element, class Key>
-std::vector<std::uint32_t> number_groups(const std::vector<Element>& elements, Key&& key) {
-  std::map<decltype(key(elements[0])), std::uint32_t> numbers;
-  std::vector<std::uint32_t> group;
-  group.reserve(elements.size());
-  for (const Element& e : elements)
-    group.push_back(numbers.emplace(key(e), static_cast<std::uint32_t>(numbers.size())).first->second);
-  return group;
-}
-
-template <class Real>
-void group_rows(ClothModel<Real>& model) {
-  std::vector<Edge> ends;
-  for (const Spring<Real>& s : model.springs) ends.push_back({s.i, s.j});
-  model.spring_runs = group_into_runs<2>(ends, number_groups(model.springs, [](const auto& s) {
-    return std::array{s.rest_length, s.stiffness, s.damping};
-  }));
-  model.triangle_runs = group_into_runs<3>(
-      model.triangles, std::vector<std::uint32_t>(model.triangles.size(), 0));
-  std::vector<std::array<Index, 4>> corners;
-  for (const Hinge<Real>& h : model.hinges) corners.push_back({h.x[0], h.x[1], h.x[2], h.x[3]});
-  model.hinge_runs = group_into_runs<4>(corners, number_groups(model.hinges, [](const auto& h) {
-    return std::array{h.rest_angle, h.stiffness, h.damping, h.smallest_normal2};
-  }));
 }
 
 }  // namespace
@@ -218,8 +209,8 @@ ClothModel<Real> build_cloth(const ClothDef& def) {
   connect_triangles(def, model);
   bound_frequencies(model);
   if (!def.direct_springs) add_spring_damping(model, def.fabric.damping_ratio);
+  summarise_springs(def, model);
   choose_bending(def, model);
-  group_rows(model);
   return model;
 }
 

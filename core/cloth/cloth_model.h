@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/cloth/cloth_def.h"
-#include "core/cloth/runs.h"
 #include "core/types.h"
 
 namespace weft {
@@ -44,6 +44,14 @@ struct Hinge {
 /// A triangle crumpled below this part of its area at rest pulls on its hinges with less lever.
 inline constexpr double kCrumpledArea = 0.05;
 
+/// Springs of a grid as one set of numbers for each kind; see grid_springs.h. Border springs have half.
+template <class Real>
+struct GridSprings {
+  Real warp = 0, weft = 0, shear = 0;                 ///< stiffness [N/m]
+  Real rest_warp = 0, rest_weft = 0, rest_shear = 0;  ///< [m]
+  Real damping_per_stiffness = 0;                     ///< beta = c/k [s]
+};
+
 /// Bending of a grid that is flat at rest, as a quadratic form with a constant Hessian
 /// (PHYSICS.md section 2): energy density 1/2 (B_w |x_uu|^2 + B_f |x_vv|^2 + (B_w + B_f) |x_uv|^2).
 /// All zero if the cloth bends by hinges or not at all.
@@ -67,11 +75,9 @@ struct ClothModel {
   std::vector<Edge> edges;           ///< unique edges of the triangles
   std::vector<Spring<Real>> springs; ///< ordered by first end, then kind
   std::vector<SpringKind> spring_kinds;
+  std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   std::vector<Hinge<Real>> hinges;   ///< empty if bending is quadratic
   QuadraticBending<Real> quadratic_bending;
-  std::vector<Run<2>> spring_runs;   ///< the same springs, triangles and hinges as rows
-  std::vector<Run<3>> triangle_runs;
-  std::vector<Run<4>> hinge_runs;
   FabricDef fabric;
 
   /// Bound of the highest squared frequency of the membrane and of bending [1/s^2], and the matching

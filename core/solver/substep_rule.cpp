@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/bending_stencil.h"
 #include "core/forces/hinge.h"
 
 namespace weft {
@@ -60,26 +61,14 @@ void bound_frequencies(ClothModel<Real>& model) {
 
 template <class Real>
 void bound_quadratic_bending(ClothModel<Real>& model) {
-  const int rows = model.rows, columns = model.columns;
   std::vector<double> row_sum(model.mass.size(), 0);
-  const auto add = [&](int r, int c, double value) {
-    row_sum[static_cast<std::size_t>(r * columns + c)] += value;
-  };
-  const auto half_on = [](int k, int count) { return k == 0 || k == count - 1 ? 0.5 : 1.0; };
-  const auto& q = model.quadratic_bending;
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) {
-      for (int k = -1; k <= 1; ++k) {
-        const double weight = k == 0 ? 8 : 4;  // |w_i| sum|w| of the stencil 1 -2 1
-        if (c > 0 && c + 1 < columns)
-          add(r, c + k, weight * half_on(r, rows) * static_cast<double>(q.along_u));
-        if (r > 0 && r + 1 < rows)
-          add(r + k, c, weight * half_on(c, columns) * static_cast<double>(q.along_v));
-      }
-      if (r + 1 == rows || c + 1 == columns) continue;
-      for (int k = 0; k < 4; ++k) add(r + k / 2, c + k % 2, 4 * static_cast<double>(q.twist));
-    }
-  }
+  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
+    double sum = 0;
+    for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
+    for (int n = 0; n < count; ++n)
+      row_sum[static_cast<std::size_t>(corners[n])] +=
+          static_cast<double>(k) * std::abs(weights[n]) * sum;
+  });
   model.bending_omega2 = 0;
   model.bending_damping_rate = 0;
   for (std::size_t i = 0; i < row_sum.size(); ++i)

@@ -28,7 +28,7 @@ template <class Real>
 void bound_frequencies(ClothModel<Real>& model);
 
 /// Replaces the bending bound by that of the quadratic form: each stencil w with energy k/2 |w x|^2
-/// adds k |w_i| sum|w| to the rows of its particles, 16 k along an axis and 4 k for the twist at most.
+/// adds k |w_i| sum|w| to the Gershgorin rows of its particles.
 template <class Real>
 void bound_quadratic_bending(ClothModel<Real>& model);
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "core/forces/air_pass.h"
-#include "core/forces/bending.h"
-#include "core/forces/stretch.h"
+#include "core/forces/force_pass.h"
 
 namespace weft {
 namespace {
@@ -44,40 +42,58 @@ struct Tick {
   bool pulled() const { return surroundings.air || !grabs.list.empty(); }
 };
 
+/// Springs and bending element by element.
 template <class Real>
-void evaluate_bending(Tick<Real>& tick) {
-  const std::size_t stencils = quadratic_stencil_count(tick.model);
+void evaluate_elements(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
+  const ClothModel<Real>& model = tick.model;
+  Vec3Array<Real>& force = tick.work.internal;
+  std::fill(force.begin(), force.end(), Vec3<Real>::Zero());
+  if (!model.springs.empty()) {
+    const StageTimer timer(tick.profile, Stage::stretch, model.springs.size());
+    add_spring_forces(model, tick.state.x, velocity, force);
+  }
+  if (!model.hinges.empty()) {
+    const StageTimer timer(tick.profile, Stage::bending, model.hinges.size());
+    add_hinge_forces(model, tick.state.x, velocity, force);
+  }
+  const std::size_t stencils = quadratic_stencil_count(model);
   if (stencils > 0) {
     const StageTimer timer(tick.profile, Stage::bending, stencils);
-    add_quadratic_bending_forces(tick.model, tick.work.x, tick.work.internal);
+    add_quadratic_bending_forces(model, tick.state.x, force);
   }
-  if (!tick.model.hinges.empty()) {
-    const StageTimer timer(tick.profile, Stage::bending, tick.model.hinges.size());
-    add_hinge_forces(tick.model, tick.work.x, tick.work.v, tick.work.internal);
-  }
+}
+
+/// Springs and quadratic bending row by row, in one pass; its time is booked under stretch.
+template <class Real>
+void evaluate_rows(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
+  const StageTimer timer(tick.profile, Stage::stretch, tick.model.springs.size());
+  tick.profile[Stage::bending].work += quadratic_stencil_count(tick.model);
+  tick.work.grid.load(tick.state.x, velocity);
+  tick.work.grid.compute_internal_forces(tick.work.internal);
 }
 
 /// All forces at the present positions, with `velocity` as seen by dashpots and air.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
-  const ClothModel<Real>& model = tick.model;
+  const Surroundings<Real>& around = tick.surroundings;
   VerletWorkspace<Real>& work = tick.work;
-  {
-    const StageTimer timer(tick.profile, Stage::integration, 0);
-    work.x.copy_from(tick.state.x);
-    work.v.copy_from(velocity);
-    work.internal.set_zero();
-    if (tick.pulled()) work.external.set_zero();
-  }
-  if (!model.springs.empty()) {
-    const StageTimer timer(tick.profile, Stage::stretch, model.springs.size());
-    add_spring_forces(model, work.x, work.v, work.internal);
-  }
-  evaluate_bending(tick);
-  if (tick.surroundings.air) {
-    const StageTimer timer(tick.profile, Stage::air, model.triangles.size());
-    add_air_forces(model, tick.surroundings.wind, tick.surroundings.air_density, work.x, work.v,
-                   work.external);
+  const bool rows = work.grid.fits();
+  if (rows)
+    evaluate_rows(tick, velocity);
+  else
+    evaluate_elements(tick, velocity);
+  if (!tick.pulled()) return;
+  if (around.air) {
+    const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
+    if (rows) {
+      work.grid.compute_air_forces(around.air_density, work.external);
+    } else {
+      std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
+      add_air_forces(tick.model, around.wind, around.air_density, tick.state.x, velocity,
+                     work.external);
+    }
+  } else {
+    std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
   }
   if (!tick.grabs.list.empty()) {
     const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
@@ -92,8 +108,8 @@ void kick(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from, Ve
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Real w = tick.state.inverse_mass[i];
     if (w == 0) continue;
-    Vec3<Real> a = tick.work.internal.at(i) * w;
-    if (pulled) a += tick.work.external.at(i) * w;
+    Vec3<Real> a = tick.work.internal[i] * w;
+    if (pulled) a += tick.work.external[i] * w;
     to[i] = from[i] * k.keep + (a + tick.surroundings.gravity) * k.push;
   }
 }
@@ -132,16 +148,14 @@ double external_work(const Tick<Real>& tick) {
   if (!tick.pulled()) return 0;
   double power = 0;
   for (std::size_t i = 0; i < tick.state.v.size(); ++i)
-    power += static_cast<double>(tick.work.external.at(i).dot(tick.state.v[i]));
+    power += static_cast<double>(tick.work.external[i].dot(tick.state.v[i]));
   return power * static_cast<double>(tick.dt);
 }
 
 template <class Real>
 Energies energies_of(Tick<Real>& tick, double& largest_strain) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
-  ElasticEnergy elastic;
-  add_stretch_energy(tick.model, tick.state.x, elastic);
-  add_bending_energy(tick.model, tick.state.x, elastic);
+  const ElasticEnergy elastic = elastic_energy(tick.model, tick.state.x);
   largest_strain = elastic.largest_strain;
   Energies e;
   e.stretch = elastic.stretch;
@@ -158,6 +172,13 @@ Energies energies_of(Tick<Real>& tick, double& largest_strain) {
 }  // namespace
 
 template <class Real>
+void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model) {
+  for (Vec3Array<Real>* array : {&internal, &external, &velocity})
+    array->assign(model.mass.size(), Vec3<Real>::Zero());
+  grid.prepare(model);
+}
+
+template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              Contact<Real>& contact, ClothState<Real>& state,
@@ -165,6 +186,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs,
                   contact, state, work, profile};
   const Kicks<Real> kicks(dt, surroundings.drag);
+  if (surroundings.air && work.grid.fits()) work.grid.load_wind(surroundings.wind);
   AdvanceResult result;
   result.before = energies_of(tick, result.largest_strain);
   evaluate_forces(tick, Real(0), state.v);
@@ -183,6 +205,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                   \
+  template struct VerletWorkspace<Real>;                                                         \
   template AdvanceResult advance_verlet(const ClothModel<Real>&, const Surroundings<Real>&,      \
                                         const SolverDef&, double, int, Grabs<Real>&,             \
                                         Contact<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, \

@@ -3,9 +3,9 @@
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/cloth/particle_fields.h"
 #include "core/contact/contact.h"
 #include "core/definition.h"
+#include "core/forces/grid_pass.h"
 #include "core/world/profile.h"
 
 namespace weft {
@@ -32,7 +32,7 @@ struct Surroundings {
   double drag = 0;                          ///< alpha [1/s]
   bool air = false;                         ///< evaluate the air forces at all
   double air_density = 0;                   ///< [kg/m^3]
-  ParticleFields<Real> wind;                ///< at each particle [m/s]; used if `air`
+  Vec3Array<Real> wind;                     ///< at each particle [m/s]; used if `air`
 };
 
 /// Energies at one instant [J].
@@ -54,15 +54,13 @@ struct AdvanceResult {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct VerletWorkspace {
-  ParticleFields<Real> x, v;      ///< positions and velocities as the force loops want them
-  ParticleFields<Real> internal;  ///< forces of springs and bending [N]
-  ParticleFields<Real> external;  ///< forces of hands and air [N]
-  Vec3Array<Real> velocity;       ///< estimate of the velocity that the dashpots see [m/s]
+  Vec3Array<Real> internal;  ///< forces of springs and bending [N]
+  Vec3Array<Real> external;  ///< forces of hands and air [N]
+  Vec3Array<Real> velocity;  ///< estimate of the velocity that the dashpots see [m/s]
+  GridPass<Real> grid;       ///< row-wise form of the forces, for grids without hinges
 
-  void resize(std::size_t particles) {
-    for (ParticleFields<Real>* fields : {&x, &v, &internal, &external}) fields->resize(particles);
-    velocity.resize(particles);
-  }
+  /// Sizes all arrays for a cloth.
+  void prepare(const ClothModel<Real>& model);
 };
 
 /// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions and

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/cloth/particle_fields.h"
 #include "core/types.h"
 #include "core/world/environment.h"
 
@@ -14,6 +13,6 @@ namespace weft {
 /// @param wind  result, already of the size of x
 template <class Real>
 void sample_wind(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
-                 ParticleFields<Real>& wind);
+                 Vec3Array<Real>& wind);
 
 }  // namespace weft

@@ -63,7 +63,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
   const std::size_t n = model_.mass.size();
-  workspace_.resize(n);
+  workspace_.prepare(model_);
   surroundings_.wind.resize(n);
   report_.profile.clock = runtime_.clock;
   reset();

@@ -1,0 +1,141 @@
+#include "core/forces/force_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/forces/air.h"
+#include "core/forces/bending_stencil.h"
+#include "core/forces/hinge.h"
+#include "core/forces/spring.h"
+
+namespace weft {
+namespace {
+
+template <class T>
+const T& at(const std::vector<T>& values, Index i) {
+  return values[static_cast<std::size_t>(i)];
+}
+
+template <class T>
+T& at(std::vector<T>& values, Index i) {
+  return values[static_cast<std::size_t>(i)];
+}
+
+/// w x of one bending stencil.
+template <class Real>
+Vec3<Real> stencil_value(const Vec3Array<Real>& x, const Index* corners, const double* weights,
+                         int count) {
+  Vec3<Real> sum = Vec3<Real>::Zero();
+  for (int k = 0; k < count; ++k) sum += at(x, corners[k]) * static_cast<Real>(weights[k]);
+  return sum;
+}
+
+}  // namespace
+
+template <class Real>
+void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                       const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const Spring<Real>& s : model.springs) {
+    const Vec3<Real> f = spring_force<Real>(s, at(x, s.j) - at(x, s.i), at(v, s.j) - at(v, s.i));
+    at(force, s.i) += f;
+    at(force, s.j) -= f;
+  }
+}
+
+template <class Real>
+void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                      const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const Hinge<Real>& h : model.hinges) {
+    const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
+                                                     at(x, h.x[3]), h.smallest_normal2);
+    Real rate = 0;
+    for (std::size_t a = 0; a < 4; ++a) rate += angle.gradient[a].dot(at(v, h.x[a]));
+    const Real moment = hinge_moment(h, angle.theta, rate);
+    for (std::size_t a = 0; a < 4; ++a) at(force, h.x[a]) += angle.gradient[a] * moment;
+  }
+}
+
+template <class Real>
+void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                                  Vec3Array<Real>& force) {
+  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
+    const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
+    for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
+  });
+}
+
+template <class Real>
+void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, double density,
+                    const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  const Real pressure = static_cast<Real>(0.5 * density * model.fabric.air_normal);
+  const Real skin = static_cast<Real>(density > 0 ? model.fabric.air_tangential : 0);
+  for (const Triangle& t : model.triangles) {
+    const Vec3<Real> normal = (at(x, t[1]) - at(x, t[0])).cross(at(x, t[2]) - at(x, t[0]));
+    const Vec3<Real> u = ((at(wind, t[0]) - at(v, t[0])) + (at(wind, t[1]) - at(v, t[1])) +
+                          (at(wind, t[2]) - at(v, t[2]))) * Real(1.0 / 3.0);
+    const Vec3<Real> third = air_force<Real>(normal, u, pressure, skin) * Real(1.0 / 3.0);
+    for (const Index corner : t) at(force, corner) += third;
+  }
+}
+
+template <class Real>
+std::size_t quadratic_stencil_count(const ClothModel<Real>& model) {
+  const QuadraticBending<Real>& q = model.quadratic_bending;
+  if (q.along_u == 0 && q.along_v == 0 && q.twist == 0) return 0;
+  const auto rows = static_cast<std::size_t>(model.rows);
+  const auto columns = static_cast<std::size_t>(model.columns);
+  return rows * (columns - 2) + (rows - 2) * columns + (rows - 1) * (columns - 1);
+}
+
+template <class Real>
+ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x) {
+  ElasticEnergy energy;
+  for (std::size_t n = 0; n < model.springs.size(); ++n) {
+    const Spring<Real>& s = model.springs[n];
+    const auto stretch = static_cast<double>((at(x, s.j) - at(x, s.i)).norm() - s.rest_length);
+    energy.stretch += 0.5 * static_cast<double>(s.stiffness) * stretch * stretch;
+    if (model.spring_kinds[n] == SpringKind::skip) continue;
+    const double strain = std::abs(stretch) / static_cast<double>(s.rest_length);
+    if (!(strain <= energy.largest_strain)) energy.largest_strain = strain;
+  }
+  for (const Hinge<Real>& h : model.hinges) {
+    const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
+                                                     at(x, h.x[3]), h.smallest_normal2);
+    energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
+  }
+  if (quadratic_stencil_count(model) == 0) return energy;
+  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
+    energy.bending += 0.5 * static_cast<double>(k) *
+                      static_cast<double>(stencil_value(x, corners, weights, count).squaredNorm());
+  });
+  return energy;
+}
+
+template <class Real>
+void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                     std::vector<Real>& strain) {
+  strain.clear();
+  for (std::size_t n = 0; n < model.springs.size(); ++n) {
+    if (model.spring_kinds[n] == SpringKind::skip) continue;
+    const Spring<Real>& s = model.springs[n];
+    strain.push_back(std::abs((at(x, s.j) - at(x, s.i)).norm() - s.rest_length) / s.rest_length);
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                      \
+  template void add_spring_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                  \
+                                  const Vec3Array<Real>&, Vec3Array<Real>&);                        \
+  template void add_hinge_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                   \
+                                 const Vec3Array<Real>&, Vec3Array<Real>&);                         \
+  template void add_quadratic_bending_forces(const ClothModel<Real>&, const Vec3Array<Real>&,       \
+                                             Vec3Array<Real>&);                                     \
+  template void add_air_forces(const ClothModel<Real>&, const Vec3Array<Real>&, double,             \
+                               const Vec3Array<Real>&, const Vec3Array<Real>&, Vec3Array<Real>&);   \
+  template std::size_t quadratic_stencil_count(const ClothModel<Real>&);                            \
+  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);           \
+  template void collect_strains(const ClothModel<Real>&, const Vec3Array<Real>&, std::vector<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+#include "core/types.h"
+
+namespace weft {
+
+// Forces element by element, in the order of the model's lists. They serve every cloth and are the
+// reference for the row-wise form of grid_pass.h.
+
+/// Elastic energies at one instant [J], summed in double.
+struct ElasticEnergy {
+  double stretch = 0;
+  double bending = 0;
+  double largest_strain = 0;  ///< largest |l - L| / L of the structural and shear springs
+};
+
+/// Adds the elastic and dashpot forces of all springs to `force` [N]; formula in spring.h.
+/// @param x,v  positions [m] and velocities [m/s] of all particles
+template <class Real>
+void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                       const Vec3Array<Real>& v, Vec3Array<Real>& force);
+
+/// Adds the elastic and damping forces of all hinges to `force` [N]; formula in hinge.h.
+template <class Real>
+void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                      const Vec3Array<Real>& v, Vec3Array<Real>& force);
+
+/// Adds the forces of the quadratic bending form to `force` [N]: -k w^T (w x) for each stencil w.
+template <class Real>
+void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                                  Vec3Array<Real>& force);
+
+/// Adds the force of the air on all triangles, a third to each corner [N]; formula in air.h.
+/// @param wind     velocity of the air at each particle [m/s]
+/// @param density  of the air [kg/m^3]
+template <class Real>
+void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, double density,
+                    const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
+
+/// Stencils of the quadratic form that one evaluation visits; 0 if the cloth has none.
+template <class Real>
+std::size_t quadratic_stencil_count(const ClothModel<Real>& model);
+
+/// Energies of springs and bending and the largest strain. NaN is kept and seen.
+template <class Real>
+ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
+
+/// Strain |l - L| / L of every structural and shear spring, into `strain` (cleared first).
+template <class Real>
+void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                     std::vector<Real>& strain);
+
+}  // namespace weft

@@ -1,0 +1,98 @@
+#include "core/forces/grid_pass.h"
+
+#include <algorithm>
+
+#include "core/forces/grid_kernels.h"
+
+namespace weft {
+
+template <class Real>
+const Real* GridPass<Real>::at_origin(const std::vector<Real>& array) const {
+  return array.data() + 2 * view_.stride + kGridMargin;
+}
+
+template <class Real>
+void GridPass<Real>::prepare(const ClothModel<Real>& model) {
+  view_ = {};
+  if (!model.grid_springs || !model.hinges.empty()) return;
+  view_.rows = model.rows;
+  view_.columns = model.columns;
+  view_.stride = model.columns + 2 * kGridMargin;
+  view_.springs = *model.grid_springs;
+  view_.bending = model.quadratic_bending;
+  air_normal_ = static_cast<Real>(model.fabric.air_normal);
+  air_tangential_ = static_cast<Real>(model.fabric.air_tangential);
+
+  const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4));
+  for (Components* components : {&x_, &v_, &wind_, &slip_}) {
+    for (std::vector<Real>& array : *components) array.assign(size, Real(0));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    view_.x[k] = at_origin(x_[k]);
+    view_.v[k] = at_origin(v_[k]);
+    view_.slip[k] = at_origin(slip_[k]);
+  }
+  for (std::vector<Real>* table : {&cell_, &border_half_, &inner_, &odd_})
+    table->assign(static_cast<std::size_t>(view_.stride), Real(0));
+  for (int c = 0; c < view_.columns; ++c) {
+    const auto k = static_cast<std::size_t>(c + kGridMargin);
+    const bool border = c == 0 || c == view_.columns - 1;
+    cell_[k] = c + 1 < view_.columns ? Real(1) : Real(0);
+    border_half_[k] = border ? Real(0.5) : Real(1);
+    inner_[k] = border ? Real(0) : Real(1);
+    odd_[k] = static_cast<Real>(c % 2);
+  }
+  view_.cell = cell_.data() + kGridMargin;
+  view_.border_half = border_half_.data() + kGridMargin;
+  view_.inner = inner_.data() + kGridMargin;
+  view_.odd = odd_.data() + kGridMargin;
+  scratch_.assign(static_cast<std::size_t>(view_.stride * kGridScratchRows), Real(0));
+  view_.scratch = scratch_.data() + kGridMargin;
+}
+
+template <class Real>
+void GridPass<Real>::scatter(const Vec3Array<Real>& values, Components& components) const {
+  for (int r = 0; r < view_.rows; ++r) {
+    const Vec3<Real>* from = values.data() + static_cast<std::ptrdiff_t>(r) * view_.columns;
+    const std::ptrdiff_t row = (r + 2) * view_.stride + kGridMargin;
+    Real *x = components[0].data() + row, *y = components[1].data() + row,
+         *z = components[2].data() + row;
+    for (int c = 0; c < view_.columns; ++c) {
+      x[c] = from[c][0];
+      y[c] = from[c][1];
+      z[c] = from[c][2];
+    }
+  }
+}
+
+template <class Real>
+void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
+  scatter(x, x_);
+  scatter(v, v_);
+}
+
+template <class Real>
+void GridPass<Real>::load_wind(const Vec3Array<Real>& wind) {
+  scatter(wind, wind_);
+}
+
+template <class Real>
+void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
+  grid_internal_forces(view_, force.data()->data());
+}
+
+template <class Real>
+void GridPass<Real>::compute_air_forces(double density, Vec3Array<Real>& force) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Real *wind = wind_[k].data(), *v = v_[k].data();
+    Real* slip = slip_[k].data();
+    for (std::size_t i = 0; i < slip_[k].size(); ++i) slip[i] = wind[i] - v[i];
+  }
+  const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
+  grid_air_forces(view_, pressure, air_tangential_, force.data()->data());
+}
+
+template class GridPass<float>;
+template class GridPass<double>;
+
+}  // namespace weft
