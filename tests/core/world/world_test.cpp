@@ -1,0 +1,196 @@
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "tests/support/worlds.h"
+
+using namespace weft;
+
+namespace {
+
+WorldDef hung_cloth() {
+  ClothDef cloth = test::flat_cloth(10, 12);
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.air_density = 1.225;
+  def.environment.wind = Vec3d(1, 0, 2);
+  def.environment.gust_speed = 1;
+  def.pins = {{0, 0}, {11, 0.1}};
+  return def;
+}
+
+}  // namespace
+
+TEST_CASE("the same world twice gives the same hash, and so does a reset") {
+  World<float> first(hung_cloth()), second(hung_cloth());
+  const std::uint64_t start = first.hash();
+  test::advance(first, 0.5);
+  test::advance(second, 0.5);
+  CHECK(first.hash() == second.hash());
+  CHECK(first.hash() != start);
+  const std::uint64_t end = first.hash();
+  first.grab({5, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 0.1, 100, 50, Vec3d(0, 1, 0)});
+  first.pin({40, 0.05});
+  test::advance(first, 0.5);
+  first.reset();
+  CHECK(first.hash() == start);
+  test::advance(first, 0.5);
+  CHECK(first.hash() == end);
+}
+
+TEST_CASE("the hash sees one bit of one velocity, a pin, a hand and its target") {
+  World<float> world(hung_cloth());
+  const std::uint64_t start = world.hash();
+  world.state().v[50][1] = 1e-30f;
+  const std::uint64_t moved = world.hash();
+  CHECK(moved != start);
+  const PinId pin = world.pin({60, 0});
+  CHECK(world.hash() != moved);
+  REQUIRE(world.unpin(pin));
+  CHECK(world.hash() == moved);
+  const GrabId hand = world.grab({5, {0.2, 0.3, 0.5}, 0, 100, 50, Vec3d(0, 1, 0)});
+  const std::uint64_t held = world.hash();
+  CHECK(held != moved);
+  world.move_grab(hand, Vec3d(0, 1, 0.001));
+  CHECK(world.hash() != held);
+}
+
+TEST_CASE("pins hold their particles to the bit; freed, they fall; shared ones need both freed") {
+  World<float> world(hung_cloth());
+  const PinId first = world.pin({60, 0.1}), second = world.pin({61, 0.1});
+  const Vec3f held = world.state().x[60];
+  test::advance(world, 0.3);
+  CHECK(world.state().x[60] == held);
+  REQUIRE(world.unpin(first));
+  test::advance(world, 0.3);
+  CHECK(world.state().x[60] == held);  // the second disc reaches it as well
+  REQUIRE(world.unpin(second));
+  CHECK_FALSE(world.unpin(second));
+  test::advance(world, 0.3);
+  CHECK((world.state().x[60] - held).norm() > 0.01f);
+}
+
+TEST_CASE("a value that is not finite is seen in the same tick and the last good state comes back") {
+  World<float> world(hung_cloth());
+  test::advance(world, 0.2);
+  const ClothState<float> good = world.state();
+  world.state().x[37][2] = std::nanf("");
+  const TickReport& report = world.step();
+  REQUIRE(report.divergence);
+  CHECK(report.divergence->cause == DivergenceCause::not_finite);
+  CHECK(report.divergence->tick == report.tick);
+  CHECK_FALSE(describe(*report.divergence).empty());
+  for (std::size_t i = 0; i < good.x.size(); ++i) {
+    CHECK(world.state().x[i].allFinite());
+    CHECK((world.state().x[i] - good.x[i]).norm() < 0.1f);
+  }
+  test::advance(world, 0.5);  // throws if anything is wrong afterwards
+}
+
+TEST_CASE("an energy without a source is seen in the same tick and taken back") {
+  World<float> world(hung_cloth());
+  test::advance(world, 0.2);
+  const ClothState<float> good = world.state();
+  world.state().x[37] += Vec3f(30, 0, 0);  // a force of kilonewtons from nowhere
+  world.state().v[37] += Vec3f(0, 1e6f, 0);
+  const TickReport& report = world.step();
+  if (report.divergence) CHECK(report.divergence->particle != kNone);
+  for (const Vec3f& p : world.state().x) CHECK(p.allFinite());
+}
+
+TEST_CASE("an unstable substep is caught, repeated with more substeps, and the run goes on") {
+  WorldDef def = hung_cloth();
+  World<float> world(def);
+  test::advance(world, 0.2);
+  // A mass a thousand times too small for the substep rule, put behind its back.
+  world.state().inverse_mass[65] *= 4000;
+  bool seen = false;
+  for (int tick = 0; tick < 60; ++tick) {
+    seen |= world.step().divergence.has_value();
+    for (const Vec3f& p : world.state().x) REQUIRE(p.norm() < 10);
+  }
+  CHECK(seen);
+}
+
+TEST_CASE("a hard pull is no divergence") {
+  World<float> world(hung_cloth());
+  const GrabId hand = world.grab({50, {0.2, 0.3, 0.5}, 0.05, 1000, 500, Vec3d(0, 0, 0)});
+  for (int tick = 0; tick < 120; ++tick) {
+    world.move_grab(hand, Vec3d(3 * (tick / 20 % 2), 2, -3 * (tick / 10 % 2)));
+    const TickReport& report = world.step();
+    INFO((report.divergence ? describe(*report.divergence) : ""));
+    CHECK_FALSE(report.divergence.has_value());
+  }
+}
+
+TEST_CASE("what is not in the scene costs no work") {
+  ClothDef cloth = test::flat_cloth(6, 6);
+  WorldDef def = test::empty_world(cloth);
+  World<float> world(def);
+  const Profile& profile = world.step().profile;
+  CHECK(profile[Stage::air].work == 0);
+  CHECK(profile[Stage::attachments].work == 0);
+  CHECK(profile[Stage::broad_phase].work == 0);
+  CHECK(profile[Stage::narrow_phase].work == 0);
+  CHECK(profile[Stage::contact].work == 0);
+  CHECK(profile[Stage::friction].work == 0);
+  CHECK(profile[Stage::stretch].work > 0);
+  cloth.fabric.bending_warp = cloth.fabric.bending_weft = 0;
+  World<float> limp(test::empty_world(cloth));
+  CHECK(limp.step().profile[Stage::bending].work == 0);
+}
+
+TEST_CASE("a pick hits the cloth where a ray meets it, from both sides, and misses beside it") {
+  World<float> world(hung_cloth());  // in the plane y = 0 over 0..1 x 0..1
+  for (const double side : {1.0, -1.0}) {
+    const auto hit = world.pick(Vec3d(0.31, side, 0.62), Vec3d(0, -3 * side, 0));
+    REQUIRE(hit);
+    CHECK(hit->distance == Approx(1));
+    CHECK((hit->position - Vec3d(0.31, 0, 0.62)).norm() < 1e-6);
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += hit->barycentric[k] *
+             world.state().x[static_cast<std::size_t>(
+                 world.model().triangles[static_cast<std::size_t>(hit->triangle)][k])].cast<double>();
+    CHECK((sum - hit->position).norm() < 1e-5);
+    CHECK(hit->nearest_particle != kNone);
+  }
+  CHECK_FALSE(world.pick(Vec3d(1.31, 1, 0.62), Vec3d(0, -1, 0)));
+  CHECK_THROWS_AS(world.pick(Vec3d(0, 1, 0), Vec3d::Zero()), DefinitionError);
+  CHECK_THROWS_AS(world.pick(Vec3d(0, std::nan(""), 0), Vec3d(0, 1, 0)), DefinitionError);
+}
+
+TEST_CASE("bad pins, hands and environments are refused by name and change nothing") {
+  World<float> world(hung_cloth());
+  const std::uint64_t before = world.hash();
+  const double nan = std::nan("");
+  CHECK_THROWS_AS(world.pin({120, 0}), DefinitionError);
+  CHECK_THROWS_AS(world.pin({-1, 0}), DefinitionError);
+  CHECK_THROWS_AS(world.pin({0, nan}), DefinitionError);
+  CHECK_THROWS_AS(world.grab({9999, {1, 0, 0}, 0, 10, 10, Vec3d::Zero()}), DefinitionError);
+  CHECK_THROWS_AS(world.grab({0, {1, 1, 0}, 0, 10, 10, Vec3d::Zero()}), DefinitionError);
+  CHECK_THROWS_AS(world.grab({0, {1, 0, 0}, 0, 10, 10, Vec3d(0, nan, 0)}), DefinitionError);
+  CHECK_THROWS_AS(world.grab({0, {1, 0, 0}, 0, -1, 10, Vec3d::Zero()}), DefinitionError);
+  EnvironmentDef environment = world.environment();
+  environment.wind[1] = 1e9;
+  CHECK_THROWS_AS(world.set_environment(environment), DefinitionError);
+  CHECK(world.hash() == before);
+}
+
+TEST_CASE("fields are set by path and refused with what is allowed") {
+  WorldDef def;
+  set_field(def, "fabric.shear", "12.5");
+  set_field(def, "cloth.rows", "40");
+  set_field(def, "environment.wind", "1,-2,3.5");
+  set_field(def, "environment.still_air", "true");
+  CHECK(def.cloth.fabric.shear == 12.5);
+  CHECK(def.cloth.rows == 40);
+  CHECK(def.environment.wind == Vec3d(1, -2, 3.5));
+  CHECK(def.environment.still_air);
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
+           {"fabric.shear", "nan"}, {"fabric.shear", "1e999"}, {"fabric.shear", "12x"},
+           {"cloth.rows", "2.5"}, {"cloth.rows", "1"}, {"environment.wind", "1,2"},
+           {"environment.wind", "1,2,3,4"}, {"environment.still_air", "yes"}, {"cloth.row", "3"}, {"", ""}})
+    CHECK_THROWS_AS(set_field(def, key, value), DefinitionError);
+  CHECK(def.cloth.rows == 40);
+  CHECK(list_fields(def).size() > 20);
+}
