@@ -1,0 +1,201 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "proto/error.h"
+#include "proto/limits.h"
+#include "proto/types.h"
+
+// What a client may ask for. README.md section 5 gives the meaning of each; ranges are in limits.h.
+
+namespace weft::proto {
+
+struct Hello {
+  std::optional<std::string> name;   ///< 1 to 32 characters without control characters
+  std::optional<std::string> color;  ///< "#rrggbb"
+  std::optional<std::string> token;
+  bool operator==(const Hello&) const = default;
+};
+
+/// A ray [m]; `direction` has a component of at least kLeastDirection and need not be of unit
+/// length.
+struct Pick {
+  Vec3 origin{}, direction{};
+  bool operator==(const Pick&) const = default;
+};
+
+struct Particle {
+  std::uint32_t index = 0;
+  bool operator==(const Particle&) const = default;
+};
+
+/// A point of a triangle; the weights are in 0 to 1 with sum 1 within kWeightSumTolerance.
+struct SurfacePoint {
+  std::uint32_t triangle = 0;
+  Vec3 barycentric{};
+  bool operator==(const SurfacePoint&) const = default;
+};
+
+/// Where to take hold of the cloth. Whether the index exists is for the receiver to check.
+using Hold = std::variant<Particle, SurfacePoint>;
+
+struct DragStart {
+  std::uint32_t drag = 0;  ///< the viewer's own number of it
+  Hold hold;
+  std::optional<Vec3> target;  ///< [m]; absent: where the held point is
+  double radius = 0.03;        ///< of the held disc in the fabric [m]
+  double stiffness = 150;      ///< [N/m]
+  double max_force = 50;       ///< [N]
+  bool operator==(const DragStart&) const = default;
+};
+
+struct DragMove {
+  std::uint32_t drag = 0;
+  Vec3 target{};  ///< [m]
+  bool operator==(const DragMove&) const = default;
+};
+
+struct DragEnd {
+  std::uint32_t drag = 0;
+  bool operator==(const DragEnd&) const = default;
+};
+
+struct Pin {
+  Hold hold;
+  double radius = 0;  ///< of the fixed disc in the fabric [m]; 0: the particle alone
+  bool operator==(const Pin&) const = default;
+};
+
+struct ReleasePin {
+  std::uint32_t pin = 0;
+  bool operator==(const ReleasePin&) const = default;
+};
+
+struct ReleaseParticle {
+  std::uint32_t particle = 0;
+  bool operator==(const ReleaseParticle&) const = default;
+};
+
+struct ReleaseAll {
+  bool operator==(const ReleaseAll&) const = default;
+};
+
+struct Camera {
+  Vec3 position{}, target{};  ///< [m], not the same point
+  Vec3 up = {0, 1, 0};        ///< a direction
+  double fov = 45;            ///< vertical angle of view [degrees]
+  bool operator==(const Camera&) const = default;
+};
+
+struct Pause {
+  bool operator==(const Pause&) const = default;
+};
+
+struct Resume {
+  bool operator==(const Resume&) const = default;
+};
+
+struct Step {
+  std::uint32_t n = 1;  ///< ticks
+  bool operator==(const Step&) const = default;
+};
+
+struct Reset {
+  bool operator==(const Reset&) const = default;
+};
+
+struct Speed {
+  double speed = 1;  ///< simulated per real time
+  bool operator==(const Speed&) const = default;
+};
+
+/// At least one of them is set.
+struct Set {
+  std::optional<Vec3> gravity;        ///< [m/s^2]
+  std::optional<Vec3> wind;           ///< [m/s]
+  std::optional<double> gust_speed;   ///< [m/s]
+  std::optional<double> gust_length;  ///< [m]
+  std::optional<double> air_density;  ///< [kg/m^3]
+  std::optional<bool> still_air;
+  std::optional<double> drag;  ///< [1/s]
+  bool operator==(const Set&) const = default;
+};
+
+struct Advance {
+  std::uint32_t n = 1;  ///< ticks
+  bool operator==(const Advance&) const = default;
+};
+
+enum class QueryWhat : std::uint8_t {
+  positions,
+  velocities,
+  energies,
+  strain,
+  pins,
+  grabs,
+  camera,
+  roster,
+  state,
+  work
+};
+enum class QueryFormat : std::uint8_t { json, f32, f64 };
+
+/// A binary format comes with positions and velocities alone, a viewer with camera alone.
+struct Query {
+  QueryWhat what = QueryWhat::positions;
+  QueryFormat format = QueryFormat::json;
+  std::optional<ViewerId> viewer;
+  bool operator==(const Query&) const = default;
+};
+
+struct Hash {
+  bool operator==(const Hash&) const = default;
+};
+
+struct Ping {
+  double t = 0;  ///< the client's time, any number
+  bool operator==(const Ping&) const = default;
+};
+
+struct Load {
+  std::string scene;  ///< 1 to 64 of a-z A-Z 0-9 . _ -, not beginning with a dot
+  bool operator==(const Load&) const = default;
+};
+
+enum class Codec : std::uint8_t { f32 };
+
+struct View {
+  std::optional<double> hz;  ///< most frames a second; 0: none
+  std::optional<Codec> codec;
+  bool operator==(const View&) const = default;
+};
+
+using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin,
+                             ReleaseParticle, ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed,
+                             Set, Advance, Query, Hash, Ping, Load, View>;
+
+/// The word in `op`, e.g. "drag".
+const char* name_of(const Command& command);
+const char* name_of(QueryWhat what);
+const char* name_of(QueryFormat format);
+const char* name_of(Codec codec);
+
+/// A command with its sender's id, if it had one.
+struct Request {
+  std::optional<Id> id;
+  Command command;
+  bool operator==(const Request&) const = default;
+};
+
+/// Reads one text message. Never throws on what it says. An error carries the command's id and name
+/// as far as they could be read, ready to be encoded as answer.
+Result<Request> parse_request(std::string_view text);
+
+/// The JSON text that parses to the same request; for logs and clients.
+std::string encode_request(const Request& request);
+
+}  // namespace weft::proto

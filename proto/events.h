@@ -1,0 +1,170 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "proto/commands.h"
+#include "proto/types.h"
+
+// What the server tells of its own accord. README.md section 4 gives the meaning of each field.
+
+namespace weft::proto {
+
+/// Figures in force at this server.
+struct ServerLimits {
+  std::size_t message_bytes = kMostMessageBytes;
+  double messages_per_second = 1000;
+  std::uint32_t viewers = 64;
+  std::uint32_t drags_per_viewer = 16;
+  std::uint32_t drags = 256;
+  std::uint32_t pins = 4096;
+  double lease_seconds = 2;
+  std::uint32_t frames_in_flight = 12;
+};
+
+struct Welcome {
+  std::string version;
+  std::string session;  ///< new for each process
+  ViewerId viewer = 0;
+  std::string name, color, role;
+  std::string room = "default";
+  std::string scene;
+  double tick_rate = 60;  ///< [1/s]
+  double clock = 0;       ///< server's monotonic clock, now [s]
+  std::vector<std::string> codecs = {"f32"};
+  ServerLimits limits;
+  std::vector<std::string> capabilities;
+};
+
+struct ClothInfo {
+  std::string name;
+  std::uint32_t first_vertex = 0, vertices = 0;
+  std::uint32_t first_triangle = 0, triangles = 0;
+  std::uint32_t rows = 0, columns = 0;  ///< of a grid; 0 if it is none
+  double thickness = 0;                 ///< [m]
+};
+
+struct PlaneInfo {
+  Vec3 point{}, normal{};  ///< unit normal, away from the solid
+};
+struct SphereInfo {
+  Vec3 center{};
+  double radius = 0;
+};
+struct CapsuleInfo {
+  Vec3 a{}, b{};
+  double radius = 0;
+};
+struct BoxInfo {
+  Vec3 center{}, half_extents{};
+  std::array<double, 4> orientation = {0, 0, 0, 1};  ///< unit quaternion x y z w
+};
+struct MeshInfo {
+  std::uint32_t vertices = 0, triangles = 0;  ///< the data is in the binary mesh message
+};
+
+struct ColliderInfo {
+  std::string name;
+  std::variant<PlaneInfo, SphereInfo, CapsuleInfo, BoxInfo, MeshInfo> shape;
+};
+
+/// The text message `mesh`; SceneMesh of mesh.h is the binary one that follows it.
+struct MeshAnnouncement {
+  std::uint32_t epoch = 0;
+  std::string scene;
+  std::uint64_t hash = 0;  ///< of the binary message, content_hash()
+  std::size_t bytes = 0;   ///< of the binary message
+  std::uint32_t vertices = 0, triangles = 0;
+  std::vector<ClothInfo> cloths;
+  std::vector<ColliderInfo> colliders;
+};
+
+struct Strain {
+  double largest = 0, p99 = 0;
+};
+
+struct Energy {
+  double kinetic = 0, stretch = 0, bending = 0, gravity = 0, total = 0;  ///< [J]
+};
+
+struct State {
+  std::uint64_t tick = 0;
+  double time = 0;  ///< simulated [s]
+  bool paused = false;
+  double speed = 1;
+  std::string scene;
+  double tick_rate = 60;
+  Vec3 gravity{}, wind{};
+  double gust_speed = 0, gust_length = 0, air_density = 0;
+  bool still_air = false;
+  double drag = 0;
+  std::string fabric, solver;
+  std::uint32_t substeps = 0;
+  std::uint32_t particles = 0;
+  double step_ms = 0;
+  double real_time_factor = 0;
+  Strain strain;
+  Energy energy;
+};
+
+struct ViewerInfo {
+  ViewerId id = 0;
+  std::string name, color, role;
+  std::optional<Camera> camera;
+};
+
+struct PinInfo {
+  std::uint32_t id = 0;
+  ViewerId viewer = 0;
+  std::uint32_t particle = 0;
+  double radius = 0;
+  Vec3 position{};
+  std::uint32_t count = 0;  ///< particles that it holds
+};
+
+struct GrabInfo {
+  std::uint32_t id = 0;
+  ViewerId viewer = 0;
+  std::uint32_t drag = 0;
+  SurfacePoint point;
+  double radius = 0, stiffness = 0, max_force = 0;
+  Vec3 held{}, target{};
+  std::optional<Vec3> force;  ///< on the cloth [N]; only in answers to `query`
+};
+
+enum class NoticeLevel : std::uint8_t { info, warning, error };
+
+struct Notice {
+  NoticeLevel level = NoticeLevel::info;
+  std::string code, message;
+  std::optional<std::uint64_t> tick;
+  std::optional<ViewerId> viewer;
+  std::optional<std::uint32_t> drag;
+  std::optional<std::uint64_t> count;
+  std::optional<double> value;
+};
+
+struct Bye {
+  std::uint16_t code = 1001;  ///< the close code that follows
+  std::string reason;
+};
+
+std::string encode_welcome(const Welcome& welcome);
+std::string encode_mesh(const MeshAnnouncement& mesh);
+std::string encode_state(const State& state);
+std::string encode_roster(const std::vector<ViewerInfo>& viewers);
+std::string encode_pins(std::uint64_t tick, const std::vector<PinInfo>& pins);
+std::string encode_grabs(std::uint64_t tick, const std::vector<GrabInfo>& grabs);
+std::string encode_notice(const Notice& notice);
+std::string encode_bye(const Bye& bye);
+
+/// 16 hexadecimal digits, as hashes are written in messages and addresses.
+std::string hash_text(std::uint64_t hash);
+
+/// Where a mesh is served over HTTP, e.g. "/api/v1/mesh/4fd1c2a09b7e6d35".
+std::string mesh_url(std::uint64_t hash);
+
+}  // namespace weft::proto

@@ -1,0 +1,123 @@
+#include "proto/field_reader.h"
+
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "proto/utf8.h"
+
+namespace weft::proto {
+
+using nlohmann::json;
+
+std::string shown_value(const json& node) {
+  if (node.is_string()) return quoted_value(node.get_ref<const std::string&>());
+  if (!node.is_structured()) return node.dump();
+  const std::string text = node.dump();
+  return text.size() <= kMostValueCharacters ? text : quoted_value(text);
+}
+
+const json* FieldReader::find(const char* key) const {
+  const auto it = object_.find(key);
+  return it == object_.end() || it->is_null() ? nullptr : &*it;
+}
+
+const json* FieldReader::require(const char* key) {
+  if (!ok()) return nullptr;
+  const json* node = find(key);
+  if (node == nullptr) {
+    fail(ErrorCode::missing_field, key, std::string(key) + " is missing");
+  }
+  return node;
+}
+
+void FieldReader::fail(Error error) {
+  if (!error_) error_ = std::move(error);
+}
+
+void FieldReader::fail(ErrorCode code, const char* key, std::string message, std::string hint) {
+  Error error = make_error(code, std::move(message), std::move(hint));
+  error.field = key;
+  if (const json* node = find(key)) error.value = shown_value(*node);
+  fail(std::move(error));
+}
+
+void FieldReader::fail_type(std::string path, const json& node, const char* wanted) {
+  Error error = make_error(ErrorCode::wrong_type, path + " must be " + wanted);
+  error.field = std::move(path);
+  error.value = shown_value(node);
+  fail(std::move(error));
+}
+
+void FieldReader::read_number(const std::string& path, const json& node, double& value,
+                              Range range) {
+  if (!node.is_number()) return fail_type(path, node, "a number");
+  const double number = node.get<double>();
+  // Written so that NaN, should one ever get here, is refused as well.
+  if (!(number >= range.minimum && number <= range.maximum))
+    return fail(range_error(path, number, range));
+  value = number;
+}
+
+void FieldReader::read(const char* key, bool& value) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  if (!node->is_boolean()) return fail_type(key, *node, "true or false");
+  value = node->get<bool>();
+}
+
+void FieldReader::read(const char* key, double& value, Range range) {
+  if (const json* node = require(key)) read_number(key, *node, value, range);
+}
+
+void FieldReader::read(const char* key, std::uint32_t& value, Range range) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  double number = 0;
+  read_number(key, *node, number, range);
+  if (!ok()) return;
+  if (number != std::floor(number)) return fail_type(key, *node, "an integer");
+  value = static_cast<std::uint32_t>(number);
+}
+
+void FieldReader::read(const char* key, Vec3& value, Range range) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  if (!node->is_array()) return fail_type(key, *node, "an array of 3 numbers");
+  if (node->size() != 3) {
+    fail(ErrorCode::wrong_length, key, std::string(key) + " must have 3 numbers");
+    if (error_->field == key && !error_->limit) error_->limit = Limit{{}, {}, 3, {}};
+    return;
+  }
+  Vec3 read{};
+  for (std::size_t i = 0; i < 3 && ok(); ++i)
+    read_number(std::string(key) + "[" + std::to_string(i) + "]", (*node)[i], read[i], range);
+  if (ok()) value = read;
+}
+
+void FieldReader::read(const char* key, std::string& value) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  if (!node->is_string()) return fail_type(key, *node, "a string");
+  value = node->get_ref<const std::string&>();
+}
+
+void FieldReader::read_id(const char* key, std::optional<Id>& value) {
+  const json* node = find(key);
+  if (node == nullptr) return;
+  if (node->is_string()) {
+    const auto& text = node->get_ref<const std::string&>();
+    if (text.empty() || text.size() > kMostIdBytes)
+      return fail(ErrorCode::wrong_length, key, "id must have 1 to 64 bytes");
+    value = text;
+  } else {
+    double number = 0;
+    read_number(key, *node, number, {0, kLargestInteger});
+    if (!ok()) return;
+    if (number != std::floor(number)) return fail_type(key, *node, "an integer or a string");
+    value = static_cast<std::int64_t>(number);
+  }
+}
+
+}  // namespace weft::proto

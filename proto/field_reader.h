@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "proto/error.h"
+#include "proto/limits.h"
+#include "proto/types.h"
+#include "proto/words.h"
+
+namespace weft::proto {
+
+/// Reads the fields of one JSON object and keeps the first error; after it every read does nothing.
+/// So a command is read in straight lines and asked once whether all went well. An absent field and
+/// one that is null are the same.
+class FieldReader {
+ public:
+  /// @param object  a JSON object that outlives the reader
+  explicit FieldReader(const nlohmann::json& object) : object_(object) {}
+
+  bool ok() const { return !error_; }
+  const std::optional<Error>& error() const { return error_; }
+  bool has(const char* key) const { return find(key) != nullptr; }
+
+  // Required fields. On error `value` keeps what it had.
+  void read(const char* key, bool& value);
+  void read(const char* key, double& value, Range range);
+  void read(const char* key, std::uint32_t& value, Range range);
+  void read(const char* key, Vec3& value, Range range);
+  void read(const char* key, std::string& value);
+
+  /// A word out of a list; `value` becomes the enumerator of the same place.
+  template <class Enum, std::size_t N>
+  void read(const char* key, Enum& value, const std::array<const char*, N>& words) {
+    std::string text;
+    read(key, text);
+    if (!ok()) return;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (text == words[i]) {
+        value = static_cast<Enum>(i);
+        return;
+      }
+    }
+    fail(word_error(key, text, list_words(words)));
+  }
+
+  /// The same for an optional field: without it `value` keeps its default.
+  template <class Value, class... Allowed>
+  void read_if_there(const char* key, Value& value, const Allowed&... allowed) {
+    if (has(key)) read(key, value, allowed...);
+  }
+  template <class Value, class... Allowed>
+  void read_if_there(const char* key, std::optional<Value>& value, const Allowed&... allowed) {
+    if (!has(key)) return;
+    Value present{};
+    read(key, present, allowed...);
+    if (ok()) value = std::move(present);
+  }
+
+  /// An integer from 0 to 2^53 or a string of 1 to kMostIdBytes bytes; may be absent.
+  void read_id(const char* key, std::optional<Id>& value);
+
+  /// Keeps the error if it is the first.
+  void fail(Error error);
+  /// An error about one field, with the value that it has.
+  void fail(ErrorCode code, const char* key, std::string message, std::string hint = {});
+
+ private:
+  const nlohmann::json* find(const char* key) const;
+  const nlohmann::json* require(const char* key);
+  void read_number(const std::string& path, const nlohmann::json& node, double& value, Range range);
+  void fail_type(std::string path, const nlohmann::json& node, const char* wanted);
+
+  const nlohmann::json& object_;
+  std::optional<Error> error_;
+};
+
+/// JSON text of a value for an error: short, whatever the sender wrote.
+std::string shown_value(const nlohmann::json& node);
+
+}  // namespace weft::proto

@@ -1,0 +1,46 @@
+#include "proto/http.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/json_output.h"
+
+namespace weft::proto {
+
+using Json = nlohmann::ordered_json;
+
+std::string encode_version(const VersionInfo& version) {
+  return text_of({{"server", "weft"},
+                  {"version", version.version},
+                  {"commit", version.commit},
+                  {"compiler", version.compiler},
+                  {"simd", version.simd},
+                  {"protocols", Json::array({kSubprotocol})}});
+}
+
+std::string encode_scenes(const std::vector<SceneListing>& scenes) {
+  Json list = Json::array();
+  for (const SceneListing& scene : scenes)
+    list.push_back({{"name", scene.name}, {"description", scene.description}});
+  Json out = Json::object();
+  out["scenes"] = std::move(list);
+  return text_of(out);
+}
+
+std::string encode_readiness(const Readiness& readiness) {
+  return text_of({{"ready", readiness.ready},
+                  {"scene", readiness.scene},
+                  {"tick", readiness.tick},
+                  {"real_time_factor", readiness.real_time_factor}});
+}
+
+std::string encode_http_error(const HttpError& error) {
+  Json body = {{"code", error.code}, {"message", error.message}};
+  if (!error.value.empty()) body["value"] = error.value;
+  if (!error.offered.empty()) body["offered"] = error.offered;
+  if (!error.hint.empty()) body["hint"] = error.hint;
+  Json out = Json::object();
+  out["error"] = std::move(body);
+  return text_of(out);
+}
+
+}  // namespace weft::proto

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "proto/commands.h"
+
+// Shared by the encoders, which alone include this: parts of messages that occur in several of
+// them.
+
+namespace weft::proto {
+
+/// The text of a message. Never throws: bytes that are not UTF-8 are replaced.
+inline std::string text_of(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+template <class Value>
+void put_if(nlohmann::ordered_json& out, const char* key, const std::optional<Value>& value) {
+  if (value) out[key] = *value;
+}
+
+inline void put_id(nlohmann::ordered_json& out, const Id& id) {
+  if (const auto* number = std::get_if<std::int64_t>(&id)) {
+    out["id"] = *number;
+  } else {
+    out["id"] = std::get<std::string>(id);
+  }
+}
+
+inline void put_camera(nlohmann::ordered_json& out, const Camera& camera) {
+  out["position"] = camera.position;
+  out["target"] = camera.target;
+  out["up"] = camera.up;
+  out["fov"] = camera.fov;
+}
+
+}  // namespace weft::proto

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Limits that are part of weft.v1. Those of a server (viewers, rates) are in `Limits` of events.h.
+
+namespace weft::proto {
+
+inline constexpr const char* kSubprotocol = "weft.v1";
+
+/// Both ends are allowed.
+struct Range {
+  double minimum = 0;
+  double maximum = 0;
+};
+
+inline constexpr std::size_t kMostMessageBytes = 64 * 1024;
+inline constexpr std::size_t kMostDepth = 8;                 ///< of nested arrays and objects
+inline constexpr double kLargestInteger = 9007199254740992;  ///< 2^53
+inline constexpr Range kIndexRange{0, 2147483647};           ///< particles, triangles, own drags
+inline constexpr Range kIdRange{0, 4294967295};              ///< viewers, pins
+inline constexpr Range kPositionRange{-1e4, 1e4};            ///< each component [m]
+inline constexpr double kLeastDirection = 1e-9;              ///< of its largest component
+inline constexpr Range kWeightRange{0, 1};                   ///< barycentric weights
+inline constexpr double kWeightSumTolerance = 1e-3;
+inline constexpr Range kRadiusRange{0, 100};      ///< [m]
+inline constexpr Range kStiffnessRange{0, 1e5};   ///< [N/m]
+inline constexpr Range kForceRange{0, 1e6};       ///< [N]
+inline constexpr Range kFovRange{1, 179};         ///< [degrees]
+inline constexpr Range kStepRange{1, 600};        ///< [ticks]
+inline constexpr Range kAdvanceRange{1, 100000};  ///< [ticks]
+inline constexpr Range kSpeedRange{0.01, 10};
+inline constexpr Range kFrameRateRange{0, 240};      ///< [1/s]
+inline constexpr Range kGravityRange{-1000, 1000};   ///< each component [m/s^2]
+inline constexpr Range kWindRange{-100, 100};        ///< each component [m/s]
+inline constexpr Range kGustSpeedRange{0, 100};      ///< [m/s]
+inline constexpr Range kGustLengthRange{0.01, 100};  ///< [m]
+inline constexpr Range kAirDensityRange{0, 1000};    ///< [kg/m^3]
+inline constexpr Range kDragRange{0, 1000};          ///< [1/s]
+
+inline constexpr std::size_t kMostIdBytes = 64;
+inline constexpr std::size_t kMostNameCharacters = 32;
+inline constexpr std::size_t kMostTokenBytes = 256;
+inline constexpr std::size_t kMostSceneBytes = 64;
+inline constexpr std::size_t kMostValueCharacters = 80;  ///< of a string quoted in an error
+
+}  // namespace weft::proto

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proto/binary.h"
+#include "proto/error.h"
+
+// The binary message `mesh`: what does not change while an epoch lasts. README.md section 7.
+
+namespace weft::proto {
+
+struct ColliderMesh {
+  std::uint16_t collider = 0;            ///< its place in the list of the text message
+  std::vector<float> positions;          ///< three a vertex [m]
+  std::vector<std::uint32_t> triangles;  ///< three a triangle, counter-clockwise from outside
+  bool operator==(const ColliderMesh&) const = default;
+};
+
+struct SceneMesh {
+  std::vector<float> rest_positions;     ///< three a vertex [m]
+  std::vector<std::uint32_t> triangles;  ///< three a triangle, each below the number of vertices
+  std::vector<float> uv;                 ///< two a vertex
+  std::vector<ColliderMesh> colliders;   ///< ascending by `collider`
+  bool operator==(const SceneMesh&) const = default;
+};
+
+/// The message. The mesh must be as SceneMesh says.
+Bytes encode_mesh_data(const SceneMesh& mesh);
+
+/// Accepts exactly what README.md allows: all indices in range, all numbers finite. Never reads
+/// outside `message`.
+Result<SceneMesh> decode_mesh_data(std::span<const std::byte> message);
+
+/// XXH64 of a mesh message, its name over HTTP.
+std::uint64_t content_hash(std::span<const std::byte> message);
+
+}  // namespace weft::proto

@@ -1,0 +1,195 @@
+#include "proto/replies.h"
+
+#include <array>
+#include <charconv>
+
+#include <nlohmann/json.hpp>
+
+#include "proto/data.h"
+#include "proto/event_json.h"
+#include "proto/json_output.h"
+
+namespace weft::proto {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const ViewerCamera& camera) {
+  Json out = {{"viewer", camera.viewer}};
+  put_camera(out, camera.camera);
+  return out;
+}
+
+Json json_of(const StageWork& stage) {
+  return {{"stage", stage.stage}, {"milliseconds", stage.milliseconds}, {"work", stage.work}};
+}
+
+namespace {
+
+struct DataName {
+  QueryWhat operator()(const Energy&) const { return QueryWhat::energies; }
+  QueryWhat operator()(const Strain&) const { return QueryWhat::strain; }
+  QueryWhat operator()(const std::vector<PinInfo>&) const { return QueryWhat::pins; }
+  QueryWhat operator()(const std::vector<GrabInfo>&) const { return QueryWhat::grabs; }
+  QueryWhat operator()(const std::vector<ViewerCamera>&) const { return QueryWhat::camera; }
+  QueryWhat operator()(const std::vector<ViewerInfo>&) const { return QueryWhat::roster; }
+  QueryWhat operator()(const State&) const { return QueryWhat::state; }
+  QueryWhat operator()(const std::vector<StageWork>&) const { return QueryWhat::work; }
+};
+
+struct ReplyWriter {
+  Json& out;
+
+  void start(const char* command, std::uint64_t tick) {
+    out["command"] = command;
+    out["tick"] = tick;
+  }
+
+  void operator()(const DoneReply& r) { start(r.command, r.tick); }
+  void operator()(const HelloReply& r) {
+    out["command"] = "hello";
+    out["viewer"] = r.viewer;
+    out["name"] = r.name;
+    out["color"] = r.color;
+    out["role"] = r.role;
+  }
+  void operator()(const PickReply& r) {
+    start("pick", r.tick);
+    out["hit"] = nullptr;
+    if (!r.hit) return;
+    out["hit"] = {{"triangle", r.hit->point.triangle},
+                  {"barycentric", r.hit->point.barycentric},
+                  {"position", r.hit->position},
+                  {"particle", r.hit->particle},
+                  {"distance", r.hit->distance}};
+  }
+  void operator()(const DragReply& r) {
+    start("drag", r.tick);
+    out["drag"] = r.drag;
+    out["grab"] = r.grab;
+  }
+  void operator()(const PinReply& r) {
+    start("pin", r.tick);
+    out["pin"] = r.pin;
+    out["particle"] = r.particle;
+    out["count"] = r.count;
+  }
+  void operator()(const ReleaseReply& r) {
+    start("release", r.tick);
+    out["released"] = r.released;
+  }
+  void operator()(const PauseReply& r) {
+    start(r.paused ? "pause" : "resume", r.tick);
+    out["paused"] = r.paused;
+  }
+  void operator()(const StepReply& r) {
+    start("step", r.tick);
+    out["until"] = r.until;
+  }
+  void operator()(const SpeedReply& r) {
+    start("speed", r.tick);
+    out["speed"] = r.speed;
+  }
+  void operator()(const AdvanceReply& r) {
+    start("advance", r.tick);
+    out["hash"] = hash_text(r.hash);
+  }
+  void operator()(const HashReply& r) {
+    start("hash", r.tick);
+    out["hash"] = hash_text(r.hash);
+  }
+  void operator()(const PingReply& r) {
+    out["command"] = "ping";
+    out["t"] = r.t;
+    out["received"] = r.received;
+    out["sent"] = r.sent;
+  }
+  void operator()(const LoadReply& r) {
+    start("load", r.tick);
+    out["scene"] = r.scene;
+    out["epoch"] = r.epoch;
+  }
+  void operator()(const ViewReply& r) {
+    out["command"] = "view";
+    out["hz"] = r.hz;
+    out["codec"] = name_of(r.codec);
+  }
+  void operator()(const VectorsReply& r) {  // its data is appended as text
+    start("query", r.tick);
+    out["what"] = name_of(r.what);
+  }
+  void operator()(const BinaryReply& r) {
+    start("query", r.tick);
+    out["what"] = name_of(r.what);
+    out["format"] = name_of(r.format);
+    out["binary"] = {{"transfer", r.transfer},
+                     {"count", r.count},
+                     {"components", r.components},
+                     {"bytes", data_message_bytes(r.format, r.count, r.components)}};
+  }
+  void operator()(const QueryReply& r) {
+    start("query", r.tick);
+    out["what"] = name_of(std::visit(DataName{}, r.data));
+    out["data"] = std::visit([](const auto& data) { return json_of(data); }, r.data);
+  }
+};
+
+// Written by hand because a tree of a hundred thousand nodes costs megabytes, and because a float
+// is half as long when it is written as a float.
+template <class Real>
+void append_vectors(std::span<const Real> values, std::string& out) {
+  std::array<char, 32> buffer;
+  out += '[';
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    if (i > 0) out += ',';
+    for (std::size_t k = 0; k < 3; ++k) {
+      out += k == 0 ? '[' : ',';
+      const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), values[i + k]);
+      out.append(buffer.data(), end.ptr);
+    }
+    out += ']';
+  }
+  out += ']';
+}
+
+Json json_of_limit(const Limit& limit) {
+  Json out = Json::object();
+  put_if(out, "minimum", limit.minimum);
+  put_if(out, "maximum", limit.maximum);
+  put_if(out, "length", limit.length);
+  if (!limit.allowed.empty()) out["allowed"] = limit.allowed;
+  return out;
+}
+
+}  // namespace
+
+std::string encode_reply(const Id& id, const Reply& reply) {
+  Json out = {{"op", "result"}};
+  put_id(out, id);
+  std::visit(ReplyWriter{out}, reply);
+  std::string text = text_of(out);
+  if (const auto* vectors = std::get_if<VectorsReply>(&reply)) {
+    text.back() = ',';
+    text += "\"data\":";
+    std::visit([&text](auto values) { append_vectors(values, text); }, vectors->values);
+    text += '}';
+  }
+  return text;
+}
+
+std::string encode_error(const Error& error) {
+  Json out = {{"op", "error"}};
+  if (error.id) put_id(out, *error.id);
+  if (!error.command.empty()) out["command"] = error.command;
+  out["code"] = name_of(error.code);
+  out["message"] = error.message;
+  if (!error.field.empty()) out["field"] = error.field;
+  if (!error.value.empty()) {
+    Json value = Json::parse(error.value, nullptr, false);
+    if (!value.is_discarded()) out["value"] = std::move(value);
+  }
+  if (error.limit) out["limit"] = json_of_limit(*error.limit);
+  if (!error.hint.empty()) out["hint"] = error.hint;
+  return text_of(out);
+}
+
+}  // namespace weft::proto

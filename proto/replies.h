@@ -1,0 +1,142 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "proto/commands.h"
+#include "proto/error.h"
+#include "proto/events.h"
+#include "proto/types.h"
+
+// Answers to commands that carry an id. `tick` is where the command got its place in the order.
+
+namespace weft::proto {
+
+/// Of a command that has nothing to tell: camera, reset, set.
+struct DoneReply {
+  const char* command = "";
+  std::uint64_t tick = 0;
+};
+
+struct HelloReply {
+  ViewerId viewer = 0;
+  std::string name, color, role;
+};
+
+struct ClothHit {
+  SurfacePoint point;
+  Vec3 position{};
+  std::uint32_t particle = 0;
+  double distance = 0;  ///< [m]
+};
+
+struct PickReply {
+  std::uint64_t tick = 0;
+  std::optional<ClothHit> hit;
+};
+
+struct DragReply {
+  std::uint64_t tick = 0;
+  std::uint32_t drag = 0;  ///< the viewer's number
+  std::uint32_t grab = 0;  ///< the room's
+};
+
+struct PinReply {
+  std::uint64_t tick = 0;
+  std::uint32_t pin = 0, particle = 0, count = 0;
+};
+
+struct ReleaseReply {
+  std::uint64_t tick = 0;
+  std::vector<std::uint32_t> released;
+};
+
+/// Of pause and of resume.
+struct PauseReply {
+  std::uint64_t tick = 0;
+  bool paused = false;
+};
+
+struct StepReply {
+  std::uint64_t tick = 0, until = 0;
+};
+
+struct SpeedReply {
+  std::uint64_t tick = 0;
+  double speed = 1;
+};
+
+struct AdvanceReply {
+  std::uint64_t tick = 0, hash = 0;
+};
+
+struct HashReply {
+  std::uint64_t tick = 0, hash = 0;
+};
+
+struct PingReply {
+  double t = 0;         ///< as sent
+  double received = 0;  ///< server's clock [s]
+  double sent = 0;      ///< server's clock [s]
+};
+
+struct LoadReply {
+  std::uint64_t tick = 0;
+  std::string scene;
+  std::uint32_t epoch = 0;
+};
+
+struct ViewReply {
+  double hz = 0;
+  Codec codec = Codec::f32;
+};
+
+/// Positions or velocities as JSON, three values a vertex. The data is read by encode_reply alone.
+struct VectorsReply {
+  std::uint64_t tick = 0;
+  QueryWhat what = QueryWhat::positions;
+  std::variant<std::span<const float>, std::span<const double>> values;
+};
+
+/// Announces the binary data message (data.h) that follows.
+struct BinaryReply {
+  std::uint64_t tick = 0;
+  QueryWhat what = QueryWhat::positions;
+  QueryFormat format = QueryFormat::f32;
+  std::uint32_t transfer = 0, count = 0, components = 3;
+};
+
+struct ViewerCamera {
+  ViewerId viewer = 0;
+  Camera camera;
+};
+
+struct StageWork {
+  std::string stage;
+  double milliseconds = 0;
+  std::uint64_t work = 0;
+};
+
+/// All other queries; the alternative decides `what`.
+struct QueryReply {
+  std::uint64_t tick = 0;
+  std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
+               std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>>
+      data;
+};
+
+using Reply = std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply,
+                           PauseReply, StepReply, SpeedReply, AdvanceReply, HashReply, PingReply,
+                           LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+
+/// The `result` for a command with this id.
+std::string encode_reply(const Id& id, const Reply& reply);
+
+/// The `error` message.
+std::string encode_error(const Error& error);
+
+}  // namespace weft::proto

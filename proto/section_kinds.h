@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace weft::proto {
+
+/// Kinds of sections in frames and meshes; one number space for both.
+enum SectionKind : std::uint16_t {
+  kPositions = 1,
+  kGrabs = 2,
+  kApplied = 3,
+  kRestPositions = 16,
+  kTriangles = 17,
+  kUv = 18,
+  kColliderPositions = 19,
+  kColliderTriangles = 20,
+};
+
+}  // namespace weft::proto

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+namespace weft::proto {
+
+using Vec3 = std::array<double, 3>;
+using Vec3f = std::array<float, 3>;
+
+/// A command's id as its sender chose it: an integer from 0 to 2^53 or 1 to 64 bytes of UTF-8.
+using Id = std::variant<std::int64_t, std::string>;
+
+/// Names a viewer while the server lives; 0 is nobody (the scene itself).
+using ViewerId = std::uint32_t;
+
+}  // namespace weft::proto

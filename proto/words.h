@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proto/commands.h"
+
+// Words on the wire, in the order of their enumerations.
+
+namespace weft::proto {
+
+inline constexpr std::array<const char*, 10> kQueryWhatWords = {
+    "positions", "velocities", "energies", "strain", "pins",
+    "grabs",     "camera",     "roster",   "state",  "work"};
+inline constexpr std::array<const char*, 3> kQueryFormatWords = {"json", "f32", "f64"};
+inline constexpr std::array<const char*, 1> kCodecWords = {"f32"};
+
+enum class DragPhase : std::uint8_t { start, move, end };
+inline constexpr std::array<const char*, 3> kDragPhaseWords = {"start", "move", "end"};
+
+template <std::size_t N>
+std::vector<std::string> list_words(const std::array<const char*, N>& words) {
+  return {words.begin(), words.end()};
+}
+
+}  // namespace weft::proto
