@@ -1,0 +1,156 @@
+#include "core/contact/mesh_shape.h"
+
+#include <cmath>
+#include <map>
+
+namespace weft {
+namespace {
+
+/// An edge that turns outwards by less than this is as good as flat: sine of 2 degrees.
+constexpr double kFlatEdge = 0.035;
+
+/// Sine of the angle by which a closed surface turns outwards at an edge; negative if it is a groove.
+double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
+  const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
+  const Triangle& second = mesh.triangles[static_cast<std::size_t>(edge.triangle[1])];
+  Index opposite = second[0];
+  for (const Index i : second) {
+    if (i != edge.a && i != edge.b) opposite = i;
+  }
+  const Vec3d across = mesh.positions[static_cast<std::size_t>(opposite)] -
+                       mesh.positions[static_cast<std::size_t>(edge.a)];
+  const double turn = n1.cross(n2).norm();
+  return n1.dot(across) < 0 ? turn : -turn;
+}
+
+template <class Real>
+void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
+  std::vector<char> sharp_vertex(mesh.positions.size(), 0);
+  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+    const MeshEdge& edge = shape.edges[e];
+    const bool rim = edge.triangle[1] == kNone;
+    const Vec3d n1 = unit_normal(mesh, edge.triangle[0]);
+    const Vec3d n2 = rim ? n1 : unit_normal(mesh, edge.triangle[1]);
+    const Vec3d sum = n1 + n2;
+    shape.edge_normals.push_back(
+        (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
+    if (shape.closed && !rim && outward_turn(mesh, edge) < kFlatEdge) continue;
+    shape.sharp_edges.push_back(static_cast<Index>(e));
+    sharp_vertex[static_cast<std::size_t>(edge.a)] = 1;
+    sharp_vertex[static_cast<std::size_t>(edge.b)] = 1;
+  }
+  for (std::size_t v = 0; v < sharp_vertex.size(); ++v) {
+    if (sharp_vertex[v]) shape.sharp_vertices.push_back(static_cast<Index>(v));
+  }
+}
+
+template <class Real>
+void build_trees(MeshShape<Real>& shape) {
+  std::vector<Aabb<Real>> boxes;
+  const auto at = [&](Index i) { return shape.positions[static_cast<std::size_t>(i)]; };
+  for (const Triangle& t : shape.triangles) {
+    boxes.emplace_back();
+    for (const Index i : t) boxes.back().add(at(i));
+  }
+  shape.triangle_tree.build(boxes);
+  boxes.clear();
+  for (const Index e : shape.sharp_edges) {
+    boxes.emplace_back();
+    boxes.back().add(at(shape.edges[static_cast<std::size_t>(e)].a));
+    boxes.back().add(at(shape.edges[static_cast<std::size_t>(e)].b));
+  }
+  shape.edge_tree.build(boxes);
+  boxes.clear();
+  for (const Index v : shape.sharp_vertices) {
+    boxes.emplace_back();
+    boxes.back().add(at(v));
+  }
+  shape.vertex_tree.build(boxes);
+}
+
+/// Normal of the feature of triangle t that is nearest: face, corner, or edge.
+template <class Real>
+Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  if (feature == 0) return mesh.face_normals[static_cast<std::size_t>(t)];
+  if (feature <= 3)
+    return mesh.vertex_normals[static_cast<std::size_t>(triangle[static_cast<std::size_t>(feature - 1)])];
+  const auto k = static_cast<std::size_t>(feature - 4);
+  const Index i = triangle[k], j = triangle[(k + 1) % 3];
+  // Edges are ordered by their ends.
+  const auto found = std::lower_bound(
+      mesh.edges.begin(), mesh.edges.end(), Edge{std::min(i, j), std::max(i, j)},
+      [](const MeshEdge& e, const Edge& ends) { return Edge{e.a, e.b} < ends; });
+  return mesh.edge_normals[static_cast<std::size_t>(found - mesh.edges.begin())];
+}
+
+}  // namespace
+
+template <class Real>
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
+  MeshShape<Real> shape;
+  shape.closed = is_closed(mesh);
+  shape.triangles = mesh.triangles;
+  for (const Vec3d& p : mesh.positions) shape.positions.push_back(p.cast<Real>());
+  for (const Vec3d& n : vertex_normals(mesh)) shape.vertex_normals.push_back(n.cast<Real>());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
+  shape.edges = edges_of(mesh);
+  find_sharp_features(mesh, shape);
+  build_trees(shape);
+  return shape;
+}
+
+template <class Real>
+MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  const auto corner = [&](std::size_t k) {
+    return mesh.positions[static_cast<std::size_t>(triangle[k])];
+  };
+  const TrianglePoint<Real> nearest =
+      closest_on_triangle<Real>(p, corner(0), corner(1), corner(2));
+  const Vec3<Real> away = p - nearest.point;
+  const Real distance = away.norm();
+  const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
+  MeshDistance<Real> result;
+  result.triangle = t;
+  // So near the surface that the direction is rounding, the feature's normal serves.
+  constexpr Real kTouching = Real(1e-6);
+  const bool inside = mesh.closed && away.dot(outward) < 0;
+  result.distance = inside ? -distance : distance;
+  if (distance > kTouching)
+    result.normal = away * ((inside ? Real(-1) : Real(1)) / distance);
+  else
+    result.normal = outward;
+  return result;
+}
+
+template <class Real>
+MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real>& p, Real reach) {
+  Index best = kNone;
+  mesh.triangle_tree.nearest(
+      reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
+      [&](Index t, Real bound) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+        const auto corner = [&](std::size_t k) {
+          return mesh.positions[static_cast<std::size_t>(triangle[k])];
+        };
+        const Real d2 =
+            (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point).squaredNorm();
+        if (d2 > bound || (d2 == bound && best != kNone && t > best)) return bound;
+        best = t;
+        return d2;
+      });
+  if (best == kNone) return {};
+  return distance_to_triangle(mesh, best, p);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                     \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&);                                      \
+  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, const Vec3<Real>&); \
+  template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/bvh.h"
+#include "core/geometry/distance.h"
+#include "core/geometry/triangle_mesh.h"
+
+namespace weft {
+
+/// A triangle mesh prepared for contact: positions in Real, normals of every feature, and three
+/// hierarchies. Edges and vertices that cannot touch a cloth before their triangles do (flat or
+/// concave ones of a closed mesh) are left out of theirs.
+template <class Real>
+struct MeshShape {
+  bool closed = false;
+  Vec3Array<Real> positions;
+  std::vector<Triangle> triangles;
+  Vec3Array<Real> face_normals;
+  Vec3Array<Real> vertex_normals;  ///< angle-weighted
+  std::vector<MeshEdge> edges;
+  Vec3Array<Real> edge_normals;    ///< mean of the two faces, unit
+  std::vector<Index> sharp_edges;     ///< edges in `edge_tree`
+  std::vector<Index> sharp_vertices;  ///< vertices in `vertex_tree`
+  Bvh<Real> triangle_tree, edge_tree, vertex_tree;
+};
+
+template <class Real>
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh);
+
+/// Nearest point of a mesh with the side that it is seen from.
+template <class Real>
+struct MeshDistance {
+  Index triangle = kNone;
+  Real distance = 0;       ///< [m]; negative inside a closed mesh
+  Vec3<Real> normal;       ///< unit, out of the solid (or towards the point, if the mesh is open)
+};
+
+/// Signed distance of a point to triangle `t` alone, with the sign by the nearest feature's normal.
+template <class Real>
+MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p);
+
+/// Signed distance to the mesh; `triangle` is none if everything is farther than `reach` [m].
+template <class Real>
+MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real>& p, Real reach);
+
+}  // namespace weft

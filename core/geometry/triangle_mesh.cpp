@@ -1,0 +1,128 @@
+#include "core/geometry/triangle_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/definition.h"
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+constexpr std::size_t kMostVertices = 1'000'000;
+constexpr std::size_t kMostTriangles = 2'000'000;
+
+const Vec3d& corner(const TriangleMesh& mesh, Index triangle, std::size_t k) {
+  return mesh.positions[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
+}
+
+Vec3d doubled_normal(const TriangleMesh& mesh, Index t) {
+  return (corner(mesh, t, 1) - corner(mesh, t, 0)).cross(corner(mesh, t, 2) - corner(mesh, t, 0));
+}
+
+}  // namespace
+
+std::vector<MeshEdge> edges_of(const TriangleMesh& mesh) {
+  std::map<Edge, MeshEdge> found;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index i = mesh.triangles[t][k], j = mesh.triangles[t][(k + 1) % 3];
+      MeshEdge& edge = found[{std::min(i, j), std::max(i, j)}];
+      edge.a = std::min(i, j);
+      edge.b = std::max(i, j);
+      if (edge.triangle[0] == kNone)
+        edge.triangle[0] = static_cast<Index>(t);
+      else if (edge.triangle[1] == kNone)
+        edge.triangle[1] = static_cast<Index>(t);
+    }
+  }
+  std::vector<MeshEdge> edges;
+  for (const auto& [ends, edge] : found) edges.push_back(edge);
+  return edges;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  std::map<Edge, int> directed;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++directed[{t[k], t[(k + 1) % 3]}];
+  }
+  for (const auto& [ends, count] : directed) {
+    const auto back = directed.find({ends[1], ends[0]});
+    if (count != 1 || back == directed.end() || back->second != 1) return false;
+  }
+  return !directed.empty();
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    sum += 0.5 * doubled_normal(mesh, static_cast<Index>(t)).norm();
+  return sum;
+}
+
+double enclosed_volume(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto i = static_cast<Index>(t);
+    sum += corner(mesh, i, 0).dot(corner(mesh, i, 1).cross(corner(mesh, i, 2))) / 6;
+  }
+  return sum;
+}
+
+Vec3d unit_normal(const TriangleMesh& mesh, Index triangle) {
+  const Vec3d n = doubled_normal(mesh, triangle);
+  const double length = n.norm();
+  return length > 0 ? (n / length).eval() : Vec3d::Zero().eval();
+}
+
+std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Vec3d> normals(mesh.positions.size(), Vec3d::Zero());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto i = static_cast<Index>(t);
+    const Vec3d n = unit_normal(mesh, i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d u = corner(mesh, i, (k + 1) % 3) - corner(mesh, i, k);
+      const Vec3d v = corner(mesh, i, (k + 2) % 3) - corner(mesh, i, k);
+      const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+      normals[static_cast<std::size_t>(mesh.triangles[t][k])] += n * angle;
+    }
+  }
+  for (Vec3d& n : normals) {
+    const double length = n.norm();
+    if (length > 0) n /= length;
+  }
+  return normals;
+}
+
+void validate(const TriangleMesh& mesh, const std::string& path) {
+  const auto count = [&](const char* name, std::size_t value, std::size_t most) {
+    check_field(path, {name, 1, static_cast<double>(most), "", "size of the mesh"},
+                static_cast<double>(value));
+  };
+  count("positions", mesh.positions.size(), kMostVertices);
+  count("triangles", mesh.triangles.size(), kMostTriangles);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    check_field(path + "positions[" + std::to_string(i) + "]", {"", -1000, 1000, "m", "a vertex"},
+                mesh.positions[i]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::string name = path + "triangles[" + std::to_string(t) + "]";
+    for (const Index i : mesh.triangles[t])
+      check_field(name, {"", 0, static_cast<double>(mesh.positions.size()) - 1, "", "a vertex's index"}, i);
+    if (!(doubled_normal(mesh, static_cast<Index>(t)).norm() > 1e-14))
+      throw DefinitionError(name, "without area", "three corners that span an area",
+                            "remove degenerate triangles");
+  }
+}
+
+TriangleMesh box_mesh(const Vec3d& half) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.positions.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1],
+                                k & 4 ? half[2] : -half[2]);
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+}  // namespace weft

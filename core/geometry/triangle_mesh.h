@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace weft {
+
+/// Triangles over shared vertices, counter-clockwise seen from outside [m].
+struct TriangleMesh {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles;
+};
+
+/// An edge with the triangles beside it.
+struct MeshEdge {
+  Index a = 0, b = 0;                       ///< ends, smaller index first
+  std::array<Index, 2> triangle = {kNone, kNone};  ///< the second is none on a rim
+};
+
+/// Unique edges, ordered by their ends. An edge with more than two triangles keeps the first two.
+std::vector<MeshEdge> edges_of(const TriangleMesh& mesh);
+
+/// Whether every edge has exactly two triangles that run through it in opposite directions, so that
+/// there is an inside.
+bool is_closed(const TriangleMesh& mesh);
+
+double surface_area(const TriangleMesh& mesh);  ///< [m^2]
+double enclosed_volume(const TriangleMesh& mesh);  ///< [m^3], positive if the triangles face outwards
+
+Vec3d unit_normal(const TriangleMesh& mesh, Index triangle);  ///< zero if the triangle has no area
+
+/// Normals at the vertices, weighted by the angles of the triangles there: with them the sign of the
+/// distance to the surface is right at vertices too (Baerentzen, Aanaes 2005).
+std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh);
+
+/// Checks counts, indices, coordinates (finite, within 1000 m) and areas.
+/// Throws DefinitionError with `path` before the name of the field.
+void validate(const TriangleMesh& mesh, const std::string& path);
+
+/// The twelve triangles of an axis-aligned box around the origin.
+TriangleMesh box_mesh(const Vec3d& half_extents);
+
+}  // namespace weft
