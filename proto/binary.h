@@ -103,6 +103,9 @@ class BinaryWriter {
 Result<BinaryHeader> read_header(std::span<const std::byte> message, BinaryType type,
                                  std::size_t least_bytes, std::uint8_t last_codec);
 
+/// Ticks stay below 2^53, so that every language can count them.
+inline constexpr std::uint64_t kTickEnd = std::uint64_t{1} << 53U;
+
 /// Walks the sections from `offset` to the end of a message whose header is checked.
 /// Refuses any that reaches beyond it, padding that is not zero, a pair of kind and index that
 /// comes twice, and bytes left over.

@@ -1,5 +1,8 @@
 #include "proto/data.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace weft::proto {
 namespace {
 
@@ -18,6 +21,11 @@ struct AckFields {
   std::uint32_t sequence;
 };
 static_assert(sizeof(AckFields) == kAckBytes);
+
+template <class Real>
+bool all_finite(const std::vector<Real>& values) {
+  return std::all_of(values.begin(), values.end(), [](Real x) { return std::isfinite(x); });
+}
 
 template <class Real>
 Bytes encode_values(std::uint8_t codec, const DataHeader& header, std::span<const Real> values) {
@@ -44,7 +52,8 @@ Result<Data> decode_data(std::span<const std::byte> message) {
   const Result<BinaryHeader> common = read_header(message, BinaryType::data, kDataBytes, kFloat64);
   if (!common) return common.error();
   const auto fields = read_at<DataFields>(message, kCommonBytes);
-  if (fields.zero != 0 || fields.components < 1 || fields.components > kMostComponents)
+  if (fields.tick >= kTickEnd || fields.zero != 0 || fields.components < 1 ||
+      fields.components > kMostComponents)
     return binary_error("the header does not fit");
   const std::size_t value_bytes = common->codec == kFloat32 ? sizeof(float) : sizeof(double);
   // At most 2^32 * 16 * 8, far from overflow.
@@ -60,6 +69,8 @@ Result<Data> decode_data(std::span<const std::byte> message) {
   } else {
     data.values = read_array<double>(rest.first(bytes));
   }
+  if (!std::visit([](const auto& values) { return all_finite(values); }, data.values))
+    return binary_error("a value is not finite");
   return data;
 }
 

@@ -20,17 +20,25 @@ struct FrameFields {
 static_assert(sizeof(FrameFields) == 48);
 constexpr std::size_t kFrameBytes = kCommonBytes + sizeof(FrameFields);
 
+bool all_finite(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+}
+
+bool is_finite(const GrabSample& grab) {
+  return all_finite(grab.held) && all_finite(grab.target) && std::isfinite(grab.force);
+}
+
 bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) {
   const std::size_t size = section.payload.size();
   switch (section.kind) {
     case kPositions:
       if (size != std::size_t{vertices} * sizeof(Vec3f)) return false;
       frame.positions = read_array<float>(section.payload);
-      return std::all_of(frame.positions.begin(), frame.positions.end(),
-                         [](float x) { return std::isfinite(x); });
+      return all_finite(frame.positions);
     case kGrabs:
       frame.grabs = read_array<GrabSample>(section.payload);
-      return size % sizeof(GrabSample) == 0;
+      return size % sizeof(GrabSample) == 0 &&
+             std::all_of(frame.grabs.begin(), frame.grabs.end(), is_finite);
     case kApplied:
       frame.applied = read_array<AppliedCommand>(section.payload);
       return size % sizeof(AppliedCommand) == 0;
@@ -58,6 +66,7 @@ Result<Frame> decode_frame(std::span<const std::byte> message) {
   const Result<BinaryHeader> common = read_header(message, BinaryType::frame, kFrameBytes, 0);
   if (!common) return common.error();
   const auto fields = read_at<FrameFields>(message, kCommonBytes);
+  if (fields.tick >= kTickEnd) return binary_error("the tick is too large");
   if (!std::isfinite(fields.time) || !std::isfinite(fields.server_time))
     return binary_error("a time is not finite");
   if (fields.step != 0 || fields.reference != fields.sequence || !(common->flags & kFrameKey))

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -143,6 +144,10 @@ void append_vectors(std::span<const Real> values, std::string& out) {
     if (i > 0) out += ',';
     for (std::size_t k = 0; k < 3; ++k) {
       out += k == 0 ? '[' : ',';
+      if (!std::isfinite(values[i + k])) {
+        out += "null";  // as the library does: JSON has no word for it
+        continue;
+      }
       const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), values[i + k]);
       out.append(buffer.data(), end.ptr);
     }

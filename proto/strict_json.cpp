@@ -127,6 +127,9 @@ Result<json> parse_object(std::string_view text) {
     return error;
   }
   if (!is_utf8(text)) return make_error(ErrorCode::bad_utf8, "the message is not UTF-8");
+  // The parser takes a zero byte for the end of the text and would not see what follows.
+  if (text.find('\0') != std::string_view::npos)
+    return make_error(ErrorCode::bad_json, "the message has a zero byte");
   StrictBuilder builder;
   const bool parsed = json::sax_parse(text.begin(), text.end(), &builder);
   return std::move(builder).finish(parsed);
