@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+#include "proto/commands.h"
+
+namespace weft::server {
+
+/// Who decided that a command enters the order.
+enum class CommandOrigin : std::uint8_t {
+  viewer,  ///< a client sent it
+  lease,   ///< a drag was not heard of for too long
+  leave,   ///< its viewer has gone
+};
+
+/// One accepted command at its place: after state `tick` and before the next one.
+struct LogEntry {
+  std::uint64_t tick = 0;
+  std::uint64_t index = 0;  ///< counts all commands of the room; never goes back
+  proto::ViewerId viewer = 0;
+  CommandOrigin origin = CommandOrigin::viewer;
+  proto::Command command;
+};
+
+/// The total order of a room's commands. Scene and log are the whole history: whatever depends on
+/// wall time is in it as a command. Keeps the newest entries up to a bound.
+class CommandLog {
+ public:
+  explicit CommandLog(std::size_t most_entries = 1 << 16) : most_entries_(most_entries) {}
+
+  void add(std::uint64_t tick, proto::ViewerId viewer, CommandOrigin origin,
+           proto::Command command) {
+    entries_.push_back({tick, next_index_++, viewer, origin, std::move(command)});
+    if (entries_.size() > most_entries_) entries_.pop_front();
+  }
+
+  /// Oldest first. The history is complete if the first has index 0.
+  const std::deque<LogEntry>& entries() const { return entries_; }
+  std::uint64_t next_index() const { return next_index_; }
+
+ private:
+  std::size_t most_entries_;
+  std::deque<LogEntry> entries_;
+  std::uint64_t next_index_ = 0;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "server/inbound.h"
+
+namespace weft::server {
+
+/// The one place where the network thread hands something to the simulation thread.
+class Mailbox {
+ public:
+  /// @param most_commands  of one viewer that may wait at a time
+  explicit Mailbox(std::size_t most_commands) : most_commands_(most_commands) {}
+
+  /// Adds at the end and wakes the reader. False, with nothing added, if the viewer has too many
+  /// commands waiting; everything but commands is always taken.
+  bool put(Inbound item);
+
+  /// All that has come since the last call, in order.
+  std::vector<Inbound> take_all();
+
+  /// Tells that a command taken earlier is done with and counts no longer as waiting.
+  void finished(proto::ViewerId viewer);
+
+  /// Sleeps until something is there, `stop` was called, or the process clock reads `deadline`.
+  void wait(double deadline);
+
+  void stop();
+  bool stopped() const;
+
+ private:
+  const std::size_t most_commands_;
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<Inbound> items_;
+  std::unordered_map<proto::ViewerId, std::size_t> waiting_;
+  bool stopped_ = false;
+};
+
+}  // namespace weft::server

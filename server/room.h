@@ -1,0 +1,197 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/error.h"
+#include "proto/events.h"
+#include "proto/frame.h"
+#include "proto/replies.h"
+#include "server/clock.h"
+#include "server/command_log.h"
+#include "server/inbound.h"
+#include "server/metrics.h"
+#include "server/room_output.h"
+#include "server/tick_pacer.h"
+#include "server/translate.h"
+
+namespace weft::server {
+
+/// Makes the definition of a scene. Throws DefinitionError if there is none of this name.
+using SceneSource = std::function<WorldDef(const std::string&)>;
+
+struct RoomOptions {
+  std::string scene = "default";
+  double tick_rate = 0;  ///< [1/s]; 0: as each scene says
+  std::vector<std::pair<std::string, std::string>> settings;  ///< of the first scene; core's set_field
+  std::vector<std::string> scene_names;                       ///< for people who mistype one
+  bool paused = false;
+  std::string version, session;  ///< for `welcome`
+  proto::ServerLimits limits;
+};
+
+/// One shared cloth with its clock, its hands and its order of commands. All of it happens on the
+/// simulation thread; the outside talks to it through `take` and hears from it through RoomOutput.
+/// State changes only between ticks, by a command that is in the log.
+class Room {
+ public:
+  /// Throws DefinitionError if the scene cannot be built.
+  Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock, Metrics& metrics,
+       Executor* executor = nullptr);
+
+  /// Called when a command that was taken is done with.
+  std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
+
+  /// Applies what came from a viewer, between two ticks. While an `advance` runs, everything but
+  /// joining waits for its end.
+  void take(Inbound item);
+
+  bool advancing() const { return advance_.has_value(); }
+  /// Runs ticks of the present `advance` until it is done or the clock has passed `deadline`.
+  void advance_until(double deadline);
+
+  /// Whether ticks shall pass by the clock: it runs, or `step` asked for some.
+  bool ticking() const { return !advance_ && (!paused_ || steps_left_ > 0); }
+  double tick_interval() const { return world_->tick_seconds() / speed_; }  ///< real time [s]
+  void tick();
+
+  /// After ticks and commands: ends leases, tells what has changed, sends the newest frame.
+  void finish_turn();
+  /// When `finish_turn` is wanted even if nothing happens [s].
+  double next_wake() const;
+
+  const ServedWorld& world() const { return *world_; }
+  const CommandLog& log() const { return log_; }
+  bool paused() const { return paused_; }
+  double speed() const { return speed_; }
+  double real_time_factor() const;
+  std::uint32_t epoch() const { return epoch_; }
+  std::uint64_t frames_encoded() const { return frames_encoded_; }
+
+ private:
+  struct Viewer {
+    proto::ViewerInfo info;
+    bool mesh_over_http = false;
+    std::uint32_t applied = 0;  ///< number of the last text message that was taken
+  };
+
+  /// A hand: who holds, under which number of its own, and when it was heard of last.
+  struct Hand {
+    GrabId grab = 0;
+    proto::ViewerId viewer = 0;
+    std::uint32_t drag = 0;
+    double heard = 0;  ///< [s]
+  };
+
+  struct Advance {
+    proto::ViewerId viewer = 0;
+    std::optional<proto::Id> id;
+    std::uint32_t left = 0;
+  };
+
+  using Outcome = proto::Result<proto::Reply>;
+
+  // room.cpp: coming, going, ticks and telling
+  void join(proto::ViewerId viewer, const Join& join);
+  void leave(proto::ViewerId viewer);
+  void take_now(Inbound item);
+  void take_deferred();
+  void finish_advance();
+  void step_world();
+  void end_leases();
+  void tell_changes();
+  void publish();
+  void start_world(const WorldDef& def);
+  void send_mesh(proto::ViewerId to, const Viewer& viewer);
+  void tell_slow_motion(double now);
+  void notify(proto::NoticeLevel level, const char* code, std::string message,
+              proto::ViewerId viewer = 0, std::optional<std::uint32_t> drag = {},
+              std::optional<double> value = {});
+  proto::State state() const;
+  std::vector<proto::ViewerInfo> roster() const;
+  std::vector<proto::PinInfo> pins() const;
+  std::vector<proto::GrabInfo> grabs(bool with_force) const;
+  WorldDef definition_of(const std::string& scene) const;
+
+  // room_commands.cpp: one function a command
+  void handle(proto::ViewerId viewer, const proto::Request& request);
+  void answer(proto::ViewerId viewer, const std::optional<proto::Id>& id, const proto::Reply& reply);
+  void refuse(proto::ViewerId viewer, const proto::Request& request, proto::Error error);
+  Outcome apply(proto::ViewerId viewer, const proto::Hello& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pick& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragStart& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragMove& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragEnd& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleasePin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleaseParticle& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleaseAll& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Camera& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pause& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Resume& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Step& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Reset& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Set& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Advance& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Query& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Hash& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Load& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
+  Outcome apply(proto::ViewerId viewer, const proto::View& command);
+  Outcome query_vectors(const proto::Query& command);
+  std::optional<proto::Error> check_new_hand(proto::ViewerId viewer, std::uint32_t drag) const;
+  std::optional<proto::Error> check_free(proto::ViewerId viewer, Index particle) const;
+  Outcome release_pins(const std::vector<std::uint32_t>& ids);
+  std::vector<Hand>::iterator find_hand(proto::ViewerId viewer, std::uint32_t drag);
+  void end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin);
+
+  RoomOptions options_;
+  SceneSource scenes_;
+  RoomOutput& output_;
+  Clock clock_;
+  Metrics& metrics_;
+  Executor* executor_;
+
+  std::unique_ptr<ServedWorld> world_;
+  std::uint32_t epoch_ = 0;
+  proto::MeshAnnouncement mesh_;
+  SharedBytes mesh_bytes_;
+
+  bool paused_ = false;
+  double speed_ = 1;
+  std::uint32_t steps_left_ = 0;
+  std::optional<Advance> advance_;
+  std::deque<Inbound> deferred_;
+
+  std::map<proto::ViewerId, Viewer> viewers_;
+  std::vector<Hand> hands_;
+  std::map<PinId, proto::ViewerId> pin_owners_;
+  CommandLog log_;
+
+  RealTimeMeter meter_;
+  std::vector<double> tick_times_;  // ring of the last ones [s]
+  std::size_t next_tick_time_ = 0;
+  double next_state_ = 0, next_slow_notice_ = 0, slow_since_ = -1;
+  double last_tick_done_ = 0;  // [s]
+
+  bool state_changed_ = false, roster_changed_ = false, pins_changed_ = false;
+  bool grabs_changed_ = false;
+  bool frame_wanted_ = false, jumped_ = false;
+  double next_idle_frame_ = 0;  // of a room whose ticks stand still [s]
+  std::uint32_t sequence_ = 0;
+  std::uint64_t frames_encoded_ = 0;
+  std::uint32_t transfers_ = 0;
+  std::optional<Message> follow_up_;  // binary message that belongs behind the present answer
+  std::vector<proto::GrabSample> grab_samples_;
+  std::vector<proto::AppliedCommand> applied_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,354 @@
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/error.h"
+#include "proto/data.h"
+#include "server/room.h"
+
+// What each command does. A function either applies its command and returns the reply, or returns the
+// error and has changed nothing.
+
+namespace weft::server {
+namespace {
+
+using proto::ErrorCode;
+using proto::make_error;
+using proto::ViewerId;
+
+proto::Error field_error(ErrorCode code, std::string message, const char* field,
+                         std::uint32_t value, std::string hint = {}) {
+  proto::Error error = make_error(code, std::move(message), std::move(hint));
+  error.field = field;
+  error.value = std::to_string(value);
+  return error;
+}
+
+proto::Error too_many(const char* what, std::size_t limit) {
+  proto::Error error = make_error(ErrorCode::too_many, "at most " + std::to_string(limit) + " " + what,
+                                  "end one first");
+  proto::Limit bound;
+  bound.maximum = static_cast<double>(limit);
+  error.limit = bound;
+  return error;
+}
+
+proto::Error not_paused() {
+  return make_error(ErrorCode::not_paused, "the room is running", "send pause first");
+}
+
+}  // namespace
+
+void Room::handle(ViewerId viewer, const proto::Request& request) {
+  const std::uint64_t tick = world_->tick();
+  metrics_.count_command(proto::name_of(request.command));
+  try {
+    const Outcome outcome =
+        std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
+    if (!outcome) return refuse(viewer, request, outcome.error());
+    log_.add(tick, viewer, CommandOrigin::viewer, request.command);
+    if (advance_) {
+      advance_->id = request.id;  // it is answered when it is done
+      return;
+    }
+    answer(viewer, request.id, *outcome);
+  } catch (const DefinitionError& error) {
+    refuse(viewer, request, to_wire(error));
+  } catch (const std::exception& error) {
+    spdlog::error("command {}: {}", proto::name_of(request.command), error.what());
+    refuse(viewer, request, make_error(ErrorCode::internal, "the server failed at this command"));
+  }
+  follow_up_.reset();
+}
+
+void Room::answer(ViewerId viewer, const std::optional<proto::Id>& id, const proto::Reply& reply) {
+  if (!id) return;
+  output_.send(viewer, text_message(proto::encode_reply(*id, reply)));
+  if (follow_up_) output_.send(viewer, *std::exchange(follow_up_, std::nullopt));
+}
+
+void Room::refuse(ViewerId viewer, const proto::Request& request, proto::Error error) {
+  metrics_.count_error(proto::name_of(error.code));
+  error.command = proto::name_of(request.command);
+  error.id = request.id;
+  output_.send(viewer, text_message(proto::encode_error(error)));
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Hello& command) {
+  proto::ViewerInfo& info = viewers_.at(viewer).info;
+  if (command.name) info.name = *command.name;
+  if (command.color) info.color = *command.color;
+  roster_changed_ = true;
+  return proto::Reply(proto::HelloReply{viewer, info.name, info.color, info.role});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Pick& command) {
+  const auto hit = world_->pick(from_wire(command.origin), from_wire(command.direction));
+  return proto::Reply(proto::PickReply{world_->tick(), to_wire(hit)});
+}
+
+std::vector<Room::Hand>::iterator Room::find_hand(ViewerId viewer, std::uint32_t drag) {
+  return std::find_if(hands_.begin(), hands_.end(), [&](const Hand& hand) {
+    return hand.viewer == viewer && hand.drag == drag;
+  });
+}
+
+std::optional<proto::Error> Room::check_new_hand(ViewerId viewer, std::uint32_t drag) const {
+  std::size_t own = 0;
+  for (const Hand& hand : hands_) {
+    if (hand.viewer != viewer) continue;
+    ++own;
+    if (hand.drag == drag)
+      return field_error(ErrorCode::drag_exists, "this viewer has a drag of this number already",
+                         "drag", drag, "end it or use another number");
+  }
+  if (own >= options_.limits.drags_per_viewer)
+    return too_many("drags of one viewer", options_.limits.drags_per_viewer);
+  if (hands_.size() >= options_.limits.drags) return too_many("drags", options_.limits.drags);
+  return std::nullopt;
+}
+
+std::optional<proto::Error> Room::check_free(ViewerId viewer, Index particle) const {
+  for (const Grab<float>& grab : world_->grabs().list) {
+    const bool holds =
+        std::find(grab.particles.begin(), grab.particles.end(), particle) != grab.particles.end();
+    if (!holds) continue;
+    for (const Hand& hand : hands_) {
+      if (hand.grab == grab.id && hand.viewer != viewer)
+        return field_error(ErrorCode::held, "another hand holds this particle", "particle",
+                           static_cast<std::uint32_t>(particle), "take another or wait");
+    }
+  }
+  return std::nullopt;
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
+  if (auto error = check_new_hand(viewer, command.drag)) return *std::move(error);
+  const auto point = resolve_hold(*world_, command.hold);
+  if (!point) return point.error();
+  if (auto error = check_free(viewer, nearest_corner(*world_, *point))) return *std::move(error);
+  const GrabId grab = world_->grab(grab_def(*world_, command, *point));
+  hands_.push_back({grab, viewer, command.drag, clock_()});
+  grabs_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
+  const auto hand = find_hand(viewer, command.drag);
+  if (hand == hands_.end())
+    return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
+                       command.drag, "start it; it may have ended by its lease");
+  world_->move_grab(hand->grab, from_wire(command.target));
+  hand->heard = clock_();
+  frame_wanted_ = true;
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
+  const auto hand = find_hand(viewer, command.drag);
+  if (hand == hands_.end())
+    return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
+                       command.drag);
+  const GrabId grab = hand->grab;
+  world_->release(grab);
+  hands_.erase(hand);
+  grabs_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab});
+}
+
+void Room::end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin) {
+  log_.add(world_->tick(), hand->viewer, origin, proto::DragEnd{hand->drag});
+  world_->release(hand->grab);
+  hands_.erase(hand);
+  grabs_changed_ = frame_wanted_ = true;
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
+  const auto point = resolve_hold(*world_, command.hold);
+  if (!point) return point.error();
+  if (world_->pins().list.size() >= options_.limits.pins)
+    return too_many("pins", options_.limits.pins);
+  const Index particle = nearest_corner(*world_, *point);
+  const PinId pin = world_->pin({particle, command.radius});
+  pin_owners_[pin] = viewer;
+  pins_changed_ = frame_wanted_ = true;
+  const auto count = static_cast<std::uint32_t>(world_->pins().list.back().particles.size());
+  return proto::Reply(
+      proto::PinReply{world_->tick(), pin, static_cast<std::uint32_t>(particle), count});
+}
+
+Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
+  for (const std::uint32_t id : ids) {
+    world_->unpin(id);
+    pin_owners_.erase(id);
+  }
+  if (!ids.empty()) pins_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::ReleaseReply{world_->tick(), ids});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::ReleasePin& command) {
+  const std::vector<weft::Pin>& list = world_->pins().list;
+  const bool known = std::any_of(list.begin(), list.end(),
+                                 [&](const weft::Pin& pin) { return pin.id == command.pin; });
+  if (!known)
+    return field_error(ErrorCode::unknown_pin, "there is no pin of this id", "pin", command.pin,
+                       "the message pins lists them");
+  return release_pins({command.pin});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::ReleaseParticle& command) {
+  const std::size_t count = world_->model().mass.size();
+  if (command.particle >= count)
+    return proto::range_error("particle", command.particle, {0, static_cast<double>(count) - 1});
+  std::vector<std::uint32_t> ids;
+  for (const weft::Pin& pin : world_->pins().list) {
+    if (std::binary_search(pin.particles.begin(), pin.particles.end(),
+                           static_cast<Index>(command.particle)))
+      ids.push_back(pin.id);
+  }
+  return release_pins(ids);
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::ReleaseAll&) {
+  std::vector<std::uint32_t> ids;
+  for (const weft::Pin& pin : world_->pins().list) ids.push_back(pin.id);
+  return release_pins(ids);
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Camera& command) {
+  viewers_.at(viewer).info.camera = command;
+  return proto::Reply(proto::DoneReply{"camera", world_->tick()});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
+  paused_ = state_changed_ = frame_wanted_ = true;
+  steps_left_ = 0;
+  return proto::Reply(proto::PauseReply{world_->tick(), true});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
+  if (paused_) meter_.restart(clock_());
+  paused_ = false;
+  steps_left_ = 0;
+  state_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::PauseReply{world_->tick(), false});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
+  if (!paused_) return not_paused();
+  if (steps_left_ == 0) meter_.restart(clock_());
+  steps_left_ += command.n;
+  return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + steps_left_});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
+  world_->reset();
+  hands_.clear();
+  pin_owners_.clear();
+  steps_left_ = 0;
+  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
+  notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
+  return proto::Reply(proto::DoneReply{"reset", world_->tick()});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
+  speed_ = command.speed;
+  meter_.restart(clock_());
+  output_.set_frame_rate(world_->def().tick_rate * speed_);
+  state_changed_ = true;
+  return proto::Reply(proto::SpeedReply{world_->tick(), speed_});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
+  world_->set_environment(with_settings(world_->environment(), command));
+  state_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::DoneReply{"set", world_->tick()});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
+  if (!paused_) return not_paused();
+  if (steps_left_ > 0)
+    return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
+  advance_ = Advance{viewer, std::nullopt, command.n};
+  return proto::Reply(proto::AdvanceReply{});
+}
+
+Room::Outcome Room::query_vectors(const proto::Query& command) {
+  const Vec3Array<float>& vectors =
+      command.what == proto::QueryWhat::positions ? world_->state().x : world_->state().v;
+  if (command.format == proto::QueryFormat::json)
+    return proto::Reply(proto::VectorsReply{world_->tick(), command.what, floats_of(vectors)});
+  proto::BinaryReply reply;
+  reply.tick = world_->tick();
+  reply.what = command.what;
+  reply.format = command.format;
+  reply.transfer = ++transfers_;
+  reply.count = static_cast<std::uint32_t>(vectors.size());
+  const proto::DataHeader header{reply.tick, reply.transfer, 3};
+  follow_up_ = binary_message(command.format == proto::QueryFormat::f64
+                                  ? proto::encode_data(header, doubles_of(vectors))
+                                  : proto::encode_data(header, floats_of(vectors)));
+  return proto::Reply(reply);
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
+  proto::QueryReply reply;
+  reply.tick = world_->tick();
+  switch (command.what) {
+    case proto::QueryWhat::positions:
+    case proto::QueryWhat::velocities: return query_vectors(command);
+    case proto::QueryWhat::energies: reply.data = state().energy; break;
+    case proto::QueryWhat::strain: reply.data = state().strain; break;
+    case proto::QueryWhat::pins: reply.data = pins(); break;
+    case proto::QueryWhat::grabs: reply.data = grabs(true); break;
+    case proto::QueryWhat::roster: reply.data = roster(); break;
+    case proto::QueryWhat::state: reply.data = state(); break;
+    case proto::QueryWhat::work: reply.data = work_of(*world_); break;
+    case proto::QueryWhat::camera: {
+      if (command.viewer && !viewers_.contains(*command.viewer))
+        return field_error(ErrorCode::unknown_viewer, "nobody has this number", "viewer",
+                           *command.viewer, "the message roster lists who is here");
+      std::vector<proto::ViewerCamera> cameras;
+      for (const auto& [id, viewer] : viewers_) {
+        if (viewer.info.camera && (!command.viewer || *command.viewer == id))
+          cameras.push_back({id, *viewer.info.camera});
+      }
+      reply.data = std::move(cameras);
+      break;
+    }
+  }
+  return proto::Reply(std::move(reply));
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
+  return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
+  const auto& names = options_.scene_names;
+  if (std::find(names.begin(), names.end(), command.scene) == names.end()) {
+    proto::Error error = proto::word_error("scene", command.scene, names);
+    error.code = ErrorCode::unknown_scene;
+    return error;
+  }
+  start_world(definition_of(command.scene));
+  steps_left_ = 0;
+  meter_.restart(clock_());
+  for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
+  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
+  notify(proto::NoticeLevel::info, "loaded", "the scene is now " + command.scene, viewer);
+  tell_changes();
+  return proto::Reply(proto::LoadReply{0, command.scene, epoch_});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::Ping&) {
+  return make_error(ErrorCode::internal, "ping is answered by the session");
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::View&) {
+  return make_error(ErrorCode::internal, "view is answered by the session");
+}
+
+}  // namespace weft::server

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "server/clock.h"
+#include "server/tick_pacer.h"
+
+namespace weft::server {
+
+/// Runs a room at its rate by a given clock: commands between ticks, at most one tick a turn, then
+/// what is to be told. A room that cannot keep up runs in slow motion and still hears commands
+/// between any two ticks.
+///
+/// @tparam Room   take, advancing, advance_until, ticking, tick_interval, tick, finish_turn, next_wake
+/// @tparam Inbox  take_all, wait, stopped
+template <class Room, class Inbox>
+class SimulationLoop {
+ public:
+  SimulationLoop(Room& room, Inbox& inbox, Clock clock)
+      : room_(room), inbox_(inbox), clock_(std::move(clock)) {}
+
+  /// Until the inbox is stopped.
+  void run() {
+    while (!inbox_.stopped()) {
+      const double wake = turn();
+      if (wake > clock_()) inbox_.wait(wake);
+    }
+  }
+
+  /// One turn; returns when the next one is due unless something arrives before.
+  double turn() {
+    for (auto& item : inbox_.take_all()) room_.take(std::move(item));
+    const double now = clock_();
+    if (room_.advancing()) {
+      // In slices, so that joins, the end of its viewer and the end of the server are heard.
+      room_.advance_until(now + kAdvanceSlice);
+      was_ticking_ = false;
+      room_.finish_turn();
+      return now;
+    }
+    const bool ticking = room_.ticking();
+    if (ticking && !was_ticking_) pacer_.restart(now);
+    was_ticking_ = ticking;
+    if (ticking && pacer_.take_due(now, room_.tick_interval())) room_.tick();
+    room_.finish_turn();
+    return room_.ticking() ? std::min(room_.next_wake(), pacer_.next()) : room_.next_wake();
+  }
+
+ private:
+  static constexpr double kAdvanceSlice = 0.01;  // [s]
+
+  Room& room_;
+  Inbox& inbox_;
+  Clock clock_;
+  TickPacer pacer_;
+  bool was_ticking_ = false;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,61 @@
+#pragma once
+
+namespace weft::server {
+
+/// Decides when the next tick is due. A late tick is caught up with, but only a few: beyond that
+/// the backlog is dropped, simulated time slows down, and the loop never spirals.
+class TickPacer {
+ public:
+  static constexpr int kMostLateTicks = 4;
+
+  /// The next tick is due now.
+  void restart(double now) { next_ = now; }
+
+  /// Whether a tick is due; if so the next is due one interval after it was.
+  /// @param interval  real time between ticks [s]
+  bool take_due(double now, double interval) {
+    if (now < next_) return false;
+    const double oldest = now - kMostLateTicks * interval;
+    if (next_ < oldest) next_ = oldest;
+    next_ += interval;
+    return true;
+  }
+
+  double next() const { return next_; }
+
+ private:
+  double next_ = 0;
+};
+
+/// How fast simulated time passes, over the last one to two seconds.
+class RealTimeMeter {
+ public:
+  void restart(double now) {
+    before_ = current_ = 0;
+    before_start_ = current_start_ = now;
+  }
+
+  void add(double simulated, double now) {
+    if (now - current_start_ >= kPeriod) {
+      before_ = current_;
+      before_start_ = current_start_;
+      current_ = 0;
+      current_start_ = now;
+    }
+    current_ += simulated;
+  }
+
+  /// @param expected  the answer while there is too little to judge by
+  double factor(double now, double expected) const {
+    const double elapsed = now - before_start_;
+    return elapsed < kPeriod / 2 ? expected : (before_ + current_) / elapsed;
+  }
+
+ private:
+  static constexpr double kPeriod = 1;  // [s]
+
+  double before_ = 0, current_ = 0;  // simulated in the period before and in this one [s]
+  double before_start_ = 0, current_start_ = 0;
+};
+
+}  // namespace weft::server

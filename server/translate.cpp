@@ -1,0 +1,268 @@
+#include "server/translate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "core/error.h"
+#include "server/strain_statistics.h"
+
+namespace weft::server {
+namespace {
+
+// Positions go out as they lie in memory.
+static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+
+std::vector<float> floats_copied(const std::vector<Vec3d>& vectors) {
+  std::vector<float> out;
+  out.reserve(vectors.size() * 3);
+  for (const Vec3d& v : vectors)
+    for (int axis = 0; axis < 3; ++axis) out.push_back(static_cast<float>(v[axis]));
+  return out;
+}
+
+std::vector<std::uint32_t> indices_of(const std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> out;
+  out.reserve(triangles.size() * 3);
+  for (const Triangle& triangle : triangles)
+    for (const Index corner : triangle) out.push_back(static_cast<std::uint32_t>(corner));
+  return out;
+}
+
+/// Fabric coordinates scaled to 0..1 in each direction.
+std::vector<float> uv_of(const ClothModel<float>& model) {
+  std::array<float, 2> low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+  for (const auto& point : model.material) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      low[i] = std::min(low[i], point[i]);
+      high[i] = std::max(high[i], point[i]);
+    }
+  }
+  std::vector<float> out;
+  out.reserve(model.material.size() * 2);
+  for (const auto& point : model.material)
+    for (std::size_t i = 0; i < 2; ++i) out.push_back((point[i] - low[i]) / (high[i] - low[i]));
+  return out;
+}
+
+struct ShapeWriter {
+  decltype(proto::ColliderInfo::shape) operator()(const PlaneDef& plane) const {
+    return proto::PlaneInfo{to_wire(plane.point), to_wire(Vec3d(plane.normal.normalized()))};
+  }
+  decltype(proto::ColliderInfo::shape) operator()(const SphereDef& sphere) const {
+    return proto::SphereInfo{to_wire(sphere.centre), sphere.radius};
+  }
+  decltype(proto::ColliderInfo::shape) operator()(const CapsuleDef& capsule) const {
+    return proto::CapsuleInfo{to_wire(capsule.a), to_wire(capsule.b), capsule.radius};
+  }
+  decltype(proto::ColliderInfo::shape) operator()(const BoxDef& box) const {
+    const Eigen::Quaterniond q = box.orientation.normalized();
+    return proto::BoxInfo{to_wire(box.centre), to_wire(box.half_extents),
+                          {q.x(), q.y(), q.z(), q.w()}};
+  }
+  decltype(proto::ColliderInfo::shape) operator()(const MeshDef& mesh) const {
+    return proto::MeshInfo{static_cast<std::uint32_t>(mesh.mesh.positions.size()),
+                           static_cast<std::uint32_t>(mesh.mesh.triangles.size())};
+  }
+};
+
+proto::Error index_error(const char* field, std::uint32_t index, std::size_t count) {
+  return proto::range_error(field, index, {0, static_cast<double>(count) - 1});
+}
+
+}  // namespace
+
+proto::Vec3 to_wire(const Vec3d& v) { return {v[0], v[1], v[2]}; }
+proto::Vec3f to_wire_float(const Vec3f& v) { return {v[0], v[1], v[2]}; }
+Vec3d from_wire(const proto::Vec3& v) { return {v[0], v[1], v[2]}; }
+
+std::span<const float> floats_of(const Vec3Array<float>& vectors) {
+  return {vectors.empty() ? nullptr : vectors.front().data(), vectors.size() * 3};
+}
+
+std::vector<double> doubles_of(const Vec3Array<float>& vectors) {
+  const std::span<const float> values = floats_of(vectors);
+  return {values.begin(), values.end()};
+}
+
+proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const proto::Hold& hold) {
+  const ClothModel<float>& model = world.model();
+  if (const auto* point = std::get_if<proto::SurfacePoint>(&hold)) {
+    if (point->triangle >= model.triangles.size())
+      return index_error("triangle", point->triangle, model.triangles.size());
+    proto::SurfacePoint exact = *point;
+    // The wire allows a rounded sum; the physics wants weights that make a point of the triangle.
+    const double sum = exact.barycentric[0] + exact.barycentric[1] + exact.barycentric[2];
+    for (double& weight : exact.barycentric) weight /= sum;
+    return exact;
+  }
+  const std::uint32_t particle = std::get<proto::Particle>(hold).index;
+  if (particle >= model.mass.size())
+    return index_error("particle", particle, model.mass.size());
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (model.triangles[t][corner] != static_cast<Index>(particle)) continue;
+      proto::SurfacePoint point{static_cast<std::uint32_t>(t), {0, 0, 0}};
+      point.barycentric[corner] = 1;
+      return point;
+    }
+  }
+  return proto::make_error(proto::ErrorCode::internal, "the particle belongs to no triangle");
+}
+
+Index nearest_corner(const ServedWorld& world, const proto::SurfacePoint& point) {
+  const auto heaviest = std::max_element(point.barycentric.begin(), point.barycentric.end());
+  return world.model().triangles[point.triangle][static_cast<std::size_t>(
+      heaviest - point.barycentric.begin())];
+}
+
+GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
+                 const proto::SurfacePoint& point) {
+  GrabDef def;
+  def.triangle = static_cast<Index>(point.triangle);
+  def.barycentric = point.barycentric;
+  def.radius = start.radius;
+  def.stiffness = start.stiffness;
+  def.max_force = start.max_force;
+  if (start.target) {
+    def.target = from_wire(*start.target);
+    return def;
+  }
+  const Triangle& corners = world.model().triangles[point.triangle];
+  for (std::size_t i = 0; i < 3; ++i)
+    def.target += point.barycentric[i] *
+                  world.state().x[static_cast<std::size_t>(corners[i])].cast<double>();
+  return def;
+}
+
+EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set) {
+  if (set.gravity) environment.gravity = from_wire(*set.gravity);
+  if (set.wind) environment.wind = from_wire(*set.wind);
+  if (set.gust_speed) environment.gust_speed = *set.gust_speed;
+  if (set.gust_length) environment.gust_length = *set.gust_length;
+  if (set.air_density) environment.air_density = *set.air_density;
+  if (set.still_air) environment.still_air = *set.still_air;
+  if (set.drag) environment.drag = *set.drag;
+  return environment;
+}
+
+std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit) {
+  if (!hit) return std::nullopt;
+  proto::ClothHit out;
+  out.point.triangle = static_cast<std::uint32_t>(hit->triangle);
+  out.point.barycentric = hit->barycentric;
+  out.position = to_wire(hit->position);
+  out.particle = static_cast<std::uint32_t>(hit->nearest_particle);
+  out.distance = hit->distance;
+  return out;
+}
+
+proto::Energy to_wire(const Energies& energies) {
+  return {energies.kinetic, energies.stretch, energies.bending, energies.gravity, energies.total()};
+}
+
+proto::State state_of(const ServedWorld& world) {
+  proto::State state;
+  const EnvironmentDef& environment = world.environment();
+  state.tick = world.tick();
+  state.time = static_cast<double>(world.tick()) * world.tick_seconds();
+  state.scene = world.def().name;
+  state.tick_rate = world.def().tick_rate;
+  state.gravity = to_wire(environment.gravity);
+  state.wind = to_wire(environment.wind);
+  state.gust_speed = environment.gust_speed;
+  state.gust_length = environment.gust_length;
+  state.air_density = environment.air_density;
+  state.still_air = environment.still_air;
+  state.drag = environment.drag;
+  state.fabric = "default";
+  state.solver = "verlet";
+  state.substeps = static_cast<std::uint32_t>(world.report().substeps);
+  state.particles = static_cast<std::uint32_t>(world.model().mass.size());
+  thread_local std::vector<float> scratch;
+  const StrainStatistics strain = strain_statistics(world.model(), world.state(), scratch);
+  state.strain = {strain.largest, strain.p99};
+  state.energy = to_wire(world.report().energies);
+  return state;
+}
+
+std::vector<proto::StageWork> work_of(const ServedWorld& world) {
+  std::vector<proto::StageWork> work;
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    const StageProfile& stage = world.report().profile.stages[i];
+    work.push_back({kStageNames[i], stage.seconds * 1000, stage.work});
+  }
+  return work;
+}
+
+proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner) {
+  const auto particle = static_cast<std::size_t>(pin.def.particle);
+  return {pin.id,
+          owner,
+          static_cast<std::uint32_t>(particle),
+          pin.def.radius,
+          to_wire(Vec3d(world.state().x[particle].cast<double>())),
+          static_cast<std::uint32_t>(pin.particles.size())};
+}
+
+proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,
+                          std::uint32_t drag) {
+  proto::GrabInfo info;
+  info.id = grab.id;
+  info.viewer = owner;
+  info.drag = drag;
+  info.point = {static_cast<std::uint32_t>(grab.def.triangle), grab.def.barycentric};
+  info.radius = grab.def.radius;
+  info.stiffness = grab.def.stiffness;
+  info.max_force = grab.def.max_force;
+  info.held = to_wire(Vec3d(held_point(grab, world.state().x).cast<double>()));
+  info.target = to_wire(Vec3d(grab.target.cast<double>()));
+  info.force = to_wire(Vec3d(grab.force.cast<double>()));
+  return info;
+}
+
+proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
+                              proto::ViewerId owner) {
+  return {grab.id, owner, to_wire_float(held_point(grab, world.state().x)),
+          to_wire_float(grab.target), grab.force.norm()};
+}
+
+proto::SceneMesh scene_mesh(const ServedWorld& world) {
+  proto::SceneMesh mesh;
+  const ClothModel<float>& model = world.model();
+  const std::span<const float> rest = floats_of(model.rest_positions);
+  mesh.rest_positions.assign(rest.begin(), rest.end());
+  mesh.triangles = indices_of(model.triangles);
+  mesh.uv = uv_of(model);
+  const std::vector<ColliderDef>& colliders = world.def().colliders;
+  for (std::size_t i = 0; i < colliders.size(); ++i) {
+    if (const auto* shape = std::get_if<MeshDef>(&colliders[i].shape))
+      mesh.colliders.push_back({static_cast<std::uint16_t>(i), floats_copied(shape->mesh.positions),
+                                indices_of(shape->mesh.triangles)});
+  }
+  return mesh;
+}
+
+proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
+  proto::MeshAnnouncement announcement;
+  const ClothModel<float>& model = world.model();
+  announcement.scene = world.def().name;
+  announcement.vertices = static_cast<std::uint32_t>(model.mass.size());
+  announcement.triangles = static_cast<std::uint32_t>(model.triangles.size());
+  announcement.cloths = {{"cloth", 0, announcement.vertices, 0, announcement.triangles,
+                          static_cast<std::uint32_t>(model.rows),
+                          static_cast<std::uint32_t>(model.columns), model.fabric.thickness}};
+  for (const ColliderDef& collider : world.def().colliders)
+    announcement.colliders.push_back({collider.name, std::visit(ShapeWriter{}, collider.shape)});
+  return announcement;
+}
+
+proto::Error to_wire(const DefinitionError& error) {
+  proto::Error out = proto::make_error(proto::ErrorCode::out_of_range, error.what(), error.hint);
+  out.field = error.field;
+  out.value = proto::quoted_value(error.value);
+  return out;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/world/world.h"
+#include "proto/commands.h"
+#include "proto/events.h"
+#include "proto/frame.h"
+#include "proto/mesh.h"
+#include "proto/replies.h"
+
+// The only place where the wire's types meet those of the physics.
+
+namespace weft::server {
+
+/// The world that is served.
+using ServedWorld = World<float>;
+
+proto::Vec3 to_wire(const Vec3d& v);
+proto::Vec3f to_wire_float(const Vec3f& v);
+Vec3d from_wire(const proto::Vec3& v);
+
+/// Three numbers a vertex, without copying.
+std::span<const float> floats_of(const Vec3Array<float>& vectors);
+std::vector<double> doubles_of(const Vec3Array<float>& vectors);
+
+/// Checks that the index exists and gives the triangle with weights (for a particle: one of its
+/// triangles with all weight on it).
+proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const proto::Hold& hold);
+
+/// The corner with the greatest weight.
+Index nearest_corner(const ServedWorld& world, const proto::SurfacePoint& point);
+
+/// @param target  where to pull; absent: where the point is now
+GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
+                 const proto::SurfacePoint& point);
+
+/// The environment with what the command sets.
+EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set);
+
+std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
+proto::Energy to_wire(const Energies& energies);
+proto::State state_of(const ServedWorld& world);  ///< without what only the room knows
+std::vector<proto::StageWork> work_of(const ServedWorld& world);
+
+proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner);
+proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,
+                          std::uint32_t drag);
+proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
+                              proto::ViewerId owner);
+
+proto::SceneMesh scene_mesh(const ServedWorld& world);
+/// Without epoch, hash and bytes.
+proto::MeshAnnouncement mesh_announcement(const ServedWorld& world);
+
+/// A refused definition, as the wire tells it.
+proto::Error to_wire(const DefinitionError& error);
+
+}  // namespace weft::server

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "server/clock.h"
+#include "server/frame_window.h"
+#include "server/message.h"
+
+namespace weft::server {
+
+/// A viewer's connection as its channel sees it: the session over a socket, or a fake in a test.
+class ViewerStream {
+ public:
+  virtual ~ViewerStream() = default;
+
+  /// Starts to write; the stream calls `ViewerChannel::on_written` when it is done. The channel never
+  /// starts a second write before.
+  virtual void write(const Message& message) = 0;
+
+  /// Starts to close; nothing is written after it.
+  virtual void close(std::uint16_t code, const std::string& reason) = 0;
+};
+
+struct ChannelLimits {
+  std::size_t queued_messages = 512;
+  std::size_t queued_bytes = 8 << 20;
+};
+
+/// What waits for one viewer: a bounded queue of messages that must arrive in order, and one slot
+/// for the newest frame. A slow viewer sees fewer frames, never older ones, and delays nobody.
+/// Lives on the network thread.
+class ViewerChannel {
+ public:
+  /// @param frame_rate  of the room [1/s]
+  ViewerChannel(ViewerStream& stream, const Clock& clock, double frame_rate,
+                const ChannelLimits& limits);
+
+  /// Queues a message. If the viewer does not read and the queue overflows, closes with 4000.
+  void send(Message message);
+
+  /// From now on frames may go out; before it `offer_frame` does nothing.
+  void allow_frames() { frames_allowed_ = true; }
+
+  /// Replaces the frame that waits.
+  void offer_frame(const Frame& frame);
+
+  /// Forgets the frame that waits; it belongs to an older mesh.
+  void drop_frame() { waiting_frame_.reset(); }
+
+  /// The client has decoded a frame.
+  void on_acknowledged(std::uint32_t sequence);
+
+  /// The write that was started last is done.
+  void on_written();
+
+  /// Sends what has become due with time; called a few times a second or more.
+  void poll() { pump(); }
+
+  /// @param hz  most frames a second; 0: none; at or above the room's rate: every one
+  void set_most_frames(double hz);
+  double most_frames() const { return most_frames_; }
+  bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
+
+  /// The room's rate of frames has changed [1/s].
+  void set_frame_rate(double frame_rate);
+
+  /// Says `last` as soon as the stream is free and closes; what waited is dropped.
+  void close(std::uint16_t code, const std::string& reason, std::optional<Message> last = {});
+
+  bool closed() const { return closed_; }
+  std::uint64_t frames_sent() const { return frames_sent_; }
+  std::uint64_t frames_dropped() const { return frames_dropped_; }
+  const FrameWindow& window() const { return window_; }
+
+  /// Frames dropped since the last call, for a notice.
+  std::uint64_t take_dropped();
+
+ private:
+  void pump();
+  bool frame_is_due(double now) const;
+  double frame_interval() const;
+  void start(const Message& message);
+
+  ViewerStream& stream_;
+  const Clock& clock_;
+  ChannelLimits limits_;
+  FrameWindow window_;
+  double frame_rate_;
+  double most_frames_;           // as asked for; may be above the room's rate
+  bool frames_allowed_ = false;
+  bool writing_ = false;
+  bool closing_ = false, closed_ = false;
+  std::uint16_t close_code_ = 0;
+  std::string close_reason_;
+  std::deque<Message> queue_;
+  std::size_t queued_bytes_ = 0;
+  std::optional<Frame> waiting_frame_;
+  double next_frame_time_ = 0;  // by `most_frames_` [s]
+  std::uint64_t frames_sent_ = 0, frames_dropped_ = 0, dropped_told_ = 0;
+};
+
+}  // namespace weft::server
