@@ -22,7 +22,7 @@ struct FabricDef {
   double bending_damping = 0;      ///< hinge damping per elastic stiffness [s]
   double thickness = 0.004;        ///< contact distance of the mid-surface from objects [m]
   double friction = 0.4;           ///< Coulomb coefficient against objects
-  double dissipation = 0;          ///< k_diss of the seed's eq. (10), 0 <= k < 1
+  double restitution = 0;          ///< k_diss of the seed's eq. (10), 0 <= k < 1
   double air_normal = 1.28;        ///< C_n, drag coefficient of a plate across the wind
   double air_tangential = 0.01;    ///< c_t, skin friction per area and speed [kg/(m^2 s)]
 };
@@ -42,8 +42,8 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
         f.bending_damping);
   visit(FieldInfo{"thickness", 1e-4, 0.1, "m", "contact distance from objects"}, f.thickness);
   visit(FieldInfo{"friction", 0, 10, "", "Coulomb friction against objects"}, f.friction);
-  visit(FieldInfo{"dissipation", 0, 0.999, "", "part of the contact velocity that is lost"},
-        f.dissipation);
+  visit(FieldInfo{"restitution", 0, 0.999, "", "part of the impact velocity that returns"},
+        f.restitution);
   visit(FieldInfo{"air_normal", 0, 100, "", "drag coefficient across the wind"}, f.air_normal);
   visit(FieldInfo{"air_tangential", 0, 100, "kg/(m^2 s)", "skin friction along the wind"},
         f.air_tangential);

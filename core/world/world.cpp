@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "core/error.h"
+#include "core/geometry/ray_cast.h"
 #include "core/world/state_hash.h"
 #include "core/world/wind.h"
 
@@ -27,11 +28,11 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
   ContactDef contact;
   contact.thickness = def.cloth.fabric.thickness;
   contact.friction = def.cloth.fabric.friction;
-  contact.dissipation = def.cloth.fabric.dissipation;
+  contact.restitution = def.cloth.fabric.restitution;
   return Contact<Real>(contact, def.colliders, model.edges, model.triangles, runtime.executor);
 }
 
-/// The validated definition; a helper so that nothing is built from a wrong one.
+/// The definition itself, once it is known to be valid; nothing is built from a wrong one.
 const WorldDef& validated(const WorldDef& def) {
   validate(def);
   return def;
@@ -65,7 +66,9 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   const std::size_t n = model_.mass.size();
   workspace_.prepare(model_);
   surroundings_.wind.resize(n);
-  report_.profile.clock = runtime_.clock;
+  std::vector<Aabb<Real>> boxes;
+  triangle_boxes(model_.rest_positions, model_.triangles, boxes);
+  pick_tree_.build(boxes);
   reset();
 }
 
@@ -239,6 +242,41 @@ template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
+}
+
+template <class Real>
+std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& direction) const {
+  check_field("pick.", {"origin", -1e6, 1e6, "m", "start of the ray"}, origin);
+  check_field("pick.", {"direction", -1e6, 1e6, "", "direction of the ray"}, direction);
+  const double length = direction.norm();
+  if (!(length > 1e-12))
+    throw DefinitionError("pick.direction", "0,0,0", "a direction", "give a vector that is not zero");
+  std::vector<Aabb<Real>> boxes;
+  triangle_boxes(state_.x, model_.triangles, boxes);
+  Bvh<Real> hierarchy = pick_tree_;
+  hierarchy.refit(boxes);
+  const Vec3<Real> from = origin.template cast<Real>();
+  const Vec3<Real> along = (direction / length).template cast<Real>();
+  const auto hit = cast_ray<Real>(from, along, hierarchy, state_.x, model_.triangles);
+  if (!hit) return std::nullopt;
+  ClothHit result;
+  result.distance = static_cast<double>(hit->distance);
+  result.triangle = hit->triangle;
+  const Triangle& corners = model_.triangles[static_cast<std::size_t>(hit->triangle)];
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.barycentric[k] = static_cast<double>(hit->barycentric[k]);
+    result.position += result.barycentric[k] *
+                       state_.x[static_cast<std::size_t>(corners[k])].template cast<double>();
+  }
+  for (const Index i : corners) {
+    const double d =
+        (state_.x[static_cast<std::size_t>(i)].template cast<double>() - result.position).norm();
+    if (d >= nearest) continue;
+    nearest = d;
+    result.nearest_particle = i;
+  }
+  return result;
 }
 
 template <class Real>

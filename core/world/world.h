@@ -135,6 +135,7 @@ class World {
   Contact<Real> contact_;
   VerletWorkspace<Real> workspace_;
   EnergyAccount account_;
+  Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;
 };

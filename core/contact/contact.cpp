@@ -1,0 +1,111 @@
+#include "core/contact/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+
+template <class Real>
+Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
+                       const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
+                       Executor* executor)
+    : def_(def),
+      thickness_(static_cast<Real>(def.thickness)),
+      executor_(executor),
+      edges_(edges),
+      triangles_(triangles) {
+  for (std::size_t k = 0; k < colliders.size(); ++k) {
+    validate(colliders[k], "colliders[" + std::to_string(k) + "].");
+    add_shape(colliders[k].shape);
+  }
+  particle_pairs_.resize(meshes_.size());
+  edge_pairs_.resize(meshes_.size());
+  triangle_pairs_.resize(meshes_.size());
+}
+
+template <class Real>
+void Contact<Real>::add_shape(const ShapeDef& shape) {
+  if (const auto* plane = std::get_if<PlaneDef>(&shape)) {
+    const Vec3d n = plane->normal.normalized();
+    planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point))});
+  } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
+    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius)});
+  } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
+    rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
+                     static_cast<Real>(capsule->radius)});
+  } else if (const auto* box = std::get_if<BoxDef>(&shape)) {
+    meshes_.push_back(prepare_mesh<Real>(world_mesh(*box)));
+  } else {
+    meshes_.push_back(prepare_mesh<Real>(std::get<MeshDef>(shape).mesh));
+  }
+}
+
+template <class Real>
+void Contact<Real>::reset() {
+  collected_ = rows_built_ = false;
+  clearance_.clear();
+  rows_.clear();
+  particle_rows_ = 0;
+}
+
+template <class Real>
+void Contact<Real>::begin_tick(const ClothState<Real>&, double tick_seconds, Profile&) {
+  tick_seconds_ = static_cast<Real>(tick_seconds);
+  // Between ticks the cloth may have been put elsewhere; the planes know nothing of that.
+  rows_built_ = false;
+}
+
+template <class Real>
+void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) {
+  if (empty()) return;
+  bool holds;
+  {
+    const StageTimer timer(profile, Stage::broad_phase, 0);
+    holds = rows_hold(state, dt);
+  }
+  if (!holds) rebuild_rows(state, dt, profile);
+  if (rows_.empty()) return;
+  const StageTimer timer(profile, Stage::contact, rows_.size());
+  push_out(state, dt);
+  solve_rows(state, dt, profile);
+  certify(state, dt);
+}
+
+template <class Real>
+void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
+  if (rows_.empty()) return;
+  const StageTimer timer(profile, Stage::contact, rows_.size());
+  solve_rows(state, dt, profile);
+}
+
+template <class Real>
+double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
+  double deepest = 0;
+  const auto probe = [&](const Vec3<Real>& p) {
+    for (const Plane& plane : planes_)
+      deepest = std::max(deepest, static_cast<double>(plane.offset - plane.normal.dot(p)));
+    for (const Ball& ball : balls_)
+      deepest = std::max(deepest, static_cast<double>(ball.radius - (p - ball.centre).norm()));
+    for (const Rod& rod : rods_) {
+      const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
+      deepest = std::max(deepest, static_cast<double>(rod.radius - (p - q).norm()));
+    }
+    for (const MeshShape<Real>& mesh : meshes_) {
+      if (!mesh.closed || mesh.triangle_tree.bounds().squared_distance(p) > 0) continue;
+      const MeshDistance<Real> d = distance_to_mesh(mesh, p, Real(1000));
+      deepest = std::max(deepest, static_cast<double>(-d.distance));
+    }
+  };
+  for (const Vec3<Real>& p : x) probe(p);
+  for (const Edge& edge : edges_) {
+    const Vec3<Real>& a = x[static_cast<std::size_t>(edge[0])];
+    const Vec3<Real>& b = x[static_cast<std::size_t>(edge[1])];
+    for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) probe(a + (b - a) * t);
+  }
+  return deepest;
+}
+
+template class Contact<float>;
+template class Contact<double>;
+
+}  // namespace weft

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/cloth/cloth_state.h"
+#include "core/contact/collider.h"
+#include "core/contact/mesh_shape.h"
+#include "core/executor.h"
+#include "core/world/profile.h"
+
+namespace weft {
+
+/// Settings of the contact of a cloth with objects.
+struct ContactDef {
+  double thickness = 0.004;  ///< distance that the mid-surface keeps from objects [m]
+  double friction = 0.4;     ///< Coulomb coefficient
+  double restitution = 0;    ///< k_diss of the seed's eq. (10): part of the normal velocity returned
+};
+
+/// A pair that may come into contact before candidates are collected again.
+template <class Real>
+struct ContactCandidate {
+  Index cloth = 0;    ///< particle, edge or triangle of the cloth
+  Index feature = 0;  ///< triangle, edge or vertex of the mesh
+  Real distance = 0;  ///< when collected [m]
+};
+
+/// One contact of up to three particles with a fixed plane: gap = sum w n.x - offset. The plane
+/// separates the cloth's feature from the (convex) feature of the object, so whoever stays on its
+/// side has not crossed.
+template <class Real>
+struct ContactRow {
+  std::array<Index, 3> particle = {0, 0, 0};
+  std::array<Real, 3> weight = {0, 0, 0};
+  int count = 0;
+  Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
+  Real offset = 0;                         ///< [m]
+};
+
+/// Contact of one cloth with fixed objects (CONTACT.md's recipe for static objects).
+///
+/// Three nested lists keep the work small, each valid while no particle has moved farther than its
+/// allowance, which is checked with the coming motion before every drift:
+/// clearances (nothing near), candidates (pairs within reach for about a tick), rows (planes frozen
+/// for a few substeps). Rows are solved on velocities between kick and drift, with Coulomb friction
+/// that sticks truly, and at last every particle is certified against its planes: one that would
+/// cross does not move. So no particle passes through an object, whatever pulls at it.
+template <class Real>
+class Contact {
+ public:
+  Contact() = default;
+
+  /// @param edges,triangles  of the cloth
+  /// @param executor         runs the collection in chunks; may be null
+  /// Throws DefinitionError if a collider is out of range.
+  Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
+          const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
+          Executor* executor);
+
+  /// Forgets everything about where the cloth is.
+  void reset();
+
+  /// @param tick_seconds  length of the tick [s]
+  void begin_tick(const ClothState<Real>& state, double tick_seconds, Profile& profile);
+
+  /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
+  /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
+  void resolve(ClothState<Real>& state, Real dt, Profile& profile);
+
+  /// Makes the velocities at the end of a tick admissible.
+  void settle(ClothState<Real>& state, Real dt, Profile& profile);
+
+  /// Deepest point of the cloth inside an object [m], 0 if there is none: particles, and points at
+  /// each quarter of the edges. Does not use the lists above.
+  double deepest_penetration(const Vec3Array<Real>& x) const;
+
+  const std::vector<ContactRow<Real>>& rows() const { return rows_; }
+
+ private:
+  struct Plane {
+    Vec3<Real> normal;
+    Real offset;
+  };
+  struct Ball {
+    Vec3<Real> centre;
+    Real radius;
+  };
+  struct Rod {
+    Vec3<Real> a, b;
+    Real radius;
+  };
+  /// What a chunk of the collection finds.
+  struct Found {
+    std::vector<ContactCandidate<Real>> pairs;
+    std::uint64_t tests = 0;
+  };
+  static constexpr int kChunks = 8;
+
+  bool empty() const { return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty(); }
+  void add_shape(const ShapeDef& shape);
+
+  // contact_collect.cpp
+  void collect(const ClothState<Real>& state, Profile& profile);
+  void measure_clearance(const ClothState<Real>& state, Profile& profile);
+  void mark_near(const ClothState<Real>& state);
+  void collect_pairs(const ClothState<Real>& state, Profile& profile);
+  Real clearance(const Vec3<Real>& p, Real reach) const;
+  template <class Visit>
+  void collect_kind(std::size_t count, std::vector<ContactCandidate<Real>>& into, Profile& profile,
+                    Visit&& visit);
+
+  // contact_rows.cpp
+  bool rows_hold(const ClothState<Real>& state, Real dt) const;
+  void rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile);
+  void add_particle_rows(const ClothState<Real>& state, Profile& profile);
+  void add_edge_rows(const ClothState<Real>& state, Profile& profile);
+  void add_triangle_rows(const ClothState<Real>& state, Profile& profile);
+  void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
+               const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance);
+  void drop_deeper_rows(std::size_t first, const ClothState<Real>& state);
+
+  // contact_solve.cpp
+  void solve_rows(ClothState<Real>& state, Real dt, Profile& profile);
+  void push_out(ClothState<Real>& state, Real dt);
+  void certify(ClothState<Real>& state, Real dt);
+
+  ContactDef def_;
+  Real thickness_ = 0;
+  Executor* executor_ = nullptr;
+  std::vector<Edge> edges_;
+  std::vector<Triangle> triangles_;
+  std::vector<Plane> planes_;
+  std::vector<Ball> balls_;
+  std::vector<Rod> rods_;
+  std::vector<MeshShape<Real>> meshes_;
+
+  Real tick_seconds_ = 0;
+  bool collected_ = false, rows_built_ = false;
+  Vec3Array<Real> x_collected_, x_rows_;
+  std::vector<Real> clearance_;      ///< lower bound of each particle's distance from all objects
+  std::vector<Real> skin_;           ///< how far each may move before the next collection
+  std::vector<Real> row_reach_;      ///< how far each may move before the next rows
+  std::vector<Real> half_length_;    ///< half of the longest edge at each particle
+  std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
+  std::vector<Index> active_particles_, near_edges_, near_triangles_;
+  std::vector<std::vector<ContactCandidate<Real>>> particle_pairs_, edge_pairs_, triangle_pairs_;
+  std::array<Found, kChunks> found_;
+  std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
+  std::vector<ContactRow<Real>> rows_;
+  std::size_t particle_rows_ = 0;  ///< the first ones, of single particles, which are certified
+};
+
+extern template class Contact<float>;
+extern template class Contact<double>;
+
+}  // namespace weft

@@ -1,0 +1,192 @@
+// The broad phase of Contact: who is near what, and for how long that is known.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact/contact.h"
+
+namespace weft {
+namespace {
+
+/// How far beyond the distance that matters a clearance is searched for, so that a cloth that comes
+/// nearer is not measured at every step [m].
+constexpr double kClearanceHorizon = 0.1;
+
+}  // namespace
+
+template <class Real>
+Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
+  Real nearest = reach;
+  for (const Plane& plane : planes_) nearest = std::min(nearest, plane.normal.dot(p) - plane.offset);
+  for (const Ball& ball : balls_) nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
+  for (const Rod& rod : rods_) {
+    const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
+    nearest = std::min(nearest, (p - q).norm() - rod.radius);
+  }
+  for (const MeshShape<Real>& mesh : meshes_) {
+    if (mesh.triangle_tree.bounds().squared_distance(p) > reach * reach) continue;
+    const MeshDistance<Real> d = distance_to_mesh(mesh, p, reach);
+    if (d.triangle != kNone) nearest = std::min(nearest, d.distance);
+  }
+  return nearest;
+}
+
+template <class Real>
+void Contact<Real>::collect(const ClothState<Real>& state, Profile& profile) {
+  const StageTimer timer(profile, Stage::broad_phase, 0);
+  measure_clearance(state, profile);
+  mark_near(state);
+  collect_pairs(state, profile);
+  x_collected_ = state.x;
+  collected_ = true;
+}
+
+/// Brings each particle's clearance up to date; measures it anew only where the old one, less the
+/// way gone since, no longer says that nothing is near.
+template <class Real>
+void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& profile) {
+  const std::size_t n = state.x.size();
+  const bool known = collected_ && clearance_.size() == n;
+  if (!known) clearance_.assign(n, Real(-1));
+  skin_.resize(n);
+  half_length_.assign(n, Real(0));
+  for (const Edge& e : edges_) {
+    const auto i = static_cast<std::size_t>(e[0]), j = static_cast<std::size_t>(e[1]);
+    const Real half = Real(0.5) * (state.x[i] - state.x[j]).norm();
+    half_length_[i] = std::max(half_length_[i], half);
+    half_length_[j] = std::max(half_length_[j], half);
+  }
+  std::array<std::uint64_t, kChunks> tests{};
+  run_chunks(executor_, kChunks, [&](int chunk) {
+    const auto c = static_cast<std::size_t>(chunk);
+    for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
+      skin_[i] = std::max(thickness_, state.v[i].norm() * tick_seconds_);
+      const Real needed = thickness_ + half_length_[i] + skin_[i];
+      if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
+      if (clearance_[i] > needed) continue;
+      clearance_[i] = clearance(state.x[i], needed + static_cast<Real>(kClearanceHorizon));
+      ++tests[c];
+    }
+  });
+  for (const std::uint64_t count : tests) profile[Stage::broad_phase].work += count;
+}
+
+/// A particle is near if it, or a point of an edge or triangle at it, can touch something within its
+/// skin. Those joined to it are kept on as short a leash; the others may go as far as they are clear.
+template <class Real>
+void Contact<Real>::mark_near(const ClothState<Real>& state) {
+  const std::size_t n = state.x.size();
+  near_.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    near_[i] = clearance_[i] <= thickness_ + half_length_[i] + skin_[i];
+  active_ = near_;
+  near_edges_.clear();
+  near_triangles_.clear();
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const auto i = static_cast<std::size_t>(edges_[e][0]), j = static_cast<std::size_t>(edges_[e][1]);
+    if (!near_[i] && !near_[j]) continue;
+    active_[i] = active_[j] = 1;
+    near_edges_.push_back(static_cast<Index>(e));
+  }
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto is_near = [&](Index i) { return near_[static_cast<std::size_t>(i)] != 0; };
+    if (std::any_of(triangles_[t].begin(), triangles_[t].end(), is_near))
+      near_triangles_.push_back(static_cast<Index>(t));
+  }
+  active_particles_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (active_[i])
+      active_particles_.push_back(static_cast<Index>(i));
+    else
+      skin_[i] = clearance_[i] - thickness_ - half_length_[i];
+  }
+}
+
+/// Runs `visit(n, Found&)` for n below count in chunks and joins what they find in order.
+template <class Real>
+template <class Visit>
+void Contact<Real>::collect_kind(std::size_t count, std::vector<ContactCandidate<Real>>& into,
+                                 Profile& profile, Visit&& visit) {
+  run_chunks(executor_, kChunks, [&](int chunk) {
+    const auto c = static_cast<std::size_t>(chunk);
+    found_[c].pairs.clear();
+    found_[c].tests = 0;
+    for (std::size_t n = count * c / kChunks; n < count * (c + 1) / kChunks; ++n) visit(n, found_[c]);
+  });
+  into.clear();
+  for (const Found& found : found_) {
+    into.insert(into.end(), found.pairs.begin(), found.pairs.end());
+    profile[Stage::narrow_phase].work += found.tests;
+  }
+  profile[Stage::broad_phase].work += into.size();
+}
+
+template <class Real>
+void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profile) {
+  const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
+  const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshShape<Real>& mesh = meshes_[m];
+    const auto at = [&](Index v) -> const Vec3<Real>& {
+      return mesh.positions[static_cast<std::size_t>(v)];
+    };
+    collect_kind(active_particles_.size(), particle_pairs_[m], profile, [&](std::size_t n, Found& found) {
+      const Index i = active_particles_[n];
+      const Real reach = thickness_ + skin(i);
+      Aabb<Real> box;
+      box.add(x(i));
+      bool any = false;
+      mesh.triangle_tree.for_each_overlap(box.grown(reach), [&](Index t) {
+        const MeshDistance<Real> d = distance_to_triangle(mesh, t, x(i));
+        ++found.tests;
+        if (std::abs(d.distance) > reach) return;
+        found.pairs.push_back({i, t, std::abs(d.distance)});
+        any = true;
+      });
+      // Deep inside a solid nothing is within reach, yet the particle must find its way out.
+      if (any || !(clearance_[static_cast<std::size_t>(i)] < 0) || !mesh.closed) return;
+      const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
+      if (d.triangle != kNone && d.distance < 0) found.pairs.push_back({i, d.triangle, Real(0)});
+    });
+    collect_kind(near_edges_.size(), edge_pairs_[m], profile, [&](std::size_t n, Found& found) {
+      const Edge& e = edges_[static_cast<std::size_t>(near_edges_[n])];
+      const Real reach = thickness_ + std::max(skin(e[0]), skin(e[1]));
+      Aabb<Real> box;
+      box.add(x(e[0]));
+      box.add(x(e[1]));
+      mesh.edge_tree.for_each_overlap(box.grown(reach), [&](Index s) {
+        const Index k = mesh.sharp_edges[static_cast<std::size_t>(s)];
+        const MeshEdge& other = mesh.edges[static_cast<std::size_t>(k)];
+        const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]), at(other.a), at(other.b));
+        const Real distance = (c.p - c.q).norm();
+        ++found.tests;
+        if (distance <= reach) found.pairs.push_back({near_edges_[n], k, distance});
+      });
+    });
+    collect_kind(near_triangles_.size(), triangle_pairs_[m], profile, [&](std::size_t n, Found& found) {
+      const Triangle& t = triangles_[static_cast<std::size_t>(near_triangles_[n])];
+      const Real reach = thickness_ + std::max({skin(t[0]), skin(t[1]), skin(t[2])});
+      Aabb<Real> box;
+      for (const Index i : t) box.add(x(i));
+      mesh.vertex_tree.for_each_overlap(box.grown(reach), [&](Index s) {
+        const Index v = mesh.sharp_vertices[static_cast<std::size_t>(s)];
+        const auto c = closest_on_triangle<Real>(at(v), x(t[0]), x(t[1]), x(t[2]));
+        const Real distance = (c.point - at(v)).norm();
+        ++found.tests;
+        if (distance <= reach) found.pairs.push_back({near_triangles_[n], v, distance});
+      });
+    });
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                    \
+  template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                          \
+  template void Contact<Real>::collect(const ClothState<Real>&, Profile&);                        \
+  template void Contact<Real>::measure_clearance(const ClothState<Real>&, Profile&);              \
+  template void Contact<Real>::mark_near(const ClothState<Real>&);                                \
+  template void Contact<Real>::collect_pairs(const ClothState<Real>&, Profile&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,141 @@
+// The response of Contact: velocities that respect the rows, and the certificate of the end positions.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact/contact.h"
+
+namespace weft {
+namespace {
+
+/// Sweeps of projected Gauss-Seidel over the rows.
+constexpr int kSweeps = 2;
+
+/// A gap this much wider than the thickness still counts as touching, so that rounding of positions
+/// does not let a resting particle fall for a substep, and its friction with it [m].
+constexpr double kTouchSlack = 2e-5;
+
+/// Slower impacts do not bounce [m/s].
+constexpr double kBounceSpeed = 0.05;
+
+/// Push-out: part of the lack taken each substep, and its largest speed [m/s].
+constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
+
+/// Rounds of projection on violated planes before a particle is held.
+constexpr int kCertifyRounds = 3;
+
+/// What must be left between a particle and an object after every step [m].
+constexpr double kSmallestGap = 1e-5;
+
+template <class Real>
+Vec3<Real> weighted(const ContactRow<Real>& row, const Vec3Array<Real>& values) {
+  Vec3<Real> sum = Vec3<Real>::Zero();
+  for (int k = 0; k < row.count; ++k)
+    sum += values[static_cast<std::size_t>(row.particle[static_cast<std::size_t>(k)])] *
+           row.weight[static_cast<std::size_t>(k)];
+  return sum;
+}
+
+/// Calls act(particle, share): the change of its velocity for a unit change of the row's velocity.
+template <class Real, class Act>
+void for_each_share(const ContactRow<Real>& row, const std::vector<Real>& inverse_mass, Act&& act) {
+  Real mobility = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+    mobility += row.weight[k] * row.weight[k] * inverse_mass[static_cast<std::size_t>(row.particle[k])];
+  if (!(mobility > 0)) return;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    const auto i = static_cast<std::size_t>(row.particle[k]);
+    if (inverse_mass[i] > 0) act(i, row.weight[k] * inverse_mass[i] / mobility);
+  }
+}
+
+}  // namespace
+
+/// Normal velocity: no farther down than the thickness within the step, zero when touching. Friction:
+/// the tangential velocity is stopped if that takes at most friction times the normal impulse, else
+/// slowed by as much (Coulomb; eq. (10) of the seed with its k_f).
+template <class Real>
+void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profile) {
+  const Real friction = static_cast<Real>(def_.friction);
+  const Real bounce = static_cast<Real>(def_.restitution);
+  std::uint64_t friction_evaluations = 0;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const ContactRow<Real>& row : rows_) {
+      const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
+      const Vec3<Real> v = weighted(row, state.v);
+      const Real vn = row.normal.dot(v);
+      const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
+      Real target = -room / dt;
+      if (bounce > 0 && room == 0 && vn < -Real(kBounceSpeed)) target = -bounce * vn;
+      const Real push = target - vn;
+      if (!(push > 0)) continue;
+      Vec3<Real> change = row.normal * push;
+      if (friction > 0) {
+        ++friction_evaluations;
+        const Vec3<Real> slip = v - row.normal * vn;
+        const Real speed = slip.norm(), most = friction * push;
+        change -= speed > most ? slip * (most / speed) : slip;
+      }
+      for_each_share(row, state.inverse_mass,
+                     [&](std::size_t i, Real share) { state.v[i] += change * share; });
+    }
+  }
+  profile[Stage::friction].work += friction_evaluations;
+}
+
+template <class Real>
+void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
+  for (const ContactRow<Real>& row : rows_) {
+    const Real lack = thickness_ - (row.normal.dot(weighted(row, state.x)) - row.offset);
+    if (!(lack > Real(kTouchSlack))) continue;
+    const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
+    for_each_share(row, state.inverse_mass,
+                   [&](std::size_t i, Real share) { state.x[i] += row.normal * (step * share); });
+  }
+}
+
+/// Makes sure that the coming drift crosses no plane of a single particle and leaves nobody beyond
+/// the reach within which its planes are all that matters. Not moving is always allowed.
+template <class Real>
+void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
+  const auto violated = [&](const ContactRow<Real>& row, std::size_t i) {
+    const Real now = row.normal.dot(state.x[i]) - row.offset;
+    const Real least = std::min(now, Real(kSmallestGap));
+    const Real end = now + row.normal.dot(state.v[i]) * dt;
+    return end < least ? least - end : Real(0);
+  };
+  for (std::size_t first = 0; first < particle_rows_;) {
+    const auto i = static_cast<std::size_t>(rows_[first].particle[0]);
+    std::size_t last = first;
+    while (last < particle_rows_ && rows_[last].particle[0] == rows_[first].particle[0]) ++last;
+    bool clear = false;
+    for (int round = 0; round <= kCertifyRounds && !clear; ++round) {
+      clear = true;
+      for (std::size_t k = first; k < last; ++k) {
+        const Real lack = violated(rows_[k], i);
+        if (!(lack > 0)) continue;
+        clear = false;
+        if (round < kCertifyRounds)
+          state.v[i] += rows_[k].normal * (lack / dt * Real(1.0001));
+        else
+          state.v[i].setZero();
+      }
+    }
+    first = last;
+  }
+  for (const Index k : active_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    const Vec3<Real> end = state.x[i] + state.v[i] * dt;
+    if (!((end - x_rows_[i]).squaredNorm() <= row_reach_[i] * row_reach_[i])) state.v[i].setZero();
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                       \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&);        \
+  template void Contact<Real>::push_out(ClothState<Real>&, Real);                    \
+  template void Contact<Real>::certify(ClothState<Real>&, Real);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
