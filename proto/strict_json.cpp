@@ -97,7 +97,10 @@ class StrictBuilder {
     std::string text;
     for (const Level& level : levels_) {
       if (level.container->is_array()) {
-        text.append("[").append(std::to_string(level.container->size())).append("]");
+        // An element that is open is in the array already; a number that was refused is not.
+        const std::size_t open = &level == &levels_.back() ? 0 : 1;
+        const std::size_t index = level.container->size() - open;
+        text.append("[").append(std::to_string(index)).append("]");
       } else {
         text.append(text.empty() ? "" : ".").append(level.key);
       }
