@@ -1,0 +1,121 @@
+#include "core/scenes/scenes.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/scenes/dress_form.h"
+
+namespace weft {
+namespace {
+
+const ColliderDef kGround{"ground", PlaneDef{}};
+
+/// A cloth that hangs in the plane z = `depth`, its upper edge centred at height `top`.
+ClothDef hanging_cloth(int rows, int columns, double width, double height, double top, double depth) {
+  ClothDef cloth;
+  cloth.rows = rows;
+  cloth.columns = columns;
+  cloth.width = width;
+  cloth.height = height;
+  cloth.origin = Vec3d(-width / 2, top, depth);
+  return cloth;
+}
+
+/// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung by
+/// six, three at each upper corner, gravity and wind.
+void build_default(WorldDef& def) {
+  def.cloth = hanging_cloth(30, 20, 0.95, 1.45, 1.85, 0.3);
+  def.pins = {{0, 0}, {1, 0}, {2, 0}, {17, 0}, {18, 0}, {19, 0}};
+  def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
+  def.environment.wind = Vec3d(0.3, 0, -1.6);
+  def.environment.gust_speed = 0.9;
+  def.environment.drag = 0.1;
+}
+
+void build_curtain(WorldDef& def) {
+  def.cloth = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
+  for (Index i = 0; i < 33; i += 4) def.pins.push_back({i, 0.02});
+  def.colliders = {kGround};
+  def.environment.wind = Vec3d(0.2, 0, 0.9);
+  def.environment.gust_speed = 1.0;
+  def.environment.drag = 0.1;
+}
+
+void build_flag(WorldDef& def) {
+  def.cloth = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
+  def.cloth.origin = Vec3d(0.03, 2.3, 0);
+  def.cloth.fabric.areal_density = 0.1;
+  def.pins = {{0, 0.05}, {12 * 37, 0.05}, {24 * 37, 0.05}};
+  def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
+  def.environment.wind = Vec3d(5, 0, 0.6);
+  def.environment.gust_speed = 1.5;
+}
+
+void build_drape_sphere(WorldDef& def) {
+  def.cloth.rows = def.cloth.columns = 49;
+  def.cloth.width = def.cloth.height = 1.3;
+  def.cloth.origin = Vec3d(-0.65, 1.15, -0.65);
+  def.cloth.v = Vec3d::UnitZ();
+  def.colliders = {kGround, {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
+  def.environment.drag = 0.5;
+}
+
+void build_wall(WorldDef& def) {
+  def.cloth = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
+  for (Index i = 0; i < 25; i += 4) def.pins.push_back({i, 0.02});
+  def.colliders = {kGround,
+                   {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1),
+                                   Eigen::Quaterniond::Identity()}}};
+  def.environment.drag = 0.3;
+}
+
+struct Entry {
+  SceneInfo info;
+  void (*build)(WorldDef&);
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> list = {
+      {{"default",
+        "A cloth hung by six particles is blown against a dressmaker's form: watch it wrap the bust "
+        "and slide off again."},
+       build_default},
+      {{"curtain", "A curtain on nine rings sways in gusts: pull its hem and let it swing."},
+       build_curtain},
+      {{"flag", "A flag on a pole flutters in strong wind: turn the wind down and see it droop."},
+       build_flag},
+      {{"drape-sphere",
+        "A square cloth falls on a sphere and drapes into folds: friction decides where it stays."},
+       build_drape_sphere},
+      {{"wall",
+        "A cloth hangs before a wall: pull it through as hard as you like, it stays on its side."},
+       build_wall}};
+  return list;
+}
+
+}  // namespace
+
+const std::vector<SceneInfo>& scenes() {
+  static const std::vector<SceneInfo> list = [] {
+    std::vector<SceneInfo> infos;
+    for (const Entry& entry : entries()) infos.push_back(entry.info);
+    return infos;
+  }();
+  return list;
+}
+
+WorldDef make_scene(const std::string& name) {
+  std::string names;
+  for (const Entry& entry : entries()) {
+    names += (names.empty() ? "" : ", ") + entry.info.name;
+    if (entry.info.name != name) continue;
+    WorldDef def;
+    def.name = entry.info.name;
+    def.description = entry.info.description;
+    entry.build(def);
+    return def;
+  }
+  throw DefinitionError("scene", name, "one of " + names);
+}
+
+}  // namespace weft
