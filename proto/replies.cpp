@@ -67,6 +67,7 @@ struct ReplyWriter {
     start("drag", r.tick);
     out["drag"] = r.drag;
     out["grab"] = r.grab;
+    put_if(out, "target", r.target);
   }
   void operator()(const PinReply& r) {
     start("pin", r.tick);

@@ -41,8 +41,9 @@ struct PickReply {
 
 struct DragReply {
   std::uint64_t tick = 0;
-  std::uint32_t drag = 0;  ///< the viewer's number
-  std::uint32_t grab = 0;  ///< the room's
+  std::uint32_t drag = 0;      ///< the viewer's number
+  std::uint32_t grab = 0;      ///< the room's
+  std::optional<Vec3> target;  ///< [m]; of a start
 };
 
 struct PinReply {

@@ -1,0 +1,259 @@
+// Binary messages of weft.v1 (proto/README.md sections 6 to 8). Bytes from outside are checked
+// before use; whatever they are, a decoder returns a message or throws ProtocolError.
+
+import {
+  demand,
+  demandFinite,
+  demandZero,
+  padded,
+  readFloats,
+  readMessage,
+  readSections,
+  readTick,
+} from './bytes.js';
+
+export { ProtocolError } from './bytes.js';
+
+const FRAME = 1;
+const MESH = 2;
+const DATA = 3;
+const ACK = 4;
+const VERSION = 1;
+const FRAME_BYTES = 64;
+const MESH_BYTES = 32;
+const DATA_BYTES = 40;
+const GRAB_BYTES = 36;
+const APPLIED_BYTES = 8;
+const MOST_COMPONENTS = 16;
+const FLAG_KEY = 1;
+const FLAG_JUMP = 2;
+const FLAG_PAUSED = 4;
+
+const KIND = {
+  positions: 1,
+  grabs: 2,
+  applied: 3,
+  restPositions: 16,
+  triangles: 17,
+  uv: 18,
+  colliderPositions: 19,
+  colliderTriangles: 20,
+};
+
+/**
+ * @typedef {import('./messages.js').Frame} Frame
+ * @typedef {import('./messages.js').MeshData} MeshData
+ * @typedef {import('./messages.js').Data} Data
+ * @typedef {import('./bytes.js').Section} Section
+ * @typedef {import('./bytes.js').Message} Message
+ */
+
+/**
+ * @param {DataView} view
+ * @param {Section | undefined} section
+ * @param {number} count  of triangles
+ * @param {number} vertices
+ */
+function readTriangles(view, section, count, vertices) {
+  demand(section !== undefined && section.length === count * 12, 'a section does not fit');
+  const indices = new Uint32Array(view.buffer, view.byteOffset + section.offset, count * 3);
+  for (let i = 0; i < indices.length; ++i)
+    demand(indices[i] < vertices, 'an index is out of range');
+  return indices;
+}
+
+/**
+ * @param {DataView} view
+ * @param {Section} section
+ */
+function readGrabs(view, section) {
+  demand(section.length % GRAB_BYTES === 0, 'a section does not fit');
+  const grabs = [];
+  for (let at = section.offset; at < section.offset + section.length; at += GRAB_BYTES) {
+    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 7);
+    demandFinite(numbers);
+    const [hx, hy, hz, tx, ty, tz, force] = numbers;
+    grabs.push({
+      id: view.getUint32(at, true),
+      viewer: view.getUint32(at + 4, true),
+      held: [hx, hy, hz],
+      target: [tx, ty, tz],
+      force,
+    });
+  }
+  return grabs;
+}
+
+/**
+ * @param {DataView} view
+ * @param {Section} section
+ */
+function readApplied(view, section) {
+  demand(section.length % APPLIED_BYTES === 0, 'a section does not fit');
+  const applied = [];
+  for (let at = section.offset; at < section.offset + section.length; at += APPLIED_BYTES)
+    applied.push({ viewer: view.getUint32(at, true), number: view.getUint32(at + 4, true) });
+  return applied;
+}
+
+/**
+ * @param {Message} message
+ * @returns {Frame}
+ */
+function readFrame({ codec, flags, view }) {
+  demand(codec === 0, 'unknown codec');
+  demand(view.byteLength >= FRAME_BYTES, 'the message is too short');
+  const time = view.getFloat64(24, true);
+  const serverTime = view.getFloat64(32, true);
+  const sequence = view.getUint32(40, true);
+  const reference = view.getUint32(44, true);
+  const vertices = view.getUint32(52, true);
+  demand(Number.isFinite(time) && Number.isFinite(serverTime), 'a time is not finite');
+  const alone = (flags & FLAG_KEY) !== 0 && reference === sequence && view.getFloat32(56, true) === 0;
+  demand(alone, 'a float32 frame builds on no other');
+  const sections = readSections(view, FRAME_BYTES, view.getUint32(60, true));
+  /** @param {number} kind */
+  const find = (kind) => sections.find((s) => s.kind === kind && s.index === 0);
+  const grabs = find(KIND.grabs);
+  const applied = find(KIND.applied);
+  return {
+    type: 'frame',
+    flags,
+    jump: (flags & FLAG_JUMP) !== 0,
+    paused: (flags & FLAG_PAUSED) !== 0,
+    tick: readTick(view, 16),
+    time,
+    serverTime,
+    sequence,
+    reference,
+    epoch: view.getUint32(48, true),
+    positions: readFloats(view, find(KIND.positions), vertices * 3),
+    grabs: grabs ? readGrabs(view, grabs) : [],
+    applied: applied ? readApplied(view, applied) : [],
+  };
+}
+
+/**
+ * @param {DataView} view
+ * @param {Section[]} sections
+ */
+function readColliders(view, sections) {
+  const colliders = [];
+  for (const corners of sections.filter((s) => s.kind === KIND.colliderPositions)) {
+    const faces = sections.find((s) => s.kind === KIND.colliderTriangles && s.index === corners.index);
+    demand(faces !== undefined, 'a collider has no triangles');
+    const vertices = Math.floor(corners.length / 12);
+    colliders.push({
+      collider: corners.index,
+      positions: readFloats(view, corners, vertices * 3),
+      triangles: readTriangles(view, faces, Math.floor(faces.length / 12), vertices),
+    });
+  }
+  return colliders.sort((a, b) => a.collider - b.collider);
+}
+
+/**
+ * @param {Message} message
+ * @returns {MeshData}
+ */
+function readMesh({ codec, view }) {
+  demand(codec === 0, 'unknown codec');
+  demand(view.byteLength >= MESH_BYTES, 'the message is too short');
+  const [vertices, triangles, colliderMeshes, count] = [16, 20, 24, 28].map((offset) =>
+    view.getUint32(offset, true),
+  );
+  const sections = readSections(view, MESH_BYTES, count);
+  /** @param {number} kind */
+  const find = (kind) => sections.find((s) => s.kind === kind && s.index === 0);
+  const faces = sections.filter((s) => s.kind === KIND.colliderTriangles).length;
+  const colliders = readColliders(view, sections);
+  const promised = colliders.length === colliderMeshes && faces === colliderMeshes;
+  demand(promised, 'the number of collider meshes does not fit');
+  return {
+    type: 'mesh',
+    restPositions: readFloats(view, find(KIND.restPositions), vertices * 3),
+    triangles: readTriangles(view, find(KIND.triangles), triangles, vertices),
+    uv: readFloats(view, find(KIND.uv), vertices * 2),
+    colliders,
+  };
+}
+
+/**
+ * @param {Message} message
+ * @returns {Data}
+ */
+function readData({ codec, view }) {
+  demand(codec <= 1, 'unknown codec');
+  demand(view.byteLength >= DATA_BYTES, 'the message is too short');
+  const count = view.getUint32(28, true);
+  const components = view.getUint32(32, true);
+  const sane = components >= 1 && components <= MOST_COMPONENTS && view.getUint32(36, true) === 0;
+  demand(sane, 'the header does not fit');
+  const bytes = count * components * (codec === 0 ? 4 : 8);
+  demand(view.byteLength === DATA_BYTES + padded(bytes), 'the values do not fit');
+  demandZero(view, DATA_BYTES + bytes, view.byteLength);
+  const Values = codec === 0 ? Float32Array : Float64Array;
+  const values = new Values(view.buffer, view.byteOffset + DATA_BYTES, count * components);
+  demandFinite(values);
+  return {
+    type: 'data',
+    tick: readTick(view, 16),
+    transfer: view.getUint32(24, true),
+    components,
+    values,
+  };
+}
+
+/**
+ * Reads any binary message of a server. Arrays are views into the bytes, which must not change.
+ * @param {ArrayBuffer | ArrayBufferView} bytes
+ * @returns {Frame | MeshData | Data}
+ */
+export function decodeBinary(bytes) {
+  const message = readMessage(bytes);
+  if (message.type === FRAME) return readFrame(message);
+  if (message.type === MESH) return readMesh(message);
+  demand(message.type === DATA, 'unknown type');
+  return readData(message);
+}
+
+/**
+ * @param {ArrayBuffer | ArrayBufferView} bytes
+ * @returns {Frame}
+ */
+export function decodeFrame(bytes) {
+  const message = readMessage(bytes);
+  demand(message.type === FRAME, 'not a frame');
+  return readFrame(message);
+}
+
+/**
+ * @param {ArrayBuffer | ArrayBufferView} bytes
+ * @returns {MeshData}
+ */
+export function decodeMesh(bytes) {
+  const message = readMessage(bytes);
+  demand(message.type === MESH, 'not a mesh');
+  return readMesh(message);
+}
+
+/**
+ * @param {ArrayBuffer | ArrayBufferView} bytes
+ * @returns {Data}
+ */
+export function decodeData(bytes) {
+  const message = readMessage(bytes);
+  demand(message.type === DATA, 'not data');
+  return readData(message);
+}
+
+/**
+ * The answer to a frame.
+ * @param {number} sequence  of the frame
+ */
+export function encodeAck(sequence) {
+  const bytes = new Uint8Array(8);
+  bytes.set([ACK, VERSION]);
+  new DataView(bytes.buffer).setUint32(4, sequence, true);
+  return bytes;
+}

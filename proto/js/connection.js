@@ -1,0 +1,146 @@
+import { Emitter } from './emitter.js';
+
+const SUBPROTOCOL = 'weft.v1';
+const FIRST_PAUSE = 250; // before the first new attempt [ms]
+const LONGEST_PAUSE = 8000; // [ms]
+const OPENING_LIMIT = 10000; // for the handshake [ms]
+const NORMAL_CLOSE = 1000;
+// After these the same would happen again.
+const FINAL_CODES = new Set([1002, 1003, 1007, 1008, 1009, 4003]);
+
+/**
+ * @typedef {object} Timers  the world's clock, or a test's
+ * @property {() => number} now  [ms] from any origin
+ * @property {(action: () => void, ms: number) => any} setTimeout
+ * @property {(timer: any) => void} clearTimeout
+ *
+ * @typedef {'closed' | 'connecting' | 'open' | 'waiting'} Phase
+ * @typedef {{phase: Phase, code?: number, reason?: string, retryIn?: number}} Status
+ */
+
+/** @type {Timers} */
+export const systemTimers = {
+  now: () => performance.now(),
+  setTimeout: (action, ms) => setTimeout(action, ms),
+  clearTimeout: (timer) => clearTimeout(timer),
+};
+
+/**
+ * A WebSocket that comes back by itself.
+ * @extends {Emitter<{text: string, binary: ArrayBuffer, open: void, status: Status}>}
+ */
+export class Connection extends Emitter {
+  #url;
+  #WebSocket;
+  #timers;
+  #random;
+  #reconnect;
+  /** @type {WebSocket | null} */
+  #socket = null;
+  /** @type {any} */
+  #timer = null;
+  #attempts = 0;
+  /** @type {Phase} */
+  phase = 'closed';
+
+  /**
+   * @param {string} url
+   * @param {{WebSocket: any, timers: Timers, random: () => number, reconnect: boolean}} options
+   */
+  constructor(url, { WebSocket, timers, random, reconnect }) {
+    super();
+    this.#url = url;
+    this.#WebSocket = WebSocket;
+    this.#timers = timers;
+    this.#random = random;
+    this.#reconnect = reconnect;
+  }
+
+  open() {
+    if (this.phase === 'connecting' || this.phase === 'open') return;
+    this.#clearTimer();
+    this.#enter({ phase: 'connecting' });
+    const socket = new this.#WebSocket(this.#url, SUBPROTOCOL);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.#clearTimer();
+      this.#enter({ phase: 'open' });
+      this.emit('open', undefined);
+    };
+    socket.onmessage = (/** @type {{data: string | ArrayBuffer}} */ { data }) => {
+      if (typeof data === 'string') this.emit('text', data);
+      else this.emit('binary', data);
+    };
+    socket.onclose = (/** @type {{code: number, reason: string}} */ { code, reason }) =>
+      this.#lost(code, reason);
+    socket.onerror = () => {}; // a close event follows, and it has the code
+    this.#socket = socket;
+    this.#timer = this.#timers.setTimeout(() => this.drop(4002, 'no handshake'), OPENING_LIMIT);
+  }
+
+  /** Call when the server has shown to be well; the next loss is retried soon. */
+  settled() {
+    this.#attempts = 0;
+  }
+
+  /** @param {string | Uint8Array} data */
+  send(data) {
+    if (this.phase === 'open') this.#socket?.send(data);
+  }
+
+  /** Ends for good. */
+  close() {
+    this.#clearTimer();
+    if (this.phase === 'closed') return;
+    this.#detach()?.close(NORMAL_CLOSE);
+    this.#enter({ phase: 'closed', code: NORMAL_CLOSE, reason: 'closed by this side' });
+  }
+
+  /**
+   * Gives a connection up that is not well, without waiting for the other side, and tries anew.
+   * @param {number} code  4000 to 4999
+   * @param {string} reason
+   */
+  drop(code, reason) {
+    const socket = this.#detach();
+    if (!socket) return;
+    socket.close(code, reason);
+    this.#lost(code, reason);
+  }
+
+  #detach() {
+    const socket = this.#socket;
+    this.#socket = null;
+    if (socket) socket.onopen = socket.onmessage = socket.onclose = null;
+    return socket;
+  }
+
+  /**
+   * @param {number} code
+   * @param {string} reason
+   */
+  #lost(code, reason) {
+    this.#detach();
+    this.#clearTimer();
+    if (!this.#reconnect || FINAL_CODES.has(code)) {
+      this.#enter({ phase: 'closed', code, reason });
+      return;
+    }
+    const pause = Math.min(LONGEST_PAUSE, FIRST_PAUSE * 2 ** this.#attempts);
+    const retryIn = pause * (0.5 + 0.5 * this.#random());
+    this.#attempts += 1;
+    this.#timer = this.#timers.setTimeout(() => this.open(), retryIn);
+    this.#enter({ phase: 'waiting', code, reason, retryIn });
+  }
+
+  #clearTimer() {
+    if (this.#timer !== null) this.#timers.clearTimeout(this.#timer);
+    this.#timer = null;
+  }
+
+  /** @param {Status} status */
+  #enter(status) {
+    this.phase = status.phase;
+    this.emit('status', status);
+  }
+}

@@ -1,0 +1,23 @@
+/** The server refused a command; the fields are those of its `error` message. */
+export class CommandError extends Error {
+  /** @param {import('./messages.js').ErrorMessage} message */
+  constructor(message) {
+    super(message.message);
+    this.name = 'CommandError';
+    this.code = message.code;
+    this.command = message.command;
+    this.field = message.field;
+    this.value = message.value;
+    this.limit = message.limit;
+    this.hint = message.hint;
+  }
+}
+
+/** The connection ended before the answer came, or there is none. */
+export class ConnectionLost extends Error {
+  /** @param {string} reason */
+  constructor(reason) {
+    super(reason);
+    this.name = 'ConnectionLost';
+  }
+}

@@ -1,0 +1,282 @@
+// Types of the messages of weft.v1. proto/README.md says what each field means, with its unit.
+
+export type Vec3 = [number, number, number];
+export type QueryWhat =
+  | 'positions'
+  | 'velocities'
+  | 'energies'
+  | 'strain'
+  | 'pins'
+  | 'grabs'
+  | 'camera'
+  | 'roster'
+  | 'state'
+  | 'work';
+
+export interface Welcome {
+  op: 'welcome';
+  protocol: string;
+  server: string;
+  version: string;
+  session: string;
+  viewer: number;
+  name: string;
+  color: string;
+  role: 'viewer' | 'operator' | 'admin';
+  room: string;
+  scene: string;
+  tick_rate: number;
+  clock: number;
+  codecs: string[];
+  limits: Record<string, number>;
+  capabilities: string[];
+}
+
+export interface Cloth {
+  name: string;
+  first_vertex: number;
+  vertices: number;
+  first_triangle: number;
+  triangles: number;
+  rows?: number;
+  columns?: number;
+  thickness: number;
+}
+
+export type Collider = { name: string } & (
+  | { kind: 'plane'; point: Vec3; normal: Vec3 }
+  | { kind: 'sphere'; center: Vec3; radius: number }
+  | { kind: 'capsule'; a: Vec3; b: Vec3; radius: number }
+  | {
+      kind: 'box';
+      center: Vec3;
+      half_extents: Vec3;
+      orientation: [number, number, number, number];
+    }
+  | { kind: 'mesh'; vertices: number; triangles: number }
+);
+
+export interface MeshAnnouncement {
+  op: 'mesh';
+  epoch: number;
+  scene: string;
+  hash: string;
+  url: string;
+  bytes: number;
+  vertices: number;
+  triangles: number;
+  cloths: Cloth[];
+  colliders: Collider[];
+}
+
+export interface Energy {
+  kinetic: number;
+  stretch: number;
+  bending: number;
+  gravity: number;
+  total: number;
+}
+
+export interface Strain {
+  largest: number;
+  p99: number;
+}
+
+/** What `set` sets. */
+export interface Environment {
+  gravity: Vec3;
+  wind: Vec3;
+  gust_speed: number;
+  gust_length: number;
+  air_density: number;
+  still_air: boolean;
+  drag: number;
+}
+
+export interface State extends Environment {
+  op: 'state';
+  tick: number;
+  time: number;
+  paused: boolean;
+  speed: number;
+  scene: string;
+  tick_rate: number;
+  fabric: string;
+  solver: string;
+  substeps: number;
+  particles: number;
+  step_ms: number;
+  real_time_factor: number;
+  strain: Strain;
+  energy: Energy;
+}
+
+export interface Camera {
+  position: Vec3;
+  target: Vec3;
+  up: Vec3;
+  fov: number;
+}
+
+export interface Viewer {
+  id: number;
+  name: string;
+  color: string;
+  role: string;
+  camera: Camera | null;
+}
+
+export interface Roster {
+  op: 'roster';
+  viewers: Viewer[];
+}
+
+export interface Pin {
+  id: number;
+  viewer: number;
+  particle: number;
+  radius: number;
+  position: Vec3;
+  count: number;
+}
+
+export interface Pins {
+  op: 'pins';
+  tick: number;
+  pins: Pin[];
+}
+
+export interface Grab {
+  id: number;
+  viewer: number;
+  drag: number;
+  triangle: number;
+  barycentric: Vec3;
+  radius: number;
+  stiffness: number;
+  max_force: number;
+  held: Vec3;
+  target: Vec3;
+  force?: Vec3;
+}
+
+export interface Grabs {
+  op: 'grabs';
+  tick: number;
+  grabs: Grab[];
+}
+
+export interface Notice {
+  op: 'notice';
+  level: 'info' | 'warning' | 'error';
+  code: string;
+  message: string;
+  tick?: number;
+  viewer?: number;
+  drag?: number;
+  count?: number;
+  value?: number;
+}
+
+export interface Bye {
+  op: 'bye';
+  code: number;
+  reason: string;
+}
+
+export interface Limit {
+  minimum?: number;
+  maximum?: number;
+  length?: number;
+  allowed?: string[];
+}
+
+export interface ErrorMessage {
+  op: 'error';
+  id?: number | string;
+  command?: string;
+  code: string;
+  message: string;
+  field?: string;
+  value?: unknown;
+  limit?: Limit;
+  hint?: string;
+}
+
+export interface Result {
+  op: 'result';
+  id: number | string;
+  command: string;
+  tick?: number;
+  [field: string]: any;
+}
+
+/** A point of the cloth, as `pick` answers it. */
+export interface Hit {
+  triangle: number;
+  barycentric: Vec3;
+  position: Vec3;
+  particle: number;
+  distance: number;
+}
+
+/** Where to take hold: a point of a triangle, or else a particle. */
+export type Hold = { triangle: number; barycentric: Vec3 } | { particle: number };
+
+export interface DragOptions {
+  target?: Vec3;
+  radius?: number;
+  stiffness?: number;
+  max_force?: number;
+}
+
+/** A hand at the tick of a frame. */
+export interface GrabSample {
+  id: number;
+  viewer: number;
+  held: number[];
+  target: number[];
+  force: number;
+}
+
+export interface Frame {
+  type: 'frame';
+  flags: number;
+  /** The state was replaced; not to be interpolated to. */
+  jump: boolean;
+  paused: boolean;
+  tick: number;
+  time: number;
+  serverTime: number;
+  sequence: number;
+  reference: number;
+  epoch: number;
+  /** Three values a vertex [m]. */
+  positions: Float32Array;
+  grabs: GrabSample[];
+  applied: { viewer: number; number: number }[];
+}
+
+export interface ColliderMesh {
+  /** Place in `MeshAnnouncement.colliders`. */
+  collider: number;
+  positions: Float32Array;
+  triangles: Uint32Array;
+}
+
+export interface MeshData {
+  type: 'mesh';
+  restPositions: Float32Array;
+  triangles: Uint32Array;
+  /** Two values a vertex. */
+  uv: Float32Array;
+  colliders: ColliderMesh[];
+}
+
+export interface Data {
+  type: 'data';
+  tick: number;
+  transfer: number;
+  components: number;
+  values: Float32Array | Float64Array;
+}

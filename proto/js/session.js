@@ -1,0 +1,337 @@
+import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
+import { Connection, systemTimers } from './connection.js';
+import { Emitter } from './emitter.js';
+import { CommandError, ConnectionLost } from './errors.js';
+import { fetchMesh, matchMesh } from './mesh.js';
+import { ClockEstimate, LatencyMeter } from './timing.js';
+
+/** @typedef {import('./messages.js').Result} Result */
+/** @typedef {import('./mesh.js').Mesh} Mesh */
+
+/**
+ * @typedef {object} Options
+ * @property {string} [name]
+ * @property {string} [color]            `#rrggbb`
+ * @property {'socket' | 'http'} [mesh]  where the mesh comes from; over HTTP it is cached
+ * @property {boolean} [reconnect]       default true
+ * @property {any} [WebSocket]           the class; default that of the environment
+ * @property {typeof fetch} [fetch]      for mesh: 'http'
+ * @property {import('./connection.js').Timers} [timers]  for tests
+ * @property {() => number} [random]     for tests
+ *
+ * @typedef {object} Events
+ * @property {import('./messages.js').Welcome} welcome  after each (re)connection
+ * @property {Mesh} mesh
+ * @property {import('./messages.js').Frame} frame      of the present mesh, decoded and acknowledged
+ * @property {import('./messages.js').State} state
+ * @property {import('./messages.js').Roster} roster
+ * @property {import('./messages.js').Pins} pins
+ * @property {import('./messages.js').Grabs} grabs
+ * @property {import('./messages.js').Notice} notice
+ * @property {import('./messages.js').Bye} bye
+ * @property {import('./connection.js').Status} status  of the connection
+ * @property {CommandError} refused  a command that was sent without waiting for its answer
+ * @property {Error} fault           a message that cannot be read; the connection is made anew
+ */
+
+const PING_INTERVAL = 2000; // [ms]
+const FIRST_PINGS = 5; // these follow each other quickly, for a good clock from the start
+const FIRST_PING_INTERVAL = 200; // [ms]
+const SILENCE_LIMIT = 10000; // without any message the connection counts as dead [ms]
+const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
+const MEASURED = new Set(['drag', 'pin', 'release']); // whose effect can be seen
+
+/**
+ * Talks with a server: requests and their answers, events, the mesh, frames and their acks, clock
+ * and latency. `WeftClient` gives it the commands.
+ * @extends {Emitter<Events>}
+ */
+export class Session extends Emitter {
+  #url;
+  #connection;
+  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
+  #waiting = new Map();
+  /** Answers whose binary part is still to come. @type {Map<number, (data: any) => void>} */
+  #transfers = new Map();
+  #nextId = 1;
+  #sentMessages = 0;
+  /** @type {import('./messages.js').MeshAnnouncement | null} */
+  #announced = null;
+  /** @type {any} */
+  #pingTimer = null;
+  #pings = 0;
+  #heardAt = 0;
+  #clock = new ClockEstimate();
+  #meter = new LatencyMeter();
+
+  /** @type {import('./messages.js').Welcome | null} */
+  welcome = null;
+  /** @type {Mesh | null} */
+  mesh = null;
+  /** What `view` was asked for; asked again after a reconnection. @type {object} */
+  wantedView = {};
+
+  /**
+   * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`
+   * @param {Options} [options]
+   */
+  constructor(url, options = {}) {
+    super();
+    this.options = options;
+    this.timers = options.timers ?? systemTimers;
+    this.#url = new URL(url);
+    if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
+    this.#connection = new Connection(this.#url.href, {
+      WebSocket: options.WebSocket ?? globalThis.WebSocket,
+      timers: this.timers,
+      random: options.random ?? Math.random,
+      reconnect: options.reconnect ?? true,
+    });
+    this.#connection.on('open', () => this.#opened());
+    this.#connection.on('text', (text) => this.#guard(() => this.#readText(text)));
+    this.#connection.on('binary', (bytes) => this.#guard(() => this.#readBinary(bytes)));
+    this.#connection.on('status', (status) => this.#changed(status));
+  }
+
+  /**
+   * Resolves with the first `welcome`; keeps trying, unless it must not reconnect.
+   * @returns {Promise<import('./messages.js').Welcome>}
+   */
+  connect() {
+    const welcome = new Promise((resolve, reject) => {
+      /** @param {() => void} settle */
+      const finish = (settle) => {
+        for (const stop of stops) stop();
+        settle();
+      };
+      const stops = [
+        this.on('welcome', (message) => finish(() => resolve(message))),
+        this.on('status', ({ phase, reason, code }) => {
+          if (phase === 'closed') finish(() => reject(new ConnectionLost(`${code} ${reason}`)));
+        }),
+      ];
+    });
+    this.#connection.open();
+    return welcome;
+  }
+
+  close() {
+    this.#connection.close();
+  }
+
+  get connected() {
+    return this.#connection.phase === 'open' && this.welcome !== null;
+  }
+
+  /** Own number among the viewers; 0 before `welcome`. */
+  get viewer() {
+    return this.welcome?.viewer ?? 0;
+  }
+
+  /** Least of the last round trips [s]; NaN before the first. */
+  get roundTrip() {
+    return this.#clock.roundTrip;
+  }
+
+  /** Server's clock now [s], from pings; NaN before the first. */
+  get serverTime() {
+    return this.#now() + this.#clock.offset;
+  }
+
+  /** From the last hand's movement that came back in a frame to that frame [s]; NaN before. */
+  get latency() {
+    return this.#meter.latency;
+  }
+
+  /**
+   * Sends a command and waits for its answer.
+   * @param {string} op
+   * @param {object} [fields]
+   * @returns {Promise<Result>}
+   */
+  request(op, fields = {}) {
+    const id = this.#nextId++;
+    return new Promise((resolve, reject) => {
+      if (!this.connected) return reject(new ConnectionLost('not connected'));
+      this.#waiting.set(id, { resolve, reject });
+      this.#send({ op, id, ...fields });
+    });
+  }
+
+  /**
+   * Sends a command whose answer nobody waits for. Without a connection it is dropped.
+   * @param {string} op
+   * @param {object} [fields]
+   */
+  post(op, fields = {}) {
+    if (this.connected) this.#send({ op, ...fields });
+  }
+
+  /** Measures round trip and clock once; done by itself every two seconds. */
+  async ping() {
+    const t = this.#now();
+    const { received, sent } = await this.request('ping', { t });
+    this.#clock.add(t, this.#now(), { received, sent });
+    return this.#clock.roundTrip;
+  }
+
+  #now() {
+    return this.timers.now() / 1000;
+  }
+
+  /** @param {{op: string}} message */
+  #send(message) {
+    this.#sentMessages += 1;
+    if (MEASURED.has(message.op)) this.#meter.sent(this.#sentMessages, this.#now());
+    this.#connection.send(JSON.stringify(message));
+  }
+
+  #opened() {
+    this.#sentMessages = 0;
+    this.#meter.clear();
+    this.#clock = new ClockEstimate();
+    this.#pings = 0;
+    this.#heardAt = this.timers.now();
+    const { name, color } = this.options;
+    if (name || color) this.#send({ op: 'hello', ...{ name, color } });
+    if (Object.keys(this.wantedView).length) this.#send({ op: 'view', ...this.wantedView });
+    this.#keepAlive();
+  }
+
+  #keepAlive() {
+    if (this.timers.now() - this.#heardAt > SILENCE_LIMIT) {
+      this.#connection.drop(4002, 'the server is silent');
+      return;
+    }
+    if (this.connected) {
+      this.#pings += 1;
+      this.ping().catch(() => {}); // a lost connection is told by the status
+    }
+    const wait = this.#pings < FIRST_PINGS ? FIRST_PING_INTERVAL : PING_INTERVAL;
+    this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(), wait);
+  }
+
+  /** @param {import('./connection.js').Status} status */
+  #changed(status) {
+    if (status.phase !== 'open') this.#forget(status.reason ?? status.phase);
+    this.emit('status', status);
+  }
+
+  /** @param {string} reason */
+  #forget(reason) {
+    this.timers.clearTimeout(this.#pingTimer);
+    this.welcome = null;
+    this.#announced = null;
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
+    this.#transfers.clear();
+    for (const { reject } of waiting) reject(new ConnectionLost(reason));
+  }
+
+  /**
+   * Whatever cannot be read ends this connection, for nothing after it can be trusted.
+   * @param {() => void} read
+   */
+  #guard(read) {
+    this.#heardAt = this.timers.now();
+    try {
+      read();
+    } catch (error) {
+      if (!(error instanceof ProtocolError)) throw error; // a listener's own fault
+      this.#fail(error);
+    }
+  }
+
+  /** @param {Error} error */
+  #fail(error) {
+    this.emit('fault', error);
+    this.#connection.drop(4002, error.message.slice(0, 100));
+  }
+
+  /** @param {string} text */
+  #readText(text) {
+    let message;
+    try {
+      message = JSON.parse(text);
+    } catch {
+      throw new ProtocolError('a text message is not JSON');
+    }
+    if (message === null || typeof message !== 'object')
+      throw new ProtocolError('a text message is no object');
+    if (message.op === 'welcome') this.#welcomed(message);
+    else if (message.op === 'mesh') this.#announce(message);
+    else if (message.op === 'result') this.#answer(message);
+    else if (message.op === 'error') this.#refuse(message);
+    else if (EVENTS.has(message.op)) this.emit(message.op, message);
+  }
+
+  /** @param {import('./messages.js').Welcome} message */
+  #welcomed(message) {
+    this.#connection.settled();
+    this.welcome = message;
+    this.emit('welcome', message);
+  }
+
+  /** @param {import('./messages.js').MeshAnnouncement} announcement */
+  #announce(announcement) {
+    this.#announced = announcement;
+    this.mesh = null;
+    if (this.options.mesh !== 'http') return;
+    const still = () => this.#announced === announcement;
+    fetchMesh(this.#url, announcement, this.options.fetch).then(
+      (data) => still() && this.#adoptMesh(data),
+      (error) => still() && this.#fail(error),
+    );
+  }
+
+  /** @param {import('./messages.js').MeshData} data */
+  #adoptMesh(data) {
+    this.mesh = matchMesh(this.#announced, data);
+    this.emit('mesh', this.mesh);
+  }
+
+  /** @param {Result} message */
+  #answer(message) {
+    const id = Number(message.id);
+    const waiting = this.#waiting.get(id);
+    if (!waiting) return;
+    /** @param {Result} result */
+    const settle = (result) => {
+      this.#waiting.delete(id);
+      waiting.resolve(result);
+    };
+    if (!message.binary) return settle(message);
+    // It goes on waiting for the binary part, before which the connection may end.
+    this.#transfers.set(message.binary.transfer, (data) => settle({ ...message, data }));
+  }
+
+  /** @param {import('./messages.js').ErrorMessage} message */
+  #refuse(message) {
+    const error = new CommandError(message);
+    const id = Number(message.id);
+    const waiting = this.#waiting.get(id);
+    if (!waiting) return this.emit('refused', error);
+    this.#waiting.delete(id);
+    waiting.reject(error);
+  }
+
+  /** @param {ArrayBuffer} bytes */
+  #readBinary(bytes) {
+    const message = decodeBinary(bytes);
+    if (message.type === 'mesh') return this.#adoptMesh(message);
+    if (message.type === 'frame') return this.#readFrame(message);
+    this.#transfers.get(message.transfer)?.(message);
+    this.#transfers.delete(message.transfer);
+  }
+
+  /** @param {import('./messages.js').Frame} frame */
+  #readFrame(frame) {
+    this.#connection.send(encodeAck(frame.sequence));
+    const own = frame.applied.find(({ viewer }) => viewer === this.viewer);
+    if (own) this.#meter.applied(own.number, this.#now());
+    if (frame.epoch !== this.mesh?.announcement.epoch) return;
+    if (frame.positions.length !== this.mesh.announcement.vertices * 3)
+      throw new ProtocolError('the frame does not fit the mesh');
+    this.emit('frame', frame);
+  }
+}
