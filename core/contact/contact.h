@@ -52,11 +52,12 @@ class Contact {
   Contact() = default;
 
   /// @param edges,triangles  of the cloth
+  /// @param longest_edge     of the cloth at rest [m]
   /// @param executor         runs the collection in chunks; may be null
   /// Throws DefinitionError if a collider is out of range.
   Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
           const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
-          Executor* executor);
+          double longest_edge, Executor* executor);
 
   /// Forgets everything about where the cloth is.
   void reset();
@@ -98,13 +99,14 @@ class Contact {
   static constexpr int kChunks = 8;
 
   bool empty() const { return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty(); }
-  void add_shape(const ShapeDef& shape);
+  void add_shape(const ShapeDef& shape, double flat_turn);
 
   // contact_collect.cpp
   void collect(const ClothState<Real>& state, Profile& profile);
   void measure_clearance(const ClothState<Real>& state, Profile& profile);
   void mark_near(const ClothState<Real>& state);
   void collect_pairs(const ClothState<Real>& state, Profile& profile);
+  Real analytic_clearance(const Vec3<Real>& p, Real reach) const;
   Real clearance(const Vec3<Real>& p, Real reach) const;
   template <class Visit>
   void collect_kind(std::size_t count, std::vector<ContactCandidate<Real>>& into, Profile& profile,
@@ -139,6 +141,9 @@ class Contact {
   bool collected_ = false, rows_built_ = false;
   Vec3Array<Real> x_collected_, x_rows_;
   std::vector<Real> clearance_;      ///< lower bound of each particle's distance from all objects
+  std::vector<Real> fresh_clearance_;  ///< the same, while pairs are collected
+  std::vector<char> has_pairs_;
+  std::size_t collections_ = 0;
   std::vector<Real> skin_;           ///< how far each may move before the next collection
   std::vector<Real> row_reach_;      ///< how far each may move before the next rows
   std::vector<Real> half_length_;    ///< half of the longest edge at each particle

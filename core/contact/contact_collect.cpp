@@ -12,10 +12,14 @@ namespace {
 /// nearer is not measured at every step [m].
 constexpr double kClearanceHorizon = 0.1;
 
+/// Collections between two measurements of a particle that is near without having pairs.
+constexpr std::size_t kTurns = 8;
+
 }  // namespace
 
+/// Clearance from the analytic shapes alone, at most `reach`.
 template <class Real>
-Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
+Real Contact<Real>::analytic_clearance(const Vec3<Real>& p, Real reach) const {
   Real nearest = reach;
   for (const Plane& plane : planes_) nearest = std::min(nearest, plane.normal.dot(p) - plane.offset);
   for (const Ball& ball : balls_) nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
@@ -23,6 +27,12 @@ Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
     const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
     nearest = std::min(nearest, (p - q).norm() - rod.radius);
   }
+  return nearest;
+}
+
+template <class Real>
+Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
+  Real nearest = analytic_clearance(p, reach);
   for (const MeshShape<Real>& mesh : meshes_) {
     if (mesh.triangle_tree.bounds().squared_distance(p) > reach * reach) continue;
     const MeshDistance<Real> d = distance_to_mesh(mesh, p, reach);
@@ -35,6 +45,7 @@ template <class Real>
 void Contact<Real>::collect(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   measure_clearance(state, profile);
+  ++collections_;
   mark_near(state);
   collect_pairs(state, profile);
   x_collected_ = state.x;
@@ -47,7 +58,12 @@ template <class Real>
 void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& profile) {
   const std::size_t n = state.x.size();
   const bool known = collected_ && clearance_.size() == n;
-  if (!known) clearance_.assign(n, Real(-1));
+  if (!known) {
+    clearance_.assign(n, Real(-1));
+    near_.assign(n, 0);
+    has_pairs_.assign(n, 0);
+    collections_ = 0;
+  }
   skin_.resize(n);
   half_length_.assign(n, Real(0));
   for (const Edge& e : edges_) {
@@ -64,6 +80,10 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
       const Real needed = thickness_ + half_length_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
       if (clearance_[i] > needed) continue;
+      // Who was near before had its clearance measured by its pairs. Those without pairs are measured
+      // now and then, in turns, to see whether they have gone.
+      const bool turn = (collections_ + i) % kTurns == 0;
+      if (known && near_[i] && (has_pairs_[i] || !turn)) continue;
       clearance_[i] = clearance(state.x[i], needed + static_cast<Real>(kClearanceHorizon));
       ++tests[c];
     }
@@ -76,7 +96,6 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
 template <class Real>
 void Contact<Real>::mark_near(const ClothState<Real>& state) {
   const std::size_t n = state.x.size();
-  near_.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i)
     near_[i] = clearance_[i] <= thickness_ + half_length_[i] + skin_[i];
   active_ = near_;
@@ -125,6 +144,11 @@ template <class Real>
 void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profile) {
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
+  fresh_clearance_.resize(state.x.size());
+  for (const Index i : active_particles_) {
+    fresh_clearance_[static_cast<std::size_t>(i)] = analytic_clearance(x(i), thickness_ + skin(i));
+    has_pairs_[static_cast<std::size_t>(i)] = 0;
+  }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
     const auto at = [&](Index v) -> const Vec3<Real>& {
@@ -136,17 +160,25 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
       Aabb<Real> box;
       box.add(x(i));
       bool any = false;
+      Real nearest = reach;
       mesh.triangle_tree.for_each_overlap(box.grown(reach), [&](Index t) {
         const MeshDistance<Real> d = distance_to_triangle(mesh, t, x(i));
         ++found.tests;
         if (std::abs(d.distance) > reach) return;
         found.pairs.push_back({i, t, std::abs(d.distance)});
+        nearest = std::min(nearest, d.distance);
         any = true;
       });
+      const auto p = static_cast<std::size_t>(i);
       // Deep inside a solid nothing is within reach, yet the particle must find its way out.
-      if (any || !(clearance_[static_cast<std::size_t>(i)] < 0) || !mesh.closed) return;
-      const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
-      if (d.triangle != kNone && d.distance < 0) found.pairs.push_back({i, d.triangle, Real(0)});
+      if (!any && mesh.closed && clearance_[p] < 0) {
+        const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
+        if (d.triangle != kNone && d.distance < 0) found.pairs.push_back({i, d.triangle, Real(0)});
+        nearest = std::min(nearest, d.distance);
+        any = d.distance < 0;
+      }
+      has_pairs_[p] = has_pairs_[p] || any;
+      fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest);
     });
     collect_kind(near_edges_.size(), edge_pairs_[m], profile, [&](std::size_t n, Found& found) {
       const Edge& e = edges_[static_cast<std::size_t>(near_edges_[n])];
@@ -177,9 +209,16 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
       });
     });
   }
+  // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
+  for (const Index i : active_particles_) {
+    const auto p = static_cast<std::size_t>(i);
+    const Real fresh = fresh_clearance_[p];
+    clearance_[p] = fresh < thickness_ + skin_[p] ? fresh : std::max(clearance_[p], fresh);
+  }
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                    \
+  template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;                 \
   template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                          \
   template void Contact<Real>::collect(const ClothState<Real>&, Profile&);                        \
   template void Contact<Real>::measure_clearance(const ClothState<Real>&, Profile&);              \

@@ -6,9 +6,6 @@
 namespace weft {
 namespace {
 
-/// An edge that turns outwards by less than this is as good as flat: sine of 2 degrees.
-constexpr double kFlatEdge = 0.035;
-
 /// Sine of the angle by which a closed surface turns outwards at an edge; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
@@ -24,7 +21,7 @@ double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
 }
 
 template <class Real>
-void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
+void find_sharp_features(const TriangleMesh& mesh, double flat_turn, MeshShape<Real>& shape) {
   std::vector<char> sharp_vertex(mesh.positions.size(), 0);
   for (std::size_t e = 0; e < shape.edges.size(); ++e) {
     const MeshEdge& edge = shape.edges[e];
@@ -34,7 +31,7 @@ void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
     const Vec3d sum = n1 + n2;
     shape.edge_normals.push_back(
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
-    if (shape.closed && !rim && outward_turn(mesh, edge) < kFlatEdge) continue;
+    if (shape.closed && !rim && outward_turn(mesh, edge) < flat_turn) continue;
     shape.sharp_edges.push_back(static_cast<Index>(e));
     sharp_vertex[static_cast<std::size_t>(edge.a)] = 1;
     sharp_vertex[static_cast<std::size_t>(edge.b)] = 1;
@@ -87,7 +84,7 @@ Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
 }  // namespace
 
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, double flat_turn) {
   MeshShape<Real> shape;
   shape.closed = is_closed(mesh);
   shape.triangles = mesh.triangles;
@@ -96,7 +93,7 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
-  find_sharp_features(mesh, shape);
+  find_sharp_features(mesh, flat_turn, shape);
   build_trees(shape);
   return shape;
 }
@@ -146,7 +143,7 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
-  template MeshShape<Real> prepare_mesh(const TriangleMesh&);                                      \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&, double);                              \
   template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, const Vec3<Real>&); \
   template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
 WEFT_INSTANTIATE(float)

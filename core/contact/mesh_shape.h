@@ -25,8 +25,9 @@ struct MeshShape {
   Bvh<Real> triangle_tree, edge_tree, vertex_tree;
 };
 
+/// @param flat_turn  sine of the angle up to which an outward turn of a closed surface counts as flat
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh);
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, double flat_turn);
 
 /// Nearest point of a mesh with the side that it is seen from.
 template <class Real>

@@ -140,61 +140,91 @@ HWY_INLINE void bend_down_columns(D d, const GridView<Real>& g, int r, const Scr
   }
 }
 
+/// What the springs and stencils that start in one row pull, column by column.
+template <class Real>
+struct RowPulls {
+  ScratchRow<Real> along, down, falling, rising, bend, twist;
+
+  RowPulls(const GridView<Real>& g, int first)
+      : along(g, first), down(g, first + 1), falling(g, first + 2), rising(g, first + 3),
+        bend(g, first + 4), twist(g, first + 5) {}
+};
+
+template <class D>
+struct SpringLaws {
+  SpringLaw<D> warp, weft, shear;
+};
+
+/// Evaluates everything that starts in row r.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void pull_row(D d, const GridView<Real>& g, const SpringLaws<D>& laws, int r,
+                         const RowPulls<Real>& out) {
+  const std::ptrdiff_t row = r * g.stride;
+  const bool border = r == 0 || r == g.rows - 1, last = r == g.rows - 1;
+  const Real share = border ? Real(0.5) : Real(1), below = last ? Real(0) : Real(1);
+  const auto two = hn::Set(d, Real(2));
+  const auto k_warp = hn::Set(d, share * g.springs.warp), k_weft = hn::Set(d, below * g.springs.weft);
+  const auto k_shear = hn::Set(d, below * g.springs.shear);
+  const auto k_bend = hn::Set(d, share * g.bending.along_u);
+  const auto k_twist = hn::Set(d, below * g.bending.twist);
+  for (std::ptrdiff_t c = 0; c < g.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const std::ptrdiff_t at = row + c, under = at + g.stride;
+    const auto cell = hn::LoadU(d, g.cell + c);
+    const auto x = load(d, g.x, at), xr = load(d, g.x, at + 1), xd = load(d, g.x, under),
+               xe = load(d, g.x, under + 1);
+    const auto v = load(d, g.v, at), vr = load(d, g.v, at + 1), vd = load(d, g.v, under),
+               ve = load(d, g.v, under + 1);
+    out.along.store(d, c, spring(laws.warp, hn::Mul(k_warp, cell), xr - x, vr - v));
+    out.down.store(d, c, spring(laws.weft, hn::Mul(k_weft, hn::LoadU(d, g.border_half + c)),
+                                xd - x, vd - v));
+    out.falling.store(d, c, spring(laws.shear, hn::Mul(k_shear, cell), xe - x, ve - v));
+    out.rising.store(d, c, spring(laws.shear, hn::Mul(k_shear, cell), xd - xr, vd - vr));
+    out.bend.store(d, c, ((load(d, g.x, at - 1) - x * two) + xr) *
+                             hn::Mul(k_bend, hn::LoadU(d, g.inner + c)));
+    out.twist.store(d, c, ((x - xr) - (xd - xe)) * hn::Mul(k_twist, cell));
+  }
+}
+
+/// Row r is added up only after row r + 1 has been evaluated: what was just stored cannot be loaded
+/// again at another offset before it has left the store buffer.
 template <class Real>
 HWY_INLINE void internal_forces(const GridView<Real>& g, Real* force) {
-  const hn::CappedTag<Real, kGridMargin> d;
-  using D = decltype(d);
-  using V = hn::Vec<D>;
+  using D = hn::CappedTag<Real, kGridMargin>;
+  const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const ScratchRow<Real> along(g, 0), down(g, 1), falling(g, 2), rising(g, 3), bend(g, 4),
-      twist(g, 5), carry(g, 6);
-  const ScratchRow<Real> column_bend[] = {{g, 7}, {g, 8}, {g, 9}};
+  const RowPulls<Real> sets[] = {{g, 0}, {g, 6}};
+  const ScratchRow<Real> carry(g, 12), column_bend[] = {{g, 13}, {g, 14}, {g, 15}};
   const auto law = [&](Real rest_length) {
     return SpringLaw<D>{hn::Set(d, Real(1)), hn::Set(d, rest_length),
                         hn::Set(d, g.springs.damping_per_stiffness),
                         hn::Set(d, Real(kSmallestSquaredLength))};
   };
-  const SpringLaw<D> warp = law(g.springs.rest_warp), weft = law(g.springs.rest_weft),
-                     shear = law(g.springs.rest_shear);
-  const V two = hn::Set(d, Real(2));
+  const SpringLaws<D> laws{law(g.springs.rest_warp), law(g.springs.rest_weft),
+                           law(g.springs.rest_shear)};
+  const auto two = hn::Set(d, Real(2));
   carry.clear(g.columns);
-  bend_down_columns(d, g, 0, column_bend[0]);
+  column_bend[0].clear(g.columns);
   column_bend[2].clear(g.columns);
-
+  bend_down_columns(d, g, 1, column_bend[1]);
+  pull_row(d, g, laws, 0, sets[0]);
   for (int r = 0; r < g.rows; ++r) {
-    const std::ptrdiff_t row = r * g.stride;
-    const bool border = r == 0 || r == g.rows - 1, last = r == g.rows - 1;
-    const Real share = border ? Real(0.5) : Real(1), below = last ? Real(0) : Real(1);
-    const V k_warp = hn::Set(d, share * g.springs.warp), k_weft = hn::Set(d, below * g.springs.weft);
-    const V k_shear = hn::Set(d, below * g.springs.shear);
-    const V k_bend = hn::Set(d, share * g.bending.along_u), k_twist = hn::Set(d, below * g.bending.twist);
-    bend_down_columns(d, g, r + 1, column_bend[(r + 1) % 3]);
+    if (r + 1 < g.rows) pull_row(d, g, laws, r + 1, sets[(r + 1) % 2]);
+    const RowPulls<Real>& p = sets[r % 2];
+    const ScratchRow<Real>&above = column_bend[(r + 2) % 3], &here = column_bend[r % 3],
+          &below = column_bend[(r + 1) % 3];
     for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-      const std::ptrdiff_t at = row + c, under = at + g.stride;
-      const V cell = hn::LoadU(d, g.cell + c);
-      const auto x = load(d, g.x, at), xr = load(d, g.x, at + 1), xd = load(d, g.x, under),
-                 xe = load(d, g.x, under + 1);
-      const auto v = load(d, g.v, at), vr = load(d, g.v, at + 1), vd = load(d, g.v, under),
-                 ve = load(d, g.v, under + 1);
-      along.store(d, c, spring(warp, hn::Mul(k_warp, cell), xr - x, vr - v));
-      down.store(d, c, spring(weft, hn::Mul(k_weft, hn::LoadU(d, g.border_half + c)), xd - x, vd - v));
-      falling.store(d, c, spring(shear, hn::Mul(k_shear, cell), xe - x, ve - v));
-      rising.store(d, c, spring(shear, hn::Mul(k_shear, cell), xd - xr, vd - vr));
-      bend.store(d, c, ((load(d, g.x, at - 1) - x * two) + xr) *
-                           hn::Mul(k_bend, hn::LoadU(d, g.inner + c)));
-      twist.store(d, c, ((x - xr) - (xd - xe)) * hn::Mul(k_twist, cell));
-    }
-    for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-      const auto twisted = twist.load(d, c) - twist.load(d, c - 1);
-      const auto stretched = ((along.load(d, c) - along.load(d, c - 1)) + down.load(d, c)) +
-                             (falling.load(d, c) + rising.load(d, c - 1));
-      const auto bent = ((bend.load(d, c - 1) - bend.load(d, c) * two) + bend.load(d, c + 1)) +
-                        ((column_bend[(r + 2) % 3].load(d, c) - column_bend[r % 3].load(d, c) * two) +
-                         column_bend[(r + 1) % 3].load(d, c));
+      const auto twisted = p.twist.load(d, c) - p.twist.load(d, c - 1);
+      const auto stretched = ((p.along.load(d, c) - p.along.load(d, c - 1)) + p.down.load(d, c)) +
+                             (p.falling.load(d, c) + p.rising.load(d, c - 1));
+      const auto bent = ((p.bend.load(d, c - 1) - p.bend.load(d, c) * two) + p.bend.load(d, c + 1)) +
+                        ((above.load(d, c) - here.load(d, c) * two) + below.load(d, c));
       const auto total = ((carry.load(d, c) + stretched) - bent) - twisted;
-      carry.store(d, c, twisted - ((down.load(d, c) + rising.load(d, c)) + falling.load(d, c - 1)));
-      store_particles(d, total, g.columns - c, force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
+      carry.store(d, c, twisted - ((p.down.load(d, c) + p.rising.load(d, c)) +
+                                   p.falling.load(d, c - 1)));
+      store_particles(d, total, g.columns - c,
+                      force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
     }
+    bend_down_columns(d, g, r + 2, column_bend[(r + 2) % 3]);
   }
 }
 
@@ -216,39 +246,59 @@ HWY_INLINE Triple<V> air_third(D d, V pressure, V skin, const Triple<V>& a, cons
   return normal * hn::Mul(along_n, per_length) + u * hn::Mul(thirds, skin);
 }
 
+/// What the air pushes at the corners of the cells below one row: a above left, b right of it, f
+/// below a, e below b.
+template <class Real>
+struct CellPushes {
+  ScratchRow<Real> a, b, e, f;
+
+  CellPushes(const GridView<Real>& g, int first)
+      : a(g, first), b(g, first + 1), e(g, first + 2), f(g, first + 3) {}
+};
+
+template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r,
+                         const CellPushes<Real>& out) {
+  const std::ptrdiff_t row = r * g.stride;
+  const auto row_parity = hn::Set(d, static_cast<Real>(r % 2));
+  const auto below = hn::Set(d, r + 1 < g.rows ? Real(1) : Real(0));
+  for (std::ptrdiff_t c = 0; c < g.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const std::ptrdiff_t at = row + c, under = at + g.stride;
+    const auto a = load(d, g.x, at), b = load(d, g.x, at + 1), e = load(d, g.x, under + 1),
+               f = load(d, g.x, under);
+    const auto sa = load(d, g.slip, at), sb = load(d, g.slip, at + 1),
+               se = load(d, g.slip, under + 1), sf = load(d, g.slip, under);
+    // Even cells are cut from a to e, odd ones from b to f (split_cells in cloth_model.cpp).
+    const auto even = hn::Eq(hn::LoadU(d, g.odd + c), row_parity);
+    const auto exists = hn::Mul(below, hn::LoadU(d, g.cell + c));
+    const auto first = air_third(d, pressure, skin, a, b, select(even, e, f),
+                                 (sa + sb) + select(even, se, sf)) * exists;
+    const auto second = air_third(d, pressure, skin, select(even, a, b), e, f,
+                                  (select(even, sa, sb) + se) + sf) * exists;
+    out.a.store(d, c, first + keep_if(even, second));
+    out.b.store(d, c, first + keep_if(hn::Not(even), second));
+    out.e.store(d, c, second + keep_if(even, first));
+    out.f.store(d, c, second + keep_if(hn::Not(even), first));
+  }
+}
+
 template <class Real>
 HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction, Real* force) {
   const hn::CappedTag<Real, kGridMargin> d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const auto pressure = hn::Set(d, rho_half), skin = hn::Set(d, skin_friction);
-  const ScratchRow<Real> on_b(g, 0), on_e(g, 1), on_a(g, 2), on_d(g, 3), carry(g, 6);
+  const CellPushes<Real> sets[] = {{g, 0}, {g, 4}};
+  const ScratchRow<Real> carry(g, 12);
   carry.clear(g.columns);
+  push_row(d, g, pressure, skin, 0, sets[0]);
   for (int r = 0; r < g.rows; ++r) {
-    const std::ptrdiff_t row = r * g.stride;
-    const auto row_parity = hn::Set(d, static_cast<Real>(r % 2));
-    const auto below = hn::Set(d, r + 1 < g.rows ? Real(1) : Real(0));
+    if (r + 1 < g.rows) push_row(d, g, pressure, skin, r + 1, sets[(r + 1) % 2]);
+    const CellPushes<Real>& p = sets[r % 2];
     for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-      const std::ptrdiff_t at = row + c, under = at + g.stride;
-      const auto a = load(d, g.x, at), b = load(d, g.x, at + 1), e = load(d, g.x, under + 1),
-                 f = load(d, g.x, under);
-      const auto sa = load(d, g.slip, at), sb = load(d, g.slip, at + 1),
-                 se = load(d, g.slip, under + 1), sf = load(d, g.slip, under);
-      // Even cells are cut from a to e, odd ones from b to f (split_cells in cloth_model.cpp).
-      const auto even = hn::Eq(hn::LoadU(d, g.odd + c), row_parity);
-      const auto exists = hn::Mul(below, hn::LoadU(d, g.cell + c));
-      const auto first = air_third(d, pressure, skin, a, b, select(even, e, f),
-                                   (sa + sb) + select(even, se, sf)) * exists;
-      const auto second = air_third(d, pressure, skin, select(even, a, b), e, f,
-                                    (select(even, sa, sb) + se) + sf) * exists;
-      on_a.store(d, c, first + keep_if(even, second));
-      on_b.store(d, c, first + keep_if(hn::Not(even), second));
-      on_e.store(d, c, second + keep_if(even, first));
-      on_d.store(d, c, second + keep_if(hn::Not(even), first));
-    }
-    for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-      const auto total = carry.load(d, c) + (on_a.load(d, c) + on_b.load(d, c - 1));
-      carry.store(d, c, on_d.load(d, c) + on_e.load(d, c - 1));
-      store_particles(d, total, g.columns - c, force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
+      const auto total = carry.load(d, c) + (p.a.load(d, c) + p.b.load(d, c - 1));
+      carry.store(d, c, p.f.load(d, c) + p.e.load(d, c - 1));
+      store_particles(d, total, g.columns - c,
+                      force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
     }
   }
 }

@@ -27,7 +27,7 @@ struct GridView {
 };
 
 inline constexpr int kGridMargin = 16;  ///< at least the widest vector, in numbers
-inline constexpr int kGridScratchRows = 36;
+inline constexpr int kGridScratchRows = 48;
 
 /// The forces of a grid cloth row by row: every spring, bending stencil and triangle once, as vector
 /// code chosen for the processor when the program runs. The results do not depend on that choice:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "core/types.h"
 
@@ -33,20 +34,10 @@ inline Real closest_on_segment(const Vec3<Real>& p, const Vec3<Real>& a, const V
   return std::clamp((p - a).dot(d) / length2, Real(0), Real(1));
 }
 
-/// Closest point of triangle abc to p, by the regions of the plane (Ericson 2005, section 5.1.5);
-/// a triangle without area is treated as its edges.
+/// Closest point of the border of triangle abc to p; for triangles without area.
 template <class Real>
-TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a,
-                                        const Vec3<Real>& b, const Vec3<Real>& c) {
-  const Vec3<Real> ab = b - a, ac = c - a, n = ab.cross(ac);
-  const Real n2 = n.squaredNorm();
-  const Real scale = ab.squaredNorm() * ac.squaredNorm();
-  if (n2 > scale * Real(1e-12)) {
-    // Barycentric weights of the projection; all positive means that it is inside.
-    const Vec3<Real> ap = p - a;
-    const Real wc = ab.cross(ap).dot(n) / n2, wb = ap.cross(ac).dot(n) / n2, wa = Real(1) - wb - wc;
-    if (wa > 0 && wb > 0 && wc > 0) return {a * wa + b * wb + c * wc, {wa, wb, wc}, 0};
-  }
+TrianglePoint<Real> closest_on_border(const Vec3<Real>& p, const Vec3<Real>& a, const Vec3<Real>& b,
+                                      const Vec3<Real>& c) {
   const Vec3<Real>* corner[3] = {&a, &b, &c};
   TrianglePoint<Real> best;
   Real best2 = std::numeric_limits<Real>::infinity();
@@ -65,6 +56,43 @@ TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a
     best.feature = t <= 0 ? 1 + from : t >= 1 ? 1 + to : 4 + from;
   }
   return best;
+}
+
+/// Closest point of triangle abc to p: which corner, edge or inside it is, is told by the signs of
+/// the weights of p's projection and of its places along the edges (Ericson 2005, section 5.1.5).
+/// Safe without area.
+template <class Real>
+TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a,
+                                        const Vec3<Real>& b, const Vec3<Real>& c) {
+  const Vec3<Real> ab = b - a, ac = c - a, ap = p - a;
+  const Real ab_p = ab.dot(ap), ac_p = ac.dot(ap);
+  if (ab_p <= 0 && ac_p <= 0) return {a, {1, 0, 0}, 1};
+  const Real ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), abc = ab.dot(ac);
+  const Real area = ab2 * ac2 - abc * abc;  // squared doubled area
+  if (!(area > ab2 * ac2 * Real(1e-6))) return closest_on_border(p, a, b, c);
+  const Real ab_pb = ab_p - ab2, ac_pb = ac_p - abc;  // the same products from corner b
+  if (ab_pb >= 0 && ac_pb <= ab_pb) return {b, {0, 1, 0}, 2};
+  const Real ab_pc = ab_p - abc, ac_pc = ac_p - ac2;  // and from corner c
+  if (ac_pc >= 0 && ab_pc <= ac_pc) return {c, {0, 0, 1}, 3};
+  const Real weight_c = ab_p * ac_pb - ab_pb * ac_p;
+  if (weight_c <= 0 && ab_p >= 0 && ab_pb <= 0) {
+    const Real t = ab_p / ab2;
+    return {a + ab * t, {Real(1) - t, t, 0}, 4};
+  }
+  const Real weight_b = ab_pc * ac_p - ab_p * ac_pc;
+  if (weight_b <= 0 && ac_p >= 0 && ac_pc <= 0) {
+    const Real t = ac_p / ac2;
+    return {a + ac * t, {Real(1) - t, 0, t}, 6};
+  }
+  const Real weight_a = ab_pb * ac_pc - ab_pc * ac_pb;
+  const Real from_b = ac_pb - ab_pb, from_c = ab_pc - ac_pc;
+  if (weight_a <= 0 && from_b >= 0 && from_c >= 0) {
+    const Real t = from_b / (from_b + from_c);
+    return {b + (c - b) * t, {0, Real(1) - t, t}, 5};
+  }
+  const Real sum = Real(1) / (weight_a + weight_b + weight_c);
+  const Real wb = weight_b * sum, wc = weight_c * sum, wa = Real(1) - wb - wc;
+  return {a + ab * wb + ac * wc, {wa, wb, wc}, 0};
 }
 
 /// Closest points of segments ab and cd (Ericson 2005, section 5.1.9); parallel and zero-length ones

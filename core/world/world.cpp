@@ -29,7 +29,10 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
   contact.thickness = def.cloth.fabric.thickness;
   contact.friction = def.cloth.fabric.friction;
   contact.restitution = def.cloth.fabric.restitution;
-  return Contact<Real>(contact, def.colliders, model.edges, model.triangles, runtime.executor);
+  const double longest_edge =
+      std::hypot(static_cast<double>(model.cell_u), static_cast<double>(model.cell_v));
+  return Contact<Real>(contact, def.colliders, model.edges, model.triangles, longest_edge,
+                       runtime.executor);
 }
 
 /// The definition itself, once it is known to be valid; nothing is built from a wrong one.
