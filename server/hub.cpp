@@ -46,7 +46,7 @@ void Hub::welcome_done(proto::ViewerId viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
   found->second.welcomed = true;
-  found->second.channel->allow_frames();
+  found->second.channel->welcome_done();
   count_takers();
 }
 

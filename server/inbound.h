@@ -17,7 +17,9 @@ struct Leave {};
 
 /// A text message that needed nothing of the room: refused, or answered by the session. Only its
 /// number matters, so that frames can tell that it is behind them.
-struct Noted {};
+struct Noted {
+  bool wants_frame = false;  ///< the viewer wants the present state once more
+};
 
 /// What reaches a room from its viewers, in the order of arrival.
 struct Inbound {

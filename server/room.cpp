@@ -95,7 +95,7 @@ void Room::take_now(Inbound item) {
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
     handle(item.viewer, *request);
     on_finished(item.viewer);
-  } else {
+  } else if (std::get<Noted>(item.what).wants_frame) {
     frame_wanted_ = true;
   }
 }

@@ -129,10 +129,11 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const auto point = resolve_hold(*world_, command.hold);
   if (!point) return point.error();
   if (auto error = check_free(viewer, nearest_corner(*world_, *point))) return *std::move(error);
-  const GrabId grab = world_->grab(grab_def(*world_, command, *point));
+  const GrabDef def = grab_def(*world_, command, *point);
+  const GrabId grab = world_->grab(def);
   hands_.push_back({grab, viewer, command.drag, clock_()});
   grabs_changed_ = frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab});
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target)});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
@@ -143,7 +144,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
   world_->move_grab(hand->grab, from_wire(command.target));
   hand->heard = clock_();
   frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab});
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab, {}});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
@@ -155,7 +156,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
   world_->release(grab);
   hands_.erase(hand);
   grabs_changed_ = frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab});
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab, {}});
 }
 
 void Room::end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/world/world.h"
 #include "proto/commands.h"
 #include "proto/events.h"

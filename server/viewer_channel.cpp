@@ -31,6 +31,11 @@ void ViewerChannel::send(Message message) {
   pump();
 }
 
+void ViewerChannel::welcome_done() {
+  frames_allowed_ = true;
+  stream_.on_welcomed();
+}
+
 void ViewerChannel::offer_frame(const Frame& frame) {
   if (!wants_frames()) return;
   // A frame left out because the viewer asked for fewer is not a dropped one.
@@ -77,7 +82,7 @@ void ViewerChannel::close(std::uint16_t code, const std::string& reason,
   waiting_frame_.reset();
   if (last) queue_.push_back(std::move(*last));
   // A viewer that does not read would keep the write in flight for ever.
-  if (code == kCloseViewerDoesNotRead) {
+  if (code == kCloseViewerDoesNotRead || code == kCloseNoPong) {
     closed_ = true;
     stream_.close(code, reason);
     return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -23,6 +24,9 @@ class ViewerStream {
 
   /// Starts to close; nothing is written after it.
   virtual void close(std::uint16_t code, const std::string& reason) = 0;
+
+  /// The viewer has been told all that comes before frames; its own messages may be read now.
+  virtual void on_welcomed() {}
 };
 
 struct ChannelLimits {
@@ -42,8 +46,8 @@ class ViewerChannel {
   /// Queues a message. If the viewer does not read and the queue overflows, closes with 4000.
   void send(Message message);
 
-  /// From now on frames may go out; before it `offer_frame` does nothing.
-  void allow_frames() { frames_allowed_ = true; }
+  /// The viewer was told all that comes before frames; until then `offer_frame` does nothing.
+  void welcome_done();
 
   /// Replaces the frame that waits.
   void offer_frame(const Frame& frame);
@@ -62,7 +66,8 @@ class ViewerChannel {
 
   /// @param hz  most frames a second; 0: none; at or above the room's rate: every one
   void set_most_frames(double hz);
-  double most_frames() const { return most_frames_; }
+  /// The `hz` in force [1/s]; 240, the most that may be asked for, if none was.
+  double asked_frames() const { return std::min(most_frames_, 240.0); }
   bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
 
   /// The room's rate of frames has changed [1/s].
@@ -71,7 +76,7 @@ class ViewerChannel {
   /// Says `last` as soon as the stream is free and closes; what waited is dropped.
   void close(std::uint16_t code, const std::string& reason, std::optional<Message> last = {});
 
-  bool closed() const { return closed_; }
+  bool closing() const { return closing_; }
   std::uint64_t frames_sent() const { return frames_sent_; }
   std::uint64_t frames_dropped() const { return frames_dropped_; }
   const FrameWindow& window() const { return window_; }

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace weft::server {
+
+/// Counts open sockets, all and by address. Lives on the network thread.
+class ConnectionCount {
+ public:
+  /// Keeps a socket counted as long as it lives.
+  class Place {
+   public:
+    Place(ConnectionCount& count, std::string address)
+        : count_(count), address_(std::move(address)) {
+      ++count_.total_;
+      ++count_.by_address_[address_];
+    }
+    ~Place() {
+      --count_.total_;
+      const auto found = count_.by_address_.find(address_);
+      if (--found->second == 0) count_.by_address_.erase(found);
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+   private:
+    ConnectionCount& count_;
+    std::string address_;
+  };
+
+  std::shared_ptr<Place> take_place(const std::string& address) {
+    return std::make_shared<Place>(*this, address);
+  }
+
+  int total() const { return total_; }
+  int of_address(const std::string& address) const {
+    const auto found = by_address_.find(address);
+    return found == by_address_.end() ? 0 : found->second;
+  }
+
+ private:
+  int total_ = 0;
+  std::map<std::string, int> by_address_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/service_context.h"
+
+namespace weft::server {
+
+/// Accepts connections and counts them.
+class Listener {
+ public:
+  /// Throws boost::system::system_error if the address cannot be listened on.
+  Listener(boost::asio::io_context& io, ServiceContext& context);
+
+  int port() const { return acceptor_.local_endpoint().port(); }
+  void start() { accept(); }
+  void stop();
+
+ private:
+  void accept();
+  void welcome(boost::asio::ip::tcp::socket socket);
+
+  ServiceContext& context_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer pause_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,218 @@
+#include "server/serve.h"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "core/scenes/scenes.h"
+#include "server/close_codes.h"
+#include "server/listener.h"
+#include "server/network_output.h"
+#include "server/room.h"
+#include "server/simulation_loop.h"
+#include "server/thread_pool.h"
+#include "server/version.h"
+
+namespace weft::server {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr auto kPollPause = std::chrono::milliseconds(10);   // of the hub
+constexpr auto kGoodbye = std::chrono::seconds(2);           // for viewers to close
+constexpr double kReadinessPause = 0.1;                      // [s]
+
+/// What the network thread may know of the room, as of a moment ago.
+class Bulletin {
+ public:
+  void post(const Room& room) {
+    const std::lock_guard lock(mutex_);
+    readiness_.scene = room.world().def().name;
+    readiness_.tick = room.world().tick();
+    readiness_.real_time_factor = room.real_time_factor();
+    readiness_.ready = !room.ticking() || readiness_.real_time_factor >= 0.9 * room.speed();
+  }
+  proto::Readiness read() const {
+    const std::lock_guard lock(mutex_);
+    return readiness_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  proto::Readiness readiness_;
+};
+
+/// The room as the loop runs it, with its bulletin kept up to date.
+class PostedRoom {
+ public:
+  PostedRoom(Room& room, Bulletin& bulletin) : room_(room), bulletin_(bulletin) {
+    bulletin_.post(room_);
+  }
+  void take(Inbound item) { room_.take(std::move(item)); }
+  bool advancing() const { return room_.advancing(); }
+  void advance_until(double deadline) { room_.advance_until(deadline); }
+  bool ticking() const { return room_.ticking(); }
+  double tick_interval() const { return room_.tick_interval(); }
+  void tick() { room_.tick(); }
+  double next_wake() const { return room_.next_wake(); }
+  void finish_turn() {
+    room_.finish_turn();
+    const double now = process_seconds();
+    if (now < next_post_) return;
+    next_post_ = now + kReadinessPause;
+    bulletin_.post(room_);
+  }
+
+ private:
+  Room& room_;
+  Bulletin& bulletin_;
+  double next_post_ = 0;
+};
+
+std::string random_session() {
+  std::random_device source;
+  return proto::hash_text((static_cast<std::uint64_t>(source()) << 32) | source());
+}
+
+std::string page_directory(const ServerOptions& options) {
+  if (!options.web.empty()) return options.web;
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : (program.parent_path() / "web").string();
+}
+
+RoomOptions room_options(const ServerOptions& options) {
+  RoomOptions room;
+  room.scene = options.scene;
+  room.tick_rate = options.rate;
+  room.settings = options.settings;
+  room.paused = options.paused;
+  room.version = version_info().version;
+  room.session = random_session();
+  for (const SceneInfo& scene : scenes()) room.scene_names.push_back(scene.name);
+  room.limits.messages_per_second = options.limits.messages_per_second;
+  room.limits.viewers = static_cast<std::uint32_t>(options.limits.viewers);
+  return room;
+}
+
+void print_addresses(const ServerOptions& options, int port) {
+  const bool v6 = options.bind.find(':') != std::string::npos;
+  const std::string authority =
+      (v6 ? "[" + options.bind + "]" : options.bind) + ":" + std::to_string(port);
+  const nlohmann::ordered_json line = {{"url", "http://" + authority + "/"},
+                                       {"websocket", "ws://" + authority + "/ws"},
+                                       {"host", options.bind},
+                                       {"port", port},
+                                       {"scene", options.scene}};
+  std::printf("%s\n", line.dump().c_str());
+  std::fflush(stdout);
+}
+
+/// The network thread with its timers and its end.
+class Network {
+ public:
+  Network(asio::io_context& io, ServiceContext& context)
+      : io_(io), context_(context), listener_(io, context), signals_(io, SIGINT, SIGTERM),
+        poll_(io), end_(io) {
+    context_.port = listener_.port();
+  }
+
+  void run() {
+    listener_.start();
+    signals_.async_wait([this](boost::system::error_code error, int) {
+      if (!error) stop("asked to stop");
+    });
+    if (context_.options.max_seconds > 0) {
+      end_.expires_after(std::chrono::milliseconds(
+          static_cast<long long>(context_.options.max_seconds * 1000)));
+      end_.async_wait([this](boost::system::error_code error) {
+        if (!error) stop("its time is over");
+      });
+    }
+    poll();
+    io_.run();
+  }
+
+ private:
+  void poll() {
+    context_.hub.poll();
+    if (context_.stopping && (context_.hub.viewers() == 0 || std::chrono::steady_clock::now() > last_))
+      return io_.stop();
+    poll_.expires_after(kPollPause);
+    poll_.async_wait([this](boost::system::error_code error) {
+      if (!error) poll();
+    });
+  }
+
+  void stop(const char* why) {
+    spdlog::info("stopping: {}", why);
+    context_.stopping = true;
+    last_ = std::chrono::steady_clock::now() + kGoodbye;
+    listener_.stop();
+    signals_.cancel();
+    end_.cancel();
+    const proto::Bye bye{kCloseGoingAway, "the server stops"};
+    context_.hub.close_all(bye.code, bye.reason, text_message(proto::encode_bye(bye)));
+  }
+
+  asio::io_context& io_;
+  ServiceContext& context_;
+  Listener listener_;
+  asio::signal_set signals_;
+  asio::steady_timer poll_, end_;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+}  // namespace
+
+int serve(const ServerOptions& options) {
+  validate(options);
+  std::signal(SIGPIPE, SIG_IGN);
+  Metrics metrics;
+  Mailbox mailbox(options.limits.waiting_commands);
+  const StaticFiles files(page_directory(options));
+  Bulletin bulletin;
+
+  Hub hub(process_seconds, 60, {options.limits.queued_messages, options.limits.queued_bytes},
+          metrics);
+  ServiceContext context{options, hub, mailbox, metrics, files, process_seconds, version_info(),
+                         {}, [&bulletin] { return bulletin.read(); }, {}, 1, 0, false};
+  for (const SceneInfo& scene : scenes()) context.scenes.push_back({scene.name, scene.description});
+  // Destroyed before what the sessions use, because handlers that it still holds own them.
+  asio::io_context io(1);
+  NetworkOutput output(io, hub);
+  ThreadPool pool(options.threads);
+  Room room(room_options(options), make_scene, output, process_seconds, metrics,
+            options.threads > 1 ? &pool : nullptr);
+  room.on_finished = [&mailbox](proto::ViewerId viewer) { mailbox.finished(viewer); };
+
+  Network network(io, context);
+  if (!is_loopback(options.bind))
+    spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind, context.port);
+  if (!files.find("/"))
+    spdlog::warn("no page in {}; scripts can connect all the same", page_directory(options));
+
+  PostedRoom posted(room, bulletin);
+  SimulationLoop<PostedRoom, Mailbox> loop(posted, mailbox, process_seconds);
+  std::jthread simulation([&loop] { loop.run(); });
+  spdlog::info("scene {} with {} particles, {} ticks a second", options.scene,
+               room.world().model().mass.size(), room.world().def().tick_rate);
+  print_addresses(options, context.port);
+  network.run();
+  mailbox.stop();
+  simulation.join();
+  return 0;
+}
+
+}  // namespace weft::server

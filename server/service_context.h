@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "proto/http.h"
+#include "server/clock.h"
+#include "server/connection_count.h"
+#include "server/hub.h"
+#include "server/mailbox.h"
+#include "server/metrics.h"
+#include "server/options.h"
+#include "server/static_files.h"
+
+namespace weft::server {
+
+/// What every connection can reach. Lives on the network thread and outlives all connections.
+struct ServiceContext {
+  const ServerOptions& options;
+  Hub& hub;
+  Mailbox& mailbox;
+  Metrics& metrics;
+  const StaticFiles& files;
+  Clock clock;
+  proto::VersionInfo version;
+  std::vector<proto::SceneListing> scenes;
+  std::function<proto::Readiness()> readiness;
+  ConnectionCount connections;
+  proto::ViewerId next_viewer = 1;
+  int port = 0;  ///< that is listened on
+  bool stopping = false;
+};
+
+}  // namespace weft::server

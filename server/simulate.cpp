@@ -1,0 +1,177 @@
+#include "server/simulate.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "core/geometry/mesh_file.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "proto/events.h"
+#include "server/clock.h"
+#include "server/options.h"
+#include "server/strain_statistics.h"
+#include "server/thread_pool.h"
+
+namespace weft::server {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Looking for penetrations costs more than a tick, so only some ticks are looked at, and the last.
+constexpr int kTicksBetweenChecks = 6;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+struct Measurement {
+  double cpu = 0, wall = 0;      ///< of the steps alone [s]
+  std::vector<double> ticks;     ///< [s], sorted
+  Profile stages;                ///< summed
+  double deepest = 0;            ///< [m]
+  int checks = 0, divergences = 0;
+  int least_substeps = 0, most_substeps = 0;
+  double largest_strain = 0;     ///< over the whole run
+};
+
+void measure_tick(World<float>& world, Measurement& m) {
+  const double cpu = cpu_seconds(), wall = process_seconds();
+  const TickReport& report = world.step();
+  const double seconds = process_seconds() - wall;
+  m.cpu += cpu_seconds() - cpu;
+  m.wall += seconds;
+  m.ticks.push_back(seconds);
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    m.stages.stages[i].seconds += report.profile.stages[i].seconds;
+    m.stages.stages[i].work += report.profile.stages[i].work;
+  }
+  m.divergences += report.divergence ? 1 : 0;
+  m.least_substeps = m.least_substeps == 0 ? report.substeps
+                                           : std::min(m.least_substeps, report.substeps);
+  m.most_substeps = std::max(m.most_substeps, report.substeps);
+  m.largest_strain = std::max(m.largest_strain, report.largest_strain);
+}
+
+Measurement run(World<float>& world, int ticks) {
+  Measurement m;
+  m.ticks.reserve(static_cast<std::size_t>(ticks));
+  for (int i = 1; i <= ticks; ++i) {
+    measure_tick(world, m);
+    if (i % kTicksBetweenChecks != 0 && i != ticks) continue;
+    m.deepest = std::max(m.deepest, world.deepest_penetration());
+    ++m.checks;
+  }
+  std::sort(m.ticks.begin(), m.ticks.end());
+  return m;
+}
+
+double percentile(const std::vector<double>& sorted, std::size_t percent) {
+  return sorted[std::min(sorted.size() - 1, sorted.size() * percent / 100)];
+}
+
+Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {
+  const double simulated = options.ticks * world.tick_seconds();
+  std::vector<float> scratch;
+  const StrainStatistics strain = strain_statistics(world.model(), world.state(), scratch);
+  const Energies& energy = world.report().energies;
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    stages[kStageNames[i]] = {{"milliseconds", m.stages.stages[i].seconds * 1000},
+                              {"work", m.stages.stages[i].work}};
+  }
+  return {{"scene", options.scene},
+          {"particles", world.model().mass.size()},
+          {"triangles", world.model().triangles.size()},
+          {"ticks", options.ticks},
+          {"tick_rate", world.def().tick_rate},
+          {"threads", options.threads},
+          {"simulated_seconds", simulated},
+          {"cpu_seconds", m.cpu},
+          {"wall_seconds", m.wall},
+          {"real_time_factor", m.cpu > 0 ? simulated / m.cpu : 0},
+          {"tick_milliseconds",
+           {{"median", percentile(m.ticks, 50) * 1000}, {"p95", percentile(m.ticks, 95) * 1000}}},
+          {"stages", stages},
+          {"energy",
+           {{"kinetic", energy.kinetic},
+            {"stretch", energy.stretch},
+            {"bending", energy.bending},
+            {"gravity", energy.gravity},
+            {"total", energy.total()}}},
+          {"strain",
+           {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
+          {"deepest_penetration", m.deepest},
+          {"penetration_checks", m.checks},
+          {"hash", proto::hash_text(world.hash())},
+          {"solver", "verlet"},
+          {"substeps", world.report().substeps},
+          {"substeps_of_run", {m.least_substeps, m.most_substeps}},
+          {"divergences", m.divergences}};
+}
+
+void print_row(const std::string& name, const Json& value) {
+  if (value.is_number_float())
+    std::printf("%-34s %.6g\n", name.c_str(), value.get<double>());
+  else if (value.is_string())
+    std::printf("%-34s %s\n", name.c_str(), value.get<std::string>().c_str());
+  else
+    std::printf("%-34s %s\n", name.c_str(), value.dump().c_str());
+}
+
+void print_table(const Json& object, const std::string& prefix) {
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object())
+      print_table(value, prefix + key + ".");
+    else
+      print_row(prefix + key, value);
+  }
+}
+
+TriangleMesh cloth_mesh(const World<float>& world) {
+  TriangleMesh mesh;
+  for (const Vec3f& x : world.state().x) mesh.positions.push_back(x.cast<double>());
+  mesh.triangles = world.model().triangles;
+  return mesh;
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  if (options.ticks < 1 || options.ticks > 10'000'000)
+    throw OptionError("--ticks", std::to_string(options.ticks), "1 to 10000000");
+  if (options.threads < 1 || options.threads > 64)
+    throw OptionError("--threads", std::to_string(options.threads), "1 to 64");
+  // Known before minutes are spent.
+  if (!options.out.empty() && !options.out.ends_with(".obj") && !options.out.ends_with(".ply"))
+    throw OptionError("--out", options.out, "a file that ends in .obj or .ply");
+  WorldDef def = make_scene(options.scene);
+  for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  ThreadPool pool(options.threads);
+  World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  const Measurement measurement = run(world, options.ticks);
+  if (!options.out.empty()) write_mesh(cloth_mesh(world), options.out);
+  const Json result = summary(options, world, measurement);
+  if (options.json)
+    std::printf("%s\n", result.dump(2).c_str());
+  else
+    print_table(result, "");
+  return 0;
+}
+
+int list_scenes(bool json) {
+  Json list = Json::array();
+  for (const SceneInfo& scene : scenes()) {
+    list.push_back({{"name", scene.name}, {"description", scene.description}});
+    if (!json) std::printf("%-14s %s\n", scene.name.c_str(), scene.description.c_str());
+  }
+  if (json) std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
+  return 0;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "proto/http.h"
+
+namespace weft::server {
+
+/// Version, commit, compiler, and the vector instructions that the physics uses on this processor.
+proto::VersionInfo version_info();
+
+}  // namespace weft::server
