@@ -34,10 +34,18 @@ inline Real closest_on_segment(const Vec3<Real>& p, const Vec3<Real>& a, const V
   return std::clamp((p - a).dot(d) / length2, Real(0), Real(1));
 }
 
-/// Closest point of the border of triangle abc to p; for triangles without area.
+/// Closest point of a triangle that is thin or has no area. Cross products keep the weights right
+/// where differences of products would have lost them.
 template <class Real>
-TrianglePoint<Real> closest_on_border(const Vec3<Real>& p, const Vec3<Real>& a, const Vec3<Real>& b,
-                                      const Vec3<Real>& c) {
+TrianglePoint<Real> closest_on_thin_triangle(const Vec3<Real>& p, const Vec3<Real>& a,
+                                             const Vec3<Real>& b, const Vec3<Real>& c) {
+  const Vec3<Real> ab = b - a, ac = c - a, ap = p - a, n = ab.cross(ac);
+  const Real n2 = n.squaredNorm();
+  constexpr Real kRounding = 16 * std::numeric_limits<Real>::epsilon();
+  if (n2 > ab.squaredNorm() * ac.squaredNorm() * (kRounding * kRounding)) {
+    const Real wb = ap.cross(ac).dot(n) / n2, wc = ab.cross(ap).dot(n) / n2, wa = Real(1) - wb - wc;
+    if (wa > 0 && wb > 0 && wc > 0) return {a + ab * wb + ac * wc, {wa, wb, wc}, 0};
+  }
   const Vec3<Real>* corner[3] = {&a, &b, &c};
   TrianglePoint<Real> best;
   Real best2 = std::numeric_limits<Real>::infinity();
@@ -69,7 +77,9 @@ TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a
   if (ab_p <= 0 && ac_p <= 0) return {a, {1, 0, 0}, 1};
   const Real ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), abc = ab.dot(ac);
   const Real area = ab2 * ac2 - abc * abc;  // squared doubled area
-  if (!(area > ab2 * ac2 * Real(1e-6))) return closest_on_border(p, a, b, c);
+  // The square root of Real's precision: beyond that the weights below lose their last half.
+  constexpr Real kThin = std::numeric_limits<Real>::digits > 30 ? Real(1e-8) : Real(3e-4);
+  if (!(area > ab2 * ac2 * kThin)) return closest_on_thin_triangle(p, a, b, c);
   const Real ab_pb = ab_p - ab2, ac_pb = ac_p - abc;  // the same products from corner b
   if (ab_pb >= 0 && ac_pb <= ab_pb) return {b, {0, 1, 0}, 2};
   const Real ab_pc = ab_p - abc, ac_pc = ac_p - ac2;  // and from corner c

@@ -25,6 +25,12 @@ struct RayFrame {
   }
 };
 
+/// Largest number that enters a sheared coordinate of a point; its rounding scales with this.
+double extent(const RayFrame& f, const Vec3d& p) {
+  return std::max(std::abs(p[f.x]) + std::abs(f.sx * p[f.z]),
+                  std::abs(p[f.y]) + std::abs(f.sy * p[f.z]));
+}
+
 std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, const Vec3d& b,
                                             const Vec3d& c) {
   const double ax = a[f.x] - f.sx * a[f.z], ay = a[f.y] - f.sy * a[f.z];
@@ -33,7 +39,10 @@ std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, c
   const double u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
   const double determinant = u + v + w;
-  if (determinant == 0 || !std::isfinite(determinant)) return std::nullopt;
+  // What rounding alone can make of a triangle that the ray sees edge-on or that has no area.
+  const double size = std::max({extent(f, a), extent(f, b), extent(f, c)});
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() * size * size;
+  if (!(std::abs(determinant) > rounding) || !std::isfinite(determinant)) return std::nullopt;
   const double t = (u * a[f.z] + v * b[f.z] + w * c[f.z]) * f.sz / determinant;
   if (!(t >= 0) || !std::isfinite(t)) return std::nullopt;
   return RayHit<double>{t, kNone, {u / determinant, v / determinant, w / determinant}};
