@@ -179,7 +179,7 @@ export class Session extends Emitter {
     return this.timers.now() / 1000;
   }
 
-  /** @param {{op: string}} message */
+  /** @param {{op: string, [field: string]: unknown}} message */
   #send(message) {
     this.#sentMessages += 1;
     if (MEASURED.has(message.op)) this.#meter.sent(this.#sentMessages, this.#now());

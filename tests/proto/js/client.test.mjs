@@ -1,0 +1,414 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { CommandError, ConnectionLost, WeftClient } from '../../../proto/js/index.js';
+import { FakeTimers, fakeSockets, settle } from './fakes.mjs';
+import { readGolden, readGoldenJson, specificationExamples } from './golden.mjs';
+
+const examples = specificationExamples();
+const example = (op, command) => examples.find((m) => m.op === op && (!command || m.command === command));
+const welcome = example('welcome');
+const GRID = {
+  op: 'mesh', epoch: 1, scene: 'grid', hash: '00', url: '/api/v1/mesh/00', bytes: 224,
+  vertices: 6, triangles: 4, cloths: [], colliders: [],
+};
+const HIT = { triangle: 411, barycentric: [0.25, 0.5, 0.25], position: [0, 1, 0], particle: 222 };
+
+/** A client that has joined, its socket, and the time. */
+async function join(options = {}) {
+  const { FakeSocket, sockets } = fakeSockets();
+  const timers = new FakeTimers();
+  const client = new WeftClient('ws://host:1/ws', {
+    WebSocket: FakeSocket, timers, random: () => 1, ...options,
+  });
+  const connected = client.connect();
+  sockets[0].open();
+  sockets[0].say(welcome);
+  await connected;
+  return { client, socket: sockets[0], sockets, timers };
+}
+
+function answer(socket, op, fields = {}) {
+  const { id } = socket.ops(op).at(-1);
+  socket.say({ op: 'result', id, command: op, ...fields });
+}
+
+test('the subprotocol is asked for and welcome ends the wait', async () => {
+  const { client, socket } = await join();
+  assert.equal(socket.protocol, 'weft.v1');
+  assert.equal(socket.url, 'ws://host:1/ws');
+  assert.equal(client.viewer, welcome.viewer);
+  assert.equal(client.connected, true);
+});
+
+test('each call sends the golden command with an id of its own', async () => {
+  const { client, socket } = await join();
+  const ids = new Set();
+  for (const { method, args, options, sends } of readGoldenJson('client_calls.json')) {
+    client[method](...args, ...(Object.keys(options).length ? [options] : [])).catch(() => {});
+    const { id, ...message } = socket.sent.at(-1);
+    assert.deepEqual(message, sends);
+    assert.equal(ids.has(id), false);
+    ids.add(id);
+  }
+});
+
+test('a result goes to the call that it answers, in any order', async () => {
+  const { client, socket } = await join();
+  const first = client.hash();
+  const second = client.pause();
+  const [{ id: hashId }] = socket.ops('hash');
+  const [{ id: pauseId }] = socket.ops('pause');
+  socket.say({ op: 'result', id: pauseId, command: 'pause', paused: true });
+  socket.say({ op: 'result', id: hashId, command: 'hash', tick: 5, hash: 'ff' });
+  assert.equal((await second).paused, true);
+  assert.equal((await first).hash, 'ff');
+});
+
+test('pick answers the hit or null', async () => {
+  const { client, socket } = await join();
+  const hit = client.pick([0, 1, 3], [0, 0, -1]);
+  answer(socket, 'pick', { hit: HIT });
+  assert.deepEqual(await hit, HIT);
+  const miss = client.pick([0, 1, 3], [0, 0, 1]);
+  answer(socket, 'pick', { hit: null });
+  assert.equal(await miss, null);
+});
+
+test('a refusal rejects with all that the server says', async () => {
+  const { client, socket } = await join();
+  const refused = example('error');
+  const call = client.speed(99);
+  socket.say({ ...refused, id: socket.ops('speed')[0].id });
+  await assert.rejects(call, (error) => {
+    assert.ok(error instanceof CommandError);
+    const { message, code, command, field, value, limit, hint } = error;
+    const { op, id, ...rest } = refused;
+    assert.deepEqual({ message, code, command, field, value, limit, hint }, rest);
+    return true;
+  });
+});
+
+test('a refusal that nobody waits for is an event', async () => {
+  const { client, socket } = await join();
+  const heard = client.next('refused');
+  socket.say({ op: 'error', code: 'rate_limited', message: 'too fast' });
+  assert.equal((await heard).code, 'rate_limited');
+});
+
+test('each event of the specification is told, and unknown ones are ignored', async () => {
+  const { client, socket } = await join();
+  for (const op of ['state', 'roster', 'pins', 'grabs', 'notice', 'bye']) {
+    const heard = client.next(op);
+    socket.say(example(op));
+    assert.deepEqual(await heard, example(op));
+  }
+  socket.say({ op: 'of the future', x: 1 });
+  assert.equal(client.connected, true);
+});
+
+test('a mesh and its frames are told, and every frame is acknowledged', async () => {
+  const { client, socket } = await join();
+  const frames = [];
+  client.on('frame', (frame) => frames.push(frame));
+  socket.sayBytes(readGolden('frame_hands.bin')); // before its mesh: acknowledged, not told
+  assert.equal(frames.length, 0);
+  assert.equal(socket.acks.length, 1);
+  const mesh = client.next('mesh');
+  socket.say(GRID);
+  socket.sayBytes(readGolden('mesh_grid.bin'));
+  assert.equal((await mesh).data.triangles.length, 12);
+  socket.sayBytes(readGolden('frame_hands.bin'));
+  assert.equal(frames.length, 1);
+  assert.equal(frames[0].positions.length, 18);
+  assert.deepEqual([...socket.acks[1]], [4, 1, 0, 0, 255, 255, 255, 255]);
+});
+
+test('a frame of another epoch is acknowledged and not told', async () => {
+  const { client, socket } = await join();
+  socket.say({ ...GRID, epoch: 2 });
+  socket.sayBytes(readGolden('mesh_grid.bin'));
+  client.on('frame', () => assert.fail('told'));
+  socket.sayBytes(readGolden('frame_hands.bin'));
+  assert.equal(socket.acks.length, 1);
+});
+
+test('a message that cannot be read ends the connection and it is made anew', async () => {
+  const bad = readGolden('frame_hands.bin');
+  bad[70] ^= 1;
+  const speak = [
+    (socket) => socket.sayBytes(bad),
+    (socket) => socket.say('{"op":'),
+    (socket) => socket.say('null'),
+    (socket) => socket.sayBytes(readGolden('mesh_grid.bin')), // unannounced
+    (socket) => {
+      socket.say({ ...GRID, vertices: 7 });
+      socket.sayBytes(readGolden('mesh_grid.bin'));
+    },
+    (socket) => {
+      socket.say(GRID);
+      socket.sayBytes(readGolden('mesh_grid.bin'));
+      socket.sayBytes(readGolden('frame_one_vertex.bin'));
+    },
+  ];
+  for (const say of speak) {
+    const { client, socket, sockets, timers } = await join();
+    const fault = client.next('fault');
+    say(socket);
+    assert.equal((await fault).name, 'ProtocolError');
+    assert.equal(socket.closedWith.code, 4002);
+    assert.equal(client.connected, false);
+    await timers.pass(10000);
+    assert.equal(sockets.length > 1, true);
+  }
+});
+
+test('over HTTP the mesh is fetched from its address', async () => {
+  const asked = [];
+  const fetch = async (url) => {
+    asked.push(url);
+    return { ok: true, arrayBuffer: async () => readGolden('mesh_grid.bin').buffer };
+  };
+  const { client, socket } = await join({ mesh: 'http', fetch });
+  assert.equal(socket.url, 'ws://host:1/ws?mesh=http');
+  const mesh = client.next('mesh');
+  socket.say(GRID);
+  assert.equal((await mesh).data.restPositions.length, 18);
+  assert.deepEqual(asked, ['http://host:1/api/v1/mesh/00']);
+});
+
+test('a binary query resolves when its data has come', async () => {
+  const { client, socket } = await join();
+  const query = client.query('positions', { format: 'f32' });
+  answer(socket, 'query', { what: 'positions', binary: { transfer: 1, count: 5, components: 3 } });
+  socket.sayBytes(readGolden('data_f32.bin'));
+  const { values, components, tick } = await query;
+  assert.equal(values.length, 15);
+  assert.equal(components, 3);
+  assert.equal(tick, 600);
+});
+
+test('what waits for an answer is told when the connection ends', async () => {
+  const { client, socket } = await join();
+  const calls = [client.hash(), client.query('positions', { format: 'f32' })];
+  answer(socket, 'query', { binary: { transfer: 9 } });
+  socket.lose(1006);
+  for (const call of calls) await assert.rejects(call, ConnectionLost);
+  await assert.rejects(client.pause(), ConnectionLost);
+});
+
+test('it reconnects with growing pauses, and soon again after a welcome', async () => {
+  const { client, sockets, timers } = await join({ name: 'Ada' });
+  const pauses = [];
+  client.on('status', ({ phase, retryIn }) => phase === 'waiting' && pauses.push(retryIn));
+  sockets[0].lose(1006);
+  for (let i = 1; i <= 7; ++i) {
+    await timers.pass(pauses.at(-1) - 1);
+    assert.equal(sockets.length, i);
+    await timers.pass(1);
+    assert.equal(sockets.length, i + 1);
+    if (i < 7) sockets[i].lose(1006);
+  }
+  assert.deepEqual(pauses, [250, 500, 1000, 2000, 4000, 8000, 8000]);
+  sockets[7].open();
+  sockets[7].say(welcome);
+  assert.deepEqual(sockets[7].ops('hello'), [{ op: 'hello', name: 'Ada' }]);
+  sockets[7].lose(1012);
+  assert.equal(pauses.at(-1), 250);
+});
+
+test('it does not come back after codes that would only repeat', async () => {
+  for (const code of [1002, 1003, 1007, 1008, 1009, 4003]) {
+    const { client, sockets, timers } = await join();
+    const closed = client.next('status');
+    sockets[0].lose(code, 'no');
+    assert.equal((await closed).phase, 'closed');
+    await timers.pass(60000);
+    assert.equal(sockets.length, 1);
+  }
+});
+
+test('close ends for good, and connect rejects when it may not try again', async () => {
+  const { client, socket, sockets, timers } = await join();
+  client.close();
+  assert.equal(socket.closedWith.code, 1000);
+  await timers.pass(60000);
+  assert.equal(sockets.length, 1);
+
+  const { FakeSocket, sockets: others } = fakeSockets();
+  const once = new WeftClient('ws://host:1/ws', {
+    WebSocket: FakeSocket, timers: new FakeTimers(), reconnect: false,
+  });
+  const connected = once.connect();
+  others[0].lose(1006);
+  await assert.rejects(connected, ConnectionLost);
+});
+
+test('a server that falls silent is given up, one that speaks is not', async () => {
+  const { client, sockets, timers } = await join();
+  for (let i = 0; i < 10; ++i) {
+    await timers.pass(3000);
+    sockets[0].say(example('state'));
+  }
+  assert.equal(client.connected, true);
+  await timers.pass(13000);
+  assert.equal(sockets[0].closedWith.reason, 'the server is silent');
+});
+
+test('a handshake that does not end is given up', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const timers = new FakeTimers();
+  const client = new WeftClient('ws://host:1/ws', { WebSocket: FakeSocket, timers });
+  client.connect().catch(() => {});
+  await timers.pass(9999);
+  assert.equal(sockets.length, 1);
+  await timers.pass(1000);
+  assert.equal(sockets.length, 2);
+  client.close();
+});
+
+test('a drag starts at the hit, moves, repeats its target and ends', async () => {
+  const { client, socket, timers } = await join();
+  const drag = client.drag(HIT, { radius: 0.05, target: [0, 1, 0] });
+  const { id, ...start } = socket.ops('drag')[0];
+  assert.deepEqual(start, {
+    op: 'drag', phase: 'start', drag: 1, triangle: 411, barycentric: [0.25, 0.5, 0.25],
+    radius: 0.05, target: [0, 1, 0],
+  });
+  answer(socket, 'drag', { drag: 1, grab: 17, target: [0, 1, 0] });
+  assert.equal((await drag.started).grab, 17);
+  await timers.pass(20);
+  drag.move([0, 2, 0]);
+  const move = (target) => ({ op: 'drag', phase: 'move', drag: 1, target });
+  assert.deepEqual(socket.sent.at(-1), move([0, 2, 0]));
+  const before = socket.ops('drag').length;
+  await timers.pass(2000); // no more than 0.5 s apart
+  const repeated = socket.ops('drag').slice(before);
+  assert.equal(repeated.length, 5);
+  for (const message of repeated) assert.deepEqual(message, move([0, 2, 0]));
+  drag.end();
+  assert.deepEqual(socket.sent.at(-1), { op: 'drag', phase: 'end', drag: 1 });
+  assert.equal(await drag.ended, 'end');
+  const after = socket.ops('drag').length;
+  drag.move([9, 9, 9]);
+  await timers.pass(2000);
+  assert.equal(socket.ops('drag').length, after);
+});
+
+test('without a target of its own a drag repeats the one that the server chose', async () => {
+  const { client, socket, timers } = await join();
+  client.drag({ particle: 3 });
+  answer(socket, 'drag', { drag: 1, grab: 17, target: [1, 2, 3] });
+  await timers.pass(450);
+  assert.deepEqual(socket.ops('drag').at(-1), {
+    op: 'drag', phase: 'move', drag: 1, target: [1, 2, 3],
+  });
+});
+
+test('targets that come too quickly are thinned out, and the last one is sent', async () => {
+  const { client, socket, timers } = await join();
+  const drag = client.drag(HIT, { target: [0, 0, 0] });
+  for (let i = 1; i <= 1000; ++i) {
+    drag.move([i, 0, 0]);
+    await timers.pass(0.1); // 10,000 a second, for 100 ms
+  }
+  const moves = socket.ops('drag').filter(({ phase }) => phase === 'move');
+  assert.ok(moves.length >= 11 && moves.length <= 13, `${moves.length}`);
+  await timers.pass(8);
+  assert.equal(socket.ops('drag').at(-1).target[0], 1000);
+  drag.move([2000, 0, 0]);
+  drag.end(); // what waits goes first
+  assert.deepEqual(socket.ops('drag').slice(-2).map(({ target, phase }) => target?.[0] ?? phase),
+    [2000, 'end']);
+});
+
+test('several hands have numbers of their own', async () => {
+  const { client, socket } = await join();
+  const numbers = [client.drag(HIT), client.drag({ particle: 7 })].map(({ number }) => number);
+  assert.equal(new Set(numbers).size, 2);
+  assert.deepEqual(socket.ops('drag').map(({ drag }) => drag), numbers);
+});
+
+test('a drag ends with the connection, the lease, the server, or a refusal', async () => {
+  const begin = async () => {
+    const joined = await join();
+    const drag = joined.client.drag(HIT);
+    answer(joined.socket, 'drag', { drag: drag.number, grab: 17, target: [0, 0, 0] });
+    await drag.started;
+    return { ...joined, drag };
+  };
+  const lost = await begin();
+  lost.socket.lose(1006);
+  assert.equal(await lost.drag.ended, 'connection lost');
+
+  const expired = await begin();
+  const { number: value } = expired.drag;
+  expired.socket.say({ op: 'error', code: 'unknown_drag', message: '', field: 'drag', value });
+  assert.equal(await expired.drag.ended, 'lease expired');
+
+  const released = await begin();
+  const grab = { ...example('grabs').grabs[0], id: 17 };
+  released.socket.say({ op: 'grabs', tick: 1, grabs: [grab] });
+  assert.equal(released.drag.active, true);
+  released.socket.say({ op: 'grabs', tick: 2, grabs: [] });
+  assert.equal(await released.drag.ended, 'released by the server');
+
+  const { client, socket } = await join();
+  const refused = client.drag(HIT);
+  socket.say({ op: 'error', id: socket.ops('drag')[0].id, code: 'held', message: 'held by Bob' });
+  assert.equal(await refused.ended, 'held by Bob');
+  await assert.rejects(refused.started, CommandError);
+});
+
+test('a view that was asked for is asked for again after a reconnection', async () => {
+  const { client, sockets, timers } = await join();
+  client.view({ hz: 0 }).catch(() => {});
+  sockets[0].lose(1006);
+  await timers.pass(300);
+  sockets[1].open();
+  assert.deepEqual(sockets[1].ops('view'), [{ op: 'view', hz: 0 }]);
+});
+
+test('clock and round trip come from the ping with the least delay', async () => {
+  const { client, socket, timers } = await join();
+  // The server's clock is 100 s ahead; the way there takes twice the way back in slow pings.
+  const ping = async (there, back) => {
+    const measured = client.ping();
+    const { id, t } = socket.ops('ping').at(-1);
+    await timers.pass(there * 1000);
+    const received = timers.time / 1000 + 100;
+    await timers.pass(2);
+    const sent = timers.time / 1000 + 100;
+    await timers.pass(back * 1000);
+    socket.say({ op: 'result', id, command: 'ping', t, received, sent });
+    await measured;
+  };
+  await ping(0.05, 0.05);
+  await ping(0.2, 0.1);
+  assert.ok(Math.abs(client.roundTrip - 0.1) < 1e-9);
+  assert.ok(Math.abs(client.serverTime - timers.time / 1000 - 100) < 1e-9);
+});
+
+test('latency is from the sending of a command to the frame that includes it', async () => {
+  const { client, socket, timers } = await join();
+  // The golden frame says that message 41 of viewer 3 is included.
+  while (socket.sent.length < 40) client.post('camera', {});
+  assert.ok(Number.isNaN(client.latency));
+  client.post('drag', { phase: 'move', drag: 1, target: [0, 0, 0] });
+  assert.equal(socket.sent.length, 41);
+  timers.time += 25;
+  client.post('drag', { phase: 'move', drag: 1, target: [1, 0, 0] }); // number 42
+  timers.time += 10;
+  socket.sayBytes(readGolden('frame_hands.bin'));
+  assert.ok(Math.abs(client.latency - 0.035) < 1e-9);
+});
+
+test('an exception of a listener is not taken for a fault of the server', async () => {
+  const { client, socket } = await join();
+  client.on('state', () => {
+    throw new TypeError('mine');
+  });
+  assert.throws(() => socket.say(example('state')), TypeError);
+  assert.equal(client.connected, true);
+  await settle();
+});
