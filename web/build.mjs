@@ -1,31 +1,43 @@
-// Bundles the page into the folder given: node build.mjs FOLDER. Type errors end the build.
-import { spawnSync } from "node:child_process";
-import { cpSync, mkdirSync } from "node:fs";
-import { createRequire } from "node:module";
-import { join } from "node:path";
-import { fileURLToPath } from "node:url";
+// Bundles src/main.ts with all it imports and copies the files of static/ beside it.
+// usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
+import { cp, mkdir, readdir, rm, writeFile } from "node:fs/promises";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
 
-const here = fileURLToPath(new URL(".", import.meta.url));
-const folder = process.argv[2];
-if (!folder) {
-  console.error("usage: node build.mjs FOLDER");
-  process.exit(2);
-}
+const [output, dependency_file] = process.argv.slice(2).map((path) => resolve(path));
+const here = dirname(fileURLToPath(import.meta.url));
+const static_files = join(here, "static");
 
-const tsc = createRequire(import.meta.url).resolve("typescript/bin/tsc");
-const types = spawnSync(process.execPath, [tsc, "--noEmit", "-p", here], { stdio: "inherit" });
-if (types.status !== 0) process.exit(1);
+// A file that is gone from the sources must be gone from the page.
+await rm(output, { recursive: true, force: true });
+await mkdir(output, { recursive: true });
+await cp(static_files, output, { recursive: true });
 
-mkdirSync(folder, { recursive: true });
-cpSync(join(here, "static"), folder, { recursive: true });
-await build({
-  entryPoints: [join(here, "src", "main.ts")],
-  outfile: join(folder, "main.js"),
+const { metafile } = await build({
+  absWorkingDir: here,
+  entryPoints: ["src/main.ts"],
+  outdir: output,
   bundle: true,
   minify: true,
+  sourcemap: true,
   format: "esm",
   target: "es2022",
-  sourcemap: true,
+  metafile: true,
   logLevel: "warning",
 });
+
+// Make's form, in which a space of a path is escaped. The folder of the static files stands for a
+// file that comes or goes.
+const copied = await readdir(static_files, { recursive: true });
+const inputs = [
+  ...Object.keys(metafile.inputs),
+  static_files,
+  ...copied.map((name) => join(static_files, name)),
+].map((path) => resolve(here, path));
+const escape = (path) => path.replaceAll(" ", "\\ ");
+await mkdir(dirname(dependency_file), { recursive: true });
+await writeFile(
+  dependency_file,
+  `${escape(join(output, "main.js"))}: ${inputs.map(escape).join(" \\\n  ")}\n`,
+);
