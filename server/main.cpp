@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -77,18 +78,25 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
 }
 
 /// One line that names what was wrong and what is allowed there.
-std::string describe(const CLI::App& app, const CLI::ParseError& error) {
-  std::string allowed;
+std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::string allowed, wrong = error.what();
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
     for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-      allowed += (allowed.empty() ? "" : ", ") + sub->get_name();
-    allowed += ", --help, --version";
-  } else {
-    for (const CLI::Option* option : chosen.front()->get_options())
-      allowed += (allowed.empty() ? "" : ", ") + option->get_name();
+      allowed += sub->get_name() + ", ";
+    if (argc > 1) wrong = std::string("unknown command ") + argv[1];
+    return wrong + "; allowed: " + allowed + "--help, --version";
   }
-  return std::string(error.what()) + "; allowed: " + allowed;
+  for (const CLI::Option* option : chosen.front()->get_options())
+    allowed += (allowed.empty() ? "" : ", ") + option->get_name();
+  // The library lists what it did not understand from behind; the first one is the cause.
+  const std::vector<std::string> rest = chosen.front()->remaining();
+  for (int i = 1; i < argc; ++i) {
+    if (std::find(rest.begin(), rest.end(), argv[i]) == rest.end()) continue;
+    wrong = std::string("unknown option ") + argv[i];
+    break;
+  }
+  return wrong + "; allowed: " + allowed;
 }
 
 int run(int argc, char** argv) {
@@ -108,7 +116,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // help or version
-    std::fprintf(stderr, "weft: %s\n", describe(app, error).c_str());
+    std::fprintf(stderr, "weft: %s\n", describe(app, error, argc, argv).c_str());
     return 2;
   }
   for (const std::string& text : serve_settings)

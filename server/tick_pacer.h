@@ -33,22 +33,28 @@ class RealTimeMeter {
   void restart(double now) {
     before_ = current_ = 0;
     before_start_ = current_start_ = now;
+    started_ = false;
   }
 
+  /// A tick is done. Time counts from the first one on, which therefore adds nothing itself.
   void add(double simulated, double now) {
-    if (now - current_start_ >= kPeriod) {
-      before_ = current_;
-      before_start_ = current_start_;
-      current_ = 0;
-      current_start_ = now;
+    if (!started_) {
+      restart(now);
+      started_ = true;
+      return;
     }
     current_ += simulated;
+    if (now - current_start_ < kPeriod) return;
+    before_ = current_;
+    before_start_ = current_start_;
+    current_ = 0;
+    current_start_ = now;
   }
 
   /// @param expected  the answer while there is too little to judge by
   double factor(double now, double expected) const {
     const double elapsed = now - before_start_;
-    return elapsed < kPeriod / 2 ? expected : (before_ + current_) / elapsed;
+    return !started_ || elapsed < kPeriod / 2 ? expected : (before_ + current_) / elapsed;
   }
 
  private:
@@ -56,6 +62,7 @@ class RealTimeMeter {
 
   double before_ = 0, current_ = 0;  // simulated in the period before and in this one [s]
   double before_start_ = 0, current_start_ = 0;
+  bool started_ = false;
 };
 
 }  // namespace weft::server

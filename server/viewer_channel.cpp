@@ -119,7 +119,7 @@ void ViewerChannel::pump() {
   ++frames_sent_;
   // Due times follow one another without drift, but do not pile up behind a pause.
   const double interval = frame_interval();
-  next_frame_time_ = std::min(std::max(next_frame_time_ + interval, now), now + interval);
+  next_frame_time_ = (now - next_frame_time_ < interval ? next_frame_time_ : now) + interval;
   start({frame.bytes, true});
 }
 

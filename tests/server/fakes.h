@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "proto/commands.h"
+#include "server/room.h"
+#include "server/room_output.h"
+#include "server/viewer_channel.h"
+
+// A clock that is set by hand, a stream that writes when it is told to, and an output that remembers.
+
+namespace weft::server {
+
+struct FakeClock {
+  double now = 100;
+  Clock clock() {
+    return [this] { return now; };
+  }
+};
+
+inline std::string text_of(const Message& message) {
+  return {static_cast<const char*>(message.bytes.data()), message.bytes.size()};
+}
+
+/// A viewer's connection that never writes by itself.
+struct FakeStream : ViewerStream {
+  std::vector<std::string> written;  ///< messages whose write was started
+  int in_flight = 0, most_in_flight = 0;
+  std::optional<std::uint16_t> closed;
+  ViewerChannel* channel = nullptr;
+
+  void write(const Message& message) override {
+    written.push_back(text_of(message));
+    most_in_flight = std::max(most_in_flight, ++in_flight);
+  }
+  void close(std::uint16_t code, const std::string&) override { closed = code; }
+
+  /// The write in flight is done.
+  void finish_write() {
+    --in_flight;
+    channel->on_written();
+  }
+  /// All that can be written without further acks.
+  void drain() {
+    while (in_flight > 0) finish_write();
+  }
+};
+
+inline Frame fake_frame(std::uint32_t sequence) {
+  return {SharedBytes("frame " + std::to_string(sequence)), sequence};
+}
+
+/// What a room has said.
+struct RecordingOutput : RoomOutput {
+  std::vector<std::pair<proto::ViewerId, std::string>> sent;  ///< text; viewer 0: to all
+  std::vector<std::string> binary;
+  std::vector<std::string> frames;
+  bool viewers_want_frames = true;
+
+  void send(proto::ViewerId viewer, Message message) override {
+    if (message.binary)
+      binary.push_back(text_of(message));
+    else
+      sent.emplace_back(viewer, text_of(message));
+  }
+  void broadcast(Message message) override { sent.emplace_back(0, text_of(message)); }
+  void set_frame_rate(double) override {}
+  void offer_mesh(std::uint64_t, SharedBytes) override {}
+  void welcome_done(proto::ViewerId) override {}
+  bool wants_frames() const override { return viewers_want_frames; }
+  void offer_frame(Frame frame) override { frames.push_back(text_of({frame.bytes, true})); }
+
+  /// The last message with this `op` (and, for results and errors, this id).
+  nlohmann::json last(const std::string& op, const nlohmann::json& id = nullptr) const {
+    for (auto it = sent.rbegin(); it != sent.rend(); ++it) {
+      const auto message = nlohmann::json::parse(it->second);
+      if (message["op"] == op && (id.is_null() || message.value("id", nlohmann::json()) == id))
+        return message;
+    }
+    return nullptr;
+  }
+  std::size_t count(const std::string& op) const {
+    std::size_t found = 0;
+    for (const auto& [viewer, text] : sent)
+      if (nlohmann::json::parse(text)["op"] == op) ++found;
+    return found;
+  }
+};
+
+/// A small cloth hung by its upper corners.
+inline WorldDef small_scene(const std::string& name) {
+  if (name != "small" && name != "other") throw DefinitionError("scene", name, "small or other");
+  WorldDef def;
+  def.cloth.rows = name == "small" ? 6 : 5;
+  def.cloth.columns = 7;
+  def.cloth.width = def.cloth.height = 0.5;
+  def.cloth.origin = Vec3d(-0.25, 1, 0);
+  def.pins = {{0, 0}, {6, 0}};
+  return def;
+}
+
+/// A room with a fake clock and an output that remembers.
+struct TestRoom {
+  explicit TestRoom(bool paused = true) {
+    RoomOptions options;
+    options.scene = "small";
+    options.scene_names = {"small", "other"};
+    options.paused = paused;
+    room = std::make_unique<Room>(options, small_scene, output, clock.clock(), metrics);
+  }
+
+  void join(proto::ViewerId viewer) { room->take({viewer, 0, Join{}}); }
+  void leave(proto::ViewerId viewer) { room->take({viewer, 0, Leave{}}); }
+
+  /// Sends a command as its JSON text would arrive and returns the answer (null without id).
+  nlohmann::json say(proto::ViewerId viewer, const std::string& text) {
+    auto request = proto::parse_request(text);
+    if (!request) throw std::runtime_error("the test's own command is wrong: " + text);
+    room->take({viewer, ++number, *request});
+    while (room->advancing()) room->advance_until(clock.now + 1);
+    room->finish_turn();
+    if (!request->id) return nullptr;
+    const auto id = std::get<std::int64_t>(*request->id);
+    const auto result = output.last("result", id);
+    return result.is_null() ? output.last("error", id) : result;
+  }
+
+  void tick(int count) {
+    for (int i = 0; i < count; ++i) {
+      clock.now += room->tick_interval();
+      room->tick();
+      room->finish_turn();
+    }
+  }
+
+  FakeClock clock;
+  RecordingOutput output;
+  Metrics metrics;
+  std::unique_ptr<Room> room;
+  std::uint32_t number = 0;
+};
+
+}  // namespace weft::server
