@@ -1,92 +1,134 @@
-"""Rules on who may know whom, checked on the text of the sources.
+"""Rules on who may know whom and on what a source file may hold, checked on its text.
 
 core knows no socket, no JSON, no thread and no clock; proto knows no physics; server joins the two,
 in its translate files alone; web knows the wire alone.
 """
 
 import re
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from posixpath import normpath
 
-CODE = {".h", ".cpp", ".ts", ".js", ".mjs", ".py"}
 TOP_LEVEL = {"CMakeLists.txt", "server", "core", "web", "proto", "tests", "README.md", "dev", "LICENSE"}
+CPP = {".h", ".cpp"}
+SCRIPT = {".ts", ".js", ".mjs"}
+CODE = CPP | SCRIPT | {".py", ".cmake", ".css", ".html"}
 LONGEST_FILE = 400
-UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|XX" r"X|HA" r"CK)\b")
-MACHINE_PATH = re.compile(r"[\"'(\s=](/work/|/root/|/home/|/farm/)")
-CPP_INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.M)
-JS_IMPORT = re.compile(r"(?:from|import)\s*\(?\s*[\"']([^\"']+)[\"']")
+# Files that people copy into their own work as one piece.
+ONE_PIECE = {"proto/python/weft.py"}
+ONLY_WITH_ASSIMP = "core/geometry/mesh_file.cpp"
 
-# Room -> (headers of ours that it may include, headers of others that it must not).
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">]', re.M)
+THREADS = (r"thread|mutex|shared_mutex|future|condition_variable|semaphore|barrier|latch|stop_token|"
+           r"atomic|pthread\.h")
+SOCKETS = r"sys/.*|netinet/.*|arpa/.*|netdb\.h|unistd\.h|poll\.h"
+CLOCKS = r"chrono|ctime|time\.h"
+# Room -> (where its own headers may come from, headers of others that it must not include).
 ROOMS = {
-    "core": (("core/",), re.compile(
-        r"^(boost/|nlohmann/|spdlog/|CLI/|thread$|mutex$|future$|atomic$|condition_variable$|"
-        r"shared_mutex$|chrono$|ctime$|time\.h$|sys/|netinet/|arpa/|unistd\.h$|pthread\.h$)")),
-    "proto": (("proto/",), re.compile(r"^(boost/|Eigen/|assimp/|spdlog/|CLI/|thread$|mutex$|sys/)")),
-    "server": (("server/", "core/", "proto/"), re.compile(r"^(assimp/)")),
+    "core": (("core",), re.compile(
+        rf"(boost/.*|nlohmann/.*|spdlog/.*|CLI/.*|{THREADS}|{SOCKETS}|{CLOCKS})$")),
+    "proto": (("proto",), re.compile(
+        rf"(boost/.*|Eigen/.*|assimp/.*|hwy/.*|spdlog/.*|CLI/.*|{THREADS}|{SOCKETS}|{CLOCKS})$")),
+    "server": (("server", "core", "proto"), re.compile(r"(assimp/.*|hwy/.*)$")),
+    "tests/core": (("core", "tests"), re.compile(r"(boost/.*|nlohmann/.*)$")),
+    "tests/laws": (("core", "tests"), re.compile(r"(boost/.*|nlohmann/.*)$")),
+    "tests/proto": (("proto", "tests"), re.compile(r"(boost/.*|Eigen/.*)$")),
 }
+CLOCK_USE = re.compile(r"std::chrono|\b(clock_gettime|gettimeofday|random_device)\b")
+
+IMPORT = re.compile(
+    r"""^[ \t]*(?:import|export)\b[^;'"]*?\bfrom\s*['"]([^'"]+)['"]"""
+    r"""|^[ \t]*import\s*['"]([^'"]+)['"]|\bimport\(\s*['"]([^'"]+)['"]""", re.M)
+# Folder -> (what of ours it may import, packages it may import).
+SCRIPT_ROOMS = {
+    "web/src": (("web/", "proto/js/"), re.compile(r"three(/.*)?$")),
+    "proto/js": (("proto/js/",), re.compile(r"(ws|node:.*)$")),
+}
+
+UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|XX" r"X|HA" r"CK)\b")
+MACHINE_PATH = re.compile(r"(?<![\w./-])/(?:work|root|home|Users|farm)/\w|/tmp/\w")
+DOWNLOAD_ADDRESS = re.compile(r'"resolved"\s*:')
+
+
+def room_of(name, rooms):
+    """The entry of `rooms` for the folder that the file lies in, or None."""
+    return next((room for room in rooms if name.as_posix().startswith(room + "/")), None)
 
 
 def cpp_problems(name, text):
-    room = name.parts[0]
-    for quote, header in CPP_INCLUDE.findall(text):
-        if room in ROOMS:
-            allowed, forbidden = ROOMS[room]
-            if quote == '"' and "/" in header and not header.startswith(allowed):
+    headers = INCLUDE.findall(text)
+    room = room_of(name, ROOMS)
+    if room:
+        own, forbidden = ROOMS[room]
+        for quote, header in headers:
+            if quote == '"' and header.split("/")[0] not in own and is_from_root(header):
                 yield f"{room} must not include {header}"
-            if quote == "<" and forbidden.match(header):
+            if forbidden.match(header):
                 yield f"{room} must not include <{header}>"
-        if quote == '"' and not header.startswith(("core/", "proto/", "server/", "tests/")):
+    for quote, header in headers:
+        if quote == '"' and not is_from_root(header):
             yield f"{header} is not included from the root"
-        if header.startswith("assimp/") and name.as_posix() != "core/geometry/mesh_file.cpp":
-            yield "only core/geometry/mesh_file.cpp may include assimp"
-    if room == "server" and not name.stem.startswith("translate"):
-        headers = [header for _, header in CPP_INCLUDE.findall(text)]
-        physics = [h for h in headers if h.startswith("core/")]
-        wire = [h for h in headers if h.startswith("proto/")]
-        if physics and wire and name.suffix == ".cpp":
-            yield f"only server/translate joins core ({physics[0]}) and proto ({wire[0]})"
+        if header.startswith("assimp/") and room != "server" and str(name) != ONLY_WITH_ASSIMP:
+            yield f"only {ONLY_WITH_ASSIMP} may include assimp"
+    if room == "core" and CLOCK_USE.search(text):
+        yield "core must not read a clock"
+    if room == "server" and not name.name.startswith("translate"):
+        sides = {header.split("/")[0] for _, header in headers}
+        if {"core", "proto"} <= sides:
+            yield "only server/translate joins core and proto"
+    if name.suffix == ".h" and not name.stem.endswith("-inl") and "#pragma once" not in text:
+        yield "has no #pragma once"
 
 
-def web_problems(name, text):
-    for target in JS_IMPORT.findall(text):
-        if not target.startswith("."):
-            continue
-        resolved = Path(*_normal((name.parent / target).parts))
-        if resolved.parts[0] != "web" and resolved.parts[:2] != ("proto", "js"):
-            yield f"web must not import {resolved.as_posix()}"
+def is_from_root(header):
+    return header.startswith(("core/", "proto/", "server/", "tests/"))
 
 
-def _normal(parts):
-    result = []
-    for part in parts:
-        if part == "..":
-            result.pop()
-        elif part != ".":
-            result.append(part)
-    return result
+def script_problems(name, text):
+    room = room_of(name, SCRIPT_ROOMS)
+    if not room:
+        return
+    own, packages = SCRIPT_ROOMS[room]
+    for target in (next(filter(None, found)) for found in IMPORT.findall(text)):
+        path = normpath((name.parent / target).as_posix()) if target.startswith(".") else target
+        if not path.startswith(own) and not packages.match(path):
+            yield f"{room} must not import {path}"
+
+
+def text_problems(name, text):
+    if UNFINISHED.search(text):
+        yield "unfinished business is left in it"
+    if MACHINE_PATH.search(text):
+        yield "names a path of somebody's machine"
+    lines = text.count("\n")
+    code = name.suffix in CODE or name.name in {"dev", "CMakeLists.txt"}
+    if code and lines > LONGEST_FILE and name.as_posix() not in ONE_PIECE:
+        yield f"has {lines} lines, more than {LONGEST_FILE}"
 
 
 def file_problems(name, text):
-    if name.suffix in {".h", ".cpp"}:
+    if name.name == "package-lock.json":
+        if DOWNLOAD_ADDRESS.search(text):
+            yield "names the address of a download"
+        return
+    yield from text_problems(name, text)
+    if name.suffix in CPP:
         yield from cpp_problems(name, text)
-    if name.parts[0] == "web" and name.suffix in {".ts", ".js", ".mjs"}:
-        yield from web_problems(name, text)
-    if name.suffix in CODE:
-        if UNFINISHED.search(text):
-            yield "unfinished business is left in the code"
-        if MACHINE_PATH.search(text):
-            yield "names a path of somebody's machine"
-        if text.count("\n") > LONGEST_FILE:
-            yield f"has {text.count(chr(10))} lines, more than {LONGEST_FILE}"
+    if name.suffix in SCRIPT:
+        yield from script_problems(name, text)
 
 
 def problems(root, files):
-    """Yields "file: what is wrong" for the files, given relative to root."""
-    for name in sorted(map(Path, files)):
+    """Yields "file: what is wrong" for the files, whose names are relative to root."""
+    for name in sorted(map(PurePosixPath, files)):
         top = name.parts[0]
         if top not in TOP_LEVEL and not top.startswith("."):
             yield f"{name}: {top} does not belong at the top level"
-        path = root / name
-        if name.suffix not in CODE or not path.is_file():
+        path = Path(root, name)
+        if not path.is_file():
             continue
-        for problem in file_problems(name, path.read_text(encoding="utf-8")):
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue  # a picture, or golden bytes
+        for problem in file_problems(name, text):
             yield f"{name}: {problem}"
