@@ -192,8 +192,11 @@ function readData({ codec, view }) {
   const bytes = count * components * (codec === 0 ? 4 : 8);
   demand(view.byteLength === DATA_BYTES + padded(bytes), 'the values do not fit');
   demandZero(view, DATA_BYTES + bytes, view.byteLength);
-  const Values = codec === 0 ? Float32Array : Float64Array;
-  const values = new Values(view.buffer, view.byteOffset + DATA_BYTES, count * components);
+  const start = view.byteOffset + DATA_BYTES;
+  const values =
+    codec === 0
+      ? new Float32Array(view.buffer, start, count * components)
+      : new Float64Array(view.buffer, start, count * components);
   demandFinite(values);
   return {
     type: 'data',

@@ -1,0 +1,866 @@
+"""Client of a Weft server: one shared cloth, stepped on the server, seen and held from here.
+
+It speaks weft.v1 (proto/README.md) over the package `websockets` (10.4) and needs nothing else. Asynchronous:
+
+    async with weft.connect("ws://127.0.0.1:8080/ws", name="script") as cloth:
+        hit = await cloth.pick([0, 1, 3], [0, 0, -1])
+        async with cloth.drag(hit, radius=0.05) as hand:
+            await hand.move([0, 1.5, 1])
+        frame = await cloth.next_frame()
+
+and the same, blocking:
+
+    with weft.open("ws://127.0.0.1:8080/ws") as cloth:
+        cloth.pause()
+        print(cloth.advance(60)["hash"])
+
+Units are SI and y is up. Vertex data has one row a vertex: a numpy array if numpy is installed, else
+`Rows`, a read-only sequence of tuples.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import json
+import math
+import operator
+import struct
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+try:
+    import numpy
+except ImportError:  # optional; everything works without it
+    numpy = None
+
+try:
+    import websockets
+except ImportError:  # only the decoders work without it
+    websockets = None
+
+if sys.byteorder != "little":
+    raise ImportError("weft.py reads little-endian data as it is and needs such a machine")
+
+SUBPROTOCOL = "weft.v1"
+REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.5
+MOST_MESSAGE_BYTES = 256 * 2**20
+
+# --- errors ---
+
+
+class WeftError(Exception):
+    """Anything that this module raises."""
+
+
+class ProtocolError(WeftError):
+    """Bytes that are no message of weft.v1."""
+
+
+class ConnectionLost(WeftError):
+    """The connection ended before the answer came, or there is none."""
+
+    def __init__(self, code: int, reason: str):
+        super().__init__(f"{code} {reason}".strip())
+        self.code, self.reason = code, reason
+
+
+class CommandError(WeftError):
+    """The server refused a command; the fields are those of its `error` message."""
+
+    def __init__(self, message: dict):
+        super().__init__(message.get("message", ""))
+        self.code: str = message.get("code", "internal")
+        self.command: str | None = message.get("command")
+        self.field: str | None = message.get("field")
+        self.value: Any = message.get("value")
+        self.limit: dict | None = message.get("limit")
+        self.hint: str | None = message.get("hint")
+
+
+# --- binary messages (sections 6 to 8 of the specification) ---
+
+_FRAME, _MESH, _DATA, _ACK = 1, 2, 3, 4
+_VERSION = 1
+_KEY, _JUMP, _PAUSED = 1, 2, 4
+_POSITIONS, _GRABS, _APPLIED = 1, 2, 3
+_REST, _TRIANGLES, _UV, _COLLIDER_POSITIONS, _COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
+_COMMON = struct.Struct("<BBBBIII")
+_FRAME_FIELDS = struct.Struct("<QddIIIIfI")
+_MESH_FIELDS = struct.Struct("<IIII")
+_DATA_FIELDS = struct.Struct("<QIIII")
+_SECTION = struct.Struct("<HHI")
+_GRAB = struct.Struct("<II7f")
+_APPLIED_ENTRY = struct.Struct("<II")
+_ACK_FIELDS = struct.Struct("<BBHI")
+_TICK_END = 2**53
+
+
+class Rows(Sequence):
+    """Rows of numbers, read-only; `flat` is all of them as a memoryview."""
+
+    def __init__(self, flat: memoryview, width: int):
+        self.flat, self.width = flat, width
+
+    def __len__(self) -> int:
+        return len(self.flat) // self.width
+
+    def __getitem__(self, index):
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        start = range(len(self))[index] * self.width
+        return tuple(self.flat[start : start + self.width])
+
+
+@dataclass(frozen=True)
+class GrabSample:
+    """A hand at the tick of a frame; `force` [N] is a magnitude."""
+
+    id: int
+    viewer: int
+    held: tuple[float, float, float]
+    target: tuple[float, float, float]
+    force: float
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where the vertices are at a tick."""
+
+    tick: int
+    time: float  # simulated [s]
+    server_time: float  # server's clock [s]
+    sequence: int
+    reference: int
+    epoch: int
+    flags: int
+    positions: Any  # one row of 3 a vertex [m]
+    grabs: tuple[GrabSample, ...]
+    applied: dict[int, int]  # viewer to the number of its last message that is included
+
+    @property
+    def jump(self) -> bool:
+        """The state was replaced (reset, load, recovery)."""
+        return bool(self.flags & _JUMP)
+
+    @property
+    def paused(self) -> bool:
+        return bool(self.flags & _PAUSED)
+
+
+@dataclass(frozen=True)
+class ColliderMesh:
+    collider: int  # place in the list of the `mesh` message
+    positions: Any  # one row of 3 a vertex [m]
+    triangles: Any  # one row of 3 a triangle
+
+
+@dataclass(frozen=True)
+class MeshData:
+    """What stays while an epoch lasts."""
+
+    rest_positions: Any  # one row of 3 a vertex [m]
+    triangles: Any  # one row of 3 a triangle
+    uv: Any  # one row of 2 a vertex
+    colliders: tuple[ColliderMesh, ...]
+
+
+@dataclass(frozen=True)
+class Data:
+    """Answer to a binary query."""
+
+    tick: int
+    transfer: int
+    components: int
+    values: Any  # one row of `components` each
+
+
+@dataclass(frozen=True)
+class Hit:
+    """A point of the cloth."""
+
+    triangle: int
+    barycentric: tuple[float, float, float]
+    position: tuple[float, float, float]
+    particle: int  # the nearest corner
+    distance: float  # along the ray [m]
+
+
+def _demand(condition: bool, message: str) -> None:
+    if not condition:
+        raise ProtocolError(message)
+
+
+def _padded(size: int) -> int:
+    return (size + 7) // 8 * 8
+
+
+def _checksum(message: bytes) -> tuple[int, int]:
+    if numpy is not None:
+        words = numpy.frombuffer(message, "<u4").copy()
+        words[2:4] = 0
+        places = numpy.arange(1, len(words) + 1, dtype=numpy.uint32)
+        return int(words.sum(dtype=numpy.uint32)), int((words * places).sum(dtype=numpy.uint32))
+    words = memoryview(message).cast("I")
+    a = sum(words) - words[2] - words[3]
+    b = sum(map(operator.mul, words, range(1, len(words) + 1))) - 3 * words[2] - 4 * words[3]
+    return a % 2**32, b % 2**32
+
+
+def _read_common(message: bytes, type_: int, least: int, last_codec: int) -> tuple[int, int]:
+    """Checks what all messages share; returns codec and flags."""
+    _demand(len(message) >= _COMMON.size, "the message is too short")
+    kind, version, codec, flags, length, a, b = _COMMON.unpack_from(message)
+    _demand(kind == type_, "the message is of another type")
+    _demand(version == _VERSION, "unknown version")
+    _demand(codec <= last_codec, "unknown codec")
+    _demand(len(message) >= least, "the message is too short")
+    _demand(length == len(message) and length % 8 == 0, "the length does not fit")
+    _demand(_checksum(message) == (a, b), "the checksum does not fit")
+    return codec, flags
+
+
+def _read_sections(message: bytes, offset: int, count: int) -> dict[tuple[int, int], memoryview]:
+    """Payloads by kind and index."""
+    view, sections = memoryview(message), {}
+    _demand(count <= (len(message) - offset) // _SECTION.size, "too many sections")
+    for _ in range(count):
+        _demand(len(message) - offset >= _SECTION.size, "a section is cut off")
+        kind, index, length = _SECTION.unpack_from(message, offset)
+        offset += _SECTION.size
+        _demand(length <= len(message) - offset, "a section is too long")
+        end = offset + _padded(length)
+        _demand(not any(view[offset + length : end]), "padding is not zero")
+        _demand((kind, index) not in sections, "a section comes twice")
+        sections[kind, index] = view[offset : offset + length]
+        offset = end
+    _demand(offset == len(message), "bytes are left over")
+    return sections
+
+
+def _rows(payload: memoryview | None, format_: str, count: int, width: int):
+    """Exactly so many rows; numbers are finite."""
+    fits = payload is not None and len(payload) == count * width * struct.calcsize(format_)
+    _demand(fits, "a section does not fit")
+    flat = payload.cast(format_)
+    if numpy is not None:
+        rows = numpy.frombuffer(payload, {"f": "<f4", "d": "<f8", "I": "<u4"}[format_])
+        finite = format_ == "I" or bool(numpy.isfinite(rows).all())
+        rows = rows.reshape(count, width)
+    else:
+        rows, finite = Rows(flat, width), format_ == "I" or all(map(math.isfinite, flat))
+    _demand(finite, "a number is not finite")
+    return rows
+
+
+def _triangles(payload: memoryview | None, count: int, vertices: int):
+    rows = _rows(payload, "I", count, 3)
+    _demand(max(payload.cast("I"), default=-1) < vertices, "an index is out of range")
+    return rows
+
+
+def _entries(payload: memoryview | None, layout: struct.Struct) -> list[tuple]:
+    payload = payload or memoryview(b"")
+    _demand(len(payload) % layout.size == 0, "a section does not fit")
+    return list(layout.iter_unpack(payload))
+
+
+def _grab(entry: tuple) -> GrabSample:
+    id_, viewer, *numbers = entry
+    _demand(all(map(math.isfinite, numbers)), "a number is not finite")
+    return GrabSample(id_, viewer, tuple(numbers[0:3]), tuple(numbers[3:6]), numbers[6])
+
+
+def decode_frame(message: bytes) -> Frame:
+    start = _COMMON.size + _FRAME_FIELDS.size
+    _, flags = _read_common(message, _FRAME, start, 0)
+    fields = _FRAME_FIELDS.unpack_from(message, _COMMON.size)
+    tick, time, server_time, sequence, reference, epoch, vertices, step, count = fields
+    _demand(tick < _TICK_END, "the tick is too large")
+    _demand(math.isfinite(time) and math.isfinite(server_time), "a time is not finite")
+    alone = bool(flags & _KEY) and reference == sequence and step == 0
+    _demand(alone, "a float32 frame builds on no other")
+    sections = _read_sections(message, start, count)
+    return Frame(
+        tick=tick,
+        time=time,
+        server_time=server_time,
+        sequence=sequence,
+        reference=reference,
+        epoch=epoch,
+        flags=flags,
+        positions=_rows(sections.get((_POSITIONS, 0)), "f", vertices, 3),
+        grabs=tuple(map(_grab, _entries(sections.get((_GRABS, 0)), _GRAB))),
+        applied=dict(_entries(sections.get((_APPLIED, 0)), _APPLIED_ENTRY)),
+    )
+
+
+def _collider(sections: dict, index: int) -> ColliderMesh:
+    corners = sections[_COLLIDER_POSITIONS, index]
+    faces = sections.get((_COLLIDER_TRIANGLES, index))
+    _demand(faces is not None, "a collider has no triangles")
+    vertices = len(corners) // 12
+    positions = _rows(corners, "f", vertices, 3)
+    return ColliderMesh(index, positions, _triangles(faces, len(faces) // 12, vertices))
+
+
+def decode_mesh(message: bytes) -> MeshData:
+    start = _COMMON.size + _MESH_FIELDS.size
+    _read_common(message, _MESH, start, 0)
+    fields = _MESH_FIELDS.unpack_from(message, _COMMON.size)
+    vertices, triangles, collider_meshes, count = fields
+    sections = _read_sections(message, start, count)
+    indices = sorted(index for kind, index in sections if kind == _COLLIDER_POSITIONS)
+    faces = sum(kind == _COLLIDER_TRIANGLES for kind, _ in sections)
+    promised = len(indices) == collider_meshes and faces == collider_meshes
+    _demand(promised, "the number of collider meshes does not fit")
+    return MeshData(
+        rest_positions=_rows(sections.get((_REST, 0)), "f", vertices, 3),
+        triangles=_triangles(sections.get((_TRIANGLES, 0)), triangles, vertices),
+        uv=_rows(sections.get((_UV, 0)), "f", vertices, 2),
+        colliders=tuple(_collider(sections, index) for index in indices),
+    )
+
+
+def decode_data(message: bytes) -> Data:
+    start = _COMMON.size + _DATA_FIELDS.size
+    codec, _ = _read_common(message, _DATA, start, 1)
+    tick, transfer, count, components, zero = _DATA_FIELDS.unpack_from(message, _COMMON.size)
+    _demand(tick < _TICK_END and zero == 0 and 1 <= components <= 16, "the header does not fit")
+    size = count * components * (4 if codec == 0 else 8)
+    _demand(len(message) == start + _padded(size), "the values do not fit")
+    _demand(not any(message[start + size :]), "padding is not zero")
+    payload = memoryview(message)[start : start + size]
+    return Data(tick, transfer, components, _rows(payload, "fd"[codec], count, components))
+
+
+def decode_binary(message: bytes) -> Frame | MeshData | Data:
+    """Reads any binary message of a server. Raises ProtocolError and nothing else on the bytes."""
+    decoders = {_FRAME: decode_frame, _MESH: decode_mesh, _DATA: decode_data}
+    decode = decoders.get(message[0] if message else 0)
+    _demand(decode is not None, "unknown type")
+    return decode(message)
+
+
+def encode_ack(sequence: int) -> bytes:
+    """The answer to a frame."""
+    return _ACK_FIELDS.pack(_ACK, _VERSION, 0, sequence)
+
+
+# --- the client ---
+
+
+def _hold_fields(hold) -> dict:
+    """Fields that say where to take hold: a Hit, a particle's number, or a dict with them."""
+    if isinstance(hold, int):
+        return {"particle": hold}
+    if isinstance(hold, Hit):
+        return {"triangle": hold.triangle, "barycentric": list(hold.barycentric)}
+    names = ("triangle", "barycentric") if "triangle" in hold else ("particle",)
+    return {name: hold[name] for name in names}
+
+
+def _without_none(fields: dict) -> dict:
+    return {name: value for name, value in fields.items() if value is not None}
+
+
+class Client:
+    """A viewer of a Weft server. Make one with `connect`.
+
+    Commands return the server's `result` as a dict, or what is said there. They raise CommandError if
+    the server refuses and ConnectionLost if the connection ends first.
+
+    Kept up to date: `welcome`, `mesh` (the text message), `mesh_data`, `frame` (the newest), and the
+    messages `state`, `roster`, `pins`, `grabs`; each is None until it has come.
+    """
+
+    def __init__(self, socket):
+        self._socket = socket
+        self._waiting: dict[int, asyncio.Future] = {}
+        self._transfers: dict[int, tuple[asyncio.Future, dict]] = {}
+        self._listeners: dict[str, list[Callable[[Any], None]]] = {}
+        self._next_id = self._next_drag = 1
+        self._changed = asyncio.Condition()
+        self._end: WeftError | None = None
+        self.welcome: dict | None = None
+        self.mesh: dict | None = None
+        self.mesh_data: MeshData | None = None
+        self.frame: Frame | None = None
+        self.state: dict | None = None
+        self.roster: dict | None = None
+        self.pins: dict | None = None
+        self.grabs: dict | None = None
+        self._reader = asyncio.create_task(self._read())
+
+    @property
+    def viewer(self) -> int:
+        """Own number among the viewers; 0 before `welcome`."""
+        return self.welcome["viewer"] if self.welcome else 0
+
+    def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
+        """Calls `listener` with each message of this name (`frame`, `mesh`, `state`, `notice`, …,
+        `refused` for errors that answer no call). Returns a function that ends it."""
+        listeners = self._listeners.setdefault(name, [])
+        listeners.append(listener)
+        return lambda: listeners.remove(listener)
+
+    async def close(self) -> None:
+        await self._socket.close()
+        await self._reader
+
+    # --- commands (section 5 of the specification) ---
+
+    async def request(self, op: str, **fields) -> dict:
+        """Sends any command and waits for its result."""
+        if self._end:
+            raise self._end
+        id_, self._next_id = self._next_id, self._next_id + 1
+        answer = asyncio.get_running_loop().create_future()
+        self._waiting[id_] = answer
+        try:
+            await self.post(op, id=id_, **fields)
+            return await answer
+        finally:
+            self._waiting.pop(id_, None)
+
+    async def post(self, op: str, **fields) -> None:
+        """Sends a command without waiting for an answer."""
+        if self._end:
+            raise self._end
+        text = json.dumps({"op": op, **fields}, allow_nan=False)
+        try:
+            await self._socket.send(text)
+        except websockets.ConnectionClosed as closed:
+            raise self._end or ConnectionLost(1006, str(closed)) from closed
+
+    async def hello(self, *, name: str | None = None, color: str | None = None) -> dict:
+        return await self.request("hello", **_without_none({"name": name, "color": color}))
+
+    async def pick(self, origin: Iterable[float], direction: Iterable[float]) -> Hit | None:
+        """Where a ray meets the cloth."""
+        result = await self.request("pick", origin=list(origin), direction=list(direction))
+        hit = result["hit"]
+        if hit is None:
+            return None
+        return Hit(
+            hit["triangle"],
+            tuple(hit["barycentric"]),
+            tuple(hit["position"]),
+            hit["particle"],
+            hit["distance"],
+        )
+
+    def drag(self, hold, *, target=None, radius=None, stiffness=None, max_force=None) -> Drag:
+        """A hand; it takes hold with `async with` or `await start()`.
+
+        `hold` is a Hit, a particle's number, or a dict with `particle` or `triangle` and
+        `barycentric`.
+        """
+        number, self._next_drag = self._next_drag, self._next_drag + 1
+        fields = {"radius": radius, "stiffness": stiffness, "max_force": max_force}
+        fields["target"] = None if target is None else list(target)
+        return Drag(self, number, {**_hold_fields(hold), **_without_none(fields)})
+
+    async def pin(self, hold, *, radius: float | None = None) -> dict:
+        return await self.request("pin", **_hold_fields(hold), **_without_none({"radius": radius}))
+
+    async def release(self, *, pin: int | None = None, particle: int | None = None, all=None):
+        """Removes one pin, those of a particle, or all."""
+        fields = {"pin": pin, "particle": particle, "all": all}
+        return await self.request("release", **_without_none(fields))
+
+    async def camera(self, position, target, *, up=None, fov: float | None = None) -> dict:
+        options = _without_none({"up": up, "fov": fov})
+        return await self.request(
+            "camera", position=list(position), target=list(target), **options
+        )
+
+    async def pause(self) -> dict:
+        return await self.request("pause")
+
+    async def resume(self) -> dict:
+        return await self.request("resume")
+
+    async def step(self, n: int = 1) -> dict:
+        return await self.request("step", n=n)
+
+    async def reset(self) -> dict:
+        return await self.request("reset")
+
+    async def speed(self, speed: float) -> dict:
+        return await self.request("speed", speed=speed)
+
+    async def set(self, **values) -> dict:
+        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag."""
+        return await self.request("set", **values)
+
+    async def advance(self, n: int) -> dict:
+        """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash."""
+        return await self.request("advance", n=n)
+
+    async def query(self, what: str, *, format: str | None = None, viewer: int | None = None):
+        """The data of a query; a `Data` if the format is "f32" or "f64"."""
+        options = _without_none({"format": format, "viewer": viewer})
+        return (await self.request("query", what=what, **options))["data"]
+
+    async def hash(self) -> str:
+        return (await self.request("hash"))["hash"]
+
+    async def load(self, scene: str) -> dict:
+        return await self.request("load", scene=scene)
+
+    async def view(self, *, hz: float | None = None, codec: str | None = None) -> dict:
+        return await self.request("view", **_without_none({"hz": hz, "codec": codec}))
+
+    async def ping(self) -> tuple[float, float]:
+        """Round trip and the server's clock minus the own one [s]."""
+        now = asyncio.get_running_loop().time
+        sent = now()
+        answer = await self.request("ping", t=sent)
+        back = now()
+        round_trip = back - sent - (answer["sent"] - answer["received"])
+        return round_trip, (answer["received"] - sent + answer["sent"] - back) / 2
+
+    # --- frames ---
+
+    async def next_frame(self) -> Frame:
+        """The next frame that comes."""
+        before = self.frame
+        await self._until(lambda: self.frame is not before)
+        return self.frame
+
+    async def frame_at(self, tick: int) -> Frame:
+        """The first frame from now on whose tick is at least this one."""
+        await self._until(lambda: self.frame is not None and self.frame.tick >= tick)
+        return self.frame
+
+    async def frames(self) -> AsyncIterator[Frame]:
+        """Newest frames as long as the connection lasts; who is slow misses some."""
+        last = self.frame
+        while True:
+            try:
+                await self._until(lambda: self.frame is not last)
+            except ConnectionLost:
+                return
+            last = self.frame
+            yield last
+
+    # --- inside ---
+
+    async def _until(self, condition: Callable[[], bool]) -> None:
+        async with self._changed:
+            await self._changed.wait_for(lambda: condition() or self._end is not None)
+        if not condition():
+            raise self._end
+
+    async def _ready(self) -> None:
+        """Waits for what a client needs to begin."""
+        await self._until(lambda: self.welcome is not None and self.mesh_data is not None)
+
+    async def _read(self) -> None:
+        fault = None
+        try:
+            async for message in self._socket:
+                await self._take(message)
+        except websockets.ConnectionClosed:
+            pass  # the code below tells how
+        except ProtocolError as error:
+            fault = error
+        except (AttributeError, IndexError, KeyError, TypeError) as error:
+            fault = ProtocolError(f"a message is not as it must be: {error!r}")
+        if fault:
+            await self._socket.close(4002, str(fault)[:100])
+        code, reason = self._socket.close_code, self._socket.close_reason
+        self._end = fault or ConnectionLost(code or 1006, reason or "connection lost")
+        for answer in self._waiting.values():
+            if not answer.done():
+                answer.set_exception(self._end)
+        async with self._changed:
+            self._changed.notify_all()
+
+    async def _take(self, message: str | bytes) -> None:
+        if isinstance(message, str):
+            name, value = self._take_text(message)
+        else:
+            name, value = await self._take_binary(message)
+        for listener in list(self._listeners.get(name, ())):
+            try:
+                listener(value)
+            except Exception as error:  # its own fault, not the connection's
+                context = {"message": f"a listener of {name} failed", "exception": error}
+                asyncio.get_running_loop().call_exception_handler(context)
+        async with self._changed:
+            self._changed.notify_all()
+
+    def _take_text(self, text: str) -> tuple[str, Any]:
+        try:
+            message = json.loads(text)
+        except ValueError as error:
+            raise ProtocolError("a text message is not JSON") from error
+        _demand(isinstance(message, dict), "a text message is no object")
+        op = message.get("op", "")
+        if op == "mesh":
+            self.mesh, self.mesh_data = message, None
+            return "", None  # told when its data has come
+        if op == "result":
+            return self._answer(message)
+        if op == "error":
+            return self._refuse(message)
+        if op in ("welcome", "state", "roster", "pins", "grabs"):
+            setattr(self, op, message)
+        return op, message
+
+    def _answer(self, message: dict) -> tuple[str, Any]:
+        answer = self._waiting.get(message.get("id"))
+        if answer is not None and not answer.done():
+            if "binary" in message:
+                self._transfers[message["binary"]["transfer"]] = (answer, message)
+            else:
+                answer.set_result(message)
+        return "result", message
+
+    def _refuse(self, message: dict) -> tuple[str, Any]:
+        answer, error = self._waiting.get(message.get("id")), CommandError(message)
+        if answer is None or answer.done():
+            return "refused", error
+        answer.set_exception(error)
+        return "error", error
+
+    async def _take_binary(self, content: bytes) -> tuple[str, Any]:
+        message = decode_binary(content)
+        if isinstance(message, Data):
+            answer, result = self._transfers.pop(message.transfer, (None, None))
+            if answer is not None and not answer.done():
+                answer.set_result({**result, "data": message})
+            return "data", message
+        if isinstance(message, MeshData):
+            self._check_mesh(message)
+            self.mesh_data = message
+            return "mesh", message
+        await self._socket.send(encode_ack(message.sequence))
+        if self.mesh_data is None or self.mesh["epoch"] != message.epoch:
+            return "", None  # of a mesh that is gone
+        _demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")
+        self.frame = message
+        return "frame", message
+
+    def _check_mesh(self, data: MeshData) -> None:
+        _demand(self.mesh is not None, "a mesh came unannounced")
+        kinds = [collider["kind"] for collider in self.mesh["colliders"]]
+        fits = (
+            len(data.rest_positions) == self.mesh["vertices"]
+            and len(data.triangles) == self.mesh["triangles"]
+            and [c.collider for c in data.colliders]
+            == [i for i, kind in enumerate(kinds) if kind == "mesh"]
+        )
+        _demand(fits, "the mesh is not the one announced")
+
+
+class Drag:
+    """A hand that pulls the cloth towards a target. It repeats the target while it holds."""
+
+    def __init__(self, client: Client, number: int, start: dict):
+        self._client, self._start, self._target = client, start, start.get("target")
+        self._repeater: asyncio.Task | None = None
+        self.number = number
+        self.grab: int | None = None  # the room's number, once it holds
+
+    async def start(self) -> Drag:
+        fields = {"phase": "start", "drag": self.number, **self._start}
+        result = await self._client.request("drag", **fields)
+        self.grab = result["grab"]
+        if self._target is None:
+            self._target = result.get("target")
+        self._repeater = asyncio.create_task(self._repeat())
+        return self
+
+    async def move(self, target: Iterable[float]) -> dict:
+        """Pulls towards another point [m]; returns when it has its place in a tick."""
+        self._target = list(target)
+        fields = {"phase": "move", "drag": self.number, "target": self._target}
+        return await self._client.request("drag", **fields)
+
+    async def end(self) -> dict | None:
+        """Lets go."""
+        if self._repeater is None:
+            return None
+        self._repeater.cancel()
+        self._repeater = None
+        return await self._client.request("drag", phase="end", drag=self.number)
+
+    async def _repeat(self) -> None:
+        while True:
+            await asyncio.sleep(REPEAT_SECONDS)
+            fields = {"phase": "move", "drag": self.number, "target": self._target}
+            try:
+                await self._client.post("drag", **fields)
+            except ConnectionLost:
+                return
+
+    async def __aenter__(self) -> Drag:
+        return await self.start()
+
+    async def __aexit__(self, *error) -> None:
+        try:
+            await self.end()
+        except ConnectionLost:
+            pass
+        except CommandError as refusal:  # the server let go before
+            if refusal.code != "unknown_drag":
+                raise
+
+
+class _Connecting:
+    """What `connect` returns: awaited it is a client, with `async with` one that closes itself."""
+
+    def __init__(self, url: str, name: str | None, color: str | None, timeout: float):
+        self._url, self._hello, self._timeout = url, {"name": name, "color": color}, timeout
+        self._client: Client | None = None
+
+    async def _connect(self) -> Client:
+        try:
+            socket = await websockets.connect(
+                self._url,
+                subprotocols=[SUBPROTOCOL],
+                compression=None,
+                max_size=MOST_MESSAGE_BYTES,
+                open_timeout=self._timeout,
+                close_timeout=self._timeout,
+            )
+        except (OSError, asyncio.TimeoutError, websockets.InvalidHandshake) as error:
+            raise ConnectionLost(1006, f"no connection to {self._url}: {error}") from error
+        self._client = Client(socket)
+        try:
+            _demand(socket.subprotocol == SUBPROTOCOL, f"the server does not speak {SUBPROTOCOL}")
+            try:
+                await asyncio.wait_for(self._client._ready(), self._timeout)
+            except asyncio.TimeoutError as error:
+                raise ConnectionLost(1006, "the server does not begin") from error
+            if any(self._hello.values()):
+                await self._client.hello(**self._hello)
+        except BaseException:
+            await self._client.close()
+            raise
+        return self._client
+
+    def __await__(self):
+        return self._connect().__await__()
+
+    async def __aenter__(self) -> Client:
+        return await self._connect()
+
+    async def __aexit__(self, *error) -> None:
+        await self._client.close()
+
+
+def connect(
+    url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10
+) -> _Connecting:
+    """Joins a server: `client = await connect(url)` or `async with connect(url) as client`."""
+    return _Connecting(url, name, color, timeout)
+
+
+# --- blocking ---
+
+
+class SyncDrag:
+    """A hand, blocking. Use it with `with`, or call `start` and `end`."""
+
+    def __init__(self, owner: SyncClient, drag: Drag):
+        self._owner, self._drag = owner, drag
+
+    @property
+    def grab(self) -> int | None:
+        return self._drag.grab
+
+    def start(self) -> SyncDrag:
+        self._owner._run(self._drag.start())
+        return self
+
+    def move(self, target: Iterable[float]) -> dict:
+        return self._owner._run(self._drag.move(target))
+
+    def end(self) -> dict | None:
+        return self._owner._run(self._drag.end())
+
+    def __enter__(self) -> SyncDrag:
+        return self.start()
+
+    def __exit__(self, *error) -> None:
+        self._owner._run(self._drag.__aexit__(*error))
+
+
+class SyncClient:
+    """A client whose commands block; an event loop of its own runs in a thread of its own.
+
+    It has the commands and properties of `Client`. Listeners are called in that thread.
+    """
+
+    def __init__(self, url: str, *, name=None, color=None, timeout: float = 10):
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="weft", daemon=True)
+        self._thread.start()
+        try:
+            joining = connect(url, name=name, color=color, timeout=timeout)
+            self._client: Client = self._run(joining._connect())
+        except BaseException:
+            self._stop()
+            raise
+
+    def _run(self, coroutine):
+        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result()
+
+    def _stop(self) -> None:
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def close(self) -> None:
+        if not self._loop.is_closed():
+            self._run(self._client.close())
+            self._stop()
+
+    def __enter__(self) -> SyncClient:
+        return self
+
+    def __exit__(self, *error) -> None:
+        self.close()
+
+    def drag(self, hold, **options) -> SyncDrag:
+        return SyncDrag(self, self._client.drag(hold, **options))
+
+    def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
+        return self._client.on(name, listener)
+
+    def __getattr__(self, name: str):
+        if name in _PROPERTIES:
+            return getattr(self._client, name)
+        raise AttributeError(name)
+
+
+_PROPERTIES = frozenset(
+    ("viewer", "welcome", "mesh", "mesh_data", "frame", "state", "roster", "pins", "grabs")
+)
+
+
+def _blocking(method):
+    @functools.wraps(method)
+    def call(self, *args, **options):
+        return self._run(method(self._client, *args, **options))
+
+    return call
+
+
+for _name in (
+    "request post hello pick pin release camera pause resume step reset speed set advance query "
+    "hash load view ping next_frame frame_at"
+).split():
+    setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
+
+
+def open(url: str, *, name=None, color=None, timeout: float = 10) -> SyncClient:
+    """Joins a server, blocking; use it with `with`."""
+    return SyncClient(url, name=name, color=color, timeout=timeout)
