@@ -57,10 +57,8 @@ void Contact<Real>::reset() {
 }
 
 template <class Real>
-void Contact<Real>::begin_tick(const ClothState<Real>&, double tick_seconds, Profile&) {
+void Contact<Real>::begin_tick(double tick_seconds) {
   tick_seconds_ = static_cast<Real>(tick_seconds);
-  // Between ticks the cloth may have been put elsewhere; the planes know nothing of that.
-  rows_built_ = false;
 }
 
 template <class Real>
@@ -75,7 +73,8 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) 
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
   push_out(state, dt);
-  solve_rows(state, dt, profile);
+  aim_rows(state, dt);
+  solve_rows(state, profile);
   certify(state, dt);
 }
 
@@ -83,7 +82,8 @@ template <class Real>
 void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
-  solve_rows(state, dt, profile);
+  aim_rows(state, dt);
+  solve_rows(state, profile);
 }
 
 template <class Real>

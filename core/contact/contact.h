@@ -33,9 +33,11 @@ template <class Real>
 struct ContactRow {
   std::array<Index, 3> particle = {0, 0, 0};
   std::array<Real, 3> weight = {0, 0, 0};
+  std::array<Real, 3> share = {0, 0, 0};  ///< of each in a change of the row's velocity, by mass
   int count = 0;
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
   Real offset = 0;                         ///< [m]
+  Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
 };
 
 /// Contact of one cloth with fixed objects (CONTACT.md's recipe for static objects).
@@ -63,7 +65,10 @@ class Contact {
   void reset();
 
   /// @param tick_seconds  length of the tick [s]
-  void begin_tick(const ClothState<Real>& state, double tick_seconds, Profile& profile);
+  void begin_tick(double tick_seconds);
+
+  /// Says that masses changed (a pin) or that the cloth was put elsewhere: the planes are not valid.
+  void invalidate_rows() { rows_built_ = false; }
 
   /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
   /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
@@ -105,7 +110,8 @@ class Contact {
   void collect(const ClothState<Real>& state, Profile& profile);
   void measure_clearance(const ClothState<Real>& state, Profile& profile);
   void mark_near(const ClothState<Real>& state);
-  void collect_pairs(const ClothState<Real>& state, Profile& profile);
+  void collect_particle_pairs(const ClothState<Real>& state, Profile& profile);
+  void collect_feature_pairs(const ClothState<Real>& state, Profile& profile);
   Real analytic_clearance(const Vec3<Real>& p, Real reach) const;
   Real clearance(const Vec3<Real>& p, Real reach) const;
   template <class Visit>
@@ -123,8 +129,9 @@ class Contact {
   void drop_deeper_rows(std::size_t first, const ClothState<Real>& state);
 
   // contact_solve.cpp
-  void solve_rows(ClothState<Real>& state, Real dt, Profile& profile);
   void push_out(ClothState<Real>& state, Real dt);
+  void aim_rows(const ClothState<Real>& state, Real dt);
+  void solve_rows(ClothState<Real>& state, Profile& profile);
   void certify(ClothState<Real>& state, Real dt);
 
   ContactDef def_;

@@ -12,6 +12,9 @@ namespace {
 /// nearer is not measured at every step [m].
 constexpr double kClearanceHorizon = 0.1;
 
+/// Ticks of a particle's present motion for which candidates shall hold.
+constexpr double kSkinTicks = 2.5;
+
 /// Collections between two measurements of a particle that is near without having pairs.
 constexpr std::size_t kTurns = 8;
 
@@ -47,7 +50,8 @@ void Contact<Real>::collect(const ClothState<Real>& state, Profile& profile) {
   measure_clearance(state, profile);
   ++collections_;
   mark_near(state);
-  collect_pairs(state, profile);
+  collect_particle_pairs(state, profile);
+  collect_feature_pairs(state, profile);
   x_collected_ = state.x;
   collected_ = true;
 }
@@ -76,7 +80,7 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
   run_chunks(executor_, kChunks, [&](int chunk) {
     const auto c = static_cast<std::size_t>(chunk);
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
-      skin_[i] = std::max(thickness_, state.v[i].norm() * tick_seconds_);
+      skin_[i] = std::max(thickness_ * 2, state.v[i].norm() * tick_seconds_ * Real(kSkinTicks));
       const Real needed = thickness_ + half_length_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
       if (clearance_[i] > needed) continue;
@@ -140,8 +144,9 @@ void Contact<Real>::collect_kind(std::size_t count, std::vector<ContactCandidate
   profile[Stage::broad_phase].work += into.size();
 }
 
+/// Particles against triangles of the meshes; measures their clearance on the way.
 template <class Real>
-void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profile) {
+void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profile& profile) {
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
   fresh_clearance_.resize(state.x.size());
@@ -151,9 +156,6 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
-    const auto at = [&](Index v) -> const Vec3<Real>& {
-      return mesh.positions[static_cast<std::size_t>(v)];
-    };
     collect_kind(active_particles_.size(), particle_pairs_[m], profile, [&](std::size_t n, Found& found) {
       const Index i = active_particles_[n];
       const Real reach = thickness_ + skin(i);
@@ -180,9 +182,31 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
       has_pairs_[p] = has_pairs_[p] || any;
       fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest);
     });
+  }
+  // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
+  for (const Index i : active_particles_) {
+    const auto p = static_cast<std::size_t>(i);
+    const Real fresh = fresh_clearance_[p];
+    clearance_[p] = fresh < thickness_ + skin_[p] ? fresh : std::max(clearance_[p], fresh);
+  }
+}
+
+/// Edges against ridges and triangles against corners of the meshes.
+template <class Real>
+void Contact<Real>::collect_feature_pairs(const ClothState<Real>& state, Profile& profile) {
+  const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
+  const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
+  const auto clear = [&](Index i) { return clearance_[static_cast<std::size_t>(i)]; };
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshShape<Real>& mesh = meshes_[m];
+    const auto at = [&](Index v) -> const Vec3<Real>& {
+      return mesh.positions[static_cast<std::size_t>(v)];
+    };
     collect_kind(near_edges_.size(), edge_pairs_[m], profile, [&](std::size_t n, Found& found) {
       const Edge& e = edges_[static_cast<std::size_t>(near_edges_[n])];
       const Real reach = thickness_ + std::max(skin(e[0]), skin(e[1]));
+      // No point of the edge is nearer than this, by the clearances of its ends.
+      if ((clear(e[0]) + clear(e[1]) - (x(e[0]) - x(e[1])).norm()) / 2 > reach) return;
       Aabb<Real> box;
       box.add(x(e[0]));
       box.add(x(e[1]));
@@ -209,12 +233,6 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
       });
     });
   }
-  // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
-  for (const Index i : active_particles_) {
-    const auto p = static_cast<std::size_t>(i);
-    const Real fresh = fresh_clearance_[p];
-    clearance_[p] = fresh < thickness_ + skin_[p] ? fresh : std::max(clearance_[p], fresh);
-  }
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                    \
@@ -223,7 +241,8 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
   template void Contact<Real>::collect(const ClothState<Real>&, Profile&);                        \
   template void Contact<Real>::measure_clearance(const ClothState<Real>&, Profile&);              \
   template void Contact<Real>::mark_near(const ClothState<Real>&);                                \
-  template void Contact<Real>::collect_pairs(const ClothState<Real>&, Profile&);
+  template void Contact<Real>::collect_particle_pairs(const ClothState<Real>&, Profile&);         \
+  template void Contact<Real>::collect_feature_pairs(const ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

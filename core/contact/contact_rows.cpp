@@ -59,7 +59,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
       const Real left = skin_[i] - moved;
       const Real step = state.v[i].norm() * dt;
       if (!(left >= step * Real(1.5))) return false;
-      const Real wanted = std::max(thickness_ / 4, step * Real(kRowSubsteps));
+      const Real wanted = std::max(thickness_ / 2, step * Real(kRowSubsteps));
       row_reach_[i] = active_[i] ? std::min(left, wanted) : left;
     }
     return true;
@@ -92,6 +92,9 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
     height += weights[k] * normal.dot(state.x[static_cast<std::size_t>(i)]);
   }
   if (!(mobility > 0)) return;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+    row.share[k] =
+        row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
   row.normal = normal;
   row.offset = height - distance;
   rows_.push_back(row);

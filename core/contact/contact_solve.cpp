@@ -27,61 +27,23 @@ constexpr int kCertifyRounds = 3;
 /// What must be left between a particle and an object after every step [m].
 constexpr double kSmallestGap = 1e-5;
 
+/// sum w values: a position or velocity of the row's point of the cloth.
 template <class Real>
 Vec3<Real> weighted(const ContactRow<Real>& row, const Vec3Array<Real>& values) {
-  Vec3<Real> sum = Vec3<Real>::Zero();
-  for (int k = 0; k < row.count; ++k)
-    sum += values[static_cast<std::size_t>(row.particle[static_cast<std::size_t>(k)])] *
-           row.weight[static_cast<std::size_t>(k)];
+  Vec3<Real> sum = values[static_cast<std::size_t>(row.particle[0])] * row.weight[0];
+  for (std::size_t k = 1; k < static_cast<std::size_t>(row.count); ++k)
+    sum += values[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
   return sum;
 }
 
-/// Calls act(particle, share): the change of its velocity for a unit change of the row's velocity.
-template <class Real, class Act>
-void for_each_share(const ContactRow<Real>& row, const std::vector<Real>& inverse_mass, Act&& act) {
-  Real mobility = 0;
+/// Moves the row's point by `change`, shared by mass.
+template <class Real>
+void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<Real>& values) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-    mobility += row.weight[k] * row.weight[k] * inverse_mass[static_cast<std::size_t>(row.particle[k])];
-  if (!(mobility > 0)) return;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-    const auto i = static_cast<std::size_t>(row.particle[k]);
-    if (inverse_mass[i] > 0) act(i, row.weight[k] * inverse_mass[i] / mobility);
-  }
+    values[static_cast<std::size_t>(row.particle[k])] += change * row.share[k];
 }
 
 }  // namespace
-
-/// Normal velocity: no farther down than the thickness within the step, zero when touching. Friction:
-/// the tangential velocity is stopped if that takes at most friction times the normal impulse, else
-/// slowed by as much (Coulomb; eq. (10) of the seed with its k_f).
-template <class Real>
-void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profile) {
-  const Real friction = static_cast<Real>(def_.friction);
-  const Real bounce = static_cast<Real>(def_.restitution);
-  std::uint64_t friction_evaluations = 0;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const ContactRow<Real>& row : rows_) {
-      const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
-      const Vec3<Real> v = weighted(row, state.v);
-      const Real vn = row.normal.dot(v);
-      const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
-      Real target = -room / dt;
-      if (bounce > 0 && room == 0 && vn < -Real(kBounceSpeed)) target = -bounce * vn;
-      const Real push = target - vn;
-      if (!(push > 0)) continue;
-      Vec3<Real> change = row.normal * push;
-      if (friction > 0) {
-        ++friction_evaluations;
-        const Vec3<Real> slip = v - row.normal * vn;
-        const Real speed = slip.norm(), most = friction * push;
-        change -= speed > most ? slip * (most / speed) : slip;
-      }
-      for_each_share(row, state.inverse_mass,
-                     [&](std::size_t i, Real share) { state.v[i] += change * share; });
-    }
-  }
-  profile[Stage::friction].work += friction_evaluations;
-}
 
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
@@ -89,9 +51,48 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
     const Real lack = thickness_ - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
-    for_each_share(row, state.inverse_mass,
-                   [&](std::size_t i, Real share) { state.x[i] += row.normal * (step * share); });
+    share_out<Real>(row, row.normal * step, state.x);
   }
+}
+
+/// Normal velocity that each row must reach: no farther down than the thickness within the step,
+/// none when touching, and a bounce after an impact.
+template <class Real>
+void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
+  const Real bounce = static_cast<Real>(def_.restitution);
+  for (ContactRow<Real>& row : rows_) {
+    const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
+    const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
+    row.least_speed = -room / dt;
+    if (bounce == 0 || room > 0) continue;
+    const Real speed = row.normal.dot(weighted(row, state.v));
+    if (speed < -Real(kBounceSpeed)) row.least_speed = -bounce * speed;
+  }
+}
+
+/// Projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at most
+/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
+template <class Real>
+void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
+  const Real friction = static_cast<Real>(def_.friction);
+  std::uint64_t friction_evaluations = 0;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const ContactRow<Real>& row : rows_) {
+      const Vec3<Real> v = weighted(row, state.v);
+      const Real vn = row.normal.dot(v);
+      const Real push = row.least_speed - vn;
+      if (!(push > 0)) continue;
+      Vec3<Real> change = row.normal * push;
+      if (friction > 0) {
+        ++friction_evaluations;
+        const Vec3<Real> slip = v - row.normal * vn;
+        const Real speed = slip.norm(), most = friction * push;
+        change -= speed > most ? (slip * (most / speed)).eval() : slip;
+      }
+      share_out(row, change, state.v);
+    }
+  }
+  profile[Stage::friction].work += friction_evaluations;
 }
 
 /// Makes sure that the coming drift crosses no plane of a single particle and leaves nobody beyond
@@ -131,8 +132,9 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
 }
 
 #define WEFT_INSTANTIATE(Real)                                                       \
-  template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&);        \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                    \
+  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);              \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);              \
   template void Contact<Real>::certify(ClothState<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

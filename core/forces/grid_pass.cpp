@@ -83,10 +83,11 @@ void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
 
 template <class Real>
 void GridPass<Real>::compute_air_forces(double density, Vec3Array<Real>& force) {
+  const std::ptrdiff_t size = view_.stride * view_.rows;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Real *wind = wind_[k].data(), *v = v_[k].data();
-    Real* slip = slip_[k].data();
-    for (std::size_t i = 0; i < slip_[k].size(); ++i) slip[i] = wind[i] - v[i];
+    const Real *wind = at_origin(wind_[k]), *v = view_.v[k];
+    Real* slip = slip_[k].data() + 2 * view_.stride + kGridMargin;
+    for (std::ptrdiff_t i = 0; i < size; ++i) slip[i] = wind[i] - v[i];
   }
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
   grid_air_forces(view_, pressure, air_tangential_, force.data()->data());

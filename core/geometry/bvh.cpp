@@ -13,6 +13,8 @@ void Bvh<Real>::build(const std::vector<Aabb<Real>>& boxes) {
   if (boxes.empty()) return;
   nodes_.emplace_back();
   split(0, 0, static_cast<Index>(boxes.size()), boxes);
+  leaf_boxes_.clear();
+  for (const Index primitive : order_) leaf_boxes_.push_back(boxes[static_cast<std::size_t>(primitive)]);
 }
 
 template <class Real>
@@ -59,8 +61,11 @@ void Bvh<Real>::refit(const std::vector<Aabb<Real>>& boxes) {
     Node& node = nodes_[n];
     node.box = Aabb<Real>{};
     if (node.count > 0) {
-      for (Index k = 0; k < node.count; ++k)
-        node.box.add(boxes[static_cast<std::size_t>(order_[static_cast<std::size_t>(node.first + k)])]);
+      for (Index k = 0; k < node.count; ++k) {
+        const auto at = static_cast<std::size_t>(node.first + k);
+        leaf_boxes_[at] = boxes[static_cast<std::size_t>(order_[at])];
+        node.box.add(leaf_boxes_[at]);
+      }
     } else {
       node.box.add(nodes_[static_cast<std::size_t>(node.first)].box);
       node.box.add(nodes_[static_cast<std::size_t>(node.first + 1)].box);

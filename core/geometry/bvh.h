@@ -49,7 +49,8 @@ class Bvh {
   void split(std::size_t node, Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
 
   std::vector<Node> nodes_;
-  std::vector<Index> order_;
+  std::vector<Index> order_;             ///< primitives, leaf by leaf
+  std::vector<Aabb<Real>> leaf_boxes_;   ///< their boxes, in that order
 };
 
 template <class Real>
@@ -64,7 +65,10 @@ void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
     const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(--size)])];
     if (!node.box.overlaps(box)) continue;
     if (node.count > 0) {
-      for (Index k = 0; k < node.count; ++k) visit(order_[static_cast<std::size_t>(node.first + k)]);
+      for (Index k = 0; k < node.count; ++k) {
+        const auto at = static_cast<std::size_t>(node.first + k);
+        if (leaf_boxes_[at].overlaps(box)) visit(order_[at]);
+      }
       continue;
     }
     stack[static_cast<std::size_t>(size++)] = node.first + 1;

@@ -32,6 +32,8 @@ void build_default(WorldDef& def) {
   def.cloth.origin = Vec3d(-0.475, 1.85, 0.3);
   def.cloth.u = -Vec3d::UnitY();
   def.cloth.v = Vec3d::UnitX();
+  def.cloth.fabric.stretch_warp = def.cloth.fabric.stretch_weft = 250;
+  def.cloth.fabric.shear = 25;
   for (const Index row : {0, 1, 2, 17, 18, 19}) def.pins.push_back({row * 30, 0});
   def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
   def.environment.wind = Vec3d(0.3, 0, -1.6);

@@ -104,13 +104,14 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
 template <class Real>
 void kick(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from, Vec3Array<Real>& to) {
   const StageTimer timer(tick.profile, Stage::integration, from.size());
-  const bool pulled = tick.pulled();
+  if (tick.pulled()) {
+    for (std::size_t i = 0; i < from.size(); ++i) tick.work.internal[i] += tick.work.external[i];
+  }
+  const Vec3<Real> fall = tick.surroundings.gravity * k.push;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Real w = tick.state.inverse_mass[i];
     if (w == 0) continue;
-    Vec3<Real> a = tick.work.internal[i] * w;
-    if (pulled) a += tick.work.external[i] * w;
-    to[i] = from[i] * k.keep + (a + tick.surroundings.gravity) * k.push;
+    to[i] = from[i] * k.keep + (tick.work.internal[i] * (w * k.push) + fall);
   }
 }
 

@@ -83,7 +83,6 @@ void World<Real>::reset() {
   pins_.next_id = next_pin;
   grabs_.list.clear();
   for (const PinDef& pin_def : def_.pins) pin(pin_def);
-  contact_.reset();
   tick_ = 0;
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;
@@ -94,6 +93,7 @@ template <class Real>
 void World<Real>::accept_state() {
   last_good_ = state_;
   account_.clear();
+  contact_.reset();
 }
 
 template <class Real>
@@ -102,7 +102,7 @@ const TickReport& World<Real>::step() {
   report_.divergence.reset();
   const int substeps = choose_substeps();
   blow_wind();
-  contact_.begin_tick(state_, tick_seconds(), report_.profile);
+  contact_.begin_tick(tick_seconds());
   advance_or_recover(substeps);
   finish_targets();
   report_.tick = ++tick_;
@@ -164,7 +164,6 @@ void World<Real>::advance_or_recover(int substeps) {
     }
     report_.divergence = divergence;
     restore_last_good();
-    contact_.begin_tick(state_, tick_seconds(), report_.profile);
     if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
@@ -206,6 +205,7 @@ template <class Real>
 void World<Real>::restore_last_good() {
   state_.x = last_good_.x;
   state_.v = last_good_.v;
+  contact_.reset();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
   }
@@ -218,11 +218,13 @@ void World<Real>::finish_targets() {
 
 template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
+  contact_.invalidate_rows();
   return add_pin(model_, def, pins_, state_);
 }
 
 template <class Real>
 bool World<Real>::unpin(PinId id) {
+  contact_.invalidate_rows();
   return remove_pin(model_, id, pins_, state_);
 }
 
