@@ -77,16 +77,15 @@ void ViewerChannel::close(std::uint16_t code, const std::string& reason,
   closing_ = true;
   close_code_ = code;
   close_reason_ = reason;
-  queue_.clear();
-  queued_bytes_ = 0;
   waiting_frame_.reset();
-  if (last) queue_.push_back(std::move(*last));
-  // A viewer that does not read would keep the write in flight for ever.
+  // A viewer that does not read would keep its queue and the write in flight for ever.
   if (code == kCloseViewerDoesNotRead || code == kCloseNoPong) {
+    queue_.clear();
     closed_ = true;
     stream_.close(code, reason);
     return;
   }
+  if (last) queue_.push_back(std::move(*last));
   pump();
 }
 

@@ -73,7 +73,8 @@ class ViewerChannel {
   /// The room's rate of frames has changed [1/s].
   void set_frame_rate(double frame_rate);
 
-  /// Says `last` as soon as the stream is free and closes; what waited is dropped.
+  /// Sends what is queued, says `last`, and closes. Frames are dropped, and for a viewer that does not
+  /// read (4000, 4001) everything is.
   void close(std::uint16_t code, const std::string& reason, std::optional<Message> last = {});
 
   bool closing() const { return closing_; }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <string>
 
 #include "proto/frame.h"
@@ -368,14 +369,14 @@ TEST_CASE("there is a limit on the drags of one viewer and on pins") {
 TEST_CASE("a divergence is told to everybody and the cloth stays finite") {
   TestRoom t;
   t.join(1);
-  // A hand of the greatest force and stiffness tears at everything that holds the cloth.
-  t.say(1, R"({"op":"pin","particle":20,"radius":1})");
-  t.say(1, R"({"op":"drag","phase":"start","particle":38,"target":[10000,10000,10000],"stiffness":100000,"max_force":1000000})");
-  t.say(1, R"({"op":"release","all":true})");
-  t.say(1, R"({"op":"advance","n":60})");
+  t.say(1, R"({"op":"advance","n":5})");
+  // No command makes a velocity that is not finite, so the test puts one there itself.
+  const_cast<ServedWorld&>(t.room->world()).state().v[20][1] = NAN;
+  t.say(1, R"({"op":"advance","n":1})");
   for (const Vec3f& x : t.room->world().state().x) CHECK(x.allFinite());
   const json notice = t.output.last("notice");
-  REQUIRE(notice["code"] == "recovered");
+  REQUIRE(notice.is_object());
+  CHECK(notice["code"] == "recovered");
   CHECK(notice["level"] == "warning");
 }
 

@@ -155,14 +155,15 @@ TEST_CASE("the last frame before a pause reaches a viewer with a lower rate") {
   CHECK(v.stream.written.back() == "frame 2");
 }
 
-TEST_CASE("a close waits for the write in flight and says its last word") {
+TEST_CASE("a close waits for what is queued and says its last word") {
   OneViewer v;
   v.channel.offer_frame(fake_frame(1));
+  v.channel.offer_frame(fake_frame(2));
   v.channel.send(text_message("waits"));
   v.channel.close(kCloseGoingAway, "the server stops", text_message("bye"));
   CHECK_FALSE(v.stream.closed);
   v.stream.drain();
-  CHECK(v.stream.written == std::vector<std::string>{"frame 1", "bye"});
+  CHECK(v.stream.written == std::vector<std::string>{"frame 1", "waits", "bye"});
   CHECK(v.stream.closed == kCloseGoingAway);
 }
 

@@ -1,0 +1,101 @@
+"""The command line: what is wrong is named in one line with exit code 2; what is right does what it says."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+from foreign_client import PROGRAM, main
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60)
+
+
+class CommandLine(unittest.TestCase):
+    def test_what_is_wrong_is_named_in_one_line_with_exit_code_2(self):
+        table = [
+            ([], "subcommand"),
+            (["fly"], "fly"),
+            (["--fly"], "--fly"),
+            (["serve", "--prot", "3"], "--prot"),
+            (["serve", "--port", "x"], "--port"),
+            (["serve", "--port", "70000"], "0 to 65535"),
+            (["serve", "--port", "-1"], "0 to 65535"),
+            (["serve", "--rate", "0.1"], "1 to 1000"),
+            (["serve", "--rate", "nan"], "1 to 1000"),
+            (["serve", "--bind", "0.0.0.0"], "--open"),
+            (["serve", "--bind", "here"], "address"),
+            (["serve", "--scene", "nowhere"], "drape-sphere"),
+            (["serve", "--log-level", "loud"], "warning"),
+            (["serve", "--set", "wind"], "key=value"),
+            (["serve", "--port", "0", "--set", "environment.wnd=1,0,0"], "environment.wind"),
+            (["simulate", "--scene", "../default"], "default"),
+            (["simulate", "--ticks", "0"], "1 to 10000000"),
+            (["simulate", "--threads", "65"], "1 to 64"),
+            (["simulate", "--set", "fabric.shear=1e9"], "0 to 1e+06"),
+            (["simulate", "--set", "fabric.shear=nan"], "fabric.shear"),
+            (["simulate", "--set", "cloth.rows=2.5"], "cloth.rows"),
+            (["simulate", "--set", "nothing=1"], "nothing"),
+            (["simulate", "--out", "cloth.stl"], ".obj or .ply"),
+            (["scenes", "--xml"], "--xml"),
+        ]
+        for arguments, named in table:
+            with self.subTest(arguments=arguments):
+                result = run(*arguments)
+                self.assertEqual(result.returncode, 2, result)
+                self.assertEqual(result.stdout, "")
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertIn(named, result.stderr)
+
+    def test_help_and_version_succeed(self):
+        self.assertIn("Examples:", run("--help").stdout)
+        self.assertIn("--port", run("serve", "--help").stdout)
+        version = run("--version")
+        self.assertEqual(version.returncode, 0)
+        self.assertRegex(version.stdout, r"^weft \d+\.\d+\.\d+ \(commit \w+, (GNU|Clang) .+, \w+.*\)\n$")
+
+    def test_scenes_are_listed_for_people_and_programs(self):
+        scenes = json.loads(run("scenes", "--json").stdout)["scenes"]
+        self.assertEqual(scenes[0]["name"], "default")
+        lines = run("scenes").stdout.splitlines()
+        self.assertEqual([line.split()[0] for line in lines], [s["name"] for s in scenes])
+
+    def test_simulate_sums_up_as_json(self):
+        result = json.loads(run("simulate", "--ticks", "30", "--json").stdout)
+        self.assertEqual((result["particles"], result["triangles"], result["ticks"]), (600, 1102, 30))
+        self.assertAlmostEqual(result["simulated_seconds"], 0.5)
+        for key in ("cpu_seconds", "wall_seconds", "real_time_factor", "tick_milliseconds", "stages",
+                    "energy", "strain", "deepest_penetration", "hash", "solver", "substeps", "divergences"):
+            self.assertIn(key, result)
+        self.assertGreater(result["stages"]["stretch"]["work"], 0)
+
+    def test_simulate_gives_the_same_hash_for_any_number_of_threads(self):
+        hashes = {json.loads(run("simulate", "--ticks", "60", "--json", "--threads", n).stdout)["hash"]
+                  for n in ("1", "2", "3")}
+        self.assertEqual(len(hashes), 1)
+
+    def test_settings_change_the_outcome(self):
+        plain = json.loads(run("simulate", "--ticks", "20", "--json").stdout)
+        windy = json.loads(run("simulate", "--ticks", "20", "--json", "--set", "environment.wind=9,0,0",
+                               "--set", "cloth.rows=12").stdout)
+        self.assertNotEqual(plain["hash"], windy["hash"])
+        self.assertEqual(windy["particles"], 240)
+
+    def test_simulate_writes_the_cloth(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for ending, first in ((".obj", None), (".ply", "ply")):
+                path = os.path.join(folder, "cloth" + ending)
+                self.assertEqual(run("simulate", "--ticks", "2", "--out", path).returncode, 0)
+                with open(path, encoding="latin-1") as file:
+                    text = file.read()
+                if first:
+                    self.assertTrue(text.startswith(first))
+                else:
+                    self.assertEqual(sum(line.startswith("v ") for line in text.splitlines()), 600)
+                    self.assertEqual(sum(line.startswith("f ") for line in text.splitlines()), 1102)
+
+
+if __name__ == "__main__":
+    main()
