@@ -1,0 +1,109 @@
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh } from 'three';
+import type { Cloth, MeshData } from '../../proto/js/messages.js';
+import { fabric_material } from './fabric.js';
+
+/** The cloths as they are shown; all share one buffer of positions and one of normals. */
+export class ClothMesh {
+  readonly group = new Group();
+  readonly triangles: Uint32Array;
+  private positions: BufferAttribute;
+  private normals: BufferAttribute;
+
+  constructor(cloths: Cloth[], data: MeshData) {
+    this.triangles = data.triangles;
+    this.positions = new BufferAttribute(data.restPositions.slice(), 3).setUsage(DynamicDrawUsage);
+    this.normals = new BufferAttribute(new Float32Array(data.restPositions.length), 3);
+    this.normals.setUsage(DynamicDrawUsage);
+    const uv = new BufferAttribute(data.uv, 2);
+    const index = new BufferAttribute(data.triangles, 1);
+    for (const cloth of cloths) {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute('position', this.positions);
+      geometry.setAttribute('normal', this.normals);
+      geometry.setAttribute('uv', uv);
+      geometry.setIndex(index);
+      geometry.setDrawRange(cloth.first_triangle * 3, cloth.triangles * 3);
+      const mesh = new Mesh(geometry, fabric_material(...extent(cloth, data)));
+      mesh.castShadow = mesh.receiveShadow = true;
+      mesh.frustumCulled = false; // bounds would have to follow each frame
+      this.group.add(mesh);
+    }
+    this.update(data.restPositions);
+  }
+
+  /** @param positions three values a vertex [m] */
+  update(positions: Float32Array): void {
+    this.positions.array.set(positions);
+    smooth_normals(positions, this.triangles, this.normals.array as Float32Array);
+    this.positions.needsUpdate = this.normals.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    for (const child of this.group.children as Mesh[]) {
+      child.geometry.dispose();
+      const material = child.material as ReturnType<typeof fabric_material>;
+      material.normalMap?.dispose();
+      material.dispose();
+    }
+  }
+}
+
+/**
+ * Normal of each vertex: mean of those of its triangles, weighted by area.
+ * @param normals out; three values a vertex, of unit length
+ */
+export function smooth_normals(
+  positions: Float32Array,
+  triangles: Uint32Array,
+  normals: Float32Array,
+): void {
+  normals.fill(0);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const a = triangles[t] * 3;
+    const b = triangles[t + 1] * 3;
+    const c = triangles[t + 2] * 3;
+    const e1x = positions[b] - positions[a];
+    const e1y = positions[b + 1] - positions[a + 1];
+    const e1z = positions[b + 2] - positions[a + 2];
+    const e2x = positions[c] - positions[a];
+    const e2y = positions[c + 1] - positions[a + 1];
+    const e2z = positions[c + 2] - positions[a + 2];
+    const nx = e1y * e2z - e1z * e2y;
+    const ny = e1z * e2x - e1x * e2z;
+    const nz = e1x * e2y - e1y * e2x;
+    for (const vertex of [a, b, c]) {
+      normals[vertex] += nx;
+      normals[vertex + 1] += ny;
+      normals[vertex + 2] += nz;
+    }
+  }
+  for (let i = 0; i < normals.length; i += 3) {
+    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    normals[i] /= length;
+    normals[i + 1] /= length;
+    normals[i + 2] /= length;
+  }
+}
+
+/** Width and height of a cloth in its plane [m]: how far its points at rest lie apart per uv. */
+function extent(cloth: Cloth, { restPositions, triangles, uv }: MeshData): [number, number] {
+  const sums = [0, 0];
+  const weights = [0, 0];
+  const end = (cloth.first_triangle + cloth.triangles) * 3;
+  for (let t = cloth.first_triangle * 3; t < end; t++) {
+    const a = triangles[t];
+    const b = triangles[t % 3 === 2 ? t - 2 : t + 1];
+    const length = Math.hypot(
+      ...[0, 1, 2].map((axis) => restPositions[a * 3 + axis] - restPositions[b * 3 + axis]),
+    );
+    const du = Math.abs(uv[a * 2] - uv[b * 2]);
+    const dv = Math.abs(uv[a * 2 + 1] - uv[b * 2 + 1]);
+    // Only edges along one of the axes say how long that axis is.
+    const axis = dv < 1e-3 * du ? 0 : du < 1e-3 * dv ? 1 : -1;
+    if (axis < 0) continue;
+    sums[axis] += length;
+    weights[axis] += axis === 0 ? du : dv;
+  }
+  return [sums[0] / weights[0] || 1, sums[1] / weights[1] || 1];
+}

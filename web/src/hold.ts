@@ -1,0 +1,57 @@
+import type { Vector2 } from 'three';
+import type { Drag, WeftClient } from '../../proto/js/index.js';
+import type { Vec3 } from '../../proto/js/messages.js';
+import type { OrbitCamera } from './camera.js';
+import type { ClothHit } from './ray.js';
+
+const RADIUS = 0.03; // of the fabric in the hand [m]
+const NEAREST = 0.1; // of the hand to the eye [m]
+const FARTHEST = 20; // [m]
+
+/** The own hand in the cloth. Its target stays under the pointer at a depth that the wheel sets. */
+export class Hold {
+  readonly triangle: number;
+  readonly barycentric: Vec3;
+  target: Vec3;
+  private drag: Drag;
+  private depth: number;
+
+  /** @param lost called when the hand lets go other than by `end`, with the reason */
+  constructor(
+    client: WeftClient,
+    hit: ClothHit,
+    private camera: OrbitCamera,
+    lost: (reason: string) => void,
+  ) {
+    const { triangle, barycentric, position } = hit;
+    this.triangle = triangle;
+    this.barycentric = barycentric;
+    this.target = position;
+    this.depth = camera.depth(position);
+    this.drag = client.drag({ triangle, barycentric }, { target: position, radius: RADIUS });
+    void this.drag.ended.then((reason) => reason !== 'end' && lost(reason));
+  }
+
+  /** The room's number of this hand, once the server told it. */
+  get grab(): number | null {
+    return this.drag.grab;
+  }
+
+  /** Brings the target under the pointer; only what differs is sent. */
+  follow(pointer: Vector2): void {
+    const target = this.camera.point_at(pointer, this.depth);
+    const moved = Math.hypot(...target.map((value, axis) => value - this.target[axis]));
+    if (moved < 1e-5) return;
+    this.target = target;
+    this.drag.move(target);
+  }
+
+  /** @param factor of the distance from the eye */
+  push(factor: number): void {
+    this.depth = Math.min(FARTHEST, Math.max(NEAREST, this.depth * factor));
+  }
+
+  end(): void {
+    this.drag.end();
+  }
+}

@@ -1,0 +1,179 @@
+import { Vector2 } from 'three';
+
+const LONG_PRESS = 550; // [ms]
+const FINGER_WANDER = 10; // that a resting finger may make [pixels]
+const ORBIT_SPEED = 0.0052; // [rad per pixel]
+const ZOOM_SPEED = 0.0011; // [1 per pixel of the wheel]
+const DEPTH_SPEED = 0.0005;
+const LINE_HEIGHT = 16; // of wheels that count lines [pixels]
+
+/** What the hands on mouse, screen and wheel can do. Points are in normalised device coordinates. */
+export interface Actions {
+  /** Takes the cloth if it is at the point. */
+  take(point: Vector2): boolean;
+  follow(point: Vector2): void;
+  push(factor: number): void;
+  let_go(): void;
+  toggle_pin(point: Vector2): void;
+  orbit(azimuth: number, elevation: number): void;
+  pan(dx: number, dy: number): void;
+  zoom(factor: number): void;
+  changed(): void;
+}
+
+export type InputState = 'idle' | 'camera' | 'holding';
+
+interface Finger {
+  id: number;
+  x: number;
+  y: number;
+}
+
+/**
+ * One machine for mouse and touch. Idle, it hovers; what the pointer goes down on decides whether it
+ * moves the camera or holds the cloth until it goes up.
+ */
+export class Input {
+  state: InputState = 'idle';
+  /** Where a mouse hovers or a hand holds; null if nowhere over the view. */
+  point: Vector2 | null = null;
+  private fingers: Finger[] = []; // those that are down, in their order
+  private panning = false;
+  private press_timer = 0;
+  private press_start = { x: 0, y: 0 };
+
+  constructor(
+    private view: HTMLElement,
+    private actions: Actions,
+  ) {
+    const listen = <Name extends keyof HTMLElementEventMap>(
+      name: Name,
+      handle: (event: HTMLElementEventMap[Name]) => void,
+    ) => view.addEventListener(name, handle, { passive: false });
+    listen('pointerdown', (event) => this.down(event));
+    listen('pointermove', (event) => this.move(event));
+    listen('pointerup', (event) => this.up(event));
+    listen('pointercancel', () => this.cancel());
+    listen('lostpointercapture', (event) => this.up(event));
+    listen('pointerleave', () => this.leave());
+    listen('contextmenu', (event) => event.preventDefault());
+    listen('wheel', (event) => this.wheel(event));
+    window.addEventListener('blur', () => this.cancel());
+    document.addEventListener('visibilitychange', () => document.hidden && this.cancel());
+  }
+
+  /** Lets go of everything. */
+  cancel(): void {
+    this.fingers = [];
+    this.enter('idle');
+  }
+
+  private down(event: PointerEvent): void {
+    event.preventDefault();
+    this.view.focus({ preventScroll: true });
+    const touch = event.pointerType === 'touch';
+    if (!touch && this.fingers.length > 0) return; // a second button changes nothing
+    this.view.setPointerCapture(event.pointerId);
+    this.fingers.push({ id: event.pointerId, x: event.clientX, y: event.clientY });
+    this.point = this.locate(event);
+    if (this.fingers.length > 1) {
+      this.enter('camera');
+      return;
+    }
+    this.panning = !touch && (event.button !== 0 || event.shiftKey);
+    const holds = !this.panning && this.actions.take(this.point);
+    this.enter(holds ? 'holding' : 'camera');
+    if (holds && touch) this.await_long_press(event);
+  }
+
+  private move(event: PointerEvent): void {
+    if (this.fingers.length === 0) {
+      if (event.pointerType !== 'touch') this.point = this.locate(event);
+      this.actions.changed();
+      return;
+    }
+    const finger = this.fingers.find(({ id }) => id === event.pointerId);
+    if (!finger) return;
+    const before = this.fingers.map(({ x, y }) => ({ x, y }));
+    const wander = Math.hypot(
+      event.clientX - this.press_start.x,
+      event.clientY - this.press_start.y,
+    );
+    if (wander > FINGER_WANDER) this.stop_waiting();
+    finger.x = event.clientX;
+    finger.y = event.clientY;
+    if (this.state === 'camera') this.move_camera(before);
+    else if (this.state === 'holding') {
+      this.point = this.locate(event);
+      this.actions.follow(this.point);
+    }
+  }
+
+  private up(event: PointerEvent): void {
+    const place = this.fingers.findIndex(({ id }) => id === event.pointerId);
+    if (place < 0) return;
+    this.fingers.splice(place, 1);
+    if (event.pointerType === 'touch') this.point = null;
+    if (this.fingers.length === 0) this.enter('idle');
+  }
+
+  private leave(): void {
+    if (this.fingers.length > 0) return;
+    this.point = null;
+    this.actions.changed();
+  }
+
+  private move_camera(before: { x: number; y: number }[]): void {
+    const [a, b] = this.fingers;
+    const height = this.view.clientHeight;
+    if (!b) {
+      const [dx, dy] = [a.x - before[0].x, a.y - before[0].y];
+      if (this.panning) this.actions.pan(dx / height, -dy / height);
+      else this.actions.orbit(-dx * ORBIT_SPEED, dy * ORBIT_SPEED);
+      return;
+    }
+    const middle = (p: { x: number; y: number }, q: { x: number; y: number }) =>
+      new Vector2((p.x + q.x) / 2, (p.y + q.y) / 2);
+    const shift = middle(a, b).sub(middle(before[0], before[1]));
+    this.actions.pan(shift.x / height, -shift.y / height);
+    const spread = Math.hypot(a.x - b.x, a.y - b.y);
+    const spread_before = Math.hypot(before[0].x - before[1].x, before[0].y - before[1].y);
+    if (spread > 1 && spread_before > 1) this.actions.zoom(spread_before / spread);
+  }
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    const unit = [1, LINE_HEIGHT, this.view.clientHeight][event.deltaMode] ?? 1;
+    const amount = Math.min(400, Math.max(-400, event.deltaY * unit));
+    // A pinch on a trackpad comes as a wheel with Ctrl, in smaller numbers.
+    const speed = event.ctrlKey ? 8 : 1;
+    if (this.state === 'holding') this.actions.push(Math.exp(-amount * speed * DEPTH_SPEED));
+    else this.actions.zoom(Math.exp(amount * speed * ZOOM_SPEED));
+  }
+
+  private await_long_press(event: PointerEvent): void {
+    this.press_start = { x: event.clientX, y: event.clientY };
+    const point = this.locate(event);
+    this.press_timer = window.setTimeout(() => {
+      this.enter('idle'); // the finger is still down and does nothing until it has gone up
+      this.actions.toggle_pin(point);
+    }, LONG_PRESS);
+  }
+
+  private stop_waiting(): void {
+    window.clearTimeout(this.press_timer);
+  }
+
+  private enter(state: InputState): void {
+    this.stop_waiting();
+    if (this.state === 'holding' && state !== 'holding') this.actions.let_go();
+    this.state = state;
+    this.actions.changed();
+  }
+
+  private locate(event: PointerEvent): Vector2 {
+    const { left, top, width, height } = this.view.getBoundingClientRect();
+    const x = ((event.clientX - left) / width) * 2 - 1;
+    return new Vector2(x, 1 - ((event.clientY - top) / height) * 2);
+  }
+}

@@ -1,0 +1,119 @@
+import {
+  Box3,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  Group,
+  Mesh,
+  MeshStandardMaterial,
+  Raycaster,
+  SphereGeometry,
+  Vector3,
+} from 'three';
+import type { Collider, MeshData, Vec3 } from '../../proto/js/messages.js';
+
+const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
+
+/** What the cloth can touch, apart from the ground. */
+export class Objects {
+  readonly group = new Group();
+  /** Height of the ground [m], or null if there is none. */
+  readonly ground: number | null = null;
+  private material = new MeshStandardMaterial({ color: '#d9d2c6', roughness: 0.72 });
+  private caster = new Raycaster();
+
+  constructor(colliders: Collider[], data: MeshData) {
+    for (const [place, collider] of colliders.entries()) {
+      if (collider.kind === 'plane') {
+        // A floor is drawn for level ground alone.
+        if (collider.normal[1] > 0.99) this.ground = collider.point[1];
+        continue;
+      }
+      const mesh = new Mesh(geometry_of(collider, place, data), this.material);
+      mesh.name = collider.name;
+      mesh.castShadow = mesh.receiveShadow = true;
+      place_object(mesh, collider);
+      this.group.add(mesh);
+    }
+    this.group.updateMatrixWorld(true);
+  }
+
+  /** Bounds of all objects [m]. */
+  bounds(): Box3 {
+    return new Box3().setFromObject(this.group);
+  }
+
+  /** Distance to the first object along a ray [m]; Infinity if it meets none. */
+  distance(origin: Vec3, direction: Vec3): number {
+    this.caster.set(new Vector3(...origin), new Vector3(...direction));
+    return this.caster.intersectObjects(this.group.children, false)[0]?.distance ?? Infinity;
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    for (const child of this.group.children as Mesh[]) child.geometry.dispose();
+    this.material.dispose();
+  }
+}
+
+function geometry_of(collider: Collider, place: number, data: MeshData): BufferGeometry {
+  switch (collider.kind) {
+    case 'sphere':
+      return new SphereGeometry(collider.radius, 64, 40);
+    case 'capsule': {
+      const length = new Vector3(...collider.a).distanceTo(new Vector3(...collider.b));
+      return new CapsuleGeometry(collider.radius, length, 12, 32);
+    }
+    case 'box': {
+      const [x, y, z] = collider.half_extents;
+      return new BoxGeometry(2 * x, 2 * y, 2 * z);
+    }
+    default: {
+      const mesh = data.colliders.find((each) => each.collider === place);
+      return mesh ? creased_geometry(mesh.positions, mesh.triangles) : new BufferGeometry();
+    }
+  }
+}
+
+function place_object(mesh: Mesh, collider: Collider): void {
+  if (collider.kind === 'sphere' || collider.kind === 'box') mesh.position.set(...collider.center);
+  if (collider.kind === 'box') mesh.quaternion.set(...collider.orientation);
+  if (collider.kind !== 'capsule') return;
+  const a = new Vector3(...collider.a);
+  const axis = new Vector3(...collider.b).sub(a);
+  mesh.position.copy(a).addScaledVector(axis, 0.5);
+  mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
+}
+
+/** Smooth where faces meet at small angles, sharp at edges; corners get normals of their own. */
+function creased_geometry(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
+  const corner = (index: number) => new Vector3().fromArray(positions, triangles[index] * 3);
+  const faces: Vector3[] = []; // as long as twice the area
+  const around = new Map<number, number[]>();
+  for (let t = 0; t < triangles.length; t += 3) {
+    const a = corner(t);
+    faces.push(corner(t + 1).sub(a).cross(corner(t + 2).sub(a)));
+    for (let i = 0; i < 3; i++) {
+      const vertex = triangles[t + i];
+      around.set(vertex, [...(around.get(vertex) ?? []), t / 3]);
+    }
+  }
+  const directions = faces.map((face) => face.clone().normalize());
+  const points = new Float32Array(triangles.length * 3);
+  const normals = new Float32Array(triangles.length * 3);
+  const normal = new Vector3();
+  for (let index = 0; index < triangles.length; index++) {
+    corner(index).toArray(points, index * 3);
+    const own = directions[Math.floor(index / 3)];
+    normal.set(0, 0, 0);
+    for (const face of around.get(triangles[index]) ?? []) {
+      if (own.dot(directions[face]) > SMOOTH_ANGLE) normal.add(faces[face]);
+    }
+    normal.normalize().toArray(normals, index * 3);
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(points, 3));
+  geometry.setAttribute('normal', new BufferAttribute(normals, 3));
+  return geometry;
+}

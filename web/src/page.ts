@@ -1,0 +1,298 @@
+import type { Vector2 } from 'three';
+import type { WeftClient } from '../../proto/js/index.js';
+import type { Frame, Grab, State, Viewer } from '../../proto/js/messages.js';
+import { OrbitCamera } from './camera.js';
+import { connect_client, tell_refusal } from './connection.js';
+import { Hands } from './hands.js';
+import type { Hand } from './hands.js';
+import { Hold } from './hold.js';
+import { Input } from './input.js';
+import { listen_to_keys } from './keys.js';
+import { element, Panels } from './panels.js';
+import type { Phase } from './panels.js';
+import { Pins } from './pins.js';
+import { point_on_triangle } from './ray.js';
+import type { ClothHit } from './ray.js';
+import { Reticle } from './reticle.js';
+import { Stage } from './stage.js';
+import { Toolbar } from './toolbar.js';
+import { WorldView } from './world_view.js';
+
+const CAMERA_INTERVAL = 0.25; // between messages that tell where this viewer looks from [s]
+const NO_COLOR = '#5c6068';
+
+/** Joins connection, input, camera, picture and panels; each knows its own work alone. */
+export class Page {
+  readonly canvas = element<HTMLCanvasElement>('view');
+  readonly orbit = new OrbitCamera();
+  readonly hands = new Hands(element('labels'));
+  readonly pins = new Pins();
+  readonly client: WeftClient;
+  readonly input: Input;
+  world: WorldView | null = null;
+  state: State | null = null;
+  phase: Phase = 'connecting';
+  hovered: ClothHit | null = null;
+  pictures = 0;
+  private stage = new Stage(this.canvas);
+  private panels = new Panels();
+  private toolbar: Toolbar;
+  private reticle = new Reticle();
+  private hold: Hold | null = null;
+  private grabs: Grab[] = [];
+  private viewers: Viewer[] = [];
+  private last_time = performance.now() / 1000;
+  private camera_told_at = 0;
+  private camera_moved = true;
+  private dirty = true;
+  /** Latency of a frame that came and is not drawn yet. */
+  private pending_latency: { came_at: number; latency: number } | null = null;
+
+  constructor() {
+    this.stage.scene.add(this.hands.group, this.pins.group, this.reticle.group);
+    this.client = connect_client();
+    this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), () => this.frame());
+    this.input = new Input(this.canvas, {
+      take: (point) => this.take(point),
+      follow: (point) => this.hold?.follow(point),
+      push: (factor) => this.hold?.push(factor),
+      let_go: () => this.let_go(),
+      toggle_pin: (point) => this.toggle_pin(point),
+      orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
+      pan: (dx, dy) => this.orbit.pan(dx, dy),
+      zoom: (factor) => this.orbit.zoom(factor),
+      changed: () => (this.dirty = true),
+    });
+    listen_to_keys({
+      toggle_pin: () => this.toggle_pin(this.input.point),
+      toggle_pause: () => this.toolbar.toggle_pause(),
+      step: () => this.toolbar.one_step(),
+      reset: () => this.toolbar.reset(),
+      frame: () => this.frame(),
+      help: () => this.toolbar.show_help(),
+      orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
+      zoom: (factor) => this.orbit.zoom(factor),
+    });
+    this.listen();
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    this.resize();
+    requestAnimationFrame(() => this.draw());
+  }
+
+  private listen(): void {
+    const { client, panels } = this;
+    client.on('status', ({ phase }) => this.change_phase(phase === 'open' ? 'connecting' : phase));
+    client.on('welcome', () => this.change_phase('open'));
+    client.on('mesh', ({ announcement, data }) => {
+      const same = this.world?.announcement.scene === announcement.scene;
+      this.world?.dispose();
+      this.world = new WorldView(announcement, data, this.stage);
+      this.grabs = [];
+      if (!same) this.frame(true);
+      this.dirty = true;
+    });
+    client.on('frame', (frame) => this.receive(frame));
+    client.on('state', (state) => {
+      this.state = state;
+      this.toolbar.state(state);
+      panels.state(state, performance.now() / 1000);
+    });
+    client.on('roster', (roster) => {
+      this.viewers = roster.viewers;
+      panels.roster(roster, client.viewer);
+      this.show_pins();
+    });
+    client.on('pins', ({ pins }) => {
+      this.pins.list = pins;
+      this.show_pins();
+    });
+    client.on('grabs', ({ grabs }) => {
+      this.grabs = grabs;
+      this.dirty = true;
+    });
+    client.on('notice', ({ level, message }) => level !== 'info' && panels.tell(message));
+    client.on('refused', ({ code, message }) => code !== 'unknown_drag' && panels.tell(message));
+    client.on('fault', ({ message }) => panels.tell(message));
+    document.addEventListener('visibilitychange', () => this.world?.playback.forget());
+  }
+
+  private change_phase(phase: Phase): void {
+    this.phase = phase;
+    this.panels.connection(phase);
+    this.toolbar.enable(phase === 'open');
+    this.camera_moved = true;
+    if (phase === 'open') return;
+    this.input.cancel();
+    this.grabs = [];
+    this.world?.playback.forget();
+  }
+
+  private receive(frame: Frame): void {
+    const now = performance.now() / 1000;
+    this.world?.push(frame, now);
+    const { latency } = this.client;
+    if (this.hold) this.pending_latency = { came_at: now, latency };
+  }
+
+  private show_pins(): void {
+    this.pins.set(this.pins.list, (viewer) => this.viewer(viewer)?.color ?? null);
+    this.dirty = true;
+  }
+
+  private viewer(id: number): Viewer | undefined {
+    return this.viewers.find((viewer) => viewer.id === id);
+  }
+
+  // ---- what hands do ------------------------------------------------------------------------
+
+  private pick(point: Vector2 | null): ClothHit | null {
+    if (!point || !this.client.connected) return null;
+    return this.world?.hit(this.orbit.ray(point)) ?? null;
+  }
+
+  private take(point: Vector2): boolean {
+    const hit = this.pick(point);
+    if (!hit) return false;
+    this.hold = new Hold(this.client, hit, this.orbit, (reason) => this.lost(reason));
+    return true;
+  }
+
+  private let_go(): void {
+    this.hold?.end();
+    this.hold = null;
+    this.pending_latency = null;
+  }
+
+  private lost(reason: string): void {
+    if (this.phase === 'open') this.panels.tell(`The cloth slipped out of your hand: ${reason}`);
+    this.input.cancel();
+  }
+
+  /** Fixes what is held or pointed at, or frees it if it is fixed. */
+  private toggle_pin(point: Vector2 | null): void {
+    if (!this.client.connected || !this.world) return;
+    const held = this.hold;
+    const hit = held ? null : this.pick(point);
+    const at = held ?? hit;
+    const particle = at && this.nearest_corner(at);
+    const { width, height } = this.size();
+    const meant = held ? null : point;
+    const pins = this.pins.at(meant, particle, this.orbit.camera, width, height);
+    const answers = pins.length
+      ? pins.map(({ id }) => this.client.release({ pin: id }))
+      : at
+        ? [this.client.pin({ triangle: at.triangle, barycentric: at.barycentric })]
+        : [];
+    for (const answer of answers) tell_refusal(answer, (text) => this.panels.tell(text));
+  }
+
+  /** The particle that the server takes for a point of a triangle. */
+  private nearest_corner({ triangle, barycentric }: Pick<ClothHit, 'triangle' | 'barycentric'>) {
+    const corner = barycentric.indexOf(Math.max(...barycentric));
+    return this.world?.triangles[triangle * 3 + corner] ?? null;
+  }
+
+  private frame(at_once = false): void {
+    if (!this.world) return;
+    const toolbar = element('toolbar').getBoundingClientRect();
+    const { height } = this.size();
+    const hidden = Math.min(0.5, (height - toolbar.top) / height);
+    this.orbit.frame(this.world.bounds(), hidden, at_once);
+  }
+
+  // ---- the picture --------------------------------------------------------------------------
+
+  private size(): { width: number; height: number } {
+    return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
+  }
+
+  private resize(): void {
+    const { width, height } = this.size();
+    this.stage.resize(width, height);
+    this.orbit.resize(width, height);
+    this.dirty = true;
+  }
+
+  private draw(): void {
+    requestAnimationFrame(() => this.draw());
+    const now = performance.now() / 1000;
+    const elapsed = Math.min(0.1, now - this.last_time);
+    this.last_time = now;
+    if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
+    if (this.world?.show(now, this.hold !== null)) this.dirty = true;
+    this.tell_camera(now);
+    if (!this.dirty) return;
+    this.dirty = false;
+    this.point_at_cloth();
+    const { width, height } = this.size();
+    this.hands.update(this.hands_to_show(), this.orbit.camera, width, height);
+    this.stage.renderer.render(this.stage.scene, this.orbit.camera);
+    this.pictures += 1;
+    this.measure_latency();
+  }
+
+  private point_at_cloth(): void {
+    const idle = this.input.state === 'idle';
+    this.hovered = idle ? this.pick(this.input.point) : null;
+    if (this.hold && this.input.point) this.hold.follow(this.input.point);
+    this.reticle.update(this.hovered, this.world, this.orbit.camera, this.size().height);
+    const holding = this.input.state === 'holding';
+    this.canvas.dataset.cursor = holding
+      ? 'grabbing'
+      : this.hovered
+        ? 'grab'
+        : this.input.state === 'camera'
+          ? 'move'
+          : '';
+  }
+
+  /** Own hand where the pointer is now, others where the shown frame has them. */
+  private hands_to_show(): Hand[] {
+    const { world, hold, client } = this;
+    if (!world) return [];
+    const place = ({ triangle, barycentric }: Pick<ClothHit, 'triangle' | 'barycentric'>) =>
+      point_on_triangle(triangle, barycentric, world.playback.positions, world.triangles);
+    const hands = this.grabs
+      .filter(({ id, viewer }) => viewer !== client.viewer && id !== hold?.grab)
+      .map((grab): Hand => {
+        const viewer = this.viewer(grab.viewer);
+        const sample = world.playback.grabs.find(({ id }) => id === grab.id);
+        return {
+          id: grab.id,
+          name: viewer?.name ?? `viewer ${grab.viewer}`,
+          color: viewer?.color ?? NO_COLOR,
+          held: place(grab),
+          target: (sample?.target ?? grab.target) as Hand['target'],
+          own: false,
+        };
+      });
+    if (hold) {
+      const own = this.viewer(client.viewer);
+      hands.push({
+        id: hold.grab ?? 0,
+        name: own?.name ?? '',
+        color: own?.color ?? NO_COLOR,
+        held: place(hold),
+        target: hold.target,
+        own: true,
+      });
+    }
+    return hands;
+  }
+
+  private measure_latency(): void {
+    if (!this.pending_latency) return;
+    const { came_at, latency } = this.pending_latency;
+    this.panels.latency(latency + performance.now() / 1000 - came_at);
+    this.pending_latency = null;
+  }
+
+  private tell_camera(now: number): void {
+    if (!this.camera_moved || !this.client.connected || !this.world) return;
+    if (now - this.camera_told_at < CAMERA_INTERVAL) return;
+    this.camera_moved = false;
+    this.camera_told_at = now;
+    const { position, target, fov } = this.orbit.description();
+    this.client.post('camera', { position, target, fov });
+  }
+}

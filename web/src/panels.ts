@@ -1,0 +1,82 @@
+import type { Roster, State } from '../../proto/js/messages.js';
+
+const TOAST_TIME = 4000; // [ms]
+const MOST_NAMES = 6;
+const RATE_WINDOW = 2; // over which ticks are counted [s]
+
+export type Phase = 'closed' | 'connecting' | 'open' | 'waiting';
+
+export function element<Type extends HTMLElement>(id: string): Type {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no element ${id}`);
+  return found as Type;
+}
+
+/** Connection, measurements, viewers and notices. */
+export class Panels {
+  private toast_timer = 0;
+  private ticks: { tick: number; time: number }[] = [];
+
+  connection(phase: Phase): void {
+    const words: Record<Phase, string> = {
+      connecting: 'Connecting',
+      open: 'Connected',
+      waiting: 'Reconnecting',
+      closed: 'Disconnected',
+    };
+    element('connection').dataset.phase = phase;
+    set_text('connection-text', words[phase]);
+    if (phase === 'open') return;
+    this.ticks = [];
+    for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
+    element('viewers').replaceChildren();
+  }
+
+  /** @param now own clock [s] */
+  state(state: State, now: number): void {
+    const last = this.ticks.at(-1);
+    if (last && state.tick < last.tick) this.ticks = [];
+    this.ticks.push({ tick: state.tick, time: now });
+    while (this.ticks.length > 2 && now - this.ticks[0].time > RATE_WINDOW) this.ticks.shift();
+    const [first] = this.ticks;
+    const passed = now - first.time;
+    if (state.paused) set_text('tick-rate', '0');
+    else if (passed > 0.5) set_text('tick-rate', ((state.tick - first.tick) / passed).toFixed(0));
+    if (state.paused) this.ticks = [];
+    set_text('real-time', state.paused ? '0.00' : state.real_time_factor.toFixed(2));
+    set_text('step-time', state.step_ms.toFixed(state.step_ms < 10 ? 2 : 0));
+  }
+
+  /** @param seconds from a hand's movement to the picture; NaN if not known yet */
+  latency(seconds: number): void {
+    set_text('latency', Number.isFinite(seconds) ? (seconds * 1000).toFixed(0) : '–');
+  }
+
+  roster({ viewers }: Roster, own: number): void {
+    const items = viewers.slice(0, MOST_NAMES).map(({ id, name, color }) => {
+      const item = document.createElement('li');
+      item.textContent = id === own ? `${name} (you)` : name;
+      item.style.setProperty('--color', color);
+      return item;
+    });
+    if (viewers.length > MOST_NAMES) {
+      const more = document.createElement('li');
+      more.textContent = `and ${viewers.length - MOST_NAMES} more`;
+      items.push(more);
+    }
+    element('viewers').replaceChildren(...items);
+  }
+
+  tell(message: string): void {
+    const toast = element('toast');
+    toast.textContent = message;
+    toast.hidden = false;
+    window.clearTimeout(this.toast_timer);
+    this.toast_timer = window.setTimeout(() => (toast.hidden = true), TOAST_TIME);
+  }
+}
+
+function set_text(id: string, text: string): void {
+  const target = element(id);
+  if (target.textContent !== text) target.textContent = text;
+}

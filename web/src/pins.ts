@@ -1,0 +1,51 @@
+import { Group, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from 'three';
+import type { PerspectiveCamera, Vector2 } from 'three';
+import type { Pin } from '../../proto/js/messages.js';
+
+const PIN_RADIUS = 0.009; // of a head [m]
+const REACH = 16; // within which a pointer means a pin [pixels]
+const SCENE_COLOR = '#4a4e55';
+
+/** Pin heads where particles are fixed, in the colours of their owners. */
+export class Pins {
+  readonly group = new Group();
+  private sphere = new SphereGeometry(PIN_RADIUS, 24, 16);
+  list: Pin[] = [];
+
+  /** @param color of a viewer's number, or null if it has left */
+  set(list: Pin[], color: (viewer: number) => string | null): void {
+    this.list = list;
+    for (const head of this.group.children as Mesh[]) {
+      (head.material as MeshStandardMaterial).dispose();
+    }
+    this.group.clear();
+    for (const pin of list) {
+      const material = new MeshStandardMaterial({
+        color: (pin.viewer && color(pin.viewer)) || SCENE_COLOR,
+        roughness: 0.25,
+      });
+      const head = new Mesh(this.sphere, material);
+      head.position.set(...pin.position);
+      head.castShadow = true;
+      this.group.add(head);
+    }
+  }
+
+  /** Pins that a pointer means: those near it, and those that are at a particle. */
+  at(
+    point: Vector2 | null,
+    particle: number | null,
+    camera: PerspectiveCamera,
+    width: number,
+    height: number,
+  ): Pin[] {
+    return this.list.filter((pin) => {
+      if (pin.particle === particle) return true;
+      if (!point) return false;
+      const place = new Vector3(...pin.position).project(camera);
+      const dx = ((place.x - point.x) / 2) * width;
+      const dy = ((place.y - point.y) / 2) * height;
+      return Math.abs(place.z) < 1 && Math.hypot(dx, dy) < REACH;
+    });
+  }
+}

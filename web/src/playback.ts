@@ -1,0 +1,107 @@
+import type { Frame, GrabSample } from '../../proto/js/messages.js';
+
+const LONGEST_DELAY = 0.25; // [s]
+const KEPT_FRAMES = 24;
+const OFFSET_LEAK = 0.0005; // forgets an early packet within minutes, not within seconds
+
+/**
+ * Decides what is shown when. With a hand in the cloth the newest frame is shown at once. Who only
+ * watches sees a little of the past, interpolated between two frames, so that uneven arrival does
+ * not show. It never extrapolates and never goes back: where ticks stop, nothing moves.
+ */
+export class Playback {
+  /** Three values a vertex [m]. */
+  positions: Float32Array;
+  grabs: GrabSample[] = [];
+  tick = -1;
+  private frames: Frame[] = [];
+  private shown_time = -Infinity; // on the server's clock [s]
+  private last_sample = 0; // own clock [s]
+  private offset = Infinity; // own clock minus the server's at arrival, without delays [s]
+  private interval = 1 / 60; // between frames [s]
+  private jitter = 0; // by how much frames come late [s]
+
+  constructor(vertices: number) {
+    this.positions = new Float32Array(vertices * 3);
+  }
+
+  /** @param now own clock [s] */
+  push(frame: Frame, now: number): void {
+    const last = this.frames.at(-1);
+    if (frame.jump || (last && frame.serverTime < last.serverTime)) this.forget();
+    else if (last) this.measure(frame, last, now);
+    this.offset = Math.min(this.offset, now - frame.serverTime);
+    this.frames.push(frame);
+    if (this.frames.length > KEPT_FRAMES) this.frames.shift();
+  }
+
+  /** Starts afresh with the next frame, as after a pause in receiving. */
+  forget(): void {
+    this.frames = [];
+    this.shown_time = -Infinity;
+    this.offset = Infinity;
+  }
+
+  /**
+   * Brings positions and grabs to what is to be shown now; tells whether they changed.
+   * @param now  own clock [s]
+   * @param live whether the newest frame is wanted at once
+   */
+  sample(now: number, live: boolean): boolean {
+    const newest = this.frames.at(-1);
+    if (!newest) return false;
+    const elapsed = Math.min(0.1, Math.max(0, now - this.last_sample));
+    this.last_sample = now;
+    const before = this.shown_time;
+    const time = live || newest.paused ? newest.serverTime : this.follow(now, elapsed, newest);
+    this.shown_time = Math.max(before, time);
+    if (this.shown_time === before) return false;
+    this.show();
+    return true;
+  }
+
+  private measure(frame: Frame, last: Frame, now: number): void {
+    const interval = frame.serverTime - last.serverTime;
+    if (interval < 0.5) this.interval += (interval - this.interval) * 0.05;
+    const late = now - frame.serverTime - this.offset;
+    this.jitter = Math.max(late, this.jitter * 0.99);
+    this.offset += late * OFFSET_LEAK;
+  }
+
+  /** Goes towards the wanted past at nearly its natural speed, so that no change of delay shows. */
+  private follow(now: number, elapsed: number, newest: Frame): number {
+    const delay = Math.min(LONGEST_DELAY, 1.2 * this.interval + this.jitter);
+    const wanted = now - this.offset - delay;
+    const behind = wanted - (this.shown_time + elapsed);
+    if (!Number.isFinite(behind) || behind > LONGEST_DELAY) {
+      return Math.min(Math.max(wanted, this.frames[0].serverTime), newest.serverTime);
+    }
+    const rate = 1 + Math.min(0.15, Math.max(-0.15, 2 * behind));
+    return Math.min(this.shown_time + elapsed * rate, newest.serverTime);
+  }
+
+  private show(): void {
+    while (this.frames.length > 1 && this.frames[1].serverTime <= this.shown_time) {
+      this.frames.shift();
+    }
+    const [from, to] = this.frames;
+    this.tick = from.tick;
+    if (!to || this.shown_time <= from.serverTime) {
+      this.positions.set(from.positions);
+      this.grabs = from.grabs;
+      return;
+    }
+    const part = (this.shown_time - from.serverTime) / (to.serverTime - from.serverTime);
+    const a = from.positions;
+    const b = to.positions;
+    for (let i = 0; i < a.length; i++) this.positions[i] = a[i] + (b[i] - a[i]) * part;
+    this.grabs = from.grabs.map((grab) => between(grab, to.grabs, part));
+  }
+}
+
+function between(grab: GrabSample, later: GrabSample[], part: number): GrabSample {
+  const next = later.find(({ id }) => id === grab.id);
+  if (!next) return grab;
+  const target = grab.target.map((value, i) => value + (next.target[i] - value) * part);
+  return { ...grab, target };
+}

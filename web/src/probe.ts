@@ -1,0 +1,56 @@
+import type { Page } from './page.js';
+
+/** What tests may read of the page; everything is a copy. */
+export function expose_probe(page: Page): void {
+  const probe = {
+    get phase() {
+      return page.phase;
+    },
+    get viewer() {
+      return page.client.viewer;
+    },
+    get scene() {
+      return page.world?.announcement.scene ?? null;
+    },
+    get tick() {
+      return page.world?.playback.tick ?? -1;
+    },
+    get paused() {
+      return page.state?.paused ?? null;
+    },
+    get input() {
+      return page.input.state;
+    },
+    get hovering() {
+      return page.hovered !== null;
+    },
+    get positions() {
+      return page.world ? [...page.world.playback.positions] : [];
+    },
+    get triangles() {
+      return page.world ? [...page.world.triangles] : [];
+    },
+    get camera() {
+      const { camera } = page.orbit;
+      return {
+        view: camera.matrixWorldInverse.toArray(),
+        projection: camera.projectionMatrix.toArray(),
+        position: camera.position.toArray(),
+      };
+    },
+    get size() {
+      return { width: page.canvas.clientWidth, height: page.canvas.clientHeight };
+    },
+    get hands() {
+      return structuredClone(page.hands.shown);
+    },
+    get pins() {
+      return structuredClone(page.pins.list);
+    },
+    /** Pictures drawn so far; it stands still where nothing changes. */
+    get pictures() {
+      return page.pictures;
+    },
+  };
+  Object.defineProperty(window, 'weft', { value: Object.freeze(probe) });
+}

@@ -1,0 +1,172 @@
+import {
+  BackSide,
+  Box3,
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  Mesh,
+  MeshBasicMaterial,
+  PCFSoftShadowMap,
+  PlaneGeometry,
+  PMREMGenerator,
+  Scene,
+  ShaderMaterial,
+  ShadowMaterial,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
+  NeutralToneMapping,
+} from 'three';
+
+const FLOOR_COLOR = new Color('#e6e2db');
+const SKY_COLOR = new Color('#f6f4f0');
+const GRID_COLOR = new Color('#8d877c');
+const GRID_RADIUS = 6; // where the grid has faded out [m]
+const MOST_PIXELS_PER_UNIT = 2;
+
+/** A studio: light, a floor with a grid that fades into the distance, and the renderer. */
+export class Stage {
+  readonly scene = new Scene();
+  readonly renderer: WebGLRenderer;
+  private sun = new DirectionalLight('#fff4e6', 2.3);
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.scene.environment = soft_boxes(this.renderer);
+    this.scene.environmentIntensity = 0.55;
+    this.scene.add(dome(), this.sun, this.sun.target);
+    this.scene.add(new HemisphereLight('#ffffff', '#d8d0c4', 0.5));
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.bias = -0.0004;
+    this.sun.shadow.normalBias = 0.012;
+  }
+
+  /** Puts the floor at a height, or takes it away. */
+  set_floor(height: number | null): void {
+    this.scene.getObjectByName('floor')?.removeFromParent();
+    if (height !== null) this.scene.add(floor(height));
+  }
+
+  /** Aims the light's shadow at what can move; the finer the smaller the box [m]. */
+  light(box: Box3): void {
+    const center = box.getCenter(new Vector3());
+    const radius = Math.max(0.3, box.getSize(new Vector3()).length() * 0.75);
+    this.sun.target.position.copy(center);
+    this.sun.position.copy(center).add(new Vector3(-0.55, 1, 0.75).setLength(radius * 3));
+    const view = this.sun.shadow.camera;
+    [view.left, view.right, view.bottom, view.top] = [-radius, radius, -radius, radius];
+    [view.near, view.far] = [radius, radius * 5];
+    view.updateProjectionMatrix();
+  }
+
+  resize(width: number, height: number): void {
+    this.renderer.setPixelRatio(Math.min(MOST_PIXELS_PER_UNIT, window.devicePixelRatio));
+    this.renderer.setSize(width, height, false);
+  }
+}
+
+/** Light from large bright panels in a dim room, for soft reflections. */
+function soft_boxes(renderer: WebGLRenderer) {
+  const room = new Scene();
+  const shell = new SphereGeometry(10, 24, 12);
+  room.add(new Mesh(shell, new MeshBasicMaterial({ color: '#a9a6a2', side: BackSide })));
+  const panels: [number, number, number, number][] = [
+    [-6, 5, 5, 6],
+    [7, 3, 2, 2.5],
+    [0, 8, -3, 4],
+  ];
+  for (const [x, y, z, strength] of panels) {
+    const panel = new Mesh(new PlaneGeometry(5, 5), new MeshBasicMaterial());
+    panel.material.color.setScalar(strength);
+    panel.position.set(x, y, z);
+    panel.lookAt(0, 0, 0);
+    room.add(panel);
+  }
+  const generator = new PMREMGenerator(renderer);
+  const texture = generator.fromScene(room, 0.06).texture;
+  generator.dispose();
+  return texture;
+}
+
+/** The background: the floor's colour up to the horizon, then brighter. */
+function dome(): Mesh {
+  const material = new ShaderMaterial({
+    side: BackSide,
+    depthWrite: false,
+    uniforms: { floor_color: { value: FLOOR_COLOR }, sky_color: { value: SKY_COLOR } },
+    vertexShader: `
+      varying vec3 direction;
+      void main() {
+        direction = position;
+        gl_Position = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
+        gl_Position.z = gl_Position.w;
+      }`,
+    fragmentShader: `
+      uniform vec3 floor_color;
+      uniform vec3 sky_color;
+      varying vec3 direction;
+      void main() {
+        float height = normalize(direction).y;
+        vec3 color = mix(floor_color, sky_color, smoothstep(-0.08, 0.5, height));
+        color *= 1.0 - 0.14 * smoothstep(0.1, 1.0, -height);
+        float noise = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453);
+        gl_FragColor = vec4(color + (noise - 0.5) / 255.0, 1.0);
+        #include <colorspace_fragment>
+      }`,
+  });
+  const mesh = new Mesh(new SphereGeometry(1, 48, 24), material);
+  mesh.frustumCulled = false;
+  mesh.renderOrder = -2;
+  return mesh;
+}
+
+/** Shadows and a grid of 10 cm with stronger metres, over the dome's colour. */
+function floor(height: number): Mesh {
+  const geometry = new PlaneGeometry(GRID_RADIUS * 2, GRID_RADIUS * 2).rotateX(-Math.PI / 2);
+  const shadow = new Mesh(geometry, new ShadowMaterial({ color: '#3b2f26', opacity: 0.3 }));
+  shadow.name = 'floor';
+  shadow.position.y = height;
+  shadow.receiveShadow = true;
+  shadow.renderOrder = -1;
+  shadow.material.depthWrite = false;
+  shadow.add(new Mesh(geometry, grid_material()));
+  shadow.children[0].renderOrder = -1;
+  return shadow;
+}
+
+function grid_material(): ShaderMaterial {
+  return new ShaderMaterial({
+    transparent: true,
+    depthWrite: false,
+    uniforms: { grid_color: { value: GRID_COLOR }, radius: { value: GRID_RADIUS } },
+    vertexShader: `
+      varying vec2 place;
+      void main() {
+        place = position.xz;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    fragmentShader: `
+      uniform vec3 grid_color;
+      uniform float radius;
+      varying vec2 place;
+      float lines(vec2 at, float cell) {
+        vec2 scaled = at / cell;
+        vec2 width = fwidth(scaled);
+        vec2 away = abs(fract(scaled - 0.5) - 0.5);
+        vec2 line = 1.0 - smoothstep(0.4 * width, 1.2 * width, away);
+        line *= 1.0 - smoothstep(0.2, 0.6, width);
+        return max(line.x, line.y);
+      }
+      void main() {
+        float fade = 1.0 - smoothstep(0.15, 0.8, length(place) / radius);
+        float strength = max(0.16 * lines(place, 0.1), 0.42 * lines(place, 1.0)) * fade;
+        gl_FragColor = vec4(grid_color, strength);
+        #include <colorspace_fragment>
+      }`,
+  });
+}

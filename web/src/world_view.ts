@@ -1,0 +1,68 @@
+import { Box3, Vector3 } from 'three';
+import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../proto/js/messages.js';
+import { ClothMesh } from './cloth_mesh.js';
+import { Objects } from './objects.js';
+import { Playback } from './playback.js';
+import { cast_ray } from './ray.js';
+import type { ClothHit } from './ray.js';
+import type { Stage } from './stage.js';
+
+/** All that belongs to one mesh of the server: its cloths, its objects, and what frames show. */
+export class WorldView {
+  readonly playback: Playback;
+  readonly cloth: ClothMesh;
+  private objects: Objects;
+
+  constructor(
+    readonly announcement: MeshAnnouncement,
+    data: MeshData,
+    private stage: Stage,
+  ) {
+    this.playback = new Playback(announcement.vertices);
+    this.playback.positions.set(data.restPositions);
+    this.cloth = new ClothMesh(announcement.cloths, data);
+    this.objects = new Objects(announcement.colliders, data);
+    stage.scene.add(this.cloth.group, this.objects.group);
+    stage.set_floor(this.objects.ground);
+    stage.light(this.bounds());
+  }
+
+  get triangles(): Uint32Array {
+    return this.cloth.triangles;
+  }
+
+  push(frame: Frame, now: number): void {
+    this.playback.push(frame, now);
+  }
+
+  /** Brings the picture to a time [s, own clock]; tells whether it changed. */
+  show(now: number, live: boolean): boolean {
+    const changed = this.playback.sample(now, live);
+    if (changed) this.cloth.update(this.playback.positions);
+    return changed;
+  }
+
+  /** Where a ray meets the cloth, unless an object hides it. */
+  hit(ray: { origin: Vec3; direction: Vec3 }): ClothHit | null {
+    const { origin, direction } = ray;
+    const hit = cast_ray(origin, direction, this.playback.positions, this.triangles);
+    if (!hit || this.objects.distance(origin, direction) < hit.distance) return null;
+    return hit;
+  }
+
+  /** Bounds of the cloth and of the objects, with the ground below [m]. */
+  bounds(): Box3 {
+    const box = this.objects.bounds();
+    const point = new Vector3();
+    const { positions } = this.playback;
+    for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
+    if (this.objects.ground !== null) box.min.y = Math.min(box.min.y, this.objects.ground);
+    return box;
+  }
+
+  dispose(): void {
+    this.cloth.dispose();
+    this.objects.dispose();
+    this.stage.set_floor(null);
+  }
+}
