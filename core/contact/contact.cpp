@@ -6,10 +6,9 @@
 namespace weft {
 namespace {
 
-/// A ridge that turns by an angle a rises at most a L/4 between two particles L apart that keep the
-/// thickness h on its two sides. Up to a = 3 h/L that is at most 3/4 of the thickness: the particles
-/// alone keep the cloth off it, and the ridge needs no pairs of its own.
-constexpr double kHiddenTurn = 3;
+/// Where two particles of an edge keep the thickness, the edge between them may sink by this part of
+/// it before it needs pairs of its own.
+constexpr double kHiddenRise = 0.75;
 
 }  // namespace
 
@@ -21,10 +20,11 @@ Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& co
       thickness_(static_cast<Real>(def.thickness)),
       executor_(executor),
       edges_(edges),
-      triangles_(triangles) {
+      triangles_(triangles),
+      hidden_{kHiddenRise * def.thickness, longest_edge} {
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
-    add_shape(colliders[k].shape, kHiddenTurn * def.thickness / longest_edge);
+    add_shape(colliders[k].shape);
   }
   particle_pairs_.resize(meshes_.size());
   edge_pairs_.resize(meshes_.size());
@@ -32,20 +32,27 @@ Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& co
 }
 
 template <class Real>
-void Contact<Real>::add_shape(const ShapeDef& shape, double flat_turn) {
+void Contact<Real>::add_shape(const ShapeDef& shape) {
   if (const auto* plane = std::get_if<PlaneDef>(&shape)) {
     const Vec3d n = plane->normal.normalized();
     planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point))});
   } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
-    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius)});
+    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius), is_smooth(sphere->radius)});
   } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
     rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
-                     static_cast<Real>(capsule->radius)});
+                     static_cast<Real>(capsule->radius), is_smooth(capsule->radius)});
   } else if (const auto* box = std::get_if<BoxDef>(&shape)) {
-    meshes_.push_back(prepare_mesh<Real>(world_mesh(*box), flat_turn));
+    meshes_.push_back(prepare_mesh<Real>(world_mesh(*box), hidden_));
   } else {
-    meshes_.push_back(prepare_mesh<Real>(std::get<MeshDef>(shape).mesh, flat_turn));
+    meshes_.push_back(prepare_mesh<Real>(std::get<MeshDef>(shape).mesh, hidden_));
   }
+}
+
+/// Whether a round surface of this radius rises so little between particles that they alone keep the
+/// cloth off it.
+template <class Real>
+bool Contact<Real>::is_smooth(double radius) const {
+  return hidden_.longest * hidden_.longest / (8 * radius) <= hidden_.rise;
 }
 
 template <class Real>
@@ -53,7 +60,6 @@ void Contact<Real>::reset() {
   collected_ = rows_built_ = false;
   clearance_.clear();
   rows_.clear();
-  particle_rows_ = 0;
 }
 
 template <class Real>

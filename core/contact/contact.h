@@ -38,6 +38,7 @@ struct ContactRow {
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
   Real offset = 0;                         ///< [m]
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
+  bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
 /// Contact of one cloth with fixed objects (CONTACT.md's recipe for static objects).
@@ -91,10 +92,12 @@ class Contact {
   struct Ball {
     Vec3<Real> centre;
     Real radius;
+    bool smooth;  ///< particles alone keep the cloth off it
   };
   struct Rod {
     Vec3<Real> a, b;
     Real radius;
+    bool smooth;
   };
   /// What a chunk of the collection finds.
   struct Found {
@@ -104,7 +107,8 @@ class Contact {
   static constexpr int kChunks = 8;
 
   bool empty() const { return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty(); }
-  void add_shape(const ShapeDef& shape, double flat_turn);
+  void add_shape(const ShapeDef& shape);
+  bool is_smooth(double radius) const;
 
   // contact_collect.cpp
   void collect(const ClothState<Real>& state, Profile& profile);
@@ -124,21 +128,24 @@ class Contact {
   void add_particle_rows(const ClothState<Real>& state, Profile& profile);
   void add_edge_rows(const ClothState<Real>& state, Profile& profile);
   void add_triangle_rows(const ClothState<Real>& state, Profile& profile);
+  std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t mesh, Index particle);
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
-               const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance);
-  void drop_deeper_rows(std::size_t first, const ClothState<Real>& state);
+               const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
+               bool responds = true);
 
   // contact_solve.cpp
   void push_out(ClothState<Real>& state, Real dt);
   void aim_rows(const ClothState<Real>& state, Real dt);
   void solve_rows(ClothState<Real>& state, Profile& profile);
   void certify(ClothState<Real>& state, Real dt);
+  bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt) const;
 
   ContactDef def_;
   Real thickness_ = 0;
   Executor* executor_ = nullptr;
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
+  HiddenRidges hidden_;
   std::vector<Plane> planes_;
   std::vector<Ball> balls_;
   std::vector<Rod> rods_;
@@ -153,14 +160,15 @@ class Contact {
   std::size_t collections_ = 0;
   std::vector<Real> skin_;           ///< how far each may move before the next collection
   std::vector<Real> row_reach_;      ///< how far each may move before the next rows
-  std::vector<Real> half_length_;    ///< half of the longest edge at each particle
+  std::vector<Real> span_;    ///< farthest that a point of an edge or triangle is from its nearest corner
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
   std::vector<Index> active_particles_, near_edges_, near_triangles_;
   std::vector<std::vector<ContactCandidate<Real>>> particle_pairs_, edge_pairs_, triangle_pairs_;
   std::array<Found, kChunks> found_;
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
+  std::vector<MeshDistance<Real>> nearby_;  ///< triangles near one particle, while its rows are built
+  std::vector<char> inside_;                ///< particles inside a closed mesh
   std::vector<ContactRow<Real>> rows_;
-  std::size_t particle_rows_ = 0;  ///< the first ones, of single particles, which are certified
 };
 
 extern template class Contact<float>;

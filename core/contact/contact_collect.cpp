@@ -12,6 +12,10 @@ namespace {
 /// nearer is not measured at every step [m].
 constexpr double kClearanceHorizon = 0.1;
 
+/// No point of a triangle is farther from its nearest corner than this part of its longest edge; it
+/// is 1/sqrt(3), for the centre of an equilateral one.
+constexpr double kTriangleSpan = 0.578;
+
 /// Ticks of a particle's present motion for which candidates shall hold.
 constexpr double kSkinTicks = 2.5;
 
@@ -69,19 +73,19 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
     collections_ = 0;
   }
   skin_.resize(n);
-  half_length_.assign(n, Real(0));
+  span_.assign(n, Real(0));
   for (const Edge& e : edges_) {
     const auto i = static_cast<std::size_t>(e[0]), j = static_cast<std::size_t>(e[1]);
-    const Real half = Real(0.5) * (state.x[i] - state.x[j]).norm();
-    half_length_[i] = std::max(half_length_[i], half);
-    half_length_[j] = std::max(half_length_[j], half);
+    const Real span = Real(kTriangleSpan) * (state.x[i] - state.x[j]).norm();
+    span_[i] = std::max(span_[i], span);
+    span_[j] = std::max(span_[j], span);
   }
   std::array<std::uint64_t, kChunks> tests{};
   run_chunks(executor_, kChunks, [&](int chunk) {
     const auto c = static_cast<std::size_t>(chunk);
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
       skin_[i] = std::max(thickness_ * 2, state.v[i].norm() * tick_seconds_ * Real(kSkinTicks));
-      const Real needed = thickness_ + half_length_[i] + skin_[i];
+      const Real needed = thickness_ + span_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
       if (clearance_[i] > needed) continue;
       // Who was near before had its clearance measured by its pairs. Those without pairs are measured
@@ -101,7 +105,7 @@ template <class Real>
 void Contact<Real>::mark_near(const ClothState<Real>& state) {
   const std::size_t n = state.x.size();
   for (std::size_t i = 0; i < n; ++i)
-    near_[i] = clearance_[i] <= thickness_ + half_length_[i] + skin_[i];
+    near_[i] = clearance_[i] <= thickness_ + span_[i] + skin_[i];
   active_ = near_;
   near_edges_.clear();
   near_triangles_.clear();
@@ -121,7 +125,7 @@ void Contact<Real>::mark_near(const ClothState<Real>& state) {
     if (active_[i])
       active_particles_.push_back(static_cast<Index>(i));
     else
-      skin_[i] = clearance_[i] - thickness_ - half_length_[i];
+      skin_[i] = clearance_[i] - thickness_ - span_[i];
   }
 }
 
@@ -168,7 +172,7 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
         ++found.tests;
         if (std::abs(d.distance) > reach) return;
         found.pairs.push_back({i, t, std::abs(d.distance)});
-        nearest = std::min(nearest, d.distance);
+        if (std::abs(d.distance) < std::abs(nearest)) nearest = d.distance;
         any = true;
       });
       const auto p = static_cast<std::size_t>(i);

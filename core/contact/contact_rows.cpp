@@ -16,23 +16,20 @@ constexpr double kRowSubsteps = 4;
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
 
-/// Direction from q to p, and their distance, negative if p lies behind a solid's feature.
+/// Direction from q to p, and their distance.
 template <class Real>
 struct Separation {
   Vec3<Real> normal;
   Real distance;
 };
 
-/// @param outward  normal of the object's feature, for points on it and for the side of a solid
+/// @param outward  serves for points so near that their direction is rounding
 template <class Real>
-Separation<Real> separate(const Vec3<Real>& p, const Vec3<Real>& q, const Vec3<Real>& outward,
-                          bool solid) {
+Separation<Real> separate(const Vec3<Real>& p, const Vec3<Real>& q, const Vec3<Real>& outward) {
   const Vec3<Real> away = p - q;
   const Real distance = away.norm();
   if (!(distance > Real(1e-6))) return {outward, Real(0)};
-  const Vec3<Real> normal = away / distance;
-  if (solid && normal.dot(outward) < 0) return {-normal, -distance};
-  return {normal, distance};
+  return {away / distance, distance};
 }
 
 }  // namespace
@@ -72,7 +69,6 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   x_rows_ = state.x;
   rows_.clear();
   add_particle_rows(state, profile);
-  particle_rows_ = rows_.size();
   add_edge_rows(state, profile);
   add_triangle_rows(state, profile);
   rows_built_ = true;
@@ -81,7 +77,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
 template <class Real>
 void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                             const std::array<Real, 3>& weights, const Vec3<Real>& normal,
-                            Real distance) {
+                            Real distance, bool responds) {
   ContactRow<Real> row;
   Real mobility = 0, height = 0;
   for (const Index i : particles) {
@@ -95,30 +91,44 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
   for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
     row.share[k] =
         row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
+  row.responds = responds;
   row.normal = normal;
   row.offset = height - distance;
   rows_.push_back(row);
 }
 
-/// Of the rows of one particle from `first` on: if it is inside a solid, only the nearest way out.
+/// Rows of one particle with the triangles of one mesh. Whether it is inside a solid is told by the
+/// nearest triangle alone; inside, only the nearest way out counts. Outside, every triangle is kept
+/// off from the side on which the particle is, whatever side of a thin solid that is.
+/// @return closest points computed
 template <class Real>
-void Contact<Real>::drop_deeper_rows(std::size_t first, const ClothState<Real>& state) {
-  std::size_t best = rows_.size();
-  Real nearest = -std::numeric_limits<Real>::infinity();
-  bool inside = false;
-  for (std::size_t k = first; k < rows_.size(); ++k) {
-    const Vec3<Real>& x = state.x[static_cast<std::size_t>(rows_[k].particle[0])];
-    const Real gap = rows_[k].normal.dot(x) - rows_[k].offset;
-    if (gap >= 0) continue;
-    inside = true;
-    if (gap > nearest) {
-      nearest = gap;
-      best = k;
-    }
+std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i) {
+  const auto p = static_cast<std::size_t>(i);
+  const Vec3<Real>& x = state.x[p];
+  const Real reach = thickness_ + row_reach_[p];
+  const Real moved = (x - x_collected_[p]).norm();
+  const auto& pairs = particle_pairs_[m];  // in the order of the active particles
+  std::size_t nearest = 0;
+  nearby_.clear();
+  for (; cursor_[m] < pairs.size() && pairs[cursor_[m]].cloth == i; ++cursor_[m]) {
+    if (pairs[cursor_[m]].distance - moved > reach) continue;
+    nearby_.push_back(distance_to_triangle(meshes_[m], pairs[cursor_[m]].feature, x));
+    if (std::abs(nearby_.back().distance) < std::abs(nearby_[nearest].distance))
+      nearest = nearby_.size() - 1;
   }
-  if (!inside) return;
-  rows_[first] = rows_[best];
-  rows_.resize(first + 1);
+  if (nearby_.empty()) return 0;
+  if (nearby_[nearest].distance < 0) {
+    inside_[p] = 1;
+    add_row(state, {i}, {Real(1), 0, 0}, nearby_[nearest].normal, nearby_[nearest].distance);
+    return nearby_.size();
+  }
+  for (const MeshDistance<Real>& d : nearby_) {
+    const Real distance = std::abs(d.distance);
+    if (distance > reach) continue;
+    const Vec3<Real> normal = d.distance < 0 ? (-d.normal).eval() : d.normal;
+    add_row(state, {i}, {Real(1), 0, 0}, normal, distance);
+  }
+  return nearby_.size();
 }
 
 template <class Real>
@@ -129,33 +139,21 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
     if (distance <= reach_of(i)) add_row(state, {i}, {Real(1), 0, 0}, normal, distance);
   };
   cursor_.assign(meshes_.size(), 0);
+  inside_.assign(state.x.size(), 0);
   for (const Index i : active_particles_) {
     const Vec3<Real>& p = state.x[static_cast<std::size_t>(i)];
     for (const Plane& plane : planes_) add(i, plane.normal, plane.normal.dot(p) - plane.offset);
     for (const Ball& ball : balls_) {
-      const auto s = separate<Real>(p, ball.centre, Vec3<Real>::UnitY(), false);
+      const auto s = separate<Real>(p, ball.centre, Vec3<Real>::UnitY());
       add(i, s.normal, s.distance - ball.radius);
     }
     for (const Rod& rod : rods_) {
       const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
-      const auto s = separate<Real>(p, q, Vec3<Real>::UnitY(), false);
+      const auto s = separate<Real>(p, q, Vec3<Real>::UnitY());
       add(i, s.normal, s.distance - rod.radius);
     }
     tests += planes_.size() + balls_.size() + rods_.size();
-    for (std::size_t m = 0; m < meshes_.size(); ++m) {
-      // The pairs stand in the order of the active particles.
-      const auto& pairs = particle_pairs_[m];
-      const std::size_t first = rows_.size();
-      const auto k = static_cast<std::size_t>(i);
-      const Real moved = (p - x_collected_[k]).norm();
-      for (; cursor_[m] < pairs.size() && pairs[cursor_[m]].cloth == i; ++cursor_[m]) {
-        if (pairs[cursor_[m]].distance - moved > reach_of(i)) continue;
-        const MeshDistance<Real> d = distance_to_triangle(meshes_[m], pairs[cursor_[m]].feature, p);
-        ++tests;
-        add(i, d.normal, d.distance);
-      }
-      if (meshes_[m].closed) drop_deeper_rows(first, state);
-    }
+    for (std::size_t m = 0; m < meshes_.size(); ++m) tests += add_mesh_rows(state, m, i);
   }
   profile[Stage::narrow_phase].work += tests;
 }
@@ -168,27 +166,30 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
                                  row_reach_[static_cast<std::size_t>(e[1])]);
   };
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
-  const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius) {
-    if (s <= Real(kEdgeEnd) || s >= Real(1 - kEdgeEnd) || d.distance - radius > reach_of(e)) return;
-    add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius);
+  const auto between_ends = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
+  const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius, bool responds) {
+    if (d.distance - radius > reach_of(e)) return;
+    add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius, responds);
   };
   for (const Index k : near_edges_) {
     const Edge& e = edges_[static_cast<std::size_t>(k)];
     for (const Ball& ball : balls_) {
+      if (ball.smooth) continue;
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
       const Vec3<Real> p = x(e[0]) + (x(e[1]) - x(e[0])) * s;
-      add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY(), false), ball.radius);
+      add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY()), ball.radius, between_ends(s));
     }
     for (const Rod& rod : rods_) {
+      if (rod.smooth) continue;
       const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]), rod.a, rod.b);
-      add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY(), false), rod.radius);
+      add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY()), rod.radius, between_ends(c.s));
     }
-    tests += balls_.size() + rods_.size();
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
       const Edge& e = edges_[static_cast<std::size_t>(pair.cloth)];
+      if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])]) continue;
       const Real moved = std::max((x(e[0]) - x_collected_[static_cast<std::size_t>(e[0])]).norm(),
                                   (x(e[1]) - x_collected_[static_cast<std::size_t>(e[1])]).norm());
       if (pair.distance - moved > reach_of(e)) continue;
@@ -197,9 +198,8 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
                                                mesh.positions[static_cast<std::size_t>(other.a)],
                                                mesh.positions[static_cast<std::size_t>(other.b)]);
       ++tests;
-      if (c.t <= Real(kEdgeEnd) || c.t >= Real(1 - kEdgeEnd)) continue;
       const Vec3<Real>& outward = mesh.edge_normals[static_cast<std::size_t>(pair.feature)];
-      add(e, c.s, separate<Real>(c.p, c.q, outward, mesh.closed), Real(0));
+      add(e, c.s, separate<Real>(c.p, c.q, outward), Real(0), between_ends(c.s) && between_ends(c.t));
     }
   }
   profile[Stage::narrow_phase].work += tests;
@@ -215,32 +215,36 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   };
   /// A point of the object with a radius against the inside of a cloth triangle.
   const auto add = [&](const Triangle& t, const Vec3<Real>& q, Real radius,
-                       const Vec3<Real>& outward, bool solid) {
+                       const Vec3<Real>& outward) {
     const TrianglePoint<Real> c = closest_on_triangle<Real>(q, x(t[0]), x(t[1]), x(t[2]));
     ++tests;
-    if (c.feature != 0) return;
-    const Separation<Real> d = separate<Real>(c.point, q, outward, solid);
+    const Separation<Real> d = separate<Real>(c.point, q, outward);
     if (d.distance - radius > thickness_ + over(t, row_reach_)) return;
-    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius);
+    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius, c.feature == 0);
   };
   for (const Index k : near_triangles_) {
     const Triangle& t = triangles_[static_cast<std::size_t>(k)];
-    for (const Ball& ball : balls_) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), false);
+    for (const Ball& ball : balls_) {
+      if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY());
+    }
     for (const Rod& rod : rods_) {
-      add(t, rod.a, rod.radius, Vec3<Real>::UnitY(), false);
-      add(t, rod.b, rod.radius, Vec3<Real>::UnitY(), false);
+      if (rod.smooth) continue;
+      add(t, rod.a, rod.radius, Vec3<Real>::UnitY());
+      add(t, rod.b, rod.radius, Vec3<Real>::UnitY());
     }
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
       const Triangle& t = triangles_[static_cast<std::size_t>(pair.cloth)];
+      if (std::any_of(t.begin(), t.end(), [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; }))
+        continue;
       Real moved = 0;
       for (const Index i : t)
         moved = std::max(moved, (x(i) - x_collected_[static_cast<std::size_t>(i)]).norm());
       if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
       add(t, mesh.positions[static_cast<std::size_t>(pair.feature)], Real(0),
-          mesh.vertex_normals[static_cast<std::size_t>(pair.feature)], mesh.closed);
+          mesh.vertex_normals[static_cast<std::size_t>(pair.feature)]);
     }
   }
   profile[Stage::narrow_phase].work += tests;
@@ -253,8 +257,8 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);                    \
   template void Contact<Real>::add_triangle_rows(const ClothState<Real>&, Profile&);                \
   template void Contact<Real>::add_row(const ClothState<Real>&, std::initializer_list<Index>,       \
-                                       const std::array<Real, 3>&, const Vec3<Real>&, Real);        \
-  template void Contact<Real>::drop_deeper_rows(std::size_t, const ClothState<Real>&);
+                                       const std::array<Real, 3>&, const Vec3<Real>&, Real, bool);  \
+  template std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>&, std::size_t, Index);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -48,6 +48,7 @@ void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   for (const ContactRow<Real>& row : rows_) {
+    if (!row.responds) continue;
     const Real lack = thickness_ - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
@@ -61,6 +62,7 @@ template <class Real>
 void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
   const Real bounce = static_cast<Real>(def_.restitution);
   for (ContactRow<Real>& row : rows_) {
+    if (!row.responds) continue;
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
     const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
     row.least_speed = -room / dt;
@@ -78,6 +80,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const ContactRow<Real>& row : rows_) {
+      if (!row.responds) continue;
       const Vec3<Real> v = weighted(row, state.v);
       const Real vn = row.normal.dot(v);
       const Real push = row.least_speed - vn;
@@ -95,34 +98,40 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   profile[Stage::friction].work += friction_evaluations;
 }
 
-/// Makes sure that the coming drift crosses no plane of a single particle and leaves nobody beyond
-/// the reach within which its planes are all that matters. Not moving is always allowed.
+/// Keeps each particle of a row on its side of the row's plane through the coming drift: as the plane
+/// separates two convex features, nobody crosses who ends where he may.
+/// @param hold  stop a particle that would cross, instead of lifting it along the normal
+/// @return whether anybody had to be kept
+template <class Real>
+bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state,
+                             Real dt) const {
+  bool kept = false;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    const auto i = static_cast<std::size_t>(row.particle[k]);
+    const Real now = row.normal.dot(state.x[i]) - row.offset;
+    const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
+    const Real least = std::min(now, Real(kSmallestGap));
+    if (end >= least || state.inverse_mass[i] == 0) continue;
+    kept = true;
+    if (hold)
+      state.v[i].setZero();
+    else
+      state.v[i] += row.normal * ((least - end) / dt * Real(1.0001));
+  }
+  return kept;
+}
+
+/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach within which
+/// the planes are all that matters. Not moving is always allowed.
 template <class Real>
 void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
-  const auto violated = [&](const ContactRow<Real>& row, std::size_t i) {
-    const Real now = row.normal.dot(state.x[i]) - row.offset;
-    const Real least = std::min(now, Real(kSmallestGap));
-    const Real end = now + row.normal.dot(state.v[i]) * dt;
-    return end < least ? least - end : Real(0);
-  };
-  for (std::size_t first = 0; first < particle_rows_;) {
-    const auto i = static_cast<std::size_t>(rows_[first].particle[0]);
-    std::size_t last = first;
-    while (last < particle_rows_ && rows_[last].particle[0] == rows_[first].particle[0]) ++last;
-    bool clear = false;
-    for (int round = 0; round <= kCertifyRounds && !clear; ++round) {
-      clear = true;
-      for (std::size_t k = first; k < last; ++k) {
-        const Real lack = violated(rows_[k], i);
-        if (!(lack > 0)) continue;
-        clear = false;
-        if (round < kCertifyRounds)
-          state.v[i] += rows_[k].normal * (lack / dt * Real(1.0001));
-        else
-          state.v[i].setZero();
-      }
-    }
-    first = last;
+  bool kept = true;
+  for (int round = 0; round < kCertifyRounds && kept; ++round) {
+    kept = false;
+    for (const ContactRow<Real>& row : rows_) kept |= keep_off(row, false, state, dt);
+  }
+  if (kept) {
+    for (const ContactRow<Real>& row : rows_) keep_off(row, true, state, dt);
   }
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
@@ -135,6 +144,7 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                    \
   template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);              \
   template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);              \
+  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real) const; \
   template void Contact<Real>::certify(ClothState<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

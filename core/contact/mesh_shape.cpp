@@ -1,12 +1,13 @@
 #include "core/contact/mesh_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace weft {
 namespace {
 
-/// Sine of the angle by which a closed surface turns outwards at an edge; negative if it is a groove.
+/// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
   const Triangle& second = mesh.triangles[static_cast<std::size_t>(edge.triangle[1])];
@@ -16,12 +17,28 @@ double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   }
   const Vec3d across = mesh.positions[static_cast<std::size_t>(opposite)] -
                        mesh.positions[static_cast<std::size_t>(edge.a)];
-  const double turn = n1.cross(n2).norm();
+  const double turn = std::atan2(n1.cross(n2).norm(), n1.dot(n2));
   return n1.dot(across) < 0 ? turn : -turn;
 }
 
+/// Width of a triangle across one of its edges [m].
+double width_across(const TriangleMesh& mesh, Index triangle, const MeshEdge& edge) {
+  const auto at = [&](Index i) { return mesh.positions[static_cast<std::size_t>(i)]; };
+  const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const double doubled_area = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
+  return doubled_area / (at(edge.b) - at(edge.a)).norm();
+}
+
+bool is_hidden(const TriangleMesh& mesh, const MeshEdge& edge, const HiddenRidges& hidden) {
+  const double turn = outward_turn(mesh, edge), length = hidden.longest;
+  const double width = std::min(width_across(mesh, edge.triangle[0], edge),
+                                width_across(mesh, edge.triangle[1], edge));
+  return turn * length / 4 <= hidden.rise && turn * length * length / (8 * width) <= hidden.rise;
+}
+
 template <class Real>
-void find_sharp_features(const TriangleMesh& mesh, double flat_turn, MeshShape<Real>& shape) {
+void find_sharp_features(const TriangleMesh& mesh, const HiddenRidges& hidden,
+                         MeshShape<Real>& shape) {
   std::vector<char> sharp_vertex(mesh.positions.size(), 0);
   for (std::size_t e = 0; e < shape.edges.size(); ++e) {
     const MeshEdge& edge = shape.edges[e];
@@ -31,7 +48,7 @@ void find_sharp_features(const TriangleMesh& mesh, double flat_turn, MeshShape<R
     const Vec3d sum = n1 + n2;
     shape.edge_normals.push_back(
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
-    if (shape.closed && !rim && outward_turn(mesh, edge) < flat_turn) continue;
+    if (shape.closed && !rim && is_hidden(mesh, edge, hidden)) continue;
     shape.sharp_edges.push_back(static_cast<Index>(e));
     sharp_vertex[static_cast<std::size_t>(edge.a)] = 1;
     sharp_vertex[static_cast<std::size_t>(edge.b)] = 1;
@@ -84,7 +101,7 @@ Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
 }  // namespace
 
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, double flat_turn) {
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidden) {
   MeshShape<Real> shape;
   shape.closed = is_closed(mesh);
   shape.triangles = mesh.triangles;
@@ -93,7 +110,7 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, double flat_turn) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
-  find_sharp_features(mesh, flat_turn, shape);
+  find_sharp_features(mesh, hidden, shape);
   build_trees(shape);
   return shape;
 }
@@ -143,7 +160,7 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
-  template MeshShape<Real> prepare_mesh(const TriangleMesh&, double);                              \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&, const HiddenRidges&);                 \
   template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, const Vec3<Real>&); \
   template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
 WEFT_INSTANTIATE(float)

@@ -25,9 +25,16 @@ struct MeshShape {
   Bvh<Real> triangle_tree, edge_tree, vertex_tree;
 };
 
-/// @param flat_turn  sine of the angle up to which an outward turn of a closed surface counts as flat
+/// What lets ridges of a smooth solid go without pairs of their own.
+struct HiddenRidges {
+  double rise = 0;       ///< how high a ridge may rise between two particles beside it [m]
+  double longest = 1;    ///< distance of two such particles at most [m], positive
+};
+
+/// @param hidden  a ridge that turns by an angle a and has faces of width w rises a L/4 between
+///                particles L apart, or a L^2 / (8 w) if the surface goes on turning like that
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, double flat_turn);
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidden);
 
 /// Nearest point of a mesh with the side that it is seen from.
 template <class Real>
