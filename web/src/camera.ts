@@ -56,20 +56,21 @@ export class OrbitCamera {
 
   /**
    * Brings a box into the picture.
-   * @param hidden part of the view's height at its lower end that panels cover
+   * @param covered parts of the view's height that panels cover at its ends
    */
-  frame(box: Box3, hidden: number, at_once: boolean): void {
+  frame(box: Box3, covered: { above: number; below: number }, at_once: boolean): void {
+    const { wanted } = this;
     const size = box.getSize(new Vector3());
-    const half_angle = (FIELD_OF_VIEW * Math.PI) / 360;
+    const tangent = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const visible = Math.max(0.3, 1 - covered.above - covered.below);
     const width = Math.hypot(size.x, size.z) / this.camera.aspect;
-    const visible = Math.max(0.3, 1 - hidden);
-    const needed = Math.max(size.y / visible, width) * 0.5;
-    const distance = (1.12 * needed) / Math.tan(half_angle) + Math.min(size.x, size.z) * 0.5;
-    this.wanted.distance = Math.min(FARTHEST, Math.max(NEAREST, distance));
-    box.getCenter(this.wanted.target);
-    this.wanted.target.y -= this.wanted.distance * Math.tan(half_angle) * hidden * 0.8;
+    const extent = Math.max(size.y / visible, width * 0.92);
+    wanted.distance = (1.06 * extent) / (2 * tangent) + Math.min(size.x, size.z) * 0.5;
+    wanted.distance = Math.min(FARTHEST, Math.max(NEAREST, wanted.distance));
+    box.getCenter(wanted.target);
+    wanted.target.y -= (covered.below - covered.above) * wanted.distance * tangent;
     this.limit();
-    if (at_once) this.present = copy_pose(this.wanted);
+    if (at_once) this.present = copy_pose(wanted);
   }
 
   resize(width: number, height: number): void {

@@ -22,11 +22,11 @@ export function fabric_material(width: number, height: number): MeshPhysicalMate
     (height * THREADS_PER_METRE) / THREADS,
   );
   const material = new MeshPhysicalMaterial({
-    color: new Color('#a8321d'),
+    color: new Color('#cb5238'),
     roughness: 0.82,
-    sheen: 0.55,
+    sheen: 0.6,
     sheenRoughness: 0.45,
-    sheenColor: new Color('#e2552f'),
+    sheenColor: new Color('#ffab92'),
     normalMap: relief,
     normalScale: new Vector2(0.55, 0.55),
     side: DoubleSide,
@@ -50,9 +50,9 @@ const HEM_SHADE = `
   vec2 from_edge = min(fabric_place, 1.0 - fabric_place) / hem;
   float edge = min(from_edge.x, from_edge.y);
   float blur = max(fwidth(edge), 0.02);
-  diffuseColor.rgb *= 1.0 - 0.10 * (1.0 - smoothstep(1.0 - blur, 1.0 + blur, edge));
+  diffuseColor.rgb *= 1.0 - 0.07 * (1.0 - smoothstep(1.0 - blur, 1.0 + blur, edge));
   diffuseColor.rgb *= 1.0 - 0.16 * (1.0 - smoothstep(0.0, 0.10 + blur, abs(edge - 1.0)));
-  if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.80, 0.78, 0.80);
+  if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.86, 0.82, 0.84);
 `;
 
 /** Normals of a 2/2 twill: each thread goes over two and under two, one on at each row. */

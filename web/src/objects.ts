@@ -11,6 +11,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { smooth_normals } from './normals.js';
 import type { Collider, MeshData, Vec3 } from '../../proto/js/messages.js';
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
@@ -23,14 +24,18 @@ export class Objects {
   private material = new MeshStandardMaterial({ color: '#d9d2c6', roughness: 0.72 });
   private caster = new Raycaster();
 
-  constructor(colliders: Collider[], data: MeshData) {
+  /**
+   * @param inset by which meshes are drawn thinner [m]. Contact keeps particles and edges outside,
+   *     but the middle of a flat triangle of cloth may dip below a curved surface a little.
+   */
+  constructor(colliders: Collider[], data: MeshData, inset: number) {
     for (const [place, collider] of colliders.entries()) {
       if (collider.kind === 'plane') {
         // A floor is drawn for level ground alone.
         if (collider.normal[1] > 0.99) this.ground = collider.point[1];
         continue;
       }
-      const mesh = new Mesh(geometry_of(collider, place, data), this.material);
+      const mesh = new Mesh(geometry_of(collider, place, data, inset), this.material);
       mesh.name = collider.name;
       mesh.castShadow = mesh.receiveShadow = true;
       place_object(mesh, collider);
@@ -57,7 +62,12 @@ export class Objects {
   }
 }
 
-function geometry_of(collider: Collider, place: number, data: MeshData): BufferGeometry {
+function geometry_of(
+  collider: Collider,
+  place: number,
+  data: MeshData,
+  inset: number,
+): BufferGeometry {
   switch (collider.kind) {
     case 'sphere':
       return new SphereGeometry(collider.radius, 64, 40);
@@ -71,7 +81,8 @@ function geometry_of(collider: Collider, place: number, data: MeshData): BufferG
     }
     default: {
       const mesh = data.colliders.find((each) => each.collider === place);
-      return mesh ? creased_geometry(mesh.positions, mesh.triangles) : new BufferGeometry();
+      if (!mesh) return new BufferGeometry();
+      return creased_geometry(inner_offset(mesh.positions, mesh.triangles, inset), mesh.triangles);
     }
   }
 }
@@ -84,6 +95,13 @@ function place_object(mesh: Mesh, collider: Collider): void {
   const axis = new Vector3(...collider.b).sub(a);
   mesh.position.copy(a).addScaledVector(axis, 0.5);
   mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
+}
+
+/** Positions moved inwards along the smooth normals by a distance [m]. */
+function inner_offset(positions: Float32Array, triangles: Uint32Array, distance: number) {
+  const normals = new Float32Array(positions.length);
+  smooth_normals(positions, triangles, normals);
+  return positions.map((value, i) => value - normals[i] * distance);
 }
 
 /** Smooth where faces meet at small angles, sharp at edges; corners get normals of their own. */

@@ -19,6 +19,8 @@ import { Toolbar } from './toolbar.js';
 import { WorldView } from './world_view.js';
 
 const CAMERA_INTERVAL = 0.25; // between messages that tell where this viewer looks from [s]
+// The measurements show the first two, and a hand that slips tells the third itself.
+const SHOWN_ELSEWHERE = new Set(['frames_dropped', 'slow_motion', 'lease_expired']);
 const NO_COLOR = '#5c6068';
 
 /** Joins connection, input, camera, picture and panels; each knows its own work alone. */
@@ -45,6 +47,7 @@ export class Page {
   private camera_told_at = 0;
   private camera_moved = true;
   private dirty = true;
+  private drawn_last_time = false;
   /** Latency of a frame that came and is not drawn yet. */
   private pending_latency: { came_at: number; latency: number } | null = null;
 
@@ -110,7 +113,9 @@ export class Page {
       this.grabs = grabs;
       this.dirty = true;
     });
-    client.on('notice', ({ level, message }) => level !== 'info' && panels.tell(message));
+    client.on('notice', ({ level, code, message }) => {
+      if (level !== 'info' && !SHOWN_ELSEWHERE.has(code)) panels.tell(message);
+    });
     client.on('refused', ({ code, message }) => code !== 'unknown_drag' && panels.tell(message));
     client.on('fault', ({ message }) => panels.tell(message));
     document.addEventListener('visibilitychange', () => this.world?.playback.forget());
@@ -195,9 +200,11 @@ export class Page {
   private frame(at_once = false): void {
     if (!this.world) return;
     const toolbar = element('toolbar').getBoundingClientRect();
+    const header = element('viewers').getBoundingClientRect();
     const { height } = this.size();
-    const hidden = Math.min(0.5, (height - toolbar.top) / height);
-    this.orbit.frame(this.world.bounds(), hidden, at_once);
+    const above = Math.min(0.25, header.bottom / height);
+    const below = Math.min(0.4, (height - toolbar.top) / height);
+    this.orbit.frame(this.world.bounds(), { above, below }, at_once);
   }
 
   // ---- the picture --------------------------------------------------------------------------
@@ -221,8 +228,11 @@ export class Page {
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
     if (this.world?.show(now, this.hold !== null)) this.dirty = true;
     this.tell_camera(now);
+    const again = this.drawn_last_time;
+    this.drawn_last_time = this.dirty;
     if (!this.dirty) return;
     this.dirty = false;
+    if (again && this.stage.judge(elapsed)) this.resize();
     this.point_at_cloth();
     const { width, height } = this.size();
     this.hands.update(this.hands_to_show(), this.orbit.camera, width, height);

@@ -6,7 +6,7 @@ import {
   HemisphereLight,
   Mesh,
   MeshBasicMaterial,
-  PCFSoftShadowMap,
+  PCFShadowMap,
   PlaneGeometry,
   PMREMGenerator,
   Scene,
@@ -23,25 +23,30 @@ const SKY_COLOR = new Color('#f6f4f0');
 const GRID_COLOR = new Color('#8d877c');
 const GRID_RADIUS = 6; // where the grid has faded out [m]
 const MOST_PIXELS_PER_UNIT = 2;
+const LEAST_PIXELS_PER_UNIT = 0.5;
+const SLOW_PICTURE = 0.045; // that makes the next ones coarser [s]
+const JUDGED_PICTURES = 5;
 
 /** A studio: light, a floor with a grid that fades into the distance, and the renderer. */
 export class Stage {
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
+  private coarseness = 1;
+  private slow_pictures = 0;
   private sun = new DirectionalLight('#fff4e6', 2.3);
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.environment = soft_boxes(this.renderer);
-    this.scene.environmentIntensity = 0.55;
+    this.scene.environmentIntensity = 0.75;
     this.scene.add(dome(), this.sun, this.sun.target);
-    this.scene.add(new HemisphereLight('#ffffff', '#d8d0c4', 0.5));
+    this.scene.add(new HemisphereLight('#ffffff', '#d8d0c4', 0.9));
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 3.5;
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.012;
   }
@@ -57,7 +62,7 @@ export class Stage {
     const center = box.getCenter(new Vector3());
     const radius = Math.max(0.3, box.getSize(new Vector3()).length() * 0.75);
     this.sun.target.position.copy(center);
-    this.sun.position.copy(center).add(new Vector3(-0.55, 1, 0.75).setLength(radius * 3));
+    this.sun.position.copy(center).add(new Vector3(-0.35, 1, 0.85).setLength(radius * 3));
     const view = this.sun.shadow.camera;
     [view.left, view.right, view.bottom, view.top] = [-radius, radius, -radius, radius];
     [view.near, view.far] = [radius, radius * 5];
@@ -65,8 +70,24 @@ export class Stage {
   }
 
   resize(width: number, height: number): void {
-    this.renderer.setPixelRatio(Math.min(MOST_PIXELS_PER_UNIT, window.devicePixelRatio));
+    const finest = Math.min(MOST_PIXELS_PER_UNIT, window.devicePixelRatio);
+    const ratio = Math.max(LEAST_PIXELS_PER_UNIT, finest / this.coarseness);
+    this.renderer.setPixelRatio(Math.min(finest, ratio));
     this.renderer.setSize(width, height, false);
+  }
+
+  /**
+   * Draws coarser where a machine cannot keep up, for a hand that lags is worse than a soft edge.
+   * @param interval between two pictures that follow each other [s]
+   * @returns whether the view must be resized
+   */
+  judge(interval: number): boolean {
+    this.slow_pictures = interval > SLOW_PICTURE ? this.slow_pictures + 1 : 0;
+    const least = LEAST_PIXELS_PER_UNIT;
+    if (this.slow_pictures < JUDGED_PICTURES || this.renderer.getPixelRatio() <= least) return false;
+    this.coarseness *= Math.SQRT2;
+    this.slow_pictures = 0;
+    return true;
   }
 }
 
@@ -88,7 +109,7 @@ function soft_boxes(renderer: WebGLRenderer) {
     room.add(panel);
   }
   const generator = new PMREMGenerator(renderer);
-  const texture = generator.fromScene(room, 0.06).texture;
+  const texture = generator.fromScene(room, 0.03).texture;
   generator.dispose();
   return texture;
 }
@@ -128,45 +149,44 @@ function dome(): Mesh {
 /** Shadows and a grid of 10 cm with stronger metres, over the dome's colour. */
 function floor(height: number): Mesh {
   const geometry = new PlaneGeometry(GRID_RADIUS * 2, GRID_RADIUS * 2).rotateX(-Math.PI / 2);
-  const shadow = new Mesh(geometry, new ShadowMaterial({ color: '#3b2f26', opacity: 0.3 }));
-  shadow.name = 'floor';
-  shadow.position.y = height;
-  shadow.receiveShadow = true;
-  shadow.renderOrder = -1;
-  shadow.material.depthWrite = false;
-  shadow.add(new Mesh(geometry, grid_material()));
-  shadow.children[0].renderOrder = -1;
-  return shadow;
+  const material = new ShadowMaterial({ color: '#3b2f26', opacity: 0.3, depthWrite: false });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.grid_color = { value: GRID_COLOR };
+    shader.uniforms.grid_radius = { value: GRID_RADIUS };
+    shader.vertexShader = shader.vertexShader.replace(
+      'void main() {',
+      'varying vec2 place;\nvoid main() {\nplace = position.xz;',
+    );
+    shader.fragmentShader = shader.fragmentShader
+      .replace('void main() {', `${GRID_FUNCTIONS}\nvoid main() {`)
+      .replace('#include <tonemapping_fragment>', GRID_OVER_SHADOW);
+  };
+  const mesh = new Mesh(geometry, material);
+  mesh.name = 'floor';
+  mesh.position.y = height;
+  mesh.receiveShadow = true;
+  mesh.renderOrder = -1;
+  return mesh;
 }
 
-function grid_material(): ShaderMaterial {
-  return new ShaderMaterial({
-    transparent: true,
-    depthWrite: false,
-    uniforms: { grid_color: { value: GRID_COLOR }, radius: { value: GRID_RADIUS } },
-    vertexShader: `
-      varying vec2 place;
-      void main() {
-        place = position.xz;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-      }`,
-    fragmentShader: `
-      uniform vec3 grid_color;
-      uniform float radius;
-      varying vec2 place;
-      float lines(vec2 at, float cell) {
-        vec2 scaled = at / cell;
-        vec2 width = fwidth(scaled);
-        vec2 away = abs(fract(scaled - 0.5) - 0.5);
-        vec2 line = 1.0 - smoothstep(0.4 * width, 1.2 * width, away);
-        line *= 1.0 - smoothstep(0.2, 0.6, width);
-        return max(line.x, line.y);
-      }
-      void main() {
-        float fade = 1.0 - smoothstep(0.15, 0.8, length(place) / radius);
-        float strength = max(0.16 * lines(place, 0.1), 0.42 * lines(place, 1.0)) * fade;
-        gl_FragColor = vec4(grid_color, strength);
-        #include <colorspace_fragment>
-      }`,
-  });
-}
+const GRID_FUNCTIONS = `
+  uniform vec3 grid_color;
+  uniform float grid_radius;
+  varying vec2 place;
+  float lines(vec2 at, float cell) {
+    vec2 scaled = at / cell;
+    vec2 width = fwidth(scaled);
+    vec2 away = abs(fract(scaled - 0.5) - 0.5);
+    vec2 line = 1.0 - smoothstep(0.4 * width, 1.2 * width, away);
+    line *= 1.0 - smoothstep(0.2, 0.6, width);
+    return max(line.x, line.y);
+  }
+`;
+
+const GRID_OVER_SHADOW = `
+  float fade = 1.0 - smoothstep(0.15, 0.8, length(place) / grid_radius);
+  float strength = max(0.1 * lines(place, 0.1), 0.3 * lines(place, 1.0)) * fade;
+  float shade = gl_FragColor.a * (1.0 - smoothstep(0.6, 1.0, length(place) / grid_radius));
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, grid_color, strength / max(1e-4, strength + shade));
+  gl_FragColor.a = strength + shade - strength * shade;
+`;

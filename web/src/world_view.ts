@@ -21,7 +21,8 @@ export class WorldView {
     this.playback = new Playback(announcement.vertices);
     this.playback.positions.set(data.restPositions);
     this.cloth = new ClothMesh(announcement.cloths, data);
-    this.objects = new Objects(announcement.colliders, data);
+    const thickness = Math.max(0, ...announcement.cloths.map((cloth) => cloth.thickness));
+    this.objects = new Objects(announcement.colliders, data, thickness);
     stage.scene.add(this.cloth.group, this.objects.group);
     stage.set_floor(this.objects.ground);
     stage.light(this.bounds());
