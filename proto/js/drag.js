@@ -56,7 +56,6 @@ export class Drag {
   move(target) {
     if (!this.active) return;
     this.#target = [...target];
-    if (this.#pending) return;
     const wait = this.#sentAt + SHORTEST_INTERVAL - this.#timers.now();
     if (wait <= 0) return this.#sendTarget();
     this.#pending = true;

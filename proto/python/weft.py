@@ -226,7 +226,6 @@ def _read_common(message: bytes, type_: int, least: int, last_codec: int) -> tup
 def _read_sections(message: bytes, offset: int, count: int) -> dict[tuple[int, int], memoryview]:
     """Payloads by kind and index."""
     view, sections = memoryview(message), {}
-    _demand(count <= (len(message) - offset) // _SECTION.size, "too many sections")
     for _ in range(count):
         _demand(len(message) - offset >= _SECTION.size, "a section is cut off")
         kind, index, length = _SECTION.unpack_from(message, offset)

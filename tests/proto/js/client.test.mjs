@@ -141,9 +141,18 @@ test('a message that cannot be read ends the connection and it is made anew', as
     (socket) => socket.say('{"op":'),
     (socket) => socket.say('null'),
     (socket) => socket.sayBytes(readGolden('mesh_grid.bin')), // unannounced
-    (socket) => {
-      socket.say({ ...GRID, vertices: 7 });
+    ...[
+      { vertices: 7 },
+      { triangles: 5 },
+      { colliders: [{ name: 'form', kind: 'mesh', vertices: 4, triangles: 4 }] },
+    ].map((change) => (socket) => {
+      socket.say({ ...GRID, ...change });
       socket.sayBytes(readGolden('mesh_grid.bin'));
+    }),
+    (socket) => {
+      const ball = { name: 'ball', kind: 'sphere', center: [0, 0, 0], radius: 1 };
+      socket.say({ ...GRID, vertices: 4, triangles: 2, colliders: Array(5).fill(ball) });
+      socket.sayBytes(readGolden('mesh_colliders.bin'));
     },
     (socket) => {
       socket.say(GRID);
@@ -401,6 +410,20 @@ test('latency is from the sending of a command to the frame that includes it', a
   timers.time += 10;
   socket.sayBytes(readGolden('frame_hands.bin'));
   assert.ok(Math.abs(client.latency - 0.035) < 1e-9);
+});
+
+test('messages are counted anew on each connection', async () => {
+  const { client, sockets, timers } = await join();
+  while (sockets[0].sent.length < 50) client.post('camera', {});
+  sockets[0].lose(1006);
+  await timers.pass(300);
+  sockets[1].open();
+  sockets[1].say(welcome);
+  while (sockets[1].sent.length < 40) client.post('camera', {});
+  client.post('drag', { phase: 'move', drag: 1, target: [0, 0, 0] });
+  timers.time += 30;
+  sockets[1].sayBytes(readGolden('frame_hands.bin'));
+  assert.ok(Math.abs(client.latency - 0.03) < 1e-9);
 });
 
 test('an exception of a listener is not taken for a fault of the server', async () => {
