@@ -1,0 +1,392 @@
+import assert from 'node:assert/strict';
+import test, { after, before } from 'node:test';
+import {
+  camera_at_rest,
+  launch_browser,
+  next_pictures,
+  open_page,
+  pixel_of,
+  read,
+  until,
+} from './support/browser.mjs';
+import { start_server } from './support/server.mjs';
+import { cloth_on_canvas, overlap, projected_cloth } from './support/silhouette.mjs';
+
+const CALM = ['--set', 'environment.wind=0,0,0', '--set', 'environment.gust_speed=0'];
+const COLUMNS = 30; // of the default scene's grid
+const bounded = { timeout: 120_000 };
+
+let browser;
+let server;
+before(async () => {
+  browser = await launch_browser();
+  server = await start_server(CALM);
+});
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Gives a test a page and a script at the default scene's start, and sees them off. */
+async function with_page(options, act) {
+  const script = await server.script();
+  await script.release({ all: true });
+  await script.resume();
+  await script.reset();
+  const page = await open_page(browser, server.url, options);
+  try {
+    await act(page, script);
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    await page.context().close();
+    script.close();
+  }
+}
+
+const position = async (script, particle) => (await script.query('positions'))[particle];
+
+/** Where the page shows a particle of the cloth. */
+async function particle_pixel(page, particle) {
+  const positions = await read(page, 'positions');
+  return pixel_of(page, positions.slice(particle * 3, particle * 3 + 3));
+}
+
+/** A particle near the middle of the cloth, and the mouse upon it. */
+async function point_at_cloth(page, particle = 12 * COLUMNS + 14) {
+  await camera_at_rest(page);
+  await until(async () => {
+    const { x, y } = await particle_pixel(page, particle);
+    await page.mouse.move(x, y);
+    await next_pictures(page);
+    return read(page, 'hovering');
+  }, 'the mouse is on the cloth');
+  return particle;
+}
+
+/** Takes the cloth with the mouse and moves the hand by so many pixels. */
+async function drag_cloth(page, dx, dy) {
+  const particle = await point_at_cloth(page);
+  const { x, y } = await particle_pixel(page, particle);
+  await page.mouse.down();
+  await until(async () => (await read(page, 'input')) === 'holding');
+  await page.mouse.move(x + dx, y + dy, { steps: 4 });
+  return particle;
+}
+
+test('the cloth on the canvas is the projection of the positions of the server', bounded, () =>
+  with_page({ width: 720, height: 540 }, async (page, script) => {
+    for (const turn of [0, 170]) {
+      await page.mouse.move(40, 300);
+      await page.mouse.down();
+      await page.mouse.move(40 + turn, 300 - turn / 6);
+      await page.mouse.up();
+      await page.mouse.move(1, 1);
+      await script.pause();
+      const { values: positions } = await script.query('positions', { format: 'f64' });
+      const camera = await camera_at_rest(page);
+      const { data } = script.mesh;
+      const expected = projected_cloth(
+        camera,
+        await read(page, 'size'),
+        { positions: [...positions], triangles: data.triangles },
+        data.colliders.map((mesh) => ({ ...mesh, positions: [...mesh.positions] })),
+      );
+      const part = overlap(await cloth_on_canvas(page), expected);
+      assert.ok(part >= 0.98, `turned by ${turn} pixels: ${part}`);
+      assert.ok(expected.reduce((sum, value) => sum + value) > 20_000, 'the cloth is in the picture');
+      await script.resume();
+    }
+  }),
+);
+
+test('no vertex moves while ticks stand still; a step moves them by one tick', bounded, () =>
+  with_page({}, async (page, script) => {
+    await page.keyboard.press(' ');
+    await until(async () => (await script.query('state')).paused);
+    await until(() => page.evaluate(() => weft.paused));
+    await next_pictures(page);
+    const shown = await read(page, 'positions');
+    const { values } = await script.query('positions', { format: 'f32' });
+    assert.deepEqual(shown, [...values]);
+    const pictures = await read(page, 'pictures');
+    for (let i = 0; i < 6; i++) {
+      await page.mouse.move(200 + i * 20, 200);
+      await next_pictures(page);
+      assert.deepEqual(await read(page, 'positions'), shown);
+    }
+    assert.ok((await read(page, 'pictures')) > pictures, 'pictures were drawn meanwhile');
+    const tick = await read(page, 'tick');
+    await page.keyboard.press('.');
+    await until(async () => (await read(page, 'tick')) === tick + 1);
+    assert.notDeepEqual(await read(page, 'positions'), shown);
+    await page.keyboard.press(' ');
+    await until(async () => (await read(page, 'tick')) > tick + 5);
+  }),
+);
+
+test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () =>
+  with_page({}, async (page, script) => {
+    const before = await script.query('positions');
+    const particle = await drag_cloth(page, 20, -110);
+    const height = before[particle][1];
+    await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
+    const [hand] = await read(page, 'hands');
+    assert.equal(hand.own, true);
+    const pins = script.last.pins.length;
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length === pins + 1);
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    const pin = script.last.pins.at(-1);
+    const held = await position(script, pin.particle);
+    const { tick } = await script.query('state');
+    await until(async () => (await script.query('state')).tick > tick + 60);
+    assert.deepEqual(await position(script, pin.particle), held);
+    await point_at_cloth(page, pin.particle);
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length === pins);
+    await until(async () => (await position(script, pin.particle))[1] < held[1] - 0.05, 'it falls');
+  }),
+);
+
+test('the wheel moves a hand along the view, and only without one the camera', bounded, () =>
+  with_page({}, async (page, script) => {
+    await drag_cloth(page, 0, -20);
+    const camera = await camera_at_rest(page);
+    const distance = async () => {
+      const [{ target }] = script.last.grabs.length ? await script.query('grabs') : [{ target: null }];
+      return target && Math.hypot(...target.map((value, axis) => value - camera.position[axis]));
+    };
+    const first = await until(distance, 'the server knows the hand');
+    await page.mouse.wheel(0, -400);
+    await until(async () => (await distance()) > first * 1.1, 'the hand goes away from the viewer');
+    assert.deepEqual(await camera_at_rest(page), camera);
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    await page.mouse.wheel(0, -400);
+    await until(async () => (await camera_at_rest(page)).position[2] < camera.position[2] - 0.2);
+  }),
+);
+
+test('beside the cloth the mouse moves the camera and nothing else', bounded, () =>
+  with_page({}, async (page, script) => {
+    const home = await camera_at_rest(page);
+    const length = ({ position: [x, y, z] }) => Math.hypot(x, y, z);
+    const sweep = async (button, keys = []) => {
+      for (const key of keys) await page.keyboard.down(key);
+      await page.mouse.move(60, 200);
+      await page.mouse.down({ button });
+      await page.mouse.move(140, 180, { steps: 2 });
+      await page.mouse.up({ button });
+      for (const key of keys) await page.keyboard.up(key);
+      return camera_at_rest(page);
+    };
+    const rotation = ({ view }) => [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => view[i]);
+    const orbited = await sweep('left');
+    assert.notDeepEqual(rotation(orbited), rotation(home));
+    const panned = await sweep('right');
+    assert.deepEqual(rotation(panned), rotation(orbited));
+    assert.notDeepEqual(panned.position, orbited.position);
+    const panned_too = await sweep('left', ['Shift']);
+    assert.deepEqual(rotation(panned_too), rotation(orbited));
+    assert.notDeepEqual(panned_too.position, panned.position);
+    await page.mouse.wheel(0, 300);
+    assert.ok(length(await camera_at_rest(page)) > length(panned_too));
+    await page.keyboard.press('f');
+    const { target } = await until(async () => {
+      const [seen] = (await script.query('camera')).filter(({ viewer }) => viewer !== script.viewer);
+      return seen;
+    }, 'the server knows the camera');
+    assert.equal(target.length, 3);
+    assert.deepEqual(script.last.grabs, []);
+  }),
+);
+
+test('two pages see each other’s hands, with names and colours', bounded, () =>
+  with_page({ name: 'Ada' }, async (ada, script) => {
+    const ben = await open_page(browser, server.url, { name: 'Ben' });
+    try {
+      const of = async (page, name) => (await read(page, 'hands')).find((hand) => hand.name === name);
+      await drag_cloth(ada, 40, -40);
+      const seen = await until(() => of(ben, 'Ada'), 'Ben sees the hand of Ada');
+      const roster = await script.query('roster');
+      const color = (name) => roster.find((viewer) => viewer.name === name).color;
+      assert.equal(seen.color, color('Ada'));
+      assert.equal(seen.own, false);
+      assert.equal(await ben.locator('.name').textContent(), 'Ada');
+      await point_at_cloth(ben, 4 * COLUMNS + 24);
+      await ben.mouse.down();
+      await until(() => of(ada, 'Ben'), 'Ada sees the hand of Ben');
+      assert.equal(script.last.grabs.length, 2);
+      assert.notEqual(color('Ada'), color('Ben'));
+      await ada.mouse.up();
+      await until(async () => !(await of(ben, 'Ada')), 'Ada let go');
+      assert.deepEqual(ben.complaints, []);
+    } finally {
+      await ben.context().close();
+    }
+    await until(() => script.last.grabs.length === 0, 'who leaves lets go');
+  }),
+);
+
+test('a drag ends when the pointer is cancelled and when the window loses the focus', bounded, () =>
+  with_page({}, async (page, script) => {
+    for (const name of ['pointercancel', 'blur']) {
+      await drag_cloth(page, 0, -20);
+      await until(() => script.last.grabs.length === 1);
+      await page.evaluate((type) => {
+        const target = type === 'blur' ? window : document.getElementById('view');
+        target.dispatchEvent(new PointerEvent(type, { pointerId: 1 }));
+      }, name);
+      await until(() => script.last.grabs.length === 0, `${name} ends the drag`);
+      assert.equal(await read(page, 'input'), 'idle');
+      await page.mouse.up();
+    }
+  }),
+);
+
+test('a hidden page asks for no frames, and goes on when it is seen again', bounded, () =>
+  with_page({}, async (page, script) => {
+    const hide = (hidden) =>
+      page.evaluate((value) => {
+        Object.defineProperty(document, 'hidden', { value, configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+      }, hidden);
+    await hide(true);
+    const { tick } = await script.query('state');
+    await until(async () => (await script.query('state')).tick > tick + 40);
+    const last = await read(page, 'tick');
+    await until(async () => (await script.query('state')).tick > tick + 100);
+    assert.equal(await read(page, 'tick'), last);
+    await hide(false);
+    await until(async () => (await read(page, 'tick')) > tick + 100);
+  }),
+);
+
+test('after the server was away the page comes back, without the hand', bounded, async () => {
+  let first = await start_server(CALM);
+  let second;
+  const page = await open_page(browser, first.url);
+  try {
+    await drag_cloth(page, 0, -30);
+    await first.stop('SIGKILL');
+    first = null;
+    await until(async () => (await read(page, 'phase')) !== 'open');
+    assert.equal(await read(page, 'input'), 'idle');
+    await until(async () => (await read(page, 'hands')).length === 0);
+    await page.mouse.up();
+    second = await start_server(CALM, Number(new URL(page.url()).port));
+    await until(async () => (await read(page, 'phase')) === 'open', 'it is connected again');
+    await until(async () => (await read(page, 'tick')) > 20);
+    const script = await second.script();
+    await drag_cloth(page, 0, -30);
+    await until(() => script.last.grabs.length === 1, 'the cloth can be taken again');
+    script.close();
+    // The browser itself tells of each attempt that failed.
+    const own = page.complaints.filter((text) => !text.startsWith('WebSocket connection to'));
+    assert.deepEqual(own, []);
+  } finally {
+    await page.context().close();
+    await first?.stop();
+    await second?.stop();
+  }
+});
+
+test('one finger takes the cloth or turns, two shift and zoom, a long press pins', bounded, () =>
+  with_page({ width: 400, height: 720, touch: true }, async (page, script) => {
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, ...points) =>
+      session.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+      });
+    const particle = 12 * COLUMNS + 14;
+    const home = await camera_at_rest(page);
+    const first = await particle_pixel(page, particle);
+    await touch('touchStart', [first.x, first.y]);
+    await until(() => script.last.grabs.length === 1, 'one finger holds the cloth');
+    const height = (await position(script, particle))[1];
+    for (const dy of [30, 60, 90]) await touch('touchMove', [first.x, first.y - dy]);
+    await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
+    await touch('touchEnd');
+    await until(() => script.last.grabs.length === 0);
+    assert.deepEqual(await camera_at_rest(page), home);
+
+    await touch('touchStart', [30, 480]);
+    await touch('touchMove', [110, 480]);
+    await touch('touchEnd');
+    const turned = await camera_at_rest(page);
+    assert.notDeepEqual(turned, home);
+    assert.equal(script.last.grabs.length, 0);
+
+    await touch('touchStart', [120, 470], [200, 470]);
+    await touch('touchMove', [100, 470], [220, 470]);
+    await touch('touchEnd');
+    const zoomed = await camera_at_rest(page);
+    assert.equal(script.last.grabs.length, 0);
+    const distance = ({ position: [x, , z] }) => Math.hypot(x, z);
+    assert.ok(distance(zoomed) < distance(turned) * 0.9);
+
+    await page.keyboard.press('f');
+    await camera_at_rest(page);
+    const pins = script.last.pins.length;
+    const again = await particle_pixel(page, particle);
+    await touch('touchStart', [again.x, again.y]);
+    await until(() => script.last.pins.length === pins + 1, 'a long press pins');
+    await touch('touchEnd');
+    assert.equal(script.last.grabs.length, 0);
+  }),
+);
+
+test('on a narrow screen every control is within reach and has a name', bounded, () =>
+  with_page({ width: 400, height: 720 }, async (page, script) => {
+    const controls = ['button', 'slider', 'combobox'];
+    const names = [
+      ['button', 'Pause'],
+      ['button', 'One step'],
+      ['button', 'Reset'],
+      ['button', 'Frame the cloth'],
+      ['button', 'Help'],
+      ['combobox', 'Scene'],
+      ['slider', 'Wind'],
+      ['slider', 'Gravity'],
+    ];
+    for (const [role, name] of names) {
+      const box = await page.getByRole(role, { name, exact: true }).boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= 400, `${name} across`);
+      assert.ok(box.y >= 0 && box.y + box.height <= 720, `${name} down`);
+    }
+    for (const role of controls) {
+      for (const control of await page.getByRole(role).all()) {
+        assert.ok(await control.evaluate((element) => element.matches('[aria-label], label *')));
+      }
+    }
+    await page.getByRole('slider', { name: 'Wind' }).focus();
+    await page.keyboard.press('End');
+    const wind = async () => Math.hypot(...(await script.query('state')).wind);
+    await until(async () => Math.abs((await wind()) - 10) < 1e-6, 'the slider sets the wind');
+    await script.set({ wind: [0, 0, 0] });
+    await page.keyboard.press('?');
+    const help = page.getByRole('dialog');
+    assert.ok(await help.isVisible());
+    await page.keyboard.press('Escape');
+    assert.ok(!(await help.isVisible()));
+    await page.setViewportSize({ width: 900, height: 500 });
+    await until(async () => (await read(page, 'size')).width === 900);
+    const { projection } = await camera_at_rest(page);
+    assert.ok(Math.abs(projection[5] / projection[0] - 900 / 500) < 1e-6, 'square pixels');
+  }),
+);
+
+test('another scene is shown when one is chosen, and R starts it anew', bounded, () =>
+  with_page({}, async (page, script) => {
+    await page.getByRole('combobox', { name: 'Scene' }).selectOption('flag');
+    await until(async () => (await read(page, 'scene')) === 'flag');
+    await until(async () => (await read(page, 'tick')) > 30);
+    await page.locator('#view').focus();
+    await page.keyboard.press('r');
+    await until(async () => (await script.query('state')).tick < 30);
+    await script.load('default');
+    await until(async () => (await read(page, 'scene')) === 'default');
+  }),
+);

@@ -1,0 +1,46 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { createInterface } from 'node:readline';
+import { WeftClient } from '../../../proto/js/index.js';
+import { require_package } from './packages.mjs';
+
+const { WebSocket } = require_package('ws');
+const program = process.env.WEFT_PROGRAM;
+if (!program) throw new Error('WEFT_PROGRAM must name the program to test');
+
+const LONGEST_LIFE = 280; // [s]
+
+/**
+ * Starts a server on loopback that ends by itself.
+ * @param {string[]} [options] of `weft serve`
+ */
+export async function start_server(options = [], port = 0) {
+  const process_ = spawn(
+    program,
+    ['serve', '--bind', '127.0.0.1', '--port', String(port), '--log-level', 'warning']
+      .concat('--max-seconds', String(LONGEST_LIFE), options),
+    { stdio: ['ignore', 'pipe', 'inherit'] },
+  );
+  const ended = once(process_, 'exit');
+  const first_line = once(createInterface(process_.stdout), 'line').then(([line]) => line);
+  const line = await Promise.race([first_line, ended.then(() => null)]);
+  if (line === null) throw new Error(`${program} serve ended before it listened`);
+  const addresses = JSON.parse(line);
+  return {
+    ...addresses,
+    /** @param {NodeJS.Signals} [signal] */
+    async stop(signal = 'SIGTERM') {
+      process_.kill(signal);
+      await ended;
+    },
+    /** A script that looks at the same cloth. */
+    async script(name = 'script') {
+      const client = new WeftClient(addresses.websocket, { name, WebSocket, reconnect: false });
+      const last = { pins: [], grabs: [], viewers: [] };
+      client.on('pins', ({ pins }) => (last.pins = pins));
+      client.on('grabs', ({ grabs }) => (last.grabs = grabs));
+      await client.connect();
+      return Object.assign(client, { last });
+    },
+  };
+}
