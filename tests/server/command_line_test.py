@@ -77,11 +77,12 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(len(hashes), 1)
 
     def test_settings_change_the_outcome(self):
-        plain = json.loads(run("simulate", "--ticks", "20", "--json").stdout)
-        windy = json.loads(run("simulate", "--ticks", "20", "--json", "--set", "environment.wind=9,0,0",
-                               "--set", "cloth.rows=12").stdout)
-        self.assertNotEqual(plain["hash"], windy["hash"])
-        self.assertEqual(windy["particles"], 240)
+        scene = ("simulate", "--scene", "drape-sphere", "--ticks", "20", "--json")
+        plain = json.loads(run(*scene).stdout)
+        other = json.loads(run(*scene, "--set", "cloth.rows=12", "--set", "cloth.columns=10",
+                               "--set", "environment.wind=0,-3,0").stdout)
+        self.assertNotEqual(plain["hash"], other["hash"])
+        self.assertEqual(other["particles"], 120)
 
     def test_simulate_writes_the_cloth(self):
         with tempfile.TemporaryDirectory() as folder:
