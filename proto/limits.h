@@ -15,7 +15,7 @@ struct Range {
   double maximum = 0;
 };
 
-inline constexpr std::size_t kMostMessageBytes = 64 * 1024;
+inline constexpr std::size_t kMostMessageBytes = std::size_t{64} * 1024;
 inline constexpr std::size_t kMostDepth = 8;                 ///< of nested arrays and objects
 inline constexpr double kLargestInteger = 9007199254740992;  ///< 2^53
 inline constexpr Range kIndexRange{0, 2147483647};           ///< particles, triangles, own drags

@@ -256,6 +256,7 @@ const Operation* find_operation(const std::string& name) {
 
 Error unknown_operation(const std::string& name) {
   std::vector<std::string> names;
+  names.reserve(kOperations.size());
   for (const Operation& operation : kOperations) names.emplace_back(operation.name);
   Error error = word_error("op", name, std::move(names));
   error.code = ErrorCode::unknown_op;

@@ -19,6 +19,10 @@ using nlohmann::json;
 // last of two equal keys and knows no depth limit.
 class StrictBuilder {
  public:
+  StrictBuilder() : root_(nullptr) {}
+  StrictBuilder(const StrictBuilder&) = delete;  // levels point into the tree
+  StrictBuilder& operator=(const StrictBuilder&) = delete;
+
   bool null() { return put(nullptr) != nullptr; }
   bool boolean(bool value) { return put(value) != nullptr; }
   bool number_integer(std::int64_t value) { return put(value) != nullptr; }

@@ -138,7 +138,7 @@ export class Session extends Emitter {
     return this.#now() + this.#clock.offset;
   }
 
-  /** From the last hand's movement that came back in a frame to that frame [s]; NaN before. */
+  /** Age of the newest movement of the own hands in the last frame that shows one [s]; or NaN. */
   get latency() {
     return this.#meter.latency;
   }

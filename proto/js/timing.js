@@ -38,7 +38,7 @@ export class ClockEstimate {
 export class LatencyMeter {
   /** @type {{number: number, time: number}[]} */
   #marks = [];
-  /** Of the last command that came back in a frame [s]; NaN before the first. */
+  /** Of the newest command in the last frame that brought one [s]; NaN before the first. */
   latency = NaN;
 
   /**

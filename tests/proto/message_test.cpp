@@ -44,12 +44,12 @@ Welcome welcome() {
 // The bytes that a mesh of the size in the example has.
 std::size_t mesh_bytes() {
   SceneMesh mesh;
-  mesh.rest_positions.resize(600 * 3);
-  mesh.triangles.resize(1102 * 3);
-  mesh.uv.resize(600 * 2);
+  mesh.rest_positions.resize(std::size_t{600} * 3);
+  mesh.triangles.resize(std::size_t{1102} * 3);
+  mesh.uv.resize(std::size_t{600} * 2);
   mesh.colliders.resize(1);
-  mesh.colliders[0].positions.resize(711 * 3);
-  mesh.colliders[0].triangles.resize(1418 * 3);
+  mesh.colliders[0].positions.resize(std::size_t{711} * 3);
+  mesh.colliders[0].triangles.resize(std::size_t{1418} * 3);
   return encode_mesh_data(mesh).size();
 }
 
@@ -164,9 +164,9 @@ std::vector<std::string> http_bodies() {
 }
 
 bool is_command(const json& example) {
-  static const std::set<std::string> kOfServer = {"welcome", "mesh", "state",  "roster", "pins",
+  static const std::set<std::string> of_server = {"welcome", "mesh", "state",  "roster", "pins",
                                                   "grabs",   "bye",  "notice", "result", "error"};
-  return example.contains("op") && !kOfServer.contains(example["op"].get<std::string>());
+  return example.contains("op") && !of_server.contains(example["op"].get<std::string>());
 }
 
 std::vector<json> examples(bool of_commands) {
