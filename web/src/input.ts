@@ -155,13 +155,20 @@ export class Input {
     this.press_start = { x: event.clientX, y: event.clientY };
     const point = this.locate(event);
     this.press_timer = window.setTimeout(() => {
-      this.enter('idle'); // the finger is still down and does nothing until it has gone up
-      this.actions.toggle_pin(point);
+      // On a busy page the finger may have moved without being heard yet; what it did comes before
+      // the next picture.
+      const timer = this.press_timer;
+      requestAnimationFrame(() => {
+        if (timer !== this.press_timer) return;
+        this.enter('idle'); // the finger is still down and does nothing until it has gone up
+        this.actions.toggle_pin(point);
+      });
     }, LONG_PRESS);
   }
 
   private stop_waiting(): void {
     window.clearTimeout(this.press_timer);
+    this.press_timer = 0;
   }
 
   private enter(state: InputState): void {

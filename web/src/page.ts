@@ -21,6 +21,8 @@ import { WorldView } from './world_view.js';
 const CAMERA_INTERVAL = 0.25; // between messages that tell where this viewer looks from [s]
 // The measurements show the first two, and a hand that slips tells the third itself.
 const SHOWN_ELSEWHERE = new Set(['frames_dropped', 'slow_motion', 'lease_expired']);
+const STILL_TIME = 0.4; // without a change, after which the picture is drawn as finely as it can be [s]
+const PANEL_MARGIN = 12; // between panels and what is framed [pixels]
 const NO_COLOR = '#5c6068';
 
 /** Joins connection, input, camera, picture and panels; each knows its own work alone. */
@@ -48,6 +50,7 @@ export class Page {
   private camera_moved = true;
   private dirty = true;
   private drawn_last_time = false;
+  private changed_at = 0;
   /** Latency of a frame that came and is not drawn yet. */
   private pending_latency: { came_at: number; latency: number } | null = null;
 
@@ -98,7 +101,7 @@ export class Page {
     client.on('state', (state) => {
       this.state = state;
       this.toolbar.state(state);
-      panels.state(state, performance.now() / 1000);
+      panels.state(state);
     });
     client.on('roster', (roster) => {
       this.viewers = roster.viewers;
@@ -135,6 +138,7 @@ export class Page {
   private receive(frame: Frame): void {
     const now = performance.now() / 1000;
     this.world?.push(frame, now);
+    this.panels.tick(frame.tick, frame.serverTime);
     const { latency } = this.client;
     if (this.hold) this.pending_latency = { came_at: now, latency };
   }
@@ -200,9 +204,10 @@ export class Page {
   private frame(at_once = false): void {
     if (!this.world) return;
     const toolbar = element('toolbar').getBoundingClientRect();
-    const header = element('viewers').getBoundingClientRect();
+    const corners = [...document.querySelectorAll('.corner')];
     const { height } = this.size();
-    const above = Math.min(0.25, header.bottom / height);
+    const lowest = Math.max(...corners.map((corner) => corner.getBoundingClientRect().bottom));
+    const above = Math.min(0.25, (lowest + PANEL_MARGIN) / height);
     const below = Math.min(0.4, (height - toolbar.top) / height);
     this.orbit.frame(this.world.bounds(), { above, below }, at_once);
   }
@@ -230,9 +235,12 @@ export class Page {
     this.tell_camera(now);
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;
+    if (this.dirty) this.changed_at = now;
+    const resized = this.stage.set_still(now - this.changed_at > STILL_TIME);
+    const coarser = this.dirty && again && this.stage.judge(elapsed);
+    if (resized || coarser) this.resize();
     if (!this.dirty) return;
     this.dirty = false;
-    if (again && this.stage.judge(elapsed)) this.resize();
     this.point_at_cloth();
     const { width, height } = this.size();
     this.hands.update(this.hands_to_show(), this.orbit.camera, width, height);

@@ -32,19 +32,23 @@ export class Panels {
     element('viewers').replaceChildren();
   }
 
-  /** @param now own clock [s] */
-  state(state: State, now: number): void {
-    const last = this.ticks.at(-1);
-    if (last && state.tick < last.tick) this.ticks = [];
-    this.ticks.push({ tick: state.tick, time: now });
-    while (this.ticks.length > 2 && now - this.ticks[0].time > RATE_WINDOW) this.ticks.shift();
-    const [first] = this.ticks;
-    const passed = now - first.time;
-    if (state.paused) set_text('tick-rate', '0');
-    else if (passed > 0.5) set_text('tick-rate', ((state.tick - first.tick) / passed).toFixed(0));
-    if (state.paused) this.ticks = [];
+  state(state: State): void {
     set_text('real-time', state.paused ? '0.00' : state.real_time_factor.toFixed(2));
     set_text('step-time', state.step_ms.toFixed(state.step_ms < 10 ? 2 : 0));
+    if (!state.paused) return;
+    this.ticks = [];
+    set_text('tick-rate', '0');
+  }
+
+  /** Counts ticks against the server's clock [s], on which a slow page has no influence. */
+  tick(tick: number, time: number): void {
+    const last = this.ticks.at(-1);
+    if (last && tick < last.tick) this.ticks = [];
+    this.ticks.push({ tick, time });
+    while (this.ticks.length > 2 && time - this.ticks[0].time > RATE_WINDOW) this.ticks.shift();
+    const [first] = this.ticks;
+    const passed = time - first.time;
+    if (passed > 0.5) set_text('tick-rate', ((tick - first.tick) / passed).toFixed(0));
   }
 
   /** @param seconds from a hand's movement to the picture; NaN if not known yet */

@@ -24,6 +24,7 @@ const GRID_COLOR = new Color('#8d877c');
 const GRID_RADIUS = 6; // where the grid has faded out [m]
 const MOST_PIXELS_PER_UNIT = 2;
 const LEAST_PIXELS_PER_UNIT = 0.5;
+const STILL_SUPERSAMPLING = 1.5; // without multisampling
 const SLOW_PICTURE = 0.045; // that makes the next ones coarser [s]
 const JUDGED_PICTURES = 5;
 
@@ -31,12 +32,15 @@ const JUDGED_PICTURES = 5;
 export class Stage {
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
+  private software = draws_in_software();
   private coarseness = 1;
+  private still = false;
   private slow_pictures = 0;
   private sun = new DirectionalLight('#fff4e6', 2.3);
 
   constructor(canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    // Multisampling costs software renderers more than they can give, and leaves cracks there.
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.software });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -70,10 +74,19 @@ export class Stage {
   }
 
   resize(width: number, height: number): void {
-    const finest = Math.min(MOST_PIXELS_PER_UNIT, window.devicePixelRatio);
-    const ratio = Math.max(LEAST_PIXELS_PER_UNIT, finest / this.coarseness);
-    this.renderer.setPixelRatio(Math.min(finest, ratio));
+    this.renderer.setPixelRatio(this.pixel_ratio());
     this.renderer.setSize(width, height, false);
+  }
+
+  /**
+   * Tells whether the picture stands still, so that there is time for a fine one.
+   * @returns whether the view must be resized
+   */
+  set_still(still: boolean): boolean {
+    if (this.still === still) return false;
+    this.still = still;
+    this.slow_pictures = 0;
+    return this.renderer.getPixelRatio() !== this.pixel_ratio();
   }
 
   /**
@@ -82,6 +95,7 @@ export class Stage {
    * @returns whether the view must be resized
    */
   judge(interval: number): boolean {
+    if (this.still) return false;
     this.slow_pictures = interval > SLOW_PICTURE ? this.slow_pictures + 1 : 0;
     const least = LEAST_PIXELS_PER_UNIT;
     if (this.slow_pictures < JUDGED_PICTURES || this.renderer.getPixelRatio() <= least) return false;
@@ -89,6 +103,22 @@ export class Stage {
     this.slow_pictures = 0;
     return true;
   }
+
+  private pixel_ratio(): number {
+    const finest = Math.min(MOST_PIXELS_PER_UNIT, window.devicePixelRatio);
+    if (this.still) return this.software ? finest * STILL_SUPERSAMPLING : finest;
+    return Math.min(finest, Math.max(LEAST_PIXELS_PER_UNIT, finest / this.coarseness));
+  }
+}
+
+/** Whether a processor draws in place of a graphics card, as far as the browser tells. */
+function draws_in_software(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (!context) return true;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER);
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(name));
 }
 
 /** Light from large bright panels in a dim room, for soft reflections. */
@@ -149,7 +179,7 @@ function dome(): Mesh {
 /** Shadows and a grid of 10 cm with stronger metres, over the dome's colour. */
 function floor(height: number): Mesh {
   const geometry = new PlaneGeometry(GRID_RADIUS * 2, GRID_RADIUS * 2).rotateX(-Math.PI / 2);
-  const material = new ShadowMaterial({ color: '#3b2f26', opacity: 0.3, depthWrite: false });
+  const material = new ShadowMaterial({ color: '#3b2f26', opacity: 0.25, depthWrite: false });
   material.onBeforeCompile = (shader) => {
     shader.uniforms.grid_color = { value: GRID_COLOR };
     shader.uniforms.grid_radius = { value: GRID_RADIUS };

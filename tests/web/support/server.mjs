@@ -8,7 +8,7 @@ const { WebSocket } = require_package('ws');
 const program = process.env.WEFT_PROGRAM;
 if (!program) throw new Error('WEFT_PROGRAM must name the program to test');
 
-const LONGEST_LIFE = 280; // [s]
+const LONGEST_LIFE = 600; // [s]
 
 /**
  * Starts a server on loopback that ends by itself.
