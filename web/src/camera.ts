@@ -26,7 +26,7 @@ export class OrbitCamera {
   private wanted: Pose = {
     target: new Vector3(0, 0.9, 0),
     distance: 4,
-    azimuth: 0.52,
+    azimuth: -0.58,
     elevation: 0.2,
   };
   private present = copy_pose(this.wanted);

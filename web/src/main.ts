@@ -1,4 +1,11 @@
 import { Page } from './page.js';
+import { element } from './panels.js';
 import { expose_probe } from './probe.js';
 
-expose_probe(new Page());
+try {
+  expose_probe(new Page());
+} catch (error) {
+  element('connection').dataset.phase = 'closed';
+  element('connection-text').textContent = 'This page needs WebGL 2';
+  throw error;
+}
