@@ -1,9 +1,5 @@
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { dirname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import test from 'node:test';
-import { require_package } from './support/packages.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 const { Playback } = await import_page_module('playback');
@@ -24,13 +20,6 @@ function numbers(seed) {
   let state = seed;
   return () => (state = (state * 48271) % 2147483647) / 2147483647;
 }
-
-test('the sources of the page have no type errors', () => {
-  const compiler = join(dirname(require_package.resolve('typescript/package.json')), 'bin', 'tsc');
-  const project = fileURLToPath(new URL('../../web', import.meta.url));
-  const { status, stdout } = spawnSync(process.execPath, [compiler, '-p', project]);
-  assert.equal(status, 0, String(stdout));
-});
 
 test('who watches sees uniform motion although frames come unevenly', () => {
   const playback = new Playback(1);
