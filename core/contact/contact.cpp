@@ -26,6 +26,8 @@ Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& co
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     add_shape(colliders[k].shape);
   }
+  // Beyond the size of a triangle the pairs grow with the square of the skin.
+  for (const MeshShape<Real>& mesh : meshes_) widest_skin_ = std::min(widest_skin_, mesh.triangle_size);
   particle_pairs_.resize(meshes_.size());
   edge_pairs_.resize(meshes_.size());
   triangle_pairs_.resize(meshes_.size());

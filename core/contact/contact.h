@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
@@ -111,13 +112,15 @@ class Contact {
   bool is_smooth(double radius) const;
 
   // contact_collect.cpp
-  void collect(const ClothState<Real>& state, Profile& profile);
-  void measure_clearance(const ClothState<Real>& state, Profile& profile);
+  void collect(const ClothState<Real>& state, Real dt, Profile& profile);
+  void measure_clearance(const ClothState<Real>& state, Real dt, Profile& profile);
   void mark_near(const ClothState<Real>& state);
   void collect_particle_pairs(const ClothState<Real>& state, Profile& profile);
+  void mark_paired();
   void collect_feature_pairs(const ClothState<Real>& state, Profile& profile);
   Real analytic_clearance(const Vec3<Real>& p, Real reach) const;
   Real clearance(const Vec3<Real>& p, Real reach) const;
+  Real least_clearance(const Vec3<Real>& p, Real reach) const;
   template <class Visit>
   void collect_kind(std::size_t count, std::vector<ContactCandidate<Real>>& into, Profile& profile,
                     Visit&& visit);
@@ -150,6 +153,7 @@ class Contact {
   std::vector<Ball> balls_;
   std::vector<Rod> rods_;
   std::vector<MeshShape<Real>> meshes_;
+  Real widest_skin_ = std::numeric_limits<Real>::infinity();  ///< about a triangle of the meshes [m]
 
   Real tick_seconds_ = 0;
   bool collected_ = false, rows_built_ = false;
@@ -162,6 +166,7 @@ class Contact {
   std::vector<Real> row_reach_;      ///< how far each may move before the next rows
   std::vector<Real> span_;    ///< farthest that a point of an edge or triangle is from its nearest corner
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
+  std::vector<char> paired_;         ///< in a candidate pair, or near an analytic shape
   std::vector<Index> active_particles_, near_edges_, near_triangles_;
   std::vector<std::vector<ContactCandidate<Real>>> particle_pairs_, edge_pairs_, triangle_pairs_;
   std::array<Found, kChunks> found_;

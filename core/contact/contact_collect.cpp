@@ -19,6 +19,9 @@ constexpr double kTriangleSpan = 0.578;
 /// Ticks of a particle's present motion for which candidates shall hold.
 constexpr double kSkinTicks = 2.5;
 
+/// Substeps of it for which they shall hold at least, however fast it is.
+constexpr double kSkinSubsteps = 3;
+
 /// Collections between two measurements of a particle that is near without having pairs.
 constexpr std::size_t kTurns = 8;
 
@@ -48,14 +51,39 @@ Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
   return nearest;
 }
 
+/// A lower bound of the clearance of a point that is outside of every solid: boxes that could only
+/// lower it by less than the slack are not looked into.
 template <class Real>
-void Contact<Real>::collect(const ClothState<Real>& state, Profile& profile) {
+Real Contact<Real>::least_clearance(const Vec3<Real>& p, Real reach) const {
+  constexpr Real kSlack = Real(0.6);
+  const Real nearest = analytic_clearance(p, reach);
+  Real bound = nearest * nearest;
+  if (!(nearest > 0)) return nearest;
+  for (const MeshShape<Real>& mesh : meshes_) {
+    bound = mesh.triangle_tree.nearest(
+        bound, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
+        [&](Index t, Real best) {
+          const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+          const auto corner = [&](std::size_t k) {
+            return mesh.positions[static_cast<std::size_t>(triangle[k])];
+          };
+          const Real distance2 =
+              (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point).squaredNorm();
+          return std::min(best, distance2 * kSlack);
+        });
+  }
+  return std::sqrt(bound);
+}
+
+template <class Real>
+void Contact<Real>::collect(const ClothState<Real>& state, Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
-  measure_clearance(state, profile);
+  measure_clearance(state, dt, profile);
   ++collections_;
   mark_near(state);
   collect_particle_pairs(state, profile);
   collect_feature_pairs(state, profile);
+  mark_paired();
   x_collected_ = state.x;
   collected_ = true;
 }
@@ -63,7 +91,7 @@ void Contact<Real>::collect(const ClothState<Real>& state, Profile& profile) {
 /// Brings each particle's clearance up to date; measures it anew only where the old one, less the
 /// way gone since, no longer says that nothing is near.
 template <class Real>
-void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& profile) {
+void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Profile& profile) {
   const std::size_t n = state.x.size();
   const bool known = collected_ && clearance_.size() == n;
   if (!known) {
@@ -84,7 +112,9 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
   run_chunks(executor_, kChunks, [&](int chunk) {
     const auto c = static_cast<std::size_t>(chunk);
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
-      skin_[i] = std::max(thickness_ * 2, state.v[i].norm() * tick_seconds_ * Real(kSkinTicks));
+      const Real speed = state.v[i].norm();
+      const Real most = std::max(widest_skin_, speed * dt * Real(kSkinSubsteps));
+      skin_[i] = std::max(thickness_ * 2, std::min(speed * tick_seconds_ * Real(kSkinTicks), most));
       const Real needed = thickness_ + span_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
       if (clearance_[i] > needed) continue;
@@ -92,7 +122,10 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Profile& pr
       // now and then, in turns, to see whether they have gone.
       const bool turn = (collections_ + i) % kTurns == 0;
       if (known && near_[i] && (has_pairs_[i] || !turn)) continue;
-      clearance_[i] = clearance(state.x[i], needed + static_cast<Real>(kClearanceHorizon));
+      const Real horizon = needed + static_cast<Real>(kClearanceHorizon);
+      // Who was clear of everything is still outside, and a bound is cheaper than the distance.
+      const Real bound = clearance_[i] > 0 ? least_clearance(state.x[i], horizon) : Real(0);
+      clearance_[i] = bound > needed ? bound : clearance(state.x[i], horizon);
       ++tests[c];
     }
   });
@@ -153,6 +186,7 @@ template <class Real>
 void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profile& profile) {
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
+  const auto clear = [&](Index i) { return clearance_[static_cast<std::size_t>(i)]; };
   fresh_clearance_.resize(state.x.size());
   for (const Index i : active_particles_) {
     fresh_clearance_[static_cast<std::size_t>(i)] = analytic_clearance(x(i), thickness_ + skin(i));
@@ -163,6 +197,7 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
     collect_kind(active_particles_.size(), particle_pairs_[m], profile, [&](std::size_t n, Found& found) {
       const Index i = active_particles_[n];
       const Real reach = thickness_ + skin(i);
+      if (clear(i) > reach) return;
       Aabb<Real> box;
       box.add(x(i));
       bool any = false;
@@ -192,6 +227,31 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
     const auto p = static_cast<std::size_t>(i);
     const Real fresh = fresh_clearance_[p];
     clearance_[p] = fresh < thickness_ + skin_[p] ? fresh : std::max(clearance_[p], fresh);
+  }
+}
+
+/// Only those that are in a pair need planes that follow them closely.
+template <class Real>
+void Contact<Real>::mark_paired() {
+  paired_.assign(active_.size(), 0);
+  const auto mark = [&](Index i) { paired_[static_cast<std::size_t>(i)] = 1; };
+  for (const Index i : active_particles_) {
+    const auto p = static_cast<std::size_t>(i);
+    if (clearance_[p] <= thickness_ + skin_[p]) mark(i);
+  }
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    for (const auto& pair : particle_pairs_[m]) mark(pair.cloth);
+    for (const auto& pair : edge_pairs_[m]) {
+      for (const Index i : edges_[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+    for (const auto& pair : triangle_pairs_[m]) {
+      for (const Index i : triangles_[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+  }
+  if (balls_.empty() && rods_.empty()) return;
+  // Edges and triangles meet round shapes without pairs, so all near ones may.
+  for (const Index e : near_edges_) {
+    for (const Index i : edges_[static_cast<std::size_t>(e)]) mark(i);
   }
 }
 
@@ -226,6 +286,12 @@ void Contact<Real>::collect_feature_pairs(const ClothState<Real>& state, Profile
     collect_kind(near_triangles_.size(), triangle_pairs_[m], profile, [&](std::size_t n, Found& found) {
       const Triangle& t = triangles_[static_cast<std::size_t>(near_triangles_[n])];
       const Real reach = thickness_ + std::max({skin(t[0]), skin(t[1]), skin(t[2])});
+      const auto lowest = [&](const std::vector<Real>& values) {
+        return std::min({values[static_cast<std::size_t>(t[0])], values[static_cast<std::size_t>(t[1])],
+                         values[static_cast<std::size_t>(t[2])]});
+      };
+      const auto span = [&](Index i) { return span_[static_cast<std::size_t>(i)]; };
+      if (lowest(clearance_) - std::max({span(t[0]), span(t[1]), span(t[2])}) > reach) return;
       Aabb<Real> box;
       for (const Index i : t) box.add(x(i));
       mesh.vertex_tree.for_each_overlap(box.grown(reach), [&](Index s) {
@@ -242,10 +308,12 @@ void Contact<Real>::collect_feature_pairs(const ClothState<Real>& state, Profile
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;                 \
   template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                          \
-  template void Contact<Real>::collect(const ClothState<Real>&, Profile&);                        \
-  template void Contact<Real>::measure_clearance(const ClothState<Real>&, Profile&);              \
+  template Real Contact<Real>::least_clearance(const Vec3<Real>&, Real) const;                    \
+  template void Contact<Real>::collect(const ClothState<Real>&, Real, Profile&);                        \
+  template void Contact<Real>::measure_clearance(const ClothState<Real>&, Real, Profile&);              \
   template void Contact<Real>::mark_near(const ClothState<Real>&);                                \
   template void Contact<Real>::collect_particle_pairs(const ClothState<Real>&, Profile&);         \
+  template void Contact<Real>::mark_paired();                                                     \
   template void Contact<Real>::collect_feature_pairs(const ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

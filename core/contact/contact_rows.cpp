@@ -11,7 +11,7 @@ namespace weft {
 namespace {
 
 /// Substeps of a particle's present motion for which rows shall hold.
-constexpr double kRowSubsteps = 4;
+constexpr double kRowSubsteps = 9;
 
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
@@ -57,12 +57,12 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
       const Real step = state.v[i].norm() * dt;
       if (!(left >= step * Real(1.5))) return false;
       const Real wanted = std::max(thickness_ / 2, step * Real(kRowSubsteps));
-      row_reach_[i] = active_[i] ? std::min(left, wanted) : left;
+      row_reach_[i] = paired_[i] ? std::min(left, wanted) : left;
     }
     return true;
   };
   if (!collected_ || !allow()) {
-    collect(state, profile);
+    collect(state, dt, profile);
     allow();
   }
   const StageTimer timer(profile, Stage::narrow_phase, 0);

@@ -104,6 +104,8 @@ template <class Real>
 MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidden) {
   MeshShape<Real> shape;
   shape.closed = is_closed(mesh);
+  shape.triangle_size = static_cast<Real>(
+      std::sqrt(2 * surface_area(mesh) / static_cast<double>(mesh.triangles.size())));
   shape.triangles = mesh.triangles;
   for (const Vec3d& p : mesh.positions) shape.positions.push_back(p.cast<Real>());
   for (const Vec3d& n : vertex_normals(mesh)) shape.vertex_normals.push_back(n.cast<Real>());

@@ -14,6 +14,7 @@ namespace weft {
 template <class Real>
 struct MeshShape {
   bool closed = false;
+  Real triangle_size = 0;  ///< side of a square of two triangles of mean area [m]
   Vec3Array<Real> positions;
   std::vector<Triangle> triangles;
   Vec3Array<Real> face_normals;

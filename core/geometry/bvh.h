@@ -9,8 +9,9 @@
 
 namespace weft {
 
-/// Hierarchy of axis-aligned boxes over primitives known by their number. Built once by splitting
-/// at the median of the longest side; its boxes can be refitted when the primitives move.
+/// Hierarchy of axis-aligned boxes over primitives known by their number: four children a node, so
+/// that one pass of vector code tests them all. Built once by splitting at the median of the
+/// longest side; its boxes can be refitted when the primitives move.
 template <class Real>
 class Bvh {
  public:
@@ -22,86 +23,106 @@ class Bvh {
 
   bool empty() const { return nodes_.empty(); }
   /// Box around everything; empty if there is nothing.
-  Aabb<Real> bounds() const { return nodes_.empty() ? Aabb<Real>{} : nodes_[0].box; }
+  const Aabb<Real>& bounds() const { return bounds_; }
 
   /// Calls visit(primitive) for each primitive whose box overlaps `box`, in a fixed order.
   template <class Visit>
   void for_each_overlap(const Aabb<Real>& box, Visit&& visit) const;
 
-  /// Walks nearest-first: calls `narrow(primitive, bound)` while a box can be nearer than the bound;
-  /// `narrow` returns the new bound.
+  /// Walks nearest-first: calls `narrow(primitive, bound)` while a box can be nearer than the
+  /// bound; `narrow` returns the new bound.
   /// @param distance  distance(box) gives a lower bound for all that is inside it
   /// @return the final bound
   template <class Distance, class Narrow>
   Real nearest(Real bound, Distance&& distance, Narrow&& narrow) const;
 
  private:
-  /// An inner node's children stand at `first` and `first + 1`; a leaf has `count` primitives from
-  /// `first` in `order_`.
+  static constexpr std::size_t kWidth = 4;
+  static constexpr std::size_t kDeepest = 64;  // entries of a search; 3 a level, 2^32 primitives
+  static constexpr Index kNoChild = 0;         // the root is nobody's child
+
+  /// The boxes of up to four children, side by side. Boxes of children that there are not are
+  /// empty.
   struct Node {
-    Aabb<Real> box;
-    Index first = 0;
-    Index count = 0;
+    std::array<std::array<Real, kWidth>, 3> lower, upper;
+    std::array<Index, kWidth> child;  ///< a node, or ~primitive
+
+    Aabb<Real> box(std::size_t k) const {
+      Aabb<Real> box;
+      box.lower = Vec3<Real>(lower[0][k], lower[1][k], lower[2][k]);
+      box.upper = Vec3<Real>(upper[0][k], upper[1][k], upper[2][k]);
+      return box;
+    }
+    void set_box(std::size_t k, const Aabb<Real>& box);
+    Aabb<Real> bounds() const;
   };
-  static constexpr Index kLeafSize = 4;
-  static constexpr int kDeepest = 64;
 
   void split(std::size_t node, Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
+  Index halve(Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
 
   std::vector<Node> nodes_;
-  std::vector<Index> order_;             ///< primitives, leaf by leaf
-  std::vector<Aabb<Real>> leaf_boxes_;   ///< their boxes, in that order
+  std::vector<Index> order_;  ///< primitives, while the tree is built
+  Aabb<Real> bounds_;
 };
 
 template <class Real>
 template <class Visit>
 void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
-  if (nodes_.empty()) return;
+  if (!bounds_.overlaps(box)) return;
   std::array<Index, kDeepest> stack;
-  int size = 0;
-  stack[0] = 0;
-  ++size;
+  std::size_t size = 0;
+  stack[size++] = 0;
   while (size > 0) {
-    const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(--size)])];
-    if (!node.box.overlaps(box)) continue;
-    if (node.count > 0) {
-      for (Index k = 0; k < node.count; ++k) {
-        const auto at = static_cast<std::size_t>(node.first + k);
-        if (leaf_boxes_[at].overlaps(box)) visit(order_[at]);
-      }
-      continue;
+    const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
+    std::array<std::uint8_t, kWidth> hit;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      // Without short cuts, so that the four become vector code.
+      hit[k] = static_cast<std::uint8_t>(static_cast<int>(node.lower[0][k] <= box.upper[0]) &
+                                         static_cast<int>(node.lower[1][k] <= box.upper[1]) &
+                                         static_cast<int>(node.lower[2][k] <= box.upper[2]) &
+                                         static_cast<int>(node.upper[0][k] >= box.lower[0]) &
+                                         static_cast<int>(node.upper[1][k] >= box.lower[1]) &
+                                         static_cast<int>(node.upper[2][k] >= box.lower[2]));
     }
-    stack[static_cast<std::size_t>(size++)] = node.first + 1;
-    stack[static_cast<std::size_t>(size++)] = node.first;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      if (!hit[k]) continue;
+      if (node.child[k] < 0)
+        visit(~node.child[k]);
+      else
+        stack[size++] = node.child[k];
+    }
   }
 }
 
 template <class Real>
 template <class Distance, class Narrow>
 Real Bvh<Real>::nearest(Real bound, Distance&& distance, Narrow&& narrow) const {
-  if (nodes_.empty()) return bound;
   struct Entry {
-    Index node;
+    Index child;
     Real distance;
   };
+  if (nodes_.empty()) return bound;
   std::array<Entry, kDeepest> stack;
-  int size = 0;
-  stack[0] = {0, distance(nodes_[0].box)};
-  ++size;
+  std::size_t size = 0;
+  stack[size++] = {0, distance(bounds_)};
   while (size > 0) {
-    const Entry entry = stack[static_cast<std::size_t>(--size)];
+    const Entry entry = stack[--size];
     if (!(entry.distance <= bound)) continue;
-    const Node& node = nodes_[static_cast<std::size_t>(entry.node)];
-    if (node.count > 0) {
-      for (Index k = 0; k < node.count; ++k)
-        bound = narrow(order_[static_cast<std::size_t>(node.first + k)], bound);
+    if (entry.child < 0) {
+      bound = narrow(~entry.child, bound);
       continue;
     }
-    Entry near{node.first, distance(nodes_[static_cast<std::size_t>(node.first)].box)};
-    Entry far{node.first + 1, distance(nodes_[static_cast<std::size_t>(node.first + 1)].box)};
-    if (far.distance < near.distance) std::swap(near, far);
-    stack[static_cast<std::size_t>(size++)] = far;
-    stack[static_cast<std::size_t>(size++)] = near;
+    const Node& node = nodes_[static_cast<std::size_t>(entry.child)];
+    const std::size_t first = size;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      if (node.child[k] == kNoChild) break;
+      const Entry child{node.child[k], distance(node.box(k))};
+      if (!(child.distance <= bound)) continue;
+      // Sorted so that the nearest is on top.
+      std::size_t at = size++;
+      for (; at > first && stack[at - 1].distance < child.distance; --at) stack[at] = stack[at - 1];
+      stack[at] = child;
+    }
   }
   return bound;
 }
