@@ -64,7 +64,7 @@ TEST_CASE("pulled along the warp the modulus is Y_w - G^2 / Y_f away from the cl
     const Vec3d d = x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)];
     force += s.stiffness * (d.norm() - s.rest_length) * std::abs(d[0]) / d.norm();
   }
-  const auto at = [&](int r, int c) { return x[static_cast<std::size_t>(r * columns + c)]; };
+  const auto at = [&, n = columns](int r, int c) { return x[static_cast<std::size_t>(r * n + c)]; };
   const int middle = rows / 2;
   const double strain = (at(middle, cut + 1) - at(middle, cut)).norm() / model.cell_u - 1;
   CHECK(force / 1.2 / strain == Approx(500 - 60.0 * 60.0 / 300).epsilon(5e-3));

@@ -33,7 +33,9 @@ TEST_CASE("the springs' continuum limit is C11 = Y_w, C22 = Y_f, C12 = C66 = G f
   fabric.stretch_weft = 500;
   fabric.shear = 60;
   const auto [hu, hv] = GENERATE(table<double, double>({{0.1, 0.1}, {0.1, 0.2}, {0.05, 0.04}}));
-  const auto w = [&](double eu, double ev, double g) { return energy_density(fabric, hu, hv, eu, ev, g); };
+  const auto w = [&, u = hu, v = hv](double eu, double ev, double g) {
+    return energy_density(fabric, u, v, eu, ev, g);
+  };
   CHECK(2 * w(1, 0, 0) == Approx(900));
   CHECK(2 * w(0, 1, 0) == Approx(500));
   CHECK(2 * w(0, 0, 1) == Approx(60));
