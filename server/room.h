@@ -99,7 +99,7 @@ class Room {
   using Outcome = proto::Result<proto::Reply>;
 
   // room.cpp: coming, going, ticks and telling
-  void join(proto::ViewerId viewer, const Join& join);
+  void join(proto::ViewerId id, const Join& join);
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
   void take_deferred();

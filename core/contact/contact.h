@@ -131,7 +131,7 @@ class Contact {
   void add_particle_rows(const ClothState<Real>& state, Profile& profile);
   void add_edge_rows(const ClothState<Real>& state, Profile& profile);
   void add_triangle_rows(const ClothState<Real>& state, Profile& profile);
-  std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t mesh, Index particle);
+  std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i);
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
                bool responds = true);

@@ -38,6 +38,7 @@ std::vector<MeshEdge> edges_of(const TriangleMesh& mesh) {
     }
   }
   std::vector<MeshEdge> edges;
+  edges.reserve(found.size());
   for (const auto& [ends, edge] : found) edges.push_back(edge);
   return edges;
 }
