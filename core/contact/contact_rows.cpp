@@ -107,11 +107,13 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
   const Vec3<Real>& x = state.x[p];
   const Real reach = thickness_ + row_reach_[p];
   const Real moved = (x - x_collected_[p]).norm();
+  // Whoever is inside looks for the way out, however far it is.
+  const bool outside = clearance_[p] >= 0;
   const auto& pairs = particle_pairs_[m];  // in the order of the active particles
   std::size_t nearest = 0;
   nearby_.clear();
   for (; cursor_[m] < pairs.size() && pairs[cursor_[m]].cloth == i; ++cursor_[m]) {
-    if (pairs[cursor_[m]].distance - moved > reach) continue;
+    if (outside && pairs[cursor_[m]].distance - moved > reach) continue;
     nearby_.push_back(distance_to_triangle(meshes_[m], pairs[cursor_[m]].feature, x));
     if (std::abs(nearby_.back().distance) < std::abs(nearby_[nearest].distance))
       nearest = nearby_.size() - 1;

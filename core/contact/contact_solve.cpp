@@ -66,9 +66,10 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
     const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
     row.least_speed = -room / dt;
-    if (bounce == 0 || room > 0) continue;
+    if (bounce == 0) continue;
+    // It bounces in the step that would have brought it there, with the speed that it comes with.
     const Real speed = row.normal.dot(weighted(row, state.v));
-    if (speed < -Real(kBounceSpeed)) row.least_speed = -bounce * speed;
+    if (speed < std::min(row.least_speed, -Real(kBounceSpeed))) row.least_speed = -bounce * speed;
   }
 }
 

@@ -212,6 +212,50 @@ TEST_CASE("a needle does not poke through a triangle of the cloth") {
   }
 }
 
+namespace {
+
+/// A triangle that falls on a round bar or ball, narrower than itself, and is pulled down at its
+/// corners.
+template <class Real>
+double nearest_on_bar(const CapsuleDef& bar, const ShapeDef& shape, double pull) {
+  Particles<Real> cloth;
+  const Index a = cloth.add(Vec3d(-0.03, 0.04, -0.02)), b = cloth.add(Vec3d(0.03, 0.04, -0.02)),
+              c = cloth.add(Vec3d(0.002, 0.04, 0.03));
+  cloth.add_triangle(a, b, c, 400);
+  cloth.dashpot = 0.05;
+  cloth.substeps = 100;
+  for (Vec3d& f : cloth.forces) f = Vec3d(0, -pull, 0);
+  Contact<Real> contact = cloth.meet({}, {{"bar", shape}});
+  double nearest = 1;
+  for (int tick = 0; tick < 60; ++tick) {
+    cloth.step(contact, [&](const ClothState<Real>&) {
+      for (int u = 0; u <= 20; ++u) {
+        for (int v = 0; u + v <= 20; ++v) {
+          const Vec3d p = cloth.position(a) + (cloth.position(b) - cloth.position(a)) * (u / 20.0) +
+                          (cloth.position(c) - cloth.position(a)) * (v / 20.0);
+          const Vec3d q = bar.a + (bar.b - bar.a) * closest_on_segment<double>(p, bar.a, bar.b);
+          nearest = std::min(nearest, (p - q).norm() - bar.radius);
+        }
+      }
+    });
+  }
+  return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("a thin bar and a small ball do not come through a triangle that is pulled over them") {
+  const CapsuleDef bar{Vec3d(0, -0.005, -0.2), Vec3d(0, -0.005, 0.2), 0.005};
+  const CapsuleDef ball{Vec3d(0, -0.005, 0), Vec3d(0, -0.005, 0), 0.005};
+  for (const double pull : {0.0, 1.0, 50.0}) {
+    INFO("pull " << pull << " N");
+    CHECK(nearest_on_bar<double>(bar, bar, pull) > 0);
+    CHECK(nearest_on_bar<float>(bar, bar, pull) > 0);
+    CHECK(nearest_on_bar<double>(ball, SphereDef{ball.a, ball.radius}, pull) > 0);
+    CHECK(nearest_on_bar<float>(ball, ball, pull) > 0);
+  }
+}
+
 TEST_CASE("a cloth on the lower face of a thin plate is not pulled through by the upper one") {
   // Thinner than the contact distance: the far side's features are within reach.
   const TriangleMesh plate = test::plate(0.05, 1e-3);
