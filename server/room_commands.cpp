@@ -4,9 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "core/error.h"
-#include "proto/data.h"
 #include "server/room.h"
+#include "server/translate.h"
 
 // What each command does. A function either applies its command and returns the reply, or returns the
 // error and has changed nothing.

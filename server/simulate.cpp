@@ -10,11 +10,11 @@
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
-#include "proto/events.h"
 #include "server/clock.h"
 #include "server/options.h"
 #include "server/strain_statistics.h"
 #include "server/thread_pool.h"
+#include "server/translate.h"
 
 namespace weft::server {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/world/world.h"
 #include "proto/commands.h"
+#include "proto/data.h"
 #include "proto/events.h"
 #include "proto/frame.h"
 #include "proto/mesh.h"
