@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/math/angle.h"
+
 namespace weft {
 namespace {
 
@@ -17,7 +19,7 @@ double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   }
   const Vec3d across = mesh.positions[static_cast<std::size_t>(opposite)] -
                        mesh.positions[static_cast<std::size_t>(edge.a)];
-  const double turn = std::atan2(n1.cross(n2).norm(), n1.dot(n2));
+  const double turn = angle_of(n1.cross(n2).norm(), n1.dot(n2));
   return n1.dot(across) < 0 ? turn : -turn;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/definition.h"
 #include "core/error.h"
+#include "core/math/angle.h"
 
 namespace weft {
 namespace {
@@ -85,7 +86,7 @@ std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d u = corner(mesh, i, (k + 1) % 3) - corner(mesh, i, k);
       const Vec3d v = corner(mesh, i, (k + 2) % 3) - corner(mesh, i, k);
-      const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+      const double angle = angle_of(u.cross(v).norm(), u.dot(v));
       normals[static_cast<std::size_t>(mesh.triangles[t][k])] += n * angle;
     }
   }

@@ -142,7 +142,10 @@ TriangleMesh make_dress_form() {
       return Vec3d((s.width + 0.3 * hill) * std::sin(phi), s.height, depth * std::cos(phi) + hill);
     });
   }
-  return loft.close(Vec3d(0, 1.530, 0));
+  TriangleMesh form = loft.close(Vec3d(0, 1.530, 0));
+  // Whole micrometres: the last bits of the library's sine differ between processors.
+  for (Vec3d& p : form.positions) p = (p * 1e6).array().round() / 1e6;
+  return form;
 }
 
 }  // namespace weft

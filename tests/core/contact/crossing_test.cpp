@@ -349,3 +349,44 @@ TEST_CASE("a cloth pressed against a wall by a hand of 50 N stays on its side") 
     check_pressed_patch<float>(test::sheet(0.045));
   }
 }
+
+namespace {
+
+/// A heavy particle swings an edge over a bar, and the light one at its other end up to a ceiling
+/// that is far out of its reach.
+template <class Real>
+void check_lever() {
+  TriangleMesh ceiling = test::sheet(0.3);
+  for (Vec3d& p : ceiling.positions) p[1] += 0.05;
+  Particles<Real> lever;
+  const Index light = lever.add(Vec3d(-0.05, 0, 0), Vec3d::Zero(), 1e-4);
+  const Index heavy = lever.add(Vec3d(0.006, 0, 0), Vec3d(0, -20, 0), 1);
+  lever.join(light, heavy, 10);
+  lever.gravity.setZero();
+  Contact<Real> contact =
+      lever.meet({}, {{"bar", CapsuleDef{Vec3d(0, -0.011, -1), Vec3d(0, -0.011, 1), 0.005}},
+                      {"ceiling", MeshDef{ceiling}}});
+  int crossings = 0;
+  double fastest = 0;
+  for (int tick = 0; tick < 10; ++tick) {
+    lever.step(contact, [&](const ClothState<Real>& before) {
+      for (const Index i : {light, heavy})
+        crossings += test::pierces(before.x[static_cast<std::size_t>(i)].template cast<double>(),
+                                   lever.position(i), ceiling);
+      fastest = std::max(fastest, lever.velocity(light)[1]);
+    });
+  }
+  CHECK(crossings == 0);
+  CHECK(fastest > 1);
+}
+
+}  // namespace
+
+TEST_CASE("a particle swung up by a lever does not fly through what it was not near to") {
+  SECTION("double") {
+    check_lever<double>();
+  }
+  SECTION("float") {
+    check_lever<float>();
+  }
+}
