@@ -2,6 +2,7 @@
 from proto/README.md alone on top of the plain `websockets` package."""
 
 import asyncio
+import contextlib
 import itertools
 import json
 import os
@@ -118,7 +119,9 @@ class Viewer:
             self.frames.append(Frame(message))
             self.order.append("frame")
             if self.acknowledge:
-                await self.ack(self.frames[-1].sequence)
+                # The server may be closing already; what it said before that is still to be read.
+                with contextlib.suppress(websockets.ConnectionClosed):
+                    await self.ack(self.frames[-1].sequence)
         else:
             self.binaries.append(message)
             self.order.append({2: "mesh data", 3: "data"}[message[0]])
