@@ -83,7 +83,7 @@ struct RecordingOutput : RoomOutput {
   /// The last message with this `op` (and, for results and errors, this id).
   nlohmann::json last(const std::string& op, const nlohmann::json& id = nullptr) const {
     for (auto it = sent.rbegin(); it != sent.rend(); ++it) {
-      const auto message = nlohmann::json::parse(it->second);
+      auto message = nlohmann::json::parse(it->second);
       if (message["op"] == op && (id.is_null() || message.value("id", nlohmann::json()) == id))
         return message;
     }
