@@ -2,15 +2,15 @@
 
 namespace weft {
 
-/// Runs independent chunks of work, on whatever threads its owner has. The physics owns no thread: it
-/// is given one of these, or none and then works through the chunks one after the other. Chunks never
-/// depend on the number of threads, and their results are merged in their order.
+/// Runs independent chunks of work, on whatever threads its owner has. The physics owns no thread:
+/// it is given one of these, or none and then works through the chunks one after the other. Chunks
+/// never depend on the number of threads, and their results are merged in their order.
 class Executor {
  public:
   virtual ~Executor() = default;
 
-  /// Calls work(context, chunk) for each chunk from 0 to chunks - 1, in any order and on any threads,
-  /// and returns when all are done.
+  /// Calls work(context, chunk) for each chunk from 0 to chunks - 1, in any order and on any
+  /// threads, and returns when all are done.
   virtual void run(int chunks, void (*work)(void* context, int chunk), void* context) = 0;
 };
 

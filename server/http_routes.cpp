@@ -19,7 +19,9 @@ constexpr const char* kJson = "application/json";
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kMeshPath = "/api/v1/mesh/";
 
-std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
+std::string_view view_of(boost::beast::string_view text) {
+  return {text.data(), text.size()};
+}
 
 HttpResponse response(const HttpRequest& request, http::status status, const char* content_type,
                       std::string body) {
@@ -45,14 +47,14 @@ HttpResponse mesh_response(const ServiceContext& context, const HttpRequest& req
                            const std::string& path) {
   const std::string_view digits = std::string_view(path).substr(std::string_view(kMeshPath).size());
   std::uint64_t hash = 0;
-  const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), hash, 16);
-  const bool readable = digits.size() == 16 && status == std::errc() &&
-                        end == digits.data() + digits.size();
+  const auto [end, status] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), hash, 16);
+  const bool readable =
+      digits.size() == 16 && status == std::errc() && end == digits.data() + digits.size();
   const SharedBytes bytes = readable ? context.hub.find_mesh(hash) : SharedBytes();
   if (!bytes) return not_found(request, path);
-  HttpResponse out =
-      response(request, http::status::ok, "application/octet-stream",
-               std::string(static_cast<const char*>(bytes.data()), bytes.size()));
+  HttpResponse out = response(request, http::status::ok, "application/octet-stream",
+                              std::string(static_cast<const char*>(bytes.data()), bytes.size()));
   out.set(http::field::cache_control, "public, max-age=31536000, immutable");
   return out;
 }
@@ -82,8 +84,8 @@ std::string_view authority_of(std::string_view origin) {
   return start == std::string_view::npos ? std::string_view() : origin.substr(start + 3);
 }
 
-/// A browser tells where the page came from. On loopback only the names of this machine are its own,
-/// because any other name may have been pointed here by somebody else.
+/// A browser tells where the page came from. On loopback only the names of this machine are its
+/// own, because any other name may have been pointed here by somebody else.
 bool origin_allowed(const ServiceContext& context, const HttpRequest& request) {
   const auto field = request.find(http::field::origin);
   if (field == request.end()) return true;  // no browser
@@ -158,9 +160,8 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
   if (path == "/healthz") return response(request, http::status::ok, kText, "ok");
   if (path == "/readyz") {
     const proto::Readiness readiness = context.readiness();
-    return response(request,
-                    readiness.ready ? http::status::ok : http::status::service_unavailable, kJson,
-                    proto::encode_readiness(readiness));
+    return response(request, readiness.ready ? http::status::ok : http::status::service_unavailable,
+                    kJson, proto::encode_readiness(readiness));
   }
   if (path == "/metrics")
     return response(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",

@@ -70,8 +70,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.header_limit(static_cast<std::uint32_t>(kMostHeaderBytes));
     error_code error;
     parser.put(asio::buffer(buffer_.data().data(), header_bytes), error);
-    const bool has_body = parser.is_header_done() &&
-                          (parser.chunked() || parser.content_length().value_or(0) > 0);
+    const bool has_body =
+        parser.is_header_done() && (parser.chunked() || parser.content_length().value_or(0) > 0);
     if (has_body) {
       request_ = parser.get();
       return refuse(http::status::payload_too_large, "too_large", "a request has no body here");
@@ -84,8 +84,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void respond() {
-    if (refuse_)
-      return refuse(http::status::service_unavailable, "busy", "too many connections");
+    if (refuse_) return refuse(http::status::service_unavailable, "busy", "too many connections");
     if (!wants_upgrade(request_) || request_.method() != http::verb::get)
       return write(answer_request(context_, request_));
     HttpResponse answer = check_upgrade(context_, request_);

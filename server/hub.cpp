@@ -8,8 +8,8 @@ namespace weft::server {
 namespace {
 
 constexpr std::size_t kKeptMeshes = 4;
-constexpr double kNoticePause = 5;         // between two notices of dropped frames [s]
-constexpr std::uint64_t kDropsToTell = 10; // fewer are ordinary jitter
+constexpr double kNoticePause = 5;          // between two notices of dropped frames [s]
+constexpr std::uint64_t kDropsToTell = 10;  // fewer are ordinary jitter
 
 }  // namespace
 

@@ -47,24 +47,34 @@ std::string version_text() {
 void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settings) {
   CLI::App* serve = app.add_subcommand("serve", "Simulate a scene and serve it to viewers");
   serve->add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
-  serve->add_option("--port", o.port, "Port, 0 to 65535; 0 picks a free one")->capture_default_str();
-  serve->add_flag("--open", o.open, "Let other machines in (needed for other addresses than loopback)");
+  serve->add_option("--port", o.port, "Port, 0 to 65535; 0 picks a free one")
+      ->capture_default_str();
+  serve->add_flag("--open", o.open,
+                  "Let other machines in (needed for other addresses than loopback)");
   serve->add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
   serve->add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   serve->add_option("--rate", o.rate, "Ticks a second, 1 to 1000 (default: the scene's)");
-  serve->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")->capture_default_str();
+  serve->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")
+      ->capture_default_str();
   serve->add_flag("--paused", o.paused, "Start paused");
   serve->add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve->add_option("--allow-origin", o.allowed_origins,
                     "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");
   serve->add_option("--max-viewers", o.limits.viewers, "Most viewers")->capture_default_str();
-  serve->add_option("--max-connections", o.limits.connections, "Most sockets")->capture_default_str();
-  serve->add_option("--max-connections-per-address", o.limits.connections_per_address,
-                    "Most sockets from one address")->capture_default_str();
-  serve->add_option("--max-messages-per-second", o.limits.messages_per_second,
-                    "Most messages a second of one viewer")->capture_default_str();
-  serve->add_option("--max-seconds", o.max_seconds, "Stop by itself after this; 0: never")->capture_default_str();
-  serve->add_option("--log-level", o.log_level, "trace, debug, info, warning, error or off")->capture_default_str();
+  serve->add_option("--max-connections", o.limits.connections, "Most sockets")
+      ->capture_default_str();
+  serve
+      ->add_option("--max-connections-per-address", o.limits.connections_per_address,
+                   "Most sockets from one address")
+      ->capture_default_str();
+  serve
+      ->add_option("--max-messages-per-second", o.limits.messages_per_second,
+                   "Most messages a second of one viewer")
+      ->capture_default_str();
+  serve->add_option("--max-seconds", o.max_seconds, "Stop by itself after this; 0: never")
+      ->capture_default_str();
+  serve->add_option("--log-level", o.log_level, "trace, debug, info, warning, error or off")
+      ->capture_default_str();
 }
 
 void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& settings) {
@@ -74,7 +84,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   simulate->add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   simulate->add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
   simulate->add_flag("--json", o.json, "Print JSON");
-  simulate->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")->capture_default_str();
+  simulate->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")
+      ->capture_default_str();
 }
 
 /// One line that names what was wrong and what is allowed there.

@@ -38,7 +38,9 @@ struct Message {
   bool binary = false;
 };
 
-inline Message text_message(std::string text) { return {SharedBytes(std::move(text)), false}; }
+inline Message text_message(std::string text) {
+  return {SharedBytes(std::move(text)), false};
+}
 
 template <class Container>
 Message binary_message(Container bytes) {

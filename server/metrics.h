@@ -13,9 +13,8 @@ namespace weft::server {
 class Metrics {
  public:
   /// Upper bounds of the histogram of tick times [s].
-  static constexpr std::array<double, 11> kTickBounds = {0.0001, 0.00025, 0.0005, 0.001,
-                                                         0.0025, 0.005,   0.01,   0.025,
-                                                         0.05,   0.1,     0.25};
+  static constexpr std::array<double, 11> kTickBounds = {
+      0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25};
 
   void count_tick(double seconds);
   void count_command(const std::string& op) { count(commands_, op); }

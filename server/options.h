@@ -17,16 +17,16 @@ struct OptionError : std::runtime_error {
 
 /// What protects the server from its viewers.
 struct ConnectionLimits {
-  int viewers = 64;                    ///< WebSocket connections
-  int connections = 256;               ///< sockets of any kind
-  int connections_per_address = 128;   ///< sockets of any kind from one address
-  double messages_per_second = 1000;   ///< text messages of one viewer; also the longest burst
-  double handshake_seconds = 5;        ///< for a request to be complete
-  double idle_seconds = 30;            ///< HTTP connection without a request
-  double pong_seconds = 20;            ///< WebSocket without any sign of life
-  std::size_t queued_messages = 512;   ///< text messages waiting for one viewer
-  std::size_t queued_bytes = 8 << 20;  ///< the same in bytes; a single larger one is let through
-  std::size_t waiting_commands = 1024; ///< commands of one viewer that wait for the room
+  int viewers = 64;                     ///< WebSocket connections
+  int connections = 256;                ///< sockets of any kind
+  int connections_per_address = 128;    ///< sockets of any kind from one address
+  double messages_per_second = 1000;    ///< text messages of one viewer; also the longest burst
+  double handshake_seconds = 5;         ///< for a request to be complete
+  double idle_seconds = 30;             ///< HTTP connection without a request
+  double pong_seconds = 20;             ///< WebSocket without any sign of life
+  std::size_t queued_messages = 512;    ///< text messages waiting for one viewer
+  std::size_t queued_bytes = 8 << 20;   ///< the same in bytes; a single larger one is let through
+  std::size_t waiting_commands = 1024;  ///< commands of one viewer that wait for the room
 };
 
 /// Everything that `weft serve` can be told.
@@ -35,11 +35,11 @@ struct ServerOptions {
   int port = 8080;                 ///< 0 to 65535; 0 lets the system choose
   bool open = false;               ///< serve other machines, without authentication
   std::string scene = "default";
-  double rate = 0;                 ///< ticks a second, 1 to 1000; 0: the scene's own
-  int threads = 1;                 ///< for the physics, 1 to 64
-  bool paused = false;             ///< start paused
-  std::string web;                 ///< directory of the page; empty: beside the executable
-  std::vector<std::string> allowed_origins;       ///< besides the server's own
+  double rate = 0;      ///< ticks a second, 1 to 1000; 0: the scene's own
+  int threads = 1;      ///< for the physics, 1 to 64
+  bool paused = false;  ///< start paused
+  std::string web;      ///< directory of the page; empty: beside the executable
+  std::vector<std::string> allowed_origins;                   ///< besides the server's own
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   double max_seconds = 0;          ///< stop by itself after this; 0: never
   std::string log_level = "info";  ///< trace, debug, info, warning, error or off

@@ -12,12 +12,12 @@
 namespace weft::server {
 namespace {
 
-constexpr double kStatePause = 0.25;       // between two `state` while ticks pass [s]
-constexpr double kLongestSleep = 0.25;     // [s]
-constexpr std::size_t kTickTimes = 120;    // for the median
-constexpr double kSlow = 0.9;              // part of the wanted speed that counts as slow motion
-constexpr double kSlowPatience = 2;        // [s]
-constexpr double kSlowNoticePause = 10;    // [s]
+constexpr double kStatePause = 0.25;     // between two `state` while ticks pass [s]
+constexpr double kLongestSleep = 0.25;   // [s]
+constexpr std::size_t kTickTimes = 120;  // for the median
+constexpr double kSlow = 0.9;            // part of the wanted speed that counts as slow motion
+constexpr double kSlowPatience = 2;      // [s]
+constexpr double kSlowNoticePause = 10;  // [s]
 
 constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f", "#b04fd1",
                                                 "#d99a00", "#00a3a3", "#d13f7c", "#6b7a1f"};
@@ -26,13 +26,8 @@ constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f",
 
 Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock,
            Metrics& metrics, Executor* executor)
-    : options_(std::move(options)),
-      scenes_(std::move(scenes)),
-      output_(output),
-      clock_(std::move(clock)),
-      metrics_(metrics),
-      executor_(executor),
-      paused_(options_.paused) {
+    : options_(std::move(options)), scenes_(std::move(scenes)), output_(output),
+      clock_(std::move(clock)), metrics_(metrics), executor_(executor), paused_(options_.paused) {
   WorldDef def = definition_of(options_.scene);
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
   start_world(def);
@@ -196,7 +191,8 @@ void Room::finish_turn() {
     tell_slow_motion(now);
   }
   tell_changes();
-  // Where no ticks pass by the clock, commands and `advance` shall not make more frames than ticks do.
+  // Where no ticks pass by the clock, commands and `advance` shall not make more frames than ticks
+  // do.
   if (!frame_wanted_ || (!ticking() && now < next_idle_frame_) || !output_.wants_frames()) return;
   next_idle_frame_ = now + world_->tick_seconds();
   publish();
@@ -244,8 +240,7 @@ void Room::tell_changes() {
     next_state_ = clock_() + kStatePause;
   }
   if (roster_changed_) output_.broadcast(text_message(proto::encode_roster(roster())));
-  if (pins_changed_)
-    output_.broadcast(text_message(proto::encode_pins(world_->tick(), pins())));
+  if (pins_changed_) output_.broadcast(text_message(proto::encode_pins(world_->tick(), pins())));
   if (grabs_changed_)
     output_.broadcast(text_message(proto::encode_grabs(world_->tick(), grabs(false))));
   state_changed_ = roster_changed_ = pins_changed_ = grabs_changed_ = false;
@@ -256,16 +251,15 @@ void Room::publish() {
   for (const Grab<float>& grab : world_->grabs().list) {
     const auto hand = std::find_if(hands_.begin(), hands_.end(),
                                    [&](const Hand& h) { return h.grab == grab.id; });
-    grab_samples_.push_back(
-        grab_sample(*world_, grab, hand == hands_.end() ? 0 : hand->viewer));
+    grab_samples_.push_back(grab_sample(*world_, grab, hand == hands_.end() ? 0 : hand->viewer));
   }
   applied_.clear();
   for (const auto& [id, viewer] : viewers_)
     if (viewer.applied > 0) applied_.push_back({id, viewer.applied});
 
   proto::FrameView view;
-  view.header.flags = static_cast<std::uint8_t>(proto::kFrameKey | (jumped_ ? proto::kFrameJump : 0) |
-                                                (paused_ ? proto::kFramePaused : 0));
+  view.header.flags = static_cast<std::uint8_t>(
+      proto::kFrameKey | (jumped_ ? proto::kFrameJump : 0) | (paused_ ? proto::kFramePaused : 0));
   view.header.tick = world_->tick();
   view.header.time = static_cast<double>(world_->tick()) * world_->tick_seconds();
   view.header.server_time = last_tick_done_;

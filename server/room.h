@@ -30,8 +30,9 @@ using SceneSource = std::function<WorldDef(const std::string&)>;
 struct RoomOptions {
   std::string scene = "default";
   double tick_rate = 0;  ///< [1/s]; 0: as each scene says
-  std::vector<std::pair<std::string, std::string>> settings;  ///< of the first scene; core's set_field
-  std::vector<std::string> scene_names;                       ///< for people who mistype one
+  std::vector<std::pair<std::string, std::string>>
+      settings;                          ///< of the first scene; core's set_field
+  std::vector<std::string> scene_names;  ///< for people who mistype one
   bool paused = false;
   std::string version, session;  ///< for `welcome`
   proto::ServerLimits limits;
@@ -122,7 +123,8 @@ class Room {
 
   // room_commands.cpp: one function a command
   void handle(proto::ViewerId viewer, const proto::Request& request);
-  void answer(proto::ViewerId viewer, const std::optional<proto::Id>& id, const proto::Reply& reply);
+  void answer(proto::ViewerId viewer, const std::optional<proto::Id>& id,
+              const proto::Reply& reply);
   void refuse(proto::ViewerId viewer, const proto::Request& request, proto::Error error);
   Outcome apply(proto::ViewerId viewer, const proto::Hello& command);
   Outcome apply(proto::ViewerId viewer, const proto::Pick& command);

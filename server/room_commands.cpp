@@ -7,8 +7,8 @@
 #include "server/room.h"
 #include "server/translate.h"
 
-// What each command does. A function either applies its command and returns the reply, or returns the
-// error and has changed nothing.
+// What each command does. A function either applies its command and returns the reply, or returns
+// the error and has changed nothing.
 
 namespace weft::server {
 namespace {
@@ -26,8 +26,8 @@ proto::Error field_error(ErrorCode code, std::string message, const char* field,
 }
 
 proto::Error too_many(const char* what, std::size_t limit) {
-  proto::Error error = make_error(ErrorCode::too_many, "at most " + std::to_string(limit) + " " + what,
-                                  "end one first");
+  proto::Error error = make_error(ErrorCode::too_many,
+                                  "at most " + std::to_string(limit) + " " + what, "end one first");
   proto::Limit bound;
   bound.maximum = static_cast<double>(limit);
   error.limit = bound;
@@ -89,9 +89,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Pick& command) {
 }
 
 std::vector<Room::Hand>::iterator Room::find_hand(ViewerId viewer, std::uint32_t drag) {
-  return std::find_if(hands_.begin(), hands_.end(), [&](const Hand& hand) {
-    return hand.viewer == viewer && hand.drag == drag;
-  });
+  return std::find_if(hands_.begin(), hands_.end(),
+                      [&](const Hand& hand) { return hand.viewer == viewer && hand.drag == drag; });
 }
 
 std::optional<proto::Error> Room::check_new_hand(ViewerId viewer, std::uint32_t drag) const {
@@ -298,14 +297,29 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   reply.tick = world_->tick();
   switch (command.what) {
     case proto::QueryWhat::positions:
-    case proto::QueryWhat::velocities: return query_vectors(command);
-    case proto::QueryWhat::energies: reply.data = state().energy; break;
-    case proto::QueryWhat::strain: reply.data = state().strain; break;
-    case proto::QueryWhat::pins: reply.data = pins(); break;
-    case proto::QueryWhat::grabs: reply.data = grabs(true); break;
-    case proto::QueryWhat::roster: reply.data = roster(); break;
-    case proto::QueryWhat::state: reply.data = state(); break;
-    case proto::QueryWhat::work: reply.data = work_of(*world_); break;
+    case proto::QueryWhat::velocities:
+      return query_vectors(command);
+    case proto::QueryWhat::energies:
+      reply.data = state().energy;
+      break;
+    case proto::QueryWhat::strain:
+      reply.data = state().strain;
+      break;
+    case proto::QueryWhat::pins:
+      reply.data = pins();
+      break;
+    case proto::QueryWhat::grabs:
+      reply.data = grabs(true);
+      break;
+    case proto::QueryWhat::roster:
+      reply.data = roster();
+      break;
+    case proto::QueryWhat::state:
+      reply.data = state();
+      break;
+    case proto::QueryWhat::work:
+      reply.data = work_of(*world_);
+      break;
     case proto::QueryWhat::camera: {
       if (command.viewer && !viewers_.contains(*command.viewer))
         return field_error(ErrorCode::unknown_viewer, "nobody has this number", "viewer",

@@ -29,9 +29,9 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr auto kPollPause = std::chrono::milliseconds(10);   // of the hub
-constexpr auto kGoodbye = std::chrono::seconds(2);           // for viewers to close
-constexpr double kReadinessPause = 0.1;                      // [s]
+constexpr auto kPollPause = std::chrono::milliseconds(10);  // of the hub
+constexpr auto kGoodbye = std::chrono::seconds(2);          // for viewers to close
+constexpr double kReadinessPause = 0.1;                     // [s]
 
 /// What the network thread may know of the room, as of a moment ago.
 class Bulletin {
@@ -134,8 +134,8 @@ class Network {
       if (!error) stop("asked to stop");
     });
     if (context_.options.max_seconds > 0) {
-      end_.expires_after(std::chrono::milliseconds(
-          static_cast<long long>(context_.options.max_seconds * 1000)));
+      end_.expires_after(
+          std::chrono::milliseconds(static_cast<long long>(context_.options.max_seconds * 1000)));
       end_.async_wait([this](boost::system::error_code error) {
         if (!error) stop("its time is over");
       });
@@ -147,7 +147,8 @@ class Network {
  private:
   void poll() {
     context_.hub.poll();
-    if (context_.stopping && (context_.hub.viewers() == 0 || std::chrono::steady_clock::now() > last_))
+    if (context_.stopping &&
+        (context_.hub.viewers() == 0 || std::chrono::steady_clock::now() > last_))
       return io_.stop();
     poll_.expires_after(kPollPause);
     poll_.async_wait([this](boost::system::error_code error) {
@@ -186,8 +187,19 @@ int serve(const ServerOptions& options) {
 
   Hub hub(process_seconds, 60, {options.limits.queued_messages, options.limits.queued_bytes},
           metrics);
-  ServiceContext context{options, hub, mailbox, metrics, files, process_seconds, version_info(),
-                         {}, [&bulletin] { return bulletin.read(); }, {}, 1, 0, false};
+  ServiceContext context{options,
+                         hub,
+                         mailbox,
+                         metrics,
+                         files,
+                         process_seconds,
+                         version_info(),
+                         {},
+                         [&bulletin] { return bulletin.read(); },
+                         {},
+                         1,
+                         0,
+                         false};
   for (const SceneInfo& scene : scenes()) context.scenes.push_back({scene.name, scene.description});
   // Destroyed before what the sessions use, because handlers that it still holds own them.
   asio::io_context io(1);
@@ -199,7 +211,8 @@ int serve(const ServerOptions& options) {
 
   Network network(io, context);
   if (!is_loopback(options.bind))
-    spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind, context.port);
+    spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind,
+                 context.port);
   if (!files.find("/"))
     spdlog::warn("no page in {}; scripts can connect all the same", page_directory(options));
 

@@ -1,8 +1,7 @@
 #include "server/session.h"
 
-#include <netinet/tcp.h>
-
 #include <chrono>
+#include <netinet/tcp.h>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -49,10 +48,10 @@ using beast::error_code;
 
 // Longer text than the wire allows is still read up to here, so that it gets its error by name.
 constexpr std::size_t kMostReadBytes = 4 * proto::kMostMessageBytes;
-constexpr int kNotSentLowWater = 16 * 1024;   // unsent bytes that the kernel keeps of one viewer
+constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel keeps of one viewer
 constexpr double kAcksPerSecond = 4000;
-constexpr double kErrorPause = 0.25;          // between two `rate_limited` [s]
-constexpr double kCloseSeconds = 5;           // for the closing handshake
+constexpr double kErrorPause = 0.25;  // between two `rate_limited` [s]
+constexpr double kCloseSeconds = 5;   // for the closing handshake
 
 std::chrono::steady_clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -63,15 +62,10 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
  public:
   Session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
           const std::string& early, std::shared_ptr<ConnectionCount::Place> place)
-      : context_(context),
-        place_(std::move(place)),
-        ws_(std::move(socket)),
-        request_(std::move(request)),
-        messages_(context.options.limits.messages_per_second,
-                  context.options.limits.messages_per_second),
-        acks_(kAcksPerSecond, kAcksPerSecond),
-        watch_(ws_.get_executor()),
-        cut_(ws_.get_executor()),
+      : context_(context), place_(std::move(place)), ws_(std::move(socket)),
+        request_(std::move(request)), messages_(context.options.limits.messages_per_second,
+                                                context.options.limits.messages_per_second),
+        acks_(kAcksPerSecond, kAcksPerSecond), watch_(ws_.get_executor()), cut_(ws_.get_executor()),
         viewer_(context.next_viewer++) {
     auto& buffered = ws_.next_layer();
     const auto room = buffered.buffer().prepare(early.size());
@@ -142,9 +136,8 @@ void Session::on_accepted() {
   if (context_.stopping) return;
   channel_ = &context_.hub.add(viewer_, *this);
   alive_ = context_.clock();
-  ws_.control_callback([this](websocket::frame_type, beast::string_view) {
-    alive_ = context_.clock();
-  });
+  ws_.control_callback(
+      [this](websocket::frame_type, beast::string_view) { alive_ = context_.clock(); });
   const std::string_view target(request_.target().data(), request_.target().size());
   const bool mesh_over_http = target.find("mesh=http") != std::string_view::npos;
   context_.mailbox.put({viewer_, 0, Join{mesh_over_http}});
@@ -195,8 +188,7 @@ void Session::on_request(const proto::Request& request, double received) {
   if (const auto* view = std::get_if<proto::View>(&request.command)) {
     context_.metrics.count_command("view");
     if (view->hz) context_.hub.set_most_frames(viewer_, *view->hz);
-    if (channel_)
-      answer(request.id, proto::ViewReply{channel_->asked_frames(), proto::Codec::f32});
+    if (channel_) answer(request.id, proto::ViewReply{channel_->asked_frames(), proto::Codec::f32});
     return note(true);
   }
   if (context_.mailbox.put({viewer_, number_, request})) return;
@@ -215,8 +207,8 @@ void Session::on_excess(double now) {
     return close_by_policy(kClosePolicy, "far too many messages a second");
   if (now < next_error_) return;
   next_error_ = now + kErrorPause;
-  proto::Error error = proto::make_error(
-      proto::ErrorCode::rate_limited, "too many messages a second; this one was dropped");
+  proto::Error error = proto::make_error(proto::ErrorCode::rate_limited,
+                                         "too many messages a second; this one was dropped");
   error.limit = proto::Limit{};
   error.limit->maximum = allowed;
   refuse(error);
@@ -294,8 +286,7 @@ void Session::finish() {
 
 void start_session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
                    const std::string& early, std::shared_ptr<ConnectionCount::Place> place) {
-  std::make_shared<Session>(context, std::move(socket), std::move(request), early,
-                            std::move(place))
+  std::make_shared<Session>(context, std::move(socket), std::move(request), early, std::move(place))
       ->start();
 }
 

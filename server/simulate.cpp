@@ -31,13 +31,13 @@ double cpu_seconds() {
 }
 
 struct Measurement {
-  double cpu = 0, wall = 0;      ///< of the steps alone [s]
-  std::vector<double> ticks;     ///< [s], sorted
-  Profile stages;                ///< summed
-  double deepest = 0;            ///< [m]
+  double cpu = 0, wall = 0;   ///< of the steps alone [s]
+  std::vector<double> ticks;  ///< [s], sorted
+  Profile stages;             ///< summed
+  double deepest = 0;         ///< [m]
   int checks = 0, divergences = 0;
   int least_substeps = 0, most_substeps = 0;
-  double largest_strain = 0;     ///< over the whole run
+  double largest_strain = 0;  ///< over the whole run
 };
 
 void measure_tick(World<float>& world, Measurement& m) {
@@ -52,8 +52,8 @@ void measure_tick(World<float>& world, Measurement& m) {
     m.stages.stages[i].work += report.profile.stages[i].work;
   }
   m.divergences += report.divergence ? 1 : 0;
-  m.least_substeps = m.least_substeps == 0 ? report.substeps
-                                           : std::min(m.least_substeps, report.substeps);
+  m.least_substeps =
+      m.least_substeps == 0 ? report.substeps : std::min(m.least_substeps, report.substeps);
   m.most_substeps = std::max(m.most_substeps, report.substeps);
   m.largest_strain = std::max(m.largest_strain, report.largest_strain);
 }
@@ -85,34 +85,35 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
     stages[kStageNames[i]] = {{"milliseconds", m.stages.stages[i].seconds * 1000},
                               {"work", m.stages.stages[i].work}};
   }
-  return {{"scene", options.scene},
-          {"particles", world.model().mass.size()},
-          {"triangles", world.model().triangles.size()},
-          {"ticks", options.ticks},
-          {"tick_rate", world.def().tick_rate},
-          {"threads", options.threads},
-          {"simulated_seconds", simulated},
-          {"cpu_seconds", m.cpu},
-          {"wall_seconds", m.wall},
-          {"real_time_factor", m.cpu > 0 ? simulated / m.cpu : 0},
-          {"tick_milliseconds",
-           {{"median", percentile(m.ticks, 50) * 1000}, {"p95", percentile(m.ticks, 95) * 1000}}},
-          {"stages", stages},
-          {"energy",
-           {{"kinetic", energy.kinetic},
-            {"stretch", energy.stretch},
-            {"bending", energy.bending},
-            {"gravity", energy.gravity},
-            {"total", energy.total()}}},
-          {"strain",
-           {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
-          {"deepest_penetration", m.deepest},
-          {"penetration_checks", m.checks},
-          {"hash", proto::hash_text(world.hash())},
-          {"solver", "verlet"},
-          {"substeps", world.report().substeps},
-          {"substeps_of_run", {m.least_substeps, m.most_substeps}},
-          {"divergences", m.divergences}};
+  return {
+      {"scene", options.scene},
+      {"particles", world.model().mass.size()},
+      {"triangles", world.model().triangles.size()},
+      {"ticks", options.ticks},
+      {"tick_rate", world.def().tick_rate},
+      {"threads", options.threads},
+      {"simulated_seconds", simulated},
+      {"cpu_seconds", m.cpu},
+      {"wall_seconds", m.wall},
+      {"real_time_factor", m.cpu > 0 ? simulated / m.cpu : 0},
+      {"tick_milliseconds",
+       {{"median", percentile(m.ticks, 50) * 1000}, {"p95", percentile(m.ticks, 95) * 1000}}},
+      {"stages", stages},
+      {"energy",
+       {{"kinetic", energy.kinetic},
+        {"stretch", energy.stretch},
+        {"bending", energy.bending},
+        {"gravity", energy.gravity},
+        {"total", energy.total()}}},
+      {"strain",
+       {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
+      {"deepest_penetration", m.deepest},
+      {"penetration_checks", m.checks},
+      {"hash", proto::hash_text(world.hash())},
+      {"solver", "verlet"},
+      {"substeps", world.report().substeps},
+      {"substeps_of_run", {m.least_substeps, m.most_substeps}},
+      {"divergences", m.divergences}};
 }
 
 void print_row(const std::string& name, const Json& value) {

@@ -9,7 +9,7 @@ namespace weft::server {
 /// What `weft simulate` can be told.
 struct SimulateOptions {
   std::string scene = "default";
-  int ticks = 600;    ///< 1 to 10,000,000
+  int ticks = 600;                                            ///< 1 to 10,000,000
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   std::string out;    ///< file for the cloth at the end, .obj or .ply; empty: none
   bool json = false;  ///< summary as one JSON object instead of a table

@@ -12,7 +12,8 @@ namespace weft::server {
 /// what is to be told. A room that cannot keep up runs in slow motion and still hears commands
 /// between any two ticks.
 ///
-/// @tparam Room   take, advancing, advance_until, ticking, tick_interval, tick, finish_turn, next_wake
+/// @tparam Room   take, advancing, advance_until, ticking, tick_interval, tick, finish_turn,
+/// next_wake
 /// @tparam Inbox  take_all, wait, stopped
 template <class Room, class Inbox>
 class SimulationLoop {

@@ -22,8 +22,9 @@ StrainStatistics strain_statistics(const ClothModel<Real>& model, const ClothSta
   for (std::size_t s = 0; s < model.springs.size(); ++s) {
     if (model.spring_kinds[s] == SpringKind::skip) continue;
     const Spring<Real>& spring = model.springs[s];
-    const Real length = (state.x[static_cast<std::size_t>(spring.j)] -
-                         state.x[static_cast<std::size_t>(spring.i)]).norm();
+    const Real length =
+        (state.x[static_cast<std::size_t>(spring.j)] - state.x[static_cast<std::size_t>(spring.i)])
+            .norm();
     scratch.push_back(std::abs(length - spring.rest_length) / spring.rest_length);
   }
   if (scratch.empty()) return {};

@@ -58,8 +58,8 @@ struct ShapeWriter {
   }
   decltype(proto::ColliderInfo::shape) operator()(const BoxDef& box) const {
     const Eigen::Quaterniond q = box.orientation.normalized();
-    return proto::BoxInfo{to_wire(box.centre), to_wire(box.half_extents),
-                          {q.x(), q.y(), q.z(), q.w()}};
+    return proto::BoxInfo{
+        to_wire(box.centre), to_wire(box.half_extents), {q.x(), q.y(), q.z(), q.w()}};
   }
   decltype(proto::ColliderInfo::shape) operator()(const MeshDef& mesh) const {
     return proto::MeshInfo{static_cast<std::uint32_t>(mesh.mesh.positions.size()),
@@ -73,9 +73,15 @@ proto::Error index_error(const char* field, std::uint32_t index, std::size_t cou
 
 }  // namespace
 
-proto::Vec3 to_wire(const Vec3d& v) { return {v[0], v[1], v[2]}; }
-proto::Vec3f to_wire_float(const Vec3f& v) { return {v[0], v[1], v[2]}; }
-Vec3d from_wire(const proto::Vec3& v) { return {v[0], v[1], v[2]}; }
+proto::Vec3 to_wire(const Vec3d& v) {
+  return {v[0], v[1], v[2]};
+}
+proto::Vec3f to_wire_float(const Vec3f& v) {
+  return {v[0], v[1], v[2]};
+}
+Vec3d from_wire(const proto::Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
 std::span<const float> floats_of(const Vec3Array<float>& vectors) {
   return {vectors.empty() ? nullptr : vectors.front().data(), vectors.size() * 3};
@@ -98,8 +104,7 @@ proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const 
     return exact;
   }
   const std::uint32_t particle = std::get<proto::Particle>(hold).index;
-  if (particle >= model.mass.size())
-    return index_error("particle", particle, model.mass.size());
+  if (particle >= model.mass.size()) return index_error("particle", particle, model.mass.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       if (model.triangles[t][corner] != static_cast<Index>(particle)) continue;
@@ -113,8 +118,8 @@ proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const 
 
 Index nearest_corner(const ServedWorld& world, const proto::SurfacePoint& point) {
   const auto heaviest = std::max_element(point.barycentric.begin(), point.barycentric.end());
-  return world.model().triangles[point.triangle][static_cast<std::size_t>(
-      heaviest - point.barycentric.begin())];
+  return world.model()
+      .triangles[point.triangle][static_cast<std::size_t>(heaviest - point.barycentric.begin())];
 }
 
 GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
@@ -131,8 +136,8 @@ GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
   }
   const Triangle& corners = world.model().triangles[point.triangle];
   for (std::size_t i = 0; i < 3; ++i)
-    def.target += point.barycentric[i] *
-                  world.state().x[static_cast<std::size_t>(corners[i])].cast<double>();
+    def.target +=
+        point.barycentric[i] * world.state().x[static_cast<std::size_t>(corners[i])].cast<double>();
   return def;
 }
 

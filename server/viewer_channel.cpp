@@ -10,11 +10,7 @@ namespace weft::server {
 
 ViewerChannel::ViewerChannel(ViewerStream& stream, const Clock& clock, double frame_rate,
                              const ChannelLimits& limits)
-    : stream_(stream),
-      clock_(clock),
-      limits_(limits),
-      window_(frame_rate),
-      frame_rate_(frame_rate),
+    : stream_(stream), clock_(clock), limits_(limits), window_(frame_rate), frame_rate_(frame_rate),
       most_frames_(std::numeric_limits<double>::infinity()) {}
 
 void ViewerChannel::send(Message message) {

@@ -18,8 +18,8 @@ class ViewerStream {
  public:
   virtual ~ViewerStream() = default;
 
-  /// Starts to write; the stream calls `ViewerChannel::on_written` when it is done. The channel never
-  /// starts a second write before.
+  /// Starts to write; the stream calls `ViewerChannel::on_written` when it is done. The channel
+  /// never starts a second write before.
   virtual void write(const Message& message) = 0;
 
   /// Starts to close; nothing is written after it.
@@ -73,8 +73,8 @@ class ViewerChannel {
   /// The room's rate of frames has changed [1/s].
   void set_frame_rate(double frame_rate);
 
-  /// Sends what is queued, says `last`, and closes. Frames are dropped, and for a viewer that does not
-  /// read (4000, 4001) everything is.
+  /// Sends what is queued, says `last`, and closes. Frames are dropped, and for a viewer that does
+  /// not read (4000, 4001) everything is.
   void close(std::uint16_t code, const std::string& reason, std::optional<Message> last = {});
 
   bool closing() const { return closing_; }
@@ -96,7 +96,7 @@ class ViewerChannel {
   ChannelLimits limits_;
   FrameWindow window_;
   double frame_rate_;
-  double most_frames_;           // as asked for; may be above the room's rate
+  double most_frames_;  // as asked for; may be above the room's rate
   bool frames_allowed_ = false;
   bool writing_ = false;
   bool closing_ = false, closed_ = false;

@@ -21,7 +21,8 @@ void validate(const GrabDef& def, std::size_t triangles) {
     check_field("drag.", {"barycentric", 0, 1, "", "weights of the corners"}, w);
     sum += w;
   }
-  check_field("drag.", {"barycentric", 0.999, 1.001, "as their sum", "weights of the corners"}, sum);
+  check_field("drag.", {"barycentric", 0.999, 1.001, "as their sum", "weights of the corners"},
+              sum);
   check_field("drag.", {"radius", 0, 100, "m", "radius of the held disc"}, def.radius);
   check_field("drag.", {"stiffness", 0, 1e5, "N/m", "stiffness of the hand"}, def.stiffness);
   check_field("drag.", {"max_force", 0, 1e6, "N", "largest force of the hand"}, def.max_force);
@@ -95,7 +96,8 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   validate(def, model.triangles.size());
   if (grabs.list.size() >= kMostGrabs)
     throw DefinitionError("drag", std::to_string(grabs.list.size() + 1),
-                          "at most " + std::to_string(kMostGrabs) + " at once", "release one first");
+                          "at most " + std::to_string(kMostGrabs) + " at once",
+                          "release one first");
   Grab<Real> grab;
   grab.id = grabs.next_id++;
   grab.def = def;
@@ -154,14 +156,13 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                  \
-  template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&,    \
-                           Grabs<Real>&);                                                       \
-  template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                                  \
-  template bool remove_grab(GrabId, Grabs<Real>&);                                              \
-  template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                    \
-  template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&,                    \
-                                Vec3Array<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                               \
+  template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&, \
+                           Grabs<Real>&);                                                    \
+  template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                               \
+  template bool remove_grab(GrabId, Grabs<Real>&);                                           \
+  template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
+  template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

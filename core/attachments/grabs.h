@@ -13,11 +13,11 @@ namespace weft {
 /// A hand that holds the cloth at a point of a triangle and pulls it towards a target with a damped
 /// spring of bounded force. It never sets a position.
 struct GrabDef {
-  Index triangle = 0;                                    ///< that was hit
+  Index triangle = 0;                                               ///< that was hit
   std::array<double, 3> barycentric = {1.0 / 3, 1.0 / 3, 1.0 / 3};  ///< of the hit, >= 0, sum 1
-  double radius = 0.03;      ///< of the held disc in the fabric [m], 0 to 100; 0: the corners alone
-  double stiffness = 150;    ///< of the spring [N/m], 0 to 1e5
-  double max_force = 50;     ///< [N], 0 to 1e6; beyond it the hand lags
+  double radius = 0.03;    ///< of the held disc in the fabric [m], 0 to 100; 0: the corners alone
+  double stiffness = 150;  ///< of the spring [N/m], 0 to 1e5
+  double max_force = 50;   ///< [N], 0 to 1e6; beyond it the hand lags
   Vec3d target = Vec3d::Zero();  ///< where the hit point shall go [m], components within 1e4
 };
 
@@ -28,11 +28,11 @@ struct Grab {
   GrabId id = 0;
   GrabDef def;
   std::vector<Index> particles;
-  std::vector<Real> weights;        ///< of the particles, sum 1
-  Vec3<Real> offset;                ///< held point minus weighted mean when taken [m]
-  Vec3<Real> target, target_before; ///< at the end and at the start of the coming tick [m]
-  Real damping = 0;                 ///< of the spring [N s/m]
-  StabilityBound bound;             ///< what it adds to the substep rule
+  std::vector<Real> weights;              ///< of the particles, sum 1
+  Vec3<Real> offset;                      ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target, target_before;       ///< at the end and at the start of the coming tick [m]
+  Real damping = 0;                       ///< of the spring [N s/m]
+  StabilityBound bound;                   ///< what it adds to the substep rule
   Vec3<Real> force = Vec3<Real>::Zero();  ///< on the cloth, in the last substep [N]
 };
 

@@ -47,9 +47,9 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
   return true;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template Pins make_pins(const ClothModel<Real>&);                                              \
-  template PinId add_pin(const ClothModel<Real>&, const PinDef&, Pins&, ClothState<Real>&);      \
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template Pins make_pins(const ClothModel<Real>&);                                         \
+  template PinId add_pin(const ClothModel<Real>&, const PinDef&, Pins&, ClothState<Real>&); \
   template bool remove_pin(const ClothModel<Real>&, PinId, Pins&, ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

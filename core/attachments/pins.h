@@ -26,8 +26,8 @@ struct Pin {
 
 /// All pins of a cloth. Overlapping pins count: a particle is free when the last of its pins goes.
 struct Pins {
-  std::vector<Pin> list;          ///< in the order of their making
-  std::vector<int> pin_count;     ///< for each particle
+  std::vector<Pin> list;       ///< in the order of their making
+  std::vector<int> pin_count;  ///< for each particle
   PinId next_id = 1;
 };
 
@@ -40,7 +40,8 @@ Pins make_pins(const ClothModel<Real>& model);
 /// Pins a disc at its present position with velocity zero.
 /// Throws DefinitionError if the particle or the radius is out of range or there are too many pins.
 template <class Real>
-PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins, ClothState<Real>& state);
+PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
+              ClothState<Real>& state);
 
 /// Frees the particles of a pin that no other pin holds. False if there is no such pin.
 template <class Real>

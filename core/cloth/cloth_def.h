@@ -34,15 +34,15 @@ struct DirectSprings {
 /// Particle (row r, column c) has index r * columns + c and starts at
 /// origin + u * width * c/(columns-1) + v * height * r/(rows-1).
 struct ClothDef {
-  int rows = 20;     ///< particles along v
-  int columns = 30;  ///< particles along u
-  double width = 1;  ///< extent along u [m]
-  double height = 1; ///< extent along v [m]
-  Vec3d origin = Vec3d::Zero();    ///< where particle 0 starts [m]
-  Vec3d u = Vec3d::UnitX();        ///< direction of a row, warp; normalised when built
-  Vec3d v = -Vec3d::UnitY();       ///< direction of a column, weft; must be normal to u
-  double rest_angle = 0;           ///< of every hinge [rad]
-  double skip_stiffness = 0;       ///< seed's bending springs beside the hinges [N/m]
+  int rows = 20;                 ///< particles along v
+  int columns = 30;              ///< particles along u
+  double width = 1;              ///< extent along u [m]
+  double height = 1;             ///< extent along v [m]
+  Vec3d origin = Vec3d::Zero();  ///< where particle 0 starts [m]
+  Vec3d u = Vec3d::UnitX();      ///< direction of a row, warp; normalised when built
+  Vec3d v = -Vec3d::UnitY();     ///< direction of a column, weft; must be normal to u
+  double rest_angle = 0;         ///< of every hinge [rad]
+  double skip_stiffness = 0;     ///< seed's bending springs beside the hinges [N/m]
   BendingModel bending_model = BendingModel::automatic;
   MassLumping mass_lumping = MassLumping::area;
   std::optional<DirectSprings> direct_springs;

@@ -13,9 +13,9 @@ namespace {
 
 /// An edge as one triangle sees it, for finding the other triangle.
 struct TriangleSide {
-  Index low, high;   // ends, sorted
+  Index low, high;  // ends, sorted
   Index triangle;
-  int corner;        // the corner opposite to the edge
+  int corner;  // the corner opposite to the edge
   bool operator<(const TriangleSide& o) const {
     if (low != o.low) return low < o.low;
     return high != o.high ? high < o.high : triangle < o.triangle;
@@ -54,8 +54,8 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   const double total = def.fabric.areal_density * def.width * def.height;
   for (int r = 0; r < def.rows; ++r) {
     for (int c = 0; c < def.columns; ++c) {
-      const double share = (r == 0 || r == def.rows - 1 ? 0.5 : 1.0) *
-                           (c == 0 || c == def.columns - 1 ? 0.5 : 1.0);
+      const double share =
+          (r == 0 || r == def.rows - 1 ? 0.5 : 1.0) * (c == 0 || c == def.columns - 1 ? 0.5 : 1.0);
       const double cells = (def.rows - 1.0) * (def.columns - 1.0);
       const double particles = static_cast<double>(def.rows) * def.columns;
       model.mass.push_back(static_cast<Real>(
@@ -84,9 +84,9 @@ void split_cells(const ClothDef& def, ClothModel<Real>& model) {
   model.triangle_area.assign(model.triangles.size(), static_cast<Real>(area));
 }
 
-/// Bending rigidity times weight of a hinge whose edge spans (du, dv) in the material. An edge along
-/// v bends with curvature along u. The diagonals resist twist alone, so their weight is
-/// 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
+/// Bending rigidity times weight of a hinge whose edge spans (du, dv) in the material. An edge
+/// along v bends with curvature along u. The diagonals resist twist alone, so their weight is 2
+/// h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
 double hinge_rigidity(const FabricDef& fabric, double du, double dv) {
   constexpr double kAlongAxis = 1e-9;
   if (du < kAlongAxis) return fabric.bending_warp;
@@ -107,7 +107,8 @@ void connect_triangles(const ClothDef& def, ClothModel<Real>& model) {
     const auto& material = model.material;
     const auto i = static_cast<std::size_t>(first.low), j = static_cast<std::size_t>(first.high);
     const double rigidity = hinge_rigidity(
-        def.fabric, std::abs(static_cast<double>(material[j][0]) - static_cast<double>(material[i][0])),
+        def.fabric,
+        std::abs(static_cast<double>(material[j][0]) - static_cast<double>(material[i][0])),
         std::abs(static_cast<double>(material[j][1]) - static_cast<double>(material[i][1])));
     if (rigidity == 0) continue;
     const Triangle& t1 = model.triangles[static_cast<std::size_t>(first.triangle)];
@@ -120,8 +121,9 @@ void connect_triangles(const ClothDef& def, ClothModel<Real>& model) {
     hinge.x[3] = t2[static_cast<std::size_t>(second.corner)];
     const double length2 =
         (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
-    const double area = static_cast<double>(model.triangle_area[static_cast<std::size_t>(first.triangle)]) +
-                        static_cast<double>(model.triangle_area[static_cast<std::size_t>(second.triangle)]);
+    const double area =
+        static_cast<double>(model.triangle_area[static_cast<std::size_t>(first.triangle)]) +
+        static_cast<double>(model.triangle_area[static_cast<std::size_t>(second.triangle)]);
     hinge.stiffness = static_cast<Real>(rigidity * length2 / area);
     hinge.damping = static_cast<Real>(def.fabric.bending_damping) * hinge.stiffness;
     hinge.rest_angle = static_cast<Real>(def.rest_angle);
@@ -169,19 +171,18 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
 }  // namespace
 
 void validate(const ClothDef& def) {
-  visit_fields_of_cloth(def, [](const FieldInfo& info, const auto& value) {
-    check_field("cloth.", info, value);
-  });
+  visit_fields_of_cloth(
+      def, [](const FieldInfo& info, const auto& value) { check_field("cloth.", info, value); });
   visit_fields_of_fabric(def.fabric, [](const FieldInfo& info, const auto& value) {
     check_field("fabric.", info, value);
   });
   if (def.u.norm() < 1e-9)
     throw DefinitionError("cloth.u", "0,0,0", "a direction", "give a vector that is not zero");
   if (def.v.norm() < 1e-9 || std::abs(def.u.normalized().dot(def.v.normalized())) > 1e-6)
-    throw DefinitionError("cloth.v",
-                          number_text(def.v[0]) + "," + number_text(def.v[1]) + "," +
-                              number_text(def.v[2]),
-                          "a direction at right angles to cloth.u", "the cells are rectangles");
+    throw DefinitionError(
+        "cloth.v",
+        number_text(def.v[0]) + "," + number_text(def.v[1]) + "," + number_text(def.v[2]),
+        "a direction at right angles to cloth.u", "the cells are rectangles");
   if (def.bending_model == BendingModel::quadratic && !quadratic_bending_fits(def))
     throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
                           "a rest angle or bending damping needs hinges");
@@ -220,7 +221,8 @@ std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre
   std::vector<Index> inside;
   for (Index i = 0; i < model.particle_count(); ++i) {
     const auto& m = model.material[static_cast<std::size_t>(i)];
-    const double du = static_cast<double>(m[0] - middle[0]), dv = static_cast<double>(m[1] - middle[1]);
+    const double du = static_cast<double>(m[0] - middle[0]),
+                 dv = static_cast<double>(m[1] - middle[1]);
     if (i == centre || du * du + dv * dv <= radius * radius) inside.push_back(i);
   }
   return inside;

@@ -20,10 +20,10 @@ enum class SpringKind : std::uint8_t {
 /// A Hookean spring with a dashpot along it.
 template <class Real>
 struct Spring {
-  Index i = 0, j = 0;     ///< end particles
-  Real rest_length = 0;   ///< [m], positive
-  Real stiffness = 0;     ///< k [N/m]
-  Real damping = 0;       ///< c [N s/m], along the spring
+  Index i = 0, j = 0;    ///< end particles
+  Real rest_length = 0;  ///< [m], positive
+  Real stiffness = 0;    ///< k [N/m]
+  Real damping = 0;      ///< c [N s/m], along the spring
 };
 
 /// Two triangles that share an edge, with the energy 1/2 stiffness (theta - rest_angle)^2 and the
@@ -38,13 +38,15 @@ struct Hinge {
   Real rest_angle = 0;  ///< theta_0 [rad]
   Real stiffness = 0;   ///< B l^2 / (A1 + A2) [N m]
   Real damping = 0;     ///< [N m s]
-  Real smallest_normal2 = 0;  ///< squared doubled area below which a triangle counts as crumpled [m^4]
+  Real smallest_normal2 =
+      0;  ///< squared doubled area below which a triangle counts as crumpled [m^4]
 };
 
 /// A triangle crumpled below this part of its area at rest pulls on its hinges with less lever.
 inline constexpr double kCrumpledArea = 0.05;
 
-/// Springs of a grid as one set of numbers for each kind; see grid_springs.h. Border springs have half.
+/// Springs of a grid as one set of numbers for each kind; see grid_springs.h. Border springs have
+/// half.
 template <class Real>
 struct GridSprings {
   Real warp = 0, weft = 0, shear = 0;                 ///< stiffness [N/m]
@@ -66,33 +68,32 @@ struct QuadraticBending {
 template <class Real>
 struct ClothModel {
   int rows = 0, columns = 0;
-  Real cell_u = 0, cell_v = 0;       ///< h_x, h_y, cell size [m]
-  Vec3Array<Real> rest_positions;    ///< where the cloth starts [m]
+  Real cell_u = 0, cell_v = 0;                ///< h_x, h_y, cell size [m]
+  Vec3Array<Real> rest_positions;             ///< where the cloth starts [m]
   std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric [m]
-  std::vector<Real> mass;            ///< [kg], positive
-  std::vector<Triangle> triangles;   ///< with alternating diagonals
-  std::vector<Real> triangle_area;   ///< at rest [m^2]
-  std::vector<Edge> edges;           ///< unique edges of the triangles
-  std::vector<Spring<Real>> springs; ///< ordered by first end, then kind
+  std::vector<Real> mass;                     ///< [kg], positive
+  std::vector<Triangle> triangles;            ///< with alternating diagonals
+  std::vector<Real> triangle_area;            ///< at rest [m^2]
+  std::vector<Edge> edges;                    ///< unique edges of the triangles
+  std::vector<Spring<Real>> springs;          ///< ordered by first end, then kind
   std::vector<SpringKind> spring_kinds;
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
-  std::vector<Hinge<Real>> hinges;   ///< empty if bending is quadratic
+  std::vector<Hinge<Real>> hinges;                ///< empty if bending is quadratic
   QuadraticBending<Real> quadratic_bending;
   FabricDef fabric;
 
-  /// Bound of the highest squared frequency of the membrane and of bending [1/s^2], and the matching
-  /// bounds of damping rates [1/s]; see solver/substep_rule.h.
+  /// Bound of the highest squared frequency of the membrane and of bending [1/s^2], and the
+  /// matching bounds of damping rates [1/s]; see solver/substep_rule.h.
   double membrane_omega2 = 0, bending_omega2 = 0;
   double membrane_damping_rate = 0, bending_damping_rate = 0;
 
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };
 
-/// Builds the grid cloth of PHYSICS.md section 2: structural and shear springs whose continuum limit
-/// is the fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in every
-/// direction.
-/// Throws DefinitionError if a field is out of range or a spring would have negative stiffness
-/// (shear too large for the cell's shape).
+/// Builds the grid cloth of PHYSICS.md section 2: structural and shear springs whose continuum
+/// limit is the fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in
+/// every direction. Throws DefinitionError if a field is out of range or a spring would have
+/// negative stiffness (shear too large for the cell's shape).
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def);
 

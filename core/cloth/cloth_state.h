@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Everything about a cloth that changes while it moves. Positions and velocities belong to the same
-/// instant at every tick boundary.
+/// Everything about a cloth that changes while it moves. Positions and velocities belong to the
+/// same instant at every tick boundary.
 template <class Real>
 struct ClothState {
   Vec3Array<Real> x;               ///< positions [m]

@@ -12,19 +12,19 @@ namespace weft {
 /// Bending: energy per area B/2 (warp), B/2 (weft) times curvature squared; in every direction B if
 /// both are equal.
 struct FabricDef {
-  double areal_density = 0.2;      ///< sigma [kg/m^2]
-  double stretch_warp = 400;       ///< Y_w [N/m], along the columns' direction u
-  double stretch_weft = 400;       ///< Y_f [N/m], along the rows' direction v
-  double shear = 40;               ///< G [N/m]
-  double bending_warp = 1e-5;      ///< B_w [N m], curvature along u
-  double bending_weft = 1e-5;      ///< B_f [N m], curvature along v
-  double damping_ratio = 0.05;     ///< dashpot along each spring, as a ratio of the highest mode
-  double bending_damping = 0;      ///< hinge damping per elastic stiffness [s]
-  double thickness = 0.004;        ///< contact distance of the mid-surface from objects [m]
-  double friction = 0.4;           ///< Coulomb coefficient against objects
-  double restitution = 0;          ///< k_diss of the seed's eq. (10), 0 <= k < 1
-  double air_normal = 1.28;        ///< C_n, drag coefficient of a plate across the wind
-  double air_tangential = 0.01;    ///< c_t, skin friction per area and speed [kg/(m^2 s)]
+  double areal_density = 0.2;    ///< sigma [kg/m^2]
+  double stretch_warp = 400;     ///< Y_w [N/m], along the columns' direction u
+  double stretch_weft = 400;     ///< Y_f [N/m], along the rows' direction v
+  double shear = 40;             ///< G [N/m]
+  double bending_warp = 1e-5;    ///< B_w [N m], curvature along u
+  double bending_weft = 1e-5;    ///< B_f [N m], curvature along v
+  double damping_ratio = 0.05;   ///< dashpot along each spring, as a ratio of the highest mode
+  double bending_damping = 0;    ///< hinge damping per elastic stiffness [s]
+  double thickness = 0.004;      ///< contact distance of the mid-surface from objects [m]
+  double friction = 0.4;         ///< Coulomb coefficient against objects
+  double restitution = 0;        ///< k_diss of the seed's eq. (10), 0 <= k < 1
+  double air_normal = 1.28;      ///< C_n, drag coefficient of a plate across the wind
+  double air_tangential = 0.01;  ///< c_t, skin friction per area and speed [kg/(m^2 s)]
 };
 
 /// Describes each field to `visit(info, value)`; see definition.h.

@@ -17,8 +17,7 @@ struct Pattern {
 
 bool on_border(const ClothDef& def, int row, int column, const Pattern& p) {
   if (!p.half_on_border) return false;
-  return p.dr == 0 ? (row == 0 || row == def.rows - 1)
-                   : (column == 0 || column == def.columns - 1);
+  return p.dr == 0 ? (row == 0 || row == def.rows - 1) : (column == 0 || column == def.columns - 1);
 }
 
 std::vector<Pattern> patterns(const ClothDef& def) {
@@ -27,9 +26,10 @@ std::vector<Pattern> patterns(const ClothDef& def) {
   using enum SpringKind;
   if (def.direct_springs) {
     const DirectSprings& d = *def.direct_springs;
-    return {{warp, 0, 1, d.structural, d.dashpot, false}, {weft, 1, 0, d.structural, d.dashpot, false},
-            {shear, 1, 1, d.shear, d.dashpot, false},     {shear, 1, -1, d.shear, d.dashpot, false},
-            {skip, 0, 2, d.skip, d.dashpot, false},       {skip, 2, 0, d.skip, d.dashpot, false}};
+    return {
+        {warp, 0, 1, d.structural, d.dashpot, false}, {weft, 1, 0, d.structural, d.dashpot, false},
+        {shear, 1, 1, d.shear, d.dashpot, false},     {shear, 1, -1, d.shear, d.dashpot, false},
+        {skip, 0, 2, d.skip, d.dashpot, false},       {skip, 2, 0, d.skip, d.dashpot, false}};
   }
   const GridStiffness k = grid_stiffness(def.fabric, cell_u, cell_v);
   const double s = def.skip_stiffness;
@@ -47,8 +47,8 @@ GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell
   k.weft = (fabric.stretch_weft - fabric.shear / (ratio * ratio)) * ratio;
   k.shear = fabric.shear * (cell_u * cell_u + cell_v * cell_v) / (2 * cell_u * cell_v);
   if (k.warp < 0 || k.weft < 0) {
-    const double most = std::min(fabric.stretch_warp / (ratio * ratio),
-                                 fabric.stretch_weft * ratio * ratio);
+    const double most =
+        std::min(fabric.stretch_warp / (ratio * ratio), fabric.stretch_weft * ratio * ratio);
     throw DefinitionError("fabric.shear", number_text(fabric.shear),
                           "0 to " + number_text(most) + " N/m for cells of this shape",
                           "lower the shear stiffness or make the cells squarer");

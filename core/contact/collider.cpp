@@ -21,7 +21,8 @@ struct Validator {
     position("point", plane.point);
     position("normal", plane.normal);
     if (plane.normal.norm() < 1e-9)
-      throw DefinitionError(path + "normal", "0,0,0", "a direction", "give a vector that is not zero");
+      throw DefinitionError(path + "normal", "0,0,0", "a direction",
+                            "give a vector that is not zero");
   }
   void operator()(const SphereDef& sphere) const {
     position("center", sphere.centre);

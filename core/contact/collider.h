@@ -11,8 +11,8 @@ namespace weft {
 
 /// Everything on the side opposite to the normal is solid.
 struct PlaneDef {
-  Vec3d point = Vec3d::Zero();     ///< on the plane [m], within 1000
-  Vec3d normal = Vec3d::UnitY();   ///< any length but zero
+  Vec3d point = Vec3d::Zero();    ///< on the plane [m], within 1000
+  Vec3d normal = Vec3d::UnitY();  ///< any length but zero
 };
 
 struct SphereDef {
@@ -27,8 +27,8 @@ struct CapsuleDef {
 };
 
 struct BoxDef {
-  Vec3d centre = Vec3d::Zero();              ///< [m], within 1000
-  Vec3d half_extents = Vec3d::Constant(0.1); ///< [m], each 0.001 to 100
+  Vec3d centre = Vec3d::Zero();               ///< [m], within 1000
+  Vec3d half_extents = Vec3d::Constant(0.1);  ///< [m], each 0.001 to 100
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 

@@ -6,8 +6,8 @@
 namespace weft {
 namespace {
 
-/// Where two particles of an edge keep the thickness, the edge between them may sink by this part of
-/// it before it needs pairs of its own.
+/// Where two particles of an edge keep the thickness, the edge between them may sink by this part
+/// of it before it needs pairs of its own.
 constexpr double kHiddenRise = 0.75;
 
 }  // namespace
@@ -16,18 +16,15 @@ template <class Real>
 Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
                        const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
                        double longest_edge, Executor* executor)
-    : def_(def),
-      thickness_(static_cast<Real>(def.thickness)),
-      executor_(executor),
-      edges_(edges),
-      triangles_(triangles),
-      hidden_{kHiddenRise * def.thickness, longest_edge} {
+    : def_(def), thickness_(static_cast<Real>(def.thickness)), executor_(executor), edges_(edges),
+      triangles_(triangles), hidden_{kHiddenRise * def.thickness, longest_edge} {
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     add_shape(colliders[k].shape);
   }
   // Beyond the size of a triangle the pairs grow with the square of the skin.
-  for (const MeshShape<Real>& mesh : meshes_) widest_skin_ = std::min(widest_skin_, mesh.triangle_size);
+  for (const MeshShape<Real>& mesh : meshes_)
+    widest_skin_ = std::min(widest_skin_, mesh.triangle_size);
   particle_pairs_.resize(meshes_.size());
   edge_pairs_.resize(meshes_.size());
   triangle_pairs_.resize(meshes_.size());
@@ -39,7 +36,8 @@ void Contact<Real>::add_shape(const ShapeDef& shape) {
     const Vec3d n = plane->normal.normalized();
     planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point))});
   } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
-    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius), is_smooth(sphere->radius)});
+    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius),
+                      is_smooth(sphere->radius)});
   } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
     rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
                      static_cast<Real>(capsule->radius), is_smooth(capsule->radius)});
@@ -50,8 +48,8 @@ void Contact<Real>::add_shape(const ShapeDef& shape) {
   }
 }
 
-/// Whether a round surface of this radius rises so little between particles that they alone keep the
-/// cloth off it.
+/// Whether a round surface of this radius rises so little between particles that they alone keep
+/// the cloth off it.
 template <class Real>
 bool Contact<Real>::is_smooth(double radius) const {
   return hidden_.longest * hidden_.longest / (8 * radius) <= hidden_.rise;

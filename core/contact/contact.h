@@ -16,7 +16,7 @@ namespace weft {
 struct ContactDef {
   double thickness = 0.004;  ///< distance that the mid-surface keeps from objects [m]
   double friction = 0.4;     ///< Coulomb coefficient
-  double restitution = 0;    ///< k_diss of the seed's eq. (10): part of the normal velocity returned
+  double restitution = 0;  ///< k_diss of the seed's eq. (10): part of the normal velocity returned
 };
 
 /// A pair that may come into contact before candidates are collected again.
@@ -69,7 +69,8 @@ class Contact {
   /// @param tick_seconds  length of the tick [s]
   void begin_tick(double tick_seconds);
 
-  /// Says that masses changed (a pin) or that the cloth was put elsewhere: the planes are not valid.
+  /// Says that masses changed (a pin) or that the cloth was put elsewhere: the planes are not
+  /// valid.
   void invalidate_rows() { rows_built_ = false; }
 
   /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
@@ -107,7 +108,9 @@ class Contact {
   };
   static constexpr int kChunks = 8;
 
-  bool empty() const { return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty(); }
+  bool empty() const {
+    return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty();
+  }
   void add_shape(const ShapeDef& shape);
   bool is_smooth(double radius) const;
 
@@ -153,26 +156,29 @@ class Contact {
   std::vector<Ball> balls_;
   std::vector<Rod> rods_;
   std::vector<MeshShape<Real>> meshes_;
-  Real widest_skin_ = std::numeric_limits<Real>::infinity();  ///< about a triangle of the meshes [m]
+  Real widest_skin_ =
+      std::numeric_limits<Real>::infinity();  ///< about a triangle of the meshes [m]
 
   Real tick_seconds_ = 0;
   bool collected_ = false, rows_built_ = false;
   Vec3Array<Real> x_collected_, x_rows_;
-  std::vector<Real> clearance_;      ///< lower bound of each particle's distance from all objects
+  std::vector<Real> clearance_;        ///< lower bound of each particle's distance from all objects
   std::vector<Real> fresh_clearance_;  ///< the same, while pairs are collected
   std::vector<char> has_pairs_;
   std::size_t collections_ = 0;
-  std::vector<Real> skin_;           ///< how far each may move before the next collection
-  std::vector<Real> row_reach_;      ///< how far each may move before the next rows
-  std::vector<Real> span_;    ///< farthest that a point of an edge or triangle is from its nearest corner
+  std::vector<Real> skin_;       ///< how far each may move before the next collection
+  std::vector<Real> row_reach_;  ///< how far each may move before the next rows
+  std::vector<Real>
+      span_;  ///< farthest that a point of an edge or triangle is from its nearest corner
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
   std::vector<char> paired_;         ///< in a candidate pair, or near an analytic shape
   std::vector<Index> active_particles_, near_edges_, near_triangles_;
   std::vector<std::vector<ContactCandidate<Real>>> particle_pairs_, edge_pairs_, triangle_pairs_;
   std::array<Found, kChunks> found_;
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
-  std::vector<MeshDistance<Real>> nearby_;  ///< triangles near one particle, while its rows are built
-  std::vector<char> inside_;                ///< particles inside a closed mesh
+  std::vector<MeshDistance<Real>>
+      nearby_;                ///< triangles near one particle, while its rows are built
+  std::vector<char> inside_;  ///< particles inside a closed mesh
   std::vector<ContactRow<Real>> rows_;
 };
 

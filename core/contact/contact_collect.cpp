@@ -31,8 +31,10 @@ constexpr std::size_t kTurns = 8;
 template <class Real>
 Real Contact<Real>::analytic_clearance(const Vec3<Real>& p, Real reach) const {
   Real nearest = reach;
-  for (const Plane& plane : planes_) nearest = std::min(nearest, plane.normal.dot(p) - plane.offset);
-  for (const Ball& ball : balls_) nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
+  for (const Plane& plane : planes_)
+    nearest = std::min(nearest, plane.normal.dot(p) - plane.offset);
+  for (const Ball& ball : balls_)
+    nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
   for (const Rod& rod : rods_) {
     const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
     nearest = std::min(nearest, (p - q).norm() - rod.radius);
@@ -68,7 +70,8 @@ Real Contact<Real>::least_clearance(const Vec3<Real>& p, Real reach) const {
             return mesh.positions[static_cast<std::size_t>(triangle[k])];
           };
           const Real distance2 =
-              (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point).squaredNorm();
+              (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point)
+                  .squaredNorm();
           return std::min(best, distance2 * kSlack);
         });
   }
@@ -118,8 +121,8 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
       const Real needed = thickness_ + span_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
       if (clearance_[i] > needed) continue;
-      // Who was near before had its clearance measured by its pairs. Those without pairs are measured
-      // now and then, in turns, to see whether they have gone.
+      // Who was near before had its clearance measured by its pairs. Those without pairs are
+      // measured now and then, in turns, to see whether they have gone.
       const bool turn = (collections_ + i) % kTurns == 0;
       if (known && near_[i] && (has_pairs_[i] || !turn)) continue;
       const Real horizon = needed + static_cast<Real>(kClearanceHorizon);
@@ -132,18 +135,19 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
   for (const std::uint64_t count : tests) profile[Stage::broad_phase].work += count;
 }
 
-/// A particle is near if it, or a point of an edge or triangle at it, can touch something within its
-/// skin. Those joined to it are kept on as short a leash; the others may go as far as they are clear.
+/// A particle is near if it, or a point of an edge or triangle at it, can touch something within
+/// its skin. Those joined to it are kept on as short a leash; the others may go as far as they are
+/// clear.
 template <class Real>
 void Contact<Real>::mark_near(const ClothState<Real>& state) {
   const std::size_t n = state.x.size();
-  for (std::size_t i = 0; i < n; ++i)
-    near_[i] = clearance_[i] <= thickness_ + span_[i] + skin_[i];
+  for (std::size_t i = 0; i < n; ++i) near_[i] = clearance_[i] <= thickness_ + span_[i] + skin_[i];
   active_ = near_;
   near_edges_.clear();
   near_triangles_.clear();
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const auto i = static_cast<std::size_t>(edges_[e][0]), j = static_cast<std::size_t>(edges_[e][1]);
+    const auto i = static_cast<std::size_t>(edges_[e][0]),
+               j = static_cast<std::size_t>(edges_[e][1]);
     if (!near_[i] && !near_[j]) continue;
     active_[i] = active_[j] = 1;
     near_edges_.push_back(static_cast<Index>(e));
@@ -171,7 +175,8 @@ void Contact<Real>::collect_kind(std::size_t count, std::vector<ContactCandidate
     const auto c = static_cast<std::size_t>(chunk);
     found_[c].pairs.clear();
     found_[c].tests = 0;
-    for (std::size_t n = count * c / kChunks; n < count * (c + 1) / kChunks; ++n) visit(n, found_[c]);
+    for (std::size_t n = count * c / kChunks; n < count * (c + 1) / kChunks; ++n)
+      visit(n, found_[c]);
   });
   into.clear();
   for (const Found& found : found_) {
@@ -194,33 +199,36 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
-    collect_kind(active_particles_.size(), particle_pairs_[m], profile, [&](std::size_t n, Found& found) {
-      const Index i = active_particles_[n];
-      const Real reach = thickness_ + skin(i);
-      if (clear(i) > reach) return;
-      Aabb<Real> box;
-      box.add(x(i));
-      bool any = false;
-      Real nearest = reach;
-      mesh.triangle_tree.for_each_overlap(box.grown(reach), [&](Index t) {
-        const MeshDistance<Real> d = distance_to_triangle(mesh, t, x(i));
-        ++found.tests;
-        if (std::abs(d.distance) > reach) return;
-        found.pairs.push_back({i, t, std::abs(d.distance)});
-        if (std::abs(d.distance) < std::abs(nearest)) nearest = d.distance;
-        any = true;
-      });
-      const auto p = static_cast<std::size_t>(i);
-      // Deep inside a solid nothing is within reach, yet the particle must find its way out.
-      if (!any && mesh.closed && clearance_[p] < 0) {
-        const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
-        if (d.triangle != kNone && d.distance < 0) found.pairs.push_back({i, d.triangle, Real(0)});
-        nearest = std::min(nearest, d.distance);
-        any = d.distance < 0;
-      }
-      has_pairs_[p] = has_pairs_[p] || any;
-      fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest);
-    });
+    collect_kind(active_particles_.size(), particle_pairs_[m], profile,
+                 [&](std::size_t n, Found& found) {
+                   const Index i = active_particles_[n];
+                   const Real reach = thickness_ + skin(i);
+                   if (clear(i) > reach) return;
+                   Aabb<Real> box;
+                   box.add(x(i));
+                   bool any = false;
+                   Real nearest = reach;
+                   mesh.triangle_tree.for_each_overlap(box.grown(reach), [&](Index t) {
+                     const MeshDistance<Real> d = distance_to_triangle(mesh, t, x(i));
+                     ++found.tests;
+                     if (std::abs(d.distance) > reach) return;
+                     found.pairs.push_back({i, t, std::abs(d.distance)});
+                     if (std::abs(d.distance) < std::abs(nearest)) nearest = d.distance;
+                     any = true;
+                   });
+                   const auto p = static_cast<std::size_t>(i);
+                   // Deep inside a solid nothing is within reach, yet the particle must find its
+                   // way out.
+                   if (!any && mesh.closed && clearance_[p] < 0) {
+                     const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
+                     if (d.triangle != kNone && d.distance < 0)
+                       found.pairs.push_back({i, d.triangle, Real(0)});
+                     nearest = std::min(nearest, d.distance);
+                     any = d.distance < 0;
+                   }
+                   has_pairs_[p] = has_pairs_[p] || any;
+                   fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest);
+                 });
   }
   // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
   for (const Index i : active_particles_) {
@@ -283,37 +291,41 @@ void Contact<Real>::collect_feature_pairs(const ClothState<Real>& state, Profile
         if (distance <= reach) found.pairs.push_back({near_edges_[n], k, distance});
       });
     });
-    collect_kind(near_triangles_.size(), triangle_pairs_[m], profile, [&](std::size_t n, Found& found) {
-      const Triangle& t = triangles_[static_cast<std::size_t>(near_triangles_[n])];
-      const Real reach = thickness_ + std::max({skin(t[0]), skin(t[1]), skin(t[2])});
-      const auto lowest = [&](const std::vector<Real>& values) {
-        return std::min({values[static_cast<std::size_t>(t[0])], values[static_cast<std::size_t>(t[1])],
-                         values[static_cast<std::size_t>(t[2])]});
-      };
-      const auto span = [&](Index i) { return span_[static_cast<std::size_t>(i)]; };
-      if (lowest(clearance_) - std::max({span(t[0]), span(t[1]), span(t[2])}) > reach) return;
-      Aabb<Real> box;
-      for (const Index i : t) box.add(x(i));
-      mesh.vertex_tree.for_each_overlap(box.grown(reach), [&](Index s) {
-        const Index v = mesh.sharp_vertices[static_cast<std::size_t>(s)];
-        const auto c = closest_on_triangle<Real>(at(v), x(t[0]), x(t[1]), x(t[2]));
-        const Real distance = (c.point - at(v)).norm();
-        ++found.tests;
-        if (distance <= reach) found.pairs.push_back({near_triangles_[n], v, distance});
-      });
-    });
+    collect_kind(near_triangles_.size(), triangle_pairs_[m], profile,
+                 [&](std::size_t n, Found& found) {
+                   const Triangle& t = triangles_[static_cast<std::size_t>(near_triangles_[n])];
+                   const Real reach = thickness_ + std::max({skin(t[0]), skin(t[1]), skin(t[2])});
+                   const auto lowest = [&](const std::vector<Real>& values) {
+                     return std::min({values[static_cast<std::size_t>(t[0])],
+                                      values[static_cast<std::size_t>(t[1])],
+                                      values[static_cast<std::size_t>(t[2])]});
+                   };
+                   const auto span = [&](Index i) { return span_[static_cast<std::size_t>(i)]; };
+                   if (lowest(clearance_) - std::max({span(t[0]), span(t[1]), span(t[2])}) > reach)
+                     return;
+                   Aabb<Real> box;
+                   for (const Index i : t) box.add(x(i));
+                   mesh.vertex_tree.for_each_overlap(box.grown(reach), [&](Index s) {
+                     const Index v = mesh.sharp_vertices[static_cast<std::size_t>(s)];
+                     const auto c = closest_on_triangle<Real>(at(v), x(t[0]), x(t[1]), x(t[2]));
+                     const Real distance = (c.point - at(v)).norm();
+                     ++found.tests;
+                     if (distance <= reach)
+                       found.pairs.push_back({near_triangles_[n], v, distance});
+                   });
+                 });
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;                 \
-  template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                          \
-  template Real Contact<Real>::least_clearance(const Vec3<Real>&, Real) const;                    \
-  template void Contact<Real>::collect(const ClothState<Real>&, Real, Profile&);                        \
-  template void Contact<Real>::measure_clearance(const ClothState<Real>&, Real, Profile&);              \
-  template void Contact<Real>::mark_near(const ClothState<Real>&);                                \
-  template void Contact<Real>::collect_particle_pairs(const ClothState<Real>&, Profile&);         \
-  template void Contact<Real>::mark_paired();                                                     \
+#define WEFT_INSTANTIATE(Real)                                                             \
+  template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;          \
+  template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                   \
+  template Real Contact<Real>::least_clearance(const Vec3<Real>&, Real) const;             \
+  template void Contact<Real>::collect(const ClothState<Real>&, Real, Profile&);           \
+  template void Contact<Real>::measure_clearance(const ClothState<Real>&, Real, Profile&); \
+  template void Contact<Real>::mark_near(const ClothState<Real>&);                         \
+  template void Contact<Real>::collect_particle_pairs(const ClothState<Real>&, Profile&);  \
+  template void Contact<Real>::mark_paired();                                              \
   template void Contact<Real>::collect_feature_pairs(const ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -1,5 +1,5 @@
-// The narrow phase of Contact: planes between the cloth's features and the objects', frozen for a few
-// substeps.
+// The narrow phase of Contact: planes between the cloth's features and the objects', frozen for a
+// few substeps.
 
 #include <algorithm>
 #include <cmath>
@@ -136,7 +136,9 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
 template <class Real>
 void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& profile) {
   std::uint64_t tests = 0;
-  const auto reach_of = [&](Index i) { return thickness_ + row_reach_[static_cast<std::size_t>(i)]; };
+  const auto reach_of = [&](Index i) {
+    return thickness_ + row_reach_[static_cast<std::size_t>(i)];
+  };
   const auto add = [&](Index i, const Vec3<Real>& normal, Real distance) {
     if (distance <= reach_of(i)) add_row(state, {i}, {Real(1), 0, 0}, normal, distance);
   };
@@ -169,7 +171,8 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
   };
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto between_ends = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
-  const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius, bool responds) {
+  const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius,
+                       bool responds) {
     if (d.distance - radius > reach_of(e)) return;
     add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius, responds);
   };
@@ -191,7 +194,8 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
     const MeshShape<Real>& mesh = meshes_[m];
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
       const Edge& e = edges_[static_cast<std::size_t>(pair.cloth)];
-      if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])]) continue;
+      if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])])
+        continue;
       const Real moved = std::max((x(e[0]) - x_collected_[static_cast<std::size_t>(e[0])]).norm(),
                                   (x(e[1]) - x_collected_[static_cast<std::size_t>(e[1])]).norm());
       if (pair.distance - moved > reach_of(e)) continue;
@@ -201,7 +205,8 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
                                                mesh.positions[static_cast<std::size_t>(other.b)]);
       ++tests;
       const Vec3<Real>& outward = mesh.edge_normals[static_cast<std::size_t>(pair.feature)];
-      add(e, c.s, separate<Real>(c.p, c.q, outward), Real(0), between_ends(c.s) && between_ends(c.t));
+      add(e, c.s, separate<Real>(c.p, c.q, outward), Real(0),
+          between_ends(c.s) && between_ends(c.t));
     }
   }
   profile[Stage::narrow_phase].work += tests;
@@ -222,7 +227,8 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
     ++tests;
     const Separation<Real> d = separate<Real>(c.point, q, outward);
     if (d.distance - radius > thickness_ + over(t, row_reach_)) return;
-    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius, c.feature == 0);
+    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius,
+            c.feature == 0);
   };
   for (const Index k : near_triangles_) {
     const Triangle& t = triangles_[static_cast<std::size_t>(k)];
@@ -239,7 +245,8 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
     const MeshShape<Real>& mesh = meshes_[m];
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
       const Triangle& t = triangles_[static_cast<std::size_t>(pair.cloth)];
-      if (std::any_of(t.begin(), t.end(), [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; }))
+      if (std::any_of(t.begin(), t.end(),
+                      [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; }))
         continue;
       Real moved = 0;
       for (const Index i : t)
@@ -252,14 +259,14 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   profile[Stage::narrow_phase].work += tests;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                      \
-  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real) const;                      \
-  template void Contact<Real>::rebuild_rows(const ClothState<Real>&, Real, Profile&);               \
-  template void Contact<Real>::add_particle_rows(const ClothState<Real>&, Profile&);                \
-  template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);                    \
-  template void Contact<Real>::add_triangle_rows(const ClothState<Real>&, Profile&);                \
-  template void Contact<Real>::add_row(const ClothState<Real>&, std::initializer_list<Index>,       \
-                                       const std::array<Real, 3>&, const Vec3<Real>&, Real, bool);  \
+#define WEFT_INSTANTIATE(Real)                                                                     \
+  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real) const;                     \
+  template void Contact<Real>::rebuild_rows(const ClothState<Real>&, Real, Profile&);              \
+  template void Contact<Real>::add_particle_rows(const ClothState<Real>&, Profile&);               \
+  template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);                   \
+  template void Contact<Real>::add_triangle_rows(const ClothState<Real>&, Profile&);               \
+  template void Contact<Real>::add_row(const ClothState<Real>&, std::initializer_list<Index>,      \
+                                       const std::array<Real, 3>&, const Vec3<Real>&, Real, bool); \
   template std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>&, std::size_t, Index);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -1,4 +1,5 @@
-// The response of Contact: velocities that respect the rows, and the certificate of the end positions.
+// The response of Contact: velocities that respect the rows, and the certificate of the end
+// positions.
 
 #include <algorithm>
 #include <cmath>
@@ -99,8 +100,8 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   profile[Stage::friction].work += friction_evaluations;
 }
 
-/// Keeps each particle of a row on its side of the row's plane through the coming drift: as the plane
-/// separates two convex features, nobody crosses who ends where he may.
+/// Keeps each particle of a row on its side of the row's plane through the coming drift: as the
+/// plane separates two convex features, nobody crosses who ends where he may.
 /// @param hold  stop a particle that would cross, instead of lifting it along the normal
 /// @return whether anybody had to be kept
 template <class Real>
@@ -122,8 +123,8 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
   return kept;
 }
 
-/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach within which
-/// the planes are all that matters. Not moving is always allowed.
+/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach within
+/// which the planes are all that matters. Not moving is always allowed.
 template <class Real>
 void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   bool kept = true;
@@ -141,11 +142,12 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                       \
-  template void Contact<Real>::push_out(ClothState<Real>&, Real);                    \
-  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);              \
-  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);              \
-  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real) const; \
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template void Contact<Real>::push_out(ClothState<Real>&, Real);                               \
+  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                         \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);                         \
+  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real) \
+      const;                                                                                    \
   template void Contact<Real>::certify(ClothState<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -90,13 +90,16 @@ Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
   if (feature == 0) return mesh.face_normals[static_cast<std::size_t>(t)];
   if (feature <= 3)
-    return mesh.vertex_normals[static_cast<std::size_t>(triangle[static_cast<std::size_t>(feature - 1)])];
+    return mesh
+        .vertex_normals[static_cast<std::size_t>(triangle[static_cast<std::size_t>(feature - 1)])];
   const auto k = static_cast<std::size_t>(feature - 4);
   const Index i = triangle[k], j = triangle[(k + 1) % 3];
   // Edges are ordered by their ends.
-  const auto found = std::lower_bound(
-      mesh.edges.begin(), mesh.edges.end(), Edge{std::min(i, j), std::max(i, j)},
-      [](const MeshEdge& e, const Edge& ends) { return Edge{e.a, e.b} < ends; });
+  const auto found =
+      std::lower_bound(mesh.edges.begin(), mesh.edges.end(), Edge{std::min(i, j), std::max(i, j)},
+                       [](const MeshEdge& e, const Edge& ends) {
+                         return Edge{e.a, e.b} < ends;
+                       });
   return mesh.edge_normals[static_cast<std::size_t>(found - mesh.edges.begin())];
 }
 
@@ -125,8 +128,7 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
   const auto corner = [&](std::size_t k) {
     return mesh.positions[static_cast<std::size_t>(triangle[k])];
   };
-  const TrianglePoint<Real> nearest =
-      closest_on_triangle<Real>(p, corner(0), corner(1), corner(2));
+  const TrianglePoint<Real> nearest = closest_on_triangle<Real>(p, corner(0), corner(1), corner(2));
   const Vec3<Real> away = p - nearest.point;
   const Real distance = away.norm();
   const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
@@ -163,9 +165,10 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   return distance_to_triangle(mesh, best, p);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                     \
-  template MeshShape<Real> prepare_mesh(const TriangleMesh&, const HiddenRidges&);                 \
-  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, const Vec3<Real>&); \
+#define WEFT_INSTANTIATE(Real)                                                     \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&, const HiddenRidges&); \
+  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index,  \
+                                                   const Vec3<Real>&);             \
   template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

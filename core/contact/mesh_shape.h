@@ -20,7 +20,7 @@ struct MeshShape {
   Vec3Array<Real> face_normals;
   Vec3Array<Real> vertex_normals;  ///< angle-weighted
   std::vector<MeshEdge> edges;
-  Vec3Array<Real> edge_normals;    ///< mean of the two faces, unit
+  Vec3Array<Real> edge_normals;       ///< mean of the two faces, unit
   std::vector<Index> sharp_edges;     ///< edges in `edge_tree`
   std::vector<Index> sharp_vertices;  ///< vertices in `vertex_tree`
   Bvh<Real> triangle_tree, edge_tree, vertex_tree;
@@ -28,8 +28,8 @@ struct MeshShape {
 
 /// What lets ridges of a smooth solid go without pairs of their own.
 struct HiddenRidges {
-  double rise = 0;       ///< how high a ridge may rise between two particles beside it [m]
-  double longest = 1;    ///< distance of two such particles at most [m], positive
+  double rise = 0;     ///< how high a ridge may rise between two particles beside it [m]
+  double longest = 1;  ///< distance of two such particles at most [m], positive
 };
 
 /// @param hidden  a ridge that turns by an angle a and has faces of width w rises a L/4 between
@@ -41,8 +41,8 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidde
 template <class Real>
 struct MeshDistance {
   Index triangle = kNone;
-  Real distance = 0;       ///< [m]; negative inside a closed mesh
-  Vec3<Real> normal;       ///< unit, out of the solid (or towards the point, if the mesh is open)
+  Real distance = 0;  ///< [m]; negative inside a closed mesh
+  Vec3<Real> normal;  ///< unit, out of the solid (or towards the point, if the mesh is open)
 };
 
 /// Signed distance of a point to triangle `t` alone, with the sign by the nearest feature's normal.

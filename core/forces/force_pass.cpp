@@ -58,10 +58,12 @@ void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
 template <class Real>
 void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force) {
-  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
-    const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
-    for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
-  });
+  visit_bending_stencils(model,
+                         [&](Real k, const Index* corners, const double* weights, int count) {
+                           const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
+                           for (int n = 0; n < count; ++n)
+                             at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
+                         });
 }
 
 template <class Real>
@@ -72,7 +74,8 @@ void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, 
   for (const Triangle& t : model.triangles) {
     const Vec3<Real> normal = (at(x, t[1]) - at(x, t[0])).cross(at(x, t[2]) - at(x, t[0]));
     const Vec3<Real> u = ((at(wind, t[0]) - at(v, t[0])) + (at(wind, t[1]) - at(v, t[1])) +
-                          (at(wind, t[2]) - at(v, t[2]))) * Real(1.0 / 3.0);
+                          (at(wind, t[2]) - at(v, t[2]))) *
+                         Real(1.0 / 3.0);
     const Vec3<Real> third = air_force<Real>(normal, u, pressure, skin) * Real(1.0 / 3.0);
     for (const Index corner : t) at(force, corner) += third;
   }
@@ -104,7 +107,8 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
   if (quadratic_stencil_count(model) == 0) return energy;
-  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
+  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights,
+                                    int count) {
     energy.bending += 0.5 * static_cast<double>(k) *
                       static_cast<double>(stencil_value(x, corners, weights, count).squaredNorm());
   });
@@ -122,18 +126,19 @@ void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                      \
-  template void add_spring_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                  \
-                                  const Vec3Array<Real>&, Vec3Array<Real>&);                        \
-  template void add_hinge_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                   \
-                                 const Vec3Array<Real>&, Vec3Array<Real>&);                         \
-  template void add_quadratic_bending_forces(const ClothModel<Real>&, const Vec3Array<Real>&,       \
-                                             Vec3Array<Real>&);                                     \
-  template void add_air_forces(const ClothModel<Real>&, const Vec3Array<Real>&, double,             \
-                               const Vec3Array<Real>&, const Vec3Array<Real>&, Vec3Array<Real>&);   \
-  template std::size_t quadratic_stencil_count(const ClothModel<Real>&);                            \
-  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);           \
-  template void collect_strains(const ClothModel<Real>&, const Vec3Array<Real>&, std::vector<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                                    \
+  template void add_spring_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                \
+                                  const Vec3Array<Real>&, Vec3Array<Real>&);                      \
+  template void add_hinge_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                 \
+                                 const Vec3Array<Real>&, Vec3Array<Real>&);                       \
+  template void add_quadratic_bending_forces(const ClothModel<Real>&, const Vec3Array<Real>&,     \
+                                             Vec3Array<Real>&);                                   \
+  template void add_air_forces(const ClothModel<Real>&, const Vec3Array<Real>&, double,           \
+                               const Vec3Array<Real>&, const Vec3Array<Real>&, Vec3Array<Real>&); \
+  template std::size_t quadratic_stencil_count(const ClothModel<Real>&);                          \
+  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);         \
+  template void collect_strains(const ClothModel<Real>&, const Vec3Array<Real>&,                  \
+                                std::vector<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

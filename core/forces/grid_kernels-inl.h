@@ -126,7 +126,8 @@ HWY_INLINE Triple<V> spring(const SpringLaw<D>& law, V stiffness, const Triple<V
 
 /// Second differences down the columns of row r, times their stiffness; zero on the border rows.
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE void bend_down_columns(D d, const GridView<Real>& g, int r, const ScratchRow<Real>& out) {
+HWY_INLINE void bend_down_columns(D d, const GridView<Real>& g, int r,
+                                  const ScratchRow<Real>& out) {
   if (r <= 0 || r >= g.rows - 1) {
     out.clear(g.columns);
     return;
@@ -163,7 +164,8 @@ HWY_INLINE void pull_row(D d, const GridView<Real>& g, const SpringLaws<D>& laws
   const bool border = r == 0 || r == g.rows - 1, last = r == g.rows - 1;
   const Real share = border ? Real(0.5) : Real(1), below = last ? Real(0) : Real(1);
   const auto two = hn::Set(d, Real(2));
-  const auto k_warp = hn::Set(d, share * g.springs.warp), k_weft = hn::Set(d, below * g.springs.weft);
+  const auto k_warp = hn::Set(d, share * g.springs.warp),
+             k_weft = hn::Set(d, below * g.springs.weft);
   const auto k_shear = hn::Set(d, below * g.springs.shear);
   const auto k_bend = hn::Set(d, share * g.bending.along_u);
   const auto k_twist = hn::Set(d, below * g.bending.twist);
@@ -175,12 +177,12 @@ HWY_INLINE void pull_row(D d, const GridView<Real>& g, const SpringLaws<D>& laws
     const auto v = load(d, g.v, at), vr = load(d, g.v, at + 1), vd = load(d, g.v, under),
                ve = load(d, g.v, under + 1);
     out.along.store(d, c, spring(laws.warp, hn::Mul(k_warp, cell), xr - x, vr - v));
-    out.down.store(d, c, spring(laws.weft, hn::Mul(k_weft, hn::LoadU(d, g.border_half + c)),
-                                xd - x, vd - v));
+    out.down.store(
+        d, c, spring(laws.weft, hn::Mul(k_weft, hn::LoadU(d, g.border_half + c)), xd - x, vd - v));
     out.falling.store(d, c, spring(laws.shear, hn::Mul(k_shear, cell), xe - x, ve - v));
     out.rising.store(d, c, spring(laws.shear, hn::Mul(k_shear, cell), xd - xr, vd - vr));
-    out.bend.store(d, c, ((load(d, g.x, at - 1) - x * two) + xr) *
-                             hn::Mul(k_bend, hn::LoadU(d, g.inner + c)));
+    out.bend.store(
+        d, c, ((load(d, g.x, at - 1) - x * two) + xr) * hn::Mul(k_bend, hn::LoadU(d, g.inner + c)));
     out.twist.store(d, c, ((x - xr) - (xd - xe)) * hn::Mul(k_twist, cell));
   }
 }
@@ -216,11 +218,12 @@ HWY_INLINE void internal_forces(const GridView<Real>& g, Real* force) {
       const auto twisted = p.twist.load(d, c) - p.twist.load(d, c - 1);
       const auto stretched = ((p.along.load(d, c) - p.along.load(d, c - 1)) + p.down.load(d, c)) +
                              (p.falling.load(d, c) + p.rising.load(d, c - 1));
-      const auto bent = ((p.bend.load(d, c - 1) - p.bend.load(d, c) * two) + p.bend.load(d, c + 1)) +
-                        ((above.load(d, c) - here.load(d, c) * two) + below.load(d, c));
+      const auto bent =
+          ((p.bend.load(d, c - 1) - p.bend.load(d, c) * two) + p.bend.load(d, c + 1)) +
+          ((above.load(d, c) - here.load(d, c) * two) + below.load(d, c));
       const auto total = ((carry.load(d, c) + stretched) - bent) - twisted;
-      carry.store(d, c, twisted - ((p.down.load(d, c) + p.rising.load(d, c)) +
-                                   p.falling.load(d, c - 1)));
+      carry.store(d, c,
+                  twisted - ((p.down.load(d, c) + p.rising.load(d, c)) + p.falling.load(d, c - 1)));
       store_particles(d, total, g.columns - c,
                       force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
     }
@@ -271,10 +274,12 @@ HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r
     // Even cells are cut from a to e, odd ones from b to f (split_cells in cloth_model.cpp).
     const auto even = hn::Eq(hn::LoadU(d, g.odd + c), row_parity);
     const auto exists = hn::Mul(below, hn::LoadU(d, g.cell + c));
-    const auto first = air_third(d, pressure, skin, a, b, select(even, e, f),
-                                 (sa + sb) + select(even, se, sf)) * exists;
-    const auto second = air_third(d, pressure, skin, select(even, a, b), e, f,
-                                  (select(even, sa, sb) + se) + sf) * exists;
+    const auto first =
+        air_third(d, pressure, skin, a, b, select(even, e, f), (sa + sb) + select(even, se, sf)) *
+        exists;
+    const auto second =
+        air_third(d, pressure, skin, select(even, a, b), e, f, (select(even, sa, sb) + se) + sf) *
+        exists;
     out.a.store(d, c, first + keep_if(even, second));
     out.b.store(d, c, first + keep_if(hn::Not(even), second));
     out.e.store(d, c, second + keep_if(even, first));
@@ -283,7 +288,8 @@ HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r
 }
 
 template <class Real>
-HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction, Real* force) {
+HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction,
+                           Real* force) {
   const hn::CappedTag<Real, kGridMargin> d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const auto pressure = hn::Set(d, rho_half), skin = hn::Set(d, skin_friction);
@@ -309,7 +315,8 @@ HWY_ATTR void internal_forces_f32(const GridView<float>& grid, float* force) {
 HWY_ATTR void internal_forces_f64(const GridView<double>& grid, double* force) {
   internal_forces(grid, force);
 }
-HWY_ATTR void air_forces_f32(const GridView<float>& grid, float pressure, float skin, float* force) {
+HWY_ATTR void air_forces_f32(const GridView<float>& grid, float pressure, float skin,
+                             float* force) {
   air_forces(grid, pressure, skin, force);
 }
 HWY_ATTR void air_forces_f64(const GridView<double>& grid, double pressure, double skin,

@@ -8,15 +8,16 @@
 
 namespace weft {
 
-/// What a row-wise kernel reads and writes. Component arrays have `stride` numbers a row, kGridMargin
-/// of them before column 0, and two rows of zeros above and below; pointers are at (row 0, column 0).
+/// What a row-wise kernel reads and writes. Component arrays have `stride` numbers a row,
+/// kGridMargin of them before column 0, and two rows of zeros above and below; pointers are at (row
+/// 0, column 0).
 template <class Real>
 struct GridView {
   int rows = 0, columns = 0;
   std::ptrdiff_t stride = 0;
-  const Real* x[3] = {};     ///< positions [m]
-  const Real* v[3] = {};     ///< velocities [m/s]
-  const Real* slip[3] = {};  ///< velocity of the air minus that of the particle [m/s]
+  const Real* x[3] = {};              ///< positions [m]
+  const Real* v[3] = {};              ///< velocities [m/s]
+  const Real* slip[3] = {};           ///< velocity of the air minus that of the particle [m/s]
   const Real* cell = nullptr;         ///< by column: 1 where a cell begins, 0 elsewhere
   const Real* border_half = nullptr;  ///< by column: 1/2 on the border lines, 1 between, 0 outside
   const Real* inner = nullptr;        ///< by column: 1 strictly between the border lines, else 0
@@ -29,9 +30,9 @@ struct GridView {
 inline constexpr int kGridMargin = 16;  ///< at least the widest vector, in numbers
 inline constexpr int kGridScratchRows = 48;
 
-/// The forces of a grid cloth row by row: every spring, bending stencil and triangle once, as vector
-/// code chosen for the processor when the program runs. The results do not depend on that choice:
-/// only + - * / and square roots, in a fixed order, without fused multiply-adds.
+/// The forces of a grid cloth row by row: every spring, bending stencil and triangle once, as
+/// vector code chosen for the processor when the program runs. The results do not depend on that
+/// choice: only + - * / and square roots, in a fixed order, without fused multiply-adds.
 template <class Real>
 class GridPass {
  public:

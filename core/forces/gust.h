@@ -47,7 +47,8 @@ inline Vec3<Real> smooth_noise(const Vec3d& p) {
              tz = fade(static_cast<Real>(p[2] - fz));
   Vec3<Real> layer[2];
   for (int k = 0; k < 2; ++k) {
-    const Vec3<Real> a = lattice_value<Real>(ix, iy, iz + k), b = lattice_value<Real>(ix + 1, iy, iz + k);
+    const Vec3<Real> a = lattice_value<Real>(ix, iy, iz + k),
+                     b = lattice_value<Real>(ix + 1, iy, iz + k);
     const Vec3<Real> c = lattice_value<Real>(ix, iy + 1, iz + k),
                      d = lattice_value<Real>(ix + 1, iy + 1, iz + k);
     const Vec3<Real> low = a + (b - a) * tx, high = c + (d - c) * tx;

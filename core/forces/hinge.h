@@ -12,7 +12,7 @@ namespace weft {
 /// Dihedral angle of a hinge and its derivative by the four corners.
 template <class Real>
 struct HingeAngle {
-  Real theta = 0;                         ///< [rad]; 0 when flat
+  Real theta = 0;                           ///< [rad]; 0 when flat
   std::array<Vec3<Real>, 4> gradient = {};  ///< d theta / d x_a [rad/m]
 };
 
@@ -21,7 +21,8 @@ struct HingeAngle {
 ///
 /// @param x0,x1  ends of the shared edge [m]
 /// @param x2,x3  the opposite corners of triangles (x0,x1,x2) and (x1,x0,x3) [m]
-/// @param smallest_normal2  [m^4]; see Hinge::smallest_normal2. While the squared length of a normal
+/// @param smallest_normal2  [m^4]; see Hinge::smallest_normal2. While the squared length of a
+/// normal
 ///               is below it, the whole gradient is scaled down in proportion: it would grow as one
 ///               over the height of the triangle, and a crumpled cloth would meet forces without
 ///               bound. One factor for all four corners keeps both momenta.

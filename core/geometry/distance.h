@@ -13,8 +13,8 @@ namespace weft {
 /// Closest point of a triangle to a point.
 template <class Real>
 struct TrianglePoint {
-  Vec3<Real> point;                  ///< on the triangle [m]
-  std::array<Real, 3> barycentric;   ///< its weights: >= 0, sum 1
+  Vec3<Real> point;                 ///< on the triangle [m]
+  std::array<Real, 3> barycentric;  ///< its weights: >= 0, sum 1
   int feature = 0;  ///< 0: inside; 1, 2, 3: corner a, b, c; 4, 5, 6: edge ab, bc, ca
 };
 
@@ -105,8 +105,8 @@ TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a
   return {a + ab * wb + ac * wc, {wa, wb, wc}, 0};
 }
 
-/// Closest points of segments ab and cd (Ericson 2005, section 5.1.9); parallel and zero-length ones
-/// give one of their closest pairs.
+/// Closest points of segments ab and cd (Ericson 2005, section 5.1.9); parallel and zero-length
+/// ones give one of their closest pairs.
 template <class Real>
 SegmentPoints<Real> closest_of_segments(const Vec3<Real>& a, const Vec3<Real>& b,
                                         const Vec3<Real>& c, const Vec3<Real>& d) {

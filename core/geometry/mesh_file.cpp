@@ -51,9 +51,9 @@ void write_mesh(const TriangleMesh& mesh, const std::string& path) {
   // Assimp's scene owns what it points to.
   aiScene scene;
   scene.mRootNode = new aiNode();
-  scene.mMaterials = new aiMaterial*[1]{new aiMaterial()};
+  scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
   scene.mNumMaterials = 1;
-  scene.mMeshes = new aiMesh*[1]{to_assimp(mesh).release()};
+  scene.mMeshes = new aiMesh* [1] { to_assimp(mesh).release() };
   scene.mNumMeshes = 1;
   scene.mRootNode->mMeshes = new unsigned[1]{0};
   scene.mRootNode->mNumMeshes = 1;

@@ -54,8 +54,10 @@ double entry(const Vec3d& origin, const Vec3d& direction, const Vec3d& lower, co
   constexpr double kWide = 1 + 1e-12;
   double from = 0, to = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
-    const double slack = 1e-12 * (std::abs(lower[axis]) + std::abs(upper[axis]) + std::abs(origin[axis]));
-    const double low = lower[axis] - slack - origin[axis], high = upper[axis] + slack - origin[axis];
+    const double slack =
+        1e-12 * (std::abs(lower[axis]) + std::abs(upper[axis]) + std::abs(origin[axis]));
+    const double low = lower[axis] - slack - origin[axis],
+                 high = upper[axis] + slack - origin[axis];
     if (direction[axis] == 0) {
       if (low > 0 || high < 0) return std::numeric_limits<double>::infinity();
       continue;
@@ -77,12 +79,14 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
   // In double whatever Real is: picking is rare, and an edge must belong to both its triangles.
   const Vec3d o = origin.template cast<double>();
   const RayFrame frame(direction.template cast<double>());
-  const auto hit = cast_in_frame(frame, a.template cast<double>() - o, b.template cast<double>() - o,
-                                 c.template cast<double>() - o);
+  const auto hit = cast_in_frame(frame, a.template cast<double>() - o,
+                                 b.template cast<double>() - o, c.template cast<double>() - o);
   if (!hit) return std::nullopt;
-  return RayHit<Real>{static_cast<Real>(hit->distance), kNone,
-                      {static_cast<Real>(hit->barycentric[0]), static_cast<Real>(hit->barycentric[1]),
-                       static_cast<Real>(hit->barycentric[2])}};
+  return RayHit<Real>{
+      static_cast<Real>(hit->distance),
+      kNone,
+      {static_cast<Real>(hit->barycentric[0]), static_cast<Real>(hit->barycentric[1]),
+       static_cast<Real>(hit->barycentric[2])}};
 }
 
 template <class Real>
@@ -99,7 +103,8 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
   hierarchy.nearest(
       std::numeric_limits<Real>::max(),
       [&](const Aabb<Real>& box) {
-        const double t = entry(o, d, box.lower.template cast<double>(), box.upper.template cast<double>());
+        const double t =
+            entry(o, d, box.lower.template cast<double>(), box.upper.template cast<double>());
         // Boxes behind the best hit are as good as missed.
         return t <= nearest ? static_cast<Real>(0) : std::numeric_limits<Real>::infinity();
       },
@@ -107,8 +112,8 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
         const Triangle& t = triangles[static_cast<std::size_t>(triangle)];
         const auto hit = cast_in_frame(frame, corner(t[0]), corner(t[1]), corner(t[2]));
         if (!hit) return bound;
-        if (best && (hit->distance > nearest ||
-                     (hit->distance == nearest && triangle > best->triangle)))
+        if (best &&
+            (hit->distance > nearest || (hit->distance == nearest && triangle > best->triangle)))
           return bound;
         best = hit;
         best->triangle = triangle;
@@ -116,9 +121,11 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
         return bound;
       });
   if (!best) return std::nullopt;
-  return RayHit<Real>{static_cast<Real>(best->distance), best->triangle,
-                      {static_cast<Real>(best->barycentric[0]), static_cast<Real>(best->barycentric[1]),
-                       static_cast<Real>(best->barycentric[2])}};
+  return RayHit<Real>{
+      static_cast<Real>(best->distance),
+      best->triangle,
+      {static_cast<Real>(best->barycentric[0]), static_cast<Real>(best->barycentric[1]),
+       static_cast<Real>(best->barycentric[2])}};
 }
 
 template <class Real>
@@ -127,18 +134,19 @@ void triangle_boxes(const Vec3Array<Real>& positions, const std::vector<Triangle
   boxes.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     boxes[t] = Aabb<Real>{};
-    for (const Index corner : triangles[t]) boxes[t].add(positions[static_cast<std::size_t>(corner)]);
+    for (const Index corner : triangles[t])
+      boxes[t].add(positions[static_cast<std::size_t>(corner)]);
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template std::optional<RayHit<Real>> cast_ray(const Vec3<Real>&, const Vec3<Real>&,             \
-                                                const Vec3<Real>&, const Vec3<Real>&,             \
-                                                const Vec3<Real>&);                               \
-  template std::optional<RayHit<Real>> cast_ray(const Vec3<Real>&, const Vec3<Real>&,             \
-                                                const Bvh<Real>&, const Vec3Array<Real>&,         \
-                                                const std::vector<Triangle>&);                    \
-  template void triangle_boxes(const Vec3Array<Real>&, const std::vector<Triangle>&,              \
+#define WEFT_INSTANTIATE(Real)                                                            \
+  template std::optional<RayHit<Real>> cast_ray(const Vec3<Real>&, const Vec3<Real>&,     \
+                                                const Vec3<Real>&, const Vec3<Real>&,     \
+                                                const Vec3<Real>&);                       \
+  template std::optional<RayHit<Real>> cast_ray(const Vec3<Real>&, const Vec3<Real>&,     \
+                                                const Bvh<Real>&, const Vec3Array<Real>&, \
+                                                const std::vector<Triangle>&);            \
+  template void triangle_boxes(const Vec3Array<Real>&, const std::vector<Triangle>&,      \
                                std::vector<Aabb<Real>>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

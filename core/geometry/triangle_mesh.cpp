@@ -15,7 +15,8 @@ constexpr std::size_t kMostVertices = 1'000'000;
 constexpr std::size_t kMostTriangles = 2'000'000;
 
 const Vec3d& corner(const TriangleMesh& mesh, Index triangle, std::size_t k) {
-  return mesh.positions[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
+  return mesh
+      .positions[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
 }
 
 Vec3d doubled_normal(const TriangleMesh& mesh, Index t) {
@@ -110,7 +111,8 @@ void validate(const TriangleMesh& mesh, const std::string& path) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::string name = path + "triangles[" + std::to_string(t) + "]";
     for (const Index i : mesh.triangles[t])
-      check_field(name, {"", 0, static_cast<double>(mesh.positions.size()) - 1, "", "a vertex's index"}, i);
+      check_field(
+          name, {"", 0, static_cast<double>(mesh.positions.size()) - 1, "", "a vertex's index"}, i);
     if (!(doubled_normal(mesh, static_cast<Index>(t)).norm() > 1e-14))
       throw DefinitionError(name, "without area", "three corners that span an area",
                             "remove degenerate triangles");

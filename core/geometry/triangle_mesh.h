@@ -15,7 +15,7 @@ struct TriangleMesh {
 
 /// An edge with the triangles beside it.
 struct MeshEdge {
-  Index a = 0, b = 0;                       ///< ends, smaller index first
+  Index a = 0, b = 0;                              ///< ends, smaller index first
   std::array<Index, 2> triangle = {kNone, kNone};  ///< the second is none on a rim
 };
 
@@ -27,12 +27,13 @@ std::vector<MeshEdge> edges_of(const TriangleMesh& mesh);
 bool is_closed(const TriangleMesh& mesh);
 
 double surface_area(const TriangleMesh& mesh);  ///< [m^2]
-double enclosed_volume(const TriangleMesh& mesh);  ///< [m^3], positive if the triangles face outwards
+double enclosed_volume(
+    const TriangleMesh& mesh);  ///< [m^3], positive if the triangles face outwards
 
 Vec3d unit_normal(const TriangleMesh& mesh, Index triangle);  ///< zero if the triangle has no area
 
-/// Normals at the vertices, weighted by the angles of the triangles there: with them the sign of the
-/// distance to the surface is right at vertices too (Baerentzen, Aanaes 2005).
+/// Normals at the vertices, weighted by the angles of the triangles there: with them the sign of
+/// the distance to the surface is right at vertices too (Baerentzen, Aanaes 2005).
 std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh);
 
 /// Checks counts, indices, coordinates (finite, within 1000 m) and areas.

@@ -122,9 +122,8 @@ class Loft {
 
 TriangleMesh make_dress_form() {
   const auto circle = [](double radius, double height) {
-    return [=](double phi) {
-      return Vec3d(radius * std::sin(phi), height, radius * std::cos(phi));
-    };
+    return
+        [=](double phi) { return Vec3d(radius * std::sin(phi), height, radius * std::cos(phi)); };
   };
   // The rings have 709 vertices altogether, and a closed loft has twice as many triangles.
   Loft loft(Vec3d(0, 0, 0));

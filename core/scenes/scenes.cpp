@@ -11,7 +11,8 @@ namespace {
 const ColliderDef kGround{"ground", PlaneDef{}};
 
 /// A cloth that hangs in the plane z = `depth`, its upper edge centred at height `top`.
-ClothDef hanging_cloth(int rows, int columns, double width, double height, double top, double depth) {
+ClothDef hanging_cloth(int rows, int columns, double width, double height, double top,
+                       double depth) {
   ClothDef cloth;
   cloth.rows = rows;
   cloth.columns = columns;
@@ -21,8 +22,8 @@ ClothDef hanging_cloth(int rows, int columns, double width, double height, doubl
   return cloth;
 }
 
-/// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung by
-/// six, three at each upper corner, gravity and wind.
+/// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung
+/// by six, three at each upper corner, gravity and wind.
 void build_default(WorldDef& def) {
   // Warp down, weft across: 30 particles down the columns of the page, 20 across.
   def.cloth.rows = 20;
@@ -72,9 +73,9 @@ void build_drape_sphere(WorldDef& def) {
 void build_wall(WorldDef& def) {
   def.cloth = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
   for (Index i = 0; i < 25; i += 4) def.pins.push_back({i, 0.02});
-  def.colliders = {kGround,
-                   {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1),
-                                   Eigen::Quaterniond::Identity()}}};
+  def.colliders = {
+      kGround,
+      {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1), Eigen::Quaterniond::Identity()}}};
   def.environment.drag = 0.3;
 }
 
@@ -86,7 +87,8 @@ struct Entry {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> list = {
       {{"default",
-        "A cloth hung by six particles is blown against a dressmaker's form: watch it wrap the bust "
+        "A cloth hung by six particles is blown against a dressmaker's form: watch it wrap the "
+        "bust "
         "and slide off again."},
        build_default},
       {{"curtain", "A curtain on nine rings sways in gusts: pull its hem and let it swing."},

@@ -36,7 +36,9 @@ void bound_frequencies(ClothModel<Real>& model) {
   }
   for (const Hinge<Real>& h : model.hinges) {
     const auto at = [&](int corner) {
-      return model.rest_positions[static_cast<std::size_t>(h.x[corner])].template cast<double>().eval();
+      return model.rest_positions[static_cast<std::size_t>(h.x[corner])]
+          .template cast<double>()
+          .eval();
     };
     const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));
     double sum = 0;
@@ -50,7 +52,8 @@ void bound_frequencies(ClothModel<Real>& model) {
   }
   const auto largest = [&](const std::vector<double>& rows) {
     double most = 0;
-    for (std::size_t i = 0; i < n; ++i) most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
+    for (std::size_t i = 0; i < n; ++i)
+      most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
     return most;
   };
   model.membrane_omega2 = largest(stretch);
@@ -62,13 +65,14 @@ void bound_frequencies(ClothModel<Real>& model) {
 template <class Real>
 void bound_quadratic_bending(ClothModel<Real>& model) {
   std::vector<double> row_sum(model.mass.size(), 0);
-  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights, int count) {
-    double sum = 0;
-    for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
-    for (int n = 0; n < count; ++n)
-      row_sum[static_cast<std::size_t>(corners[n])] +=
-          static_cast<double>(k) * std::abs(weights[n]) * sum;
-  });
+  visit_bending_stencils(model,
+                         [&](Real k, const Index* corners, const double* weights, int count) {
+                           double sum = 0;
+                           for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
+                           for (int n = 0; n < count; ++n)
+                             row_sum[static_cast<std::size_t>(corners[n])] +=
+                                 static_cast<double>(k) * std::abs(weights[n]) * sum;
+                         });
   model.bending_omega2 = 0;
   model.bending_damping_rate = 0;
   for (std::size_t i = 0; i < row_sum.size(); ++i)

@@ -21,9 +21,9 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
 
 inline constexpr int kMostSubsteps = 20000;
 
-/// Fills the model's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs (Gershgorin
-/// rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state matrix
-/// k g g^T, and the damping rates already in the elements.
+/// Fills the model's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
+/// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state
+/// matrix k g g^T, and the damping rates already in the elements.
 template <class Real>
 void bound_frequencies(ClothModel<Real>& model);
 

@@ -140,7 +140,8 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress
 template <class Real>
 void drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
-  for (std::size_t i = 0; i < tick.state.x.size(); ++i) tick.state.x[i] += tick.state.v[i] * tick.dt;
+  for (std::size_t i = 0; i < tick.state.x.size(); ++i)
+    tick.state.x[i] += tick.state.v[i] * tick.dt;
 }
 
 /// Work of the external forces over the coming drift [J].
@@ -184,8 +185,8 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              Contact<Real>& contact, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile) {
-  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs,
-                  contact, state, work, profile};
+  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, contact,
+                  state, work,         profile};
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air && work.grid.fits()) work.grid.load_wind(surroundings.wind);
   AdvanceResult result;
@@ -205,12 +206,11 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   return result;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template struct VerletWorkspace<Real>;                                                         \
-  template AdvanceResult advance_verlet(const ClothModel<Real>&, const Surroundings<Real>&,      \
-                                        const SolverDef&, double, int, Grabs<Real>&,             \
-                                        Contact<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, \
-                                        Profile&);
+#define WEFT_INSTANTIATE(Real)                                                           \
+  template struct VerletWorkspace<Real>;                                                 \
+  template AdvanceResult advance_verlet(                                                 \
+      const ClothModel<Real>&, const Surroundings<Real>&, const SolverDef&, double, int, \
+      Grabs<Real>&, Contact<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -12,7 +12,7 @@ namespace weft {
 
 /// Settings of the solver `verlet`.
 struct SolverDef {
-  int min_substeps = 1;    ///< at least so many substeps a tick; the stability rule may ask for more
+  int min_substeps = 1;  ///< at least so many substeps a tick; the stability rule may ask for more
   int damping_sweeps = 1;  ///< 1: dashpots see the velocity half a substep ago (first order in the
                            ///< dashpot term); 2 and more: fixed-point sweeps, second order
 };
@@ -63,10 +63,10 @@ struct VerletWorkspace {
   void prepare(const ClothModel<Real>& model);
 };
 
-/// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions and
-/// velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet loses
-/// float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 + a dt/2).
-/// Contact corrects the velocities between each kick and drift.
+/// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions
+/// and velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet
+/// loses float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 +
+/// a dt/2). Contact corrects the velocities between each kick and drift.
 ///
 /// @param dt        substep [s], stable by substep_rule.h
 /// @param substeps  at least 1

@@ -8,9 +8,9 @@ namespace weft {
 /// it starts to matter, and a hand that pulls hard is not taken for one.
 ///
 /// Mechanical energy (kinetic and elastic) can only come from the start, from falling, and from the
-/// work of hands and air. Losses are not booked at once: what is unexplained leaks away over a second
-/// or so, because close to the stability limit the energy of the highest modes, summed at one
-/// instant, swings by a factor of ten while nothing is wrong.
+/// work of hands and air. Losses are not booked at once: what is unexplained leaks away over a
+/// second or so, because close to the stability limit the energy of the highest modes, summed at
+/// one instant, swings by a factor of ten while nothing is wrong.
 class EnergyAccount {
  public:
   /// @param total_mass  of the cloth [kg]
@@ -36,14 +36,14 @@ class EnergyAccount {
   }
 
  private:
-  static constexpr double kSlack = 20;       // swing of the highest modes, twice
-  static constexpr double kKept = 0.95;      // part of the unexplained credit kept each tick
-  static constexpr double kFloorSpeed = 1;   // energy of this speed is never suspicious [m/s]
+  static constexpr double kSlack = 20;      // swing of the highest modes, twice
+  static constexpr double kKept = 0.95;     // part of the unexplained credit kept each tick
+  static constexpr double kFloorSpeed = 1;  // energy of this speed is never suspicious [m/s]
 
   static double mechanical(const Energies& e) { return e.kinetic + e.stretch + e.bending; }
 
-  /// What the cloth may have after the tick. Commands between ticks (a new pin, other gravity) change
-  /// the energy at its start, which is therefore the least of it.
+  /// What the cloth may have after the tick. Commands between ticks (a new pin, other gravity)
+  /// change the energy at its start, which is therefore the least of it.
   double booked(const AdvanceResult& tick) const {
     const double start = mechanical(tick.before) > credit_ ? mechanical(tick.before) : credit_;
     const double fallen = tick.before.gravity - tick.after.gravity;

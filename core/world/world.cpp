@@ -56,11 +56,8 @@ std::string describe(const Divergence& d) {
 
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
-    : def_(validated(def)),
-      environment_(def.environment),
-      runtime_(runtime),
-      model_(build_cloth<Real>(def.cloth)),
-      contact_(make_contact(def, model_, runtime)),
+    : def_(validated(def)), environment_(def.environment), runtime_(runtime),
+      model_(build_cloth<Real>(def.cloth)), contact_(make_contact(def, model_, runtime)),
       account_(total_mass(model_)) {
   if (choose_substeps() > kMostSubsteps)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
@@ -122,11 +119,13 @@ int World<Real>::choose_substeps() const {
     // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
     double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
     double speed2 = 0;
-    for (const Vec3<Real>& v : state_.v) speed2 = std::max(speed2, static_cast<double>(v.squaredNorm()));
+    for (const Vec3<Real>& v : state_.v)
+      speed2 = std::max(speed2, static_cast<double>(v.squaredNorm()));
     fastest += std::sqrt(speed2);
     const FabricDef& fabric = model_.fabric;
-    bound.damping_rate += (environment_.air_density * fabric.air_normal * fastest +
-                           fabric.air_tangential) / fabric.areal_density;
+    bound.damping_rate +=
+        (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
+        fabric.areal_density;
   }
   const long count = substeps_for(bound, tick_seconds(), def_.solver.min_substeps);
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
@@ -255,7 +254,8 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
   check_field("pick.", {"direction", -1e6, 1e6, "", "direction of the ray"}, direction);
   const double length = direction.norm();
   if (!(length > 1e-12))
-    throw DefinitionError("pick.direction", "0,0,0", "a direction", "give a vector that is not zero");
+    throw DefinitionError("pick.direction", "0,0,0", "a direction",
+                          "give a vector that is not zero");
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(state_.x, model_.triangles, boxes);
   Bvh<Real> hierarchy = pick_tree_;

@@ -44,8 +44,8 @@ struct TickReport {
   std::uint64_t tick = 0;  ///< number of the state that it led to; the start is 0
   double time = 0;         ///< simulated [s]
   int substeps = 0;
-  Energies energies;       ///< at the end [J]
-  double work = 0;         ///< by hands and air [J]
+  Energies energies;  ///< at the end [J]
+  double work = 0;    ///< by hands and air [J]
   double largest_strain = 0;
   std::optional<Divergence> divergence;
   Profile profile;

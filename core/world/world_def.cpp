@@ -8,9 +8,15 @@
 namespace weft {
 namespace {
 
-std::string text_of(double value) { return number_text(value); }
-std::string text_of(int value) { return std::to_string(value); }
-std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(double value) {
+  return number_text(value);
+}
+std::string text_of(int value) {
+  return std::to_string(value);
+}
+std::string text_of(bool value) {
+  return value ? "true" : "false";
+}
 std::string text_of(const Vec3d& v) {
   return number_text(v[0]) + "," + number_text(v[1]) + "," + number_text(v[2]);
 }

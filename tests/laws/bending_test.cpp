@@ -40,7 +40,8 @@ double rolled_rigidity(ClothDef def, double phi) {
 
 }  // namespace
 
-TEST_CASE("a sheet rolled in any direction has bending rigidity B, to 1 %, for square and 1:2 cells") {
+TEST_CASE(
+    "a sheet rolled in any direction has bending rigidity B, to 1 %, for square and 1:2 cells") {
   ClothDef def = test::flat_cloth(9, 9);
   const double height = GENERATE(1.0, 2.0, 0.5);
   def.height = height;

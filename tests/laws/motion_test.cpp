@@ -63,7 +63,8 @@ TEMPLATE_TEST_CASE("free fall in vacuum is g t^2 / 2", "", float, double) {
 }
 
 TEST_CASE("with linear drag c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order in dt") {
-  // Reference: drag.linear.c2_t1 of the expected values: v = 4.241180435724415, x = 2.784409782137793.
+  // Reference: drag.linear.c2_t1 of the expected values: v = 4.241180435724415, x
+  // = 2.784409782137793.
   const auto error_with = [](int substeps) {
     WorldDef def = test::empty_world(test::flat_cloth(3, 3));
     def.environment.gravity = Vec3d(0, -9.81, 0);

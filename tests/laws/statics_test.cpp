@@ -6,7 +6,8 @@ using namespace weft;
 
 namespace {
 
-/// A strip of `rows` particles down and `columns` across, hanging along -y, with its top row pinned.
+/// A strip of `rows` particles down and `columns` across, hanging along -y, with its top row
+/// pinned.
 WorldDef hanging_strip(int rows, int columns, double width, double length) {
   ClothDef cloth;
   cloth.rows = rows;

@@ -17,7 +17,8 @@
 #include "server/room_output.h"
 #include "server/viewer_channel.h"
 
-// A clock that is set by hand, a stream that writes when it is told to, and an output that remembers.
+// A clock that is set by hand, a stream that writes when it is told to, and an output that
+// remembers.
 
 namespace weft::server {
 

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include <atomic>
 #include <vector>
+
+#include <catch2/catch.hpp>
 
 #include "server/connection_count.h"
 #include "server/options.h"

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <string>
+
+#include <catch2/catch.hpp>
 
 #include "proto/frame.h"
 #include "server/mailbox.h"
@@ -12,7 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string hash_of(const Room& room) { return proto::hash_text(room.world().hash()); }
+std::string hash_of(const Room& room) {
+  return proto::hash_text(room.world().hash());
+}
 
 TEST_CASE("a viewer that joins hears welcome, mesh, state, roster, pins, grabs in this order") {
   TestRoom t;

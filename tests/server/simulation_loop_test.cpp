@@ -1,8 +1,9 @@
-#include <catch2/catch.hpp>
+#include "server/simulation_loop.h"
 
 #include <vector>
 
-#include "server/simulation_loop.h"
+#include <catch2/catch.hpp>
+
 #include "tests/server/fakes.h"
 
 namespace weft::server {
@@ -11,7 +12,7 @@ namespace {
 /// A room whose ticks cost time on the fake clock.
 struct CostlyRoom {
   FakeClock& fake;
-  double cost = 0;      ///< of a tick [s]
+  double cost = 0;  ///< of a tick [s]
   double interval = 1.0 / 60;
   int ticks = 0, turns = 0;
   std::vector<int> ticks_before_command;

@@ -8,8 +8,7 @@ namespace weft::server {
 namespace {
 
 struct OneViewer {
-  explicit OneViewer(ChannelLimits limits = {})
-      : channel(stream, time, 60, limits) {
+  explicit OneViewer(ChannelLimits limits = {}) : channel(stream, time, 60, limits) {
     stream.channel = &channel;
     channel.welcome_done();
   }
@@ -129,7 +128,8 @@ TEST_CASE("the queue is bounded in bytes too, but a single large message passes"
   CHECK(v.stream.closed == kCloseViewerDoesNotRead);
 }
 
-TEST_CASE("a viewer that asks for 30 frames a second gets every other of 60, none counted as dropped") {
+TEST_CASE(
+    "a viewer that asks for 30 frames a second gets every other of 60, none counted as dropped") {
   OneViewer v;
   v.channel.set_most_frames(30);
   for (std::uint32_t i = 1; i <= 120; ++i) {

@@ -1,8 +1,9 @@
-#include <catch2/catch.hpp>
+#include "core/cloth/cloth_model.h"
 
 #include <set>
 
-#include "core/cloth/cloth_model.h"
+#include <catch2/catch.hpp>
+
 #include "core/cloth/grid_springs.h"
 #include "core/error.h"
 #include "core/forces/force_pass.h"
@@ -14,7 +15,8 @@ namespace {
 
 /// Energy per area of an affine deformation with small strains (u_x, v_y, shear angle) in a large
 /// patch without borders, from one interior cell's share of the springs.
-double energy_density(const FabricDef& fabric, double hu, double hv, double eu, double ev, double g) {
+double energy_density(const FabricDef& fabric, double hu, double hv, double eu, double ev,
+                      double g) {
   const GridStiffness k = grid_stiffness(fabric, hu, hv);
   const double d = std::hypot(hu, hv);
   const auto stretch = [&](double du, double dv, double length) {
@@ -22,12 +24,14 @@ double energy_density(const FabricDef& fabric, double hu, double hv, double eu, 
   };
   const auto half = [](double stiffness, double e) { return 0.5 * stiffness * e * e; };
   return (half(k.warp, stretch(hu, 0, hu)) + half(k.weft, stretch(0, hv, hv)) +
-          half(k.shear, stretch(hu, hv, d)) + half(k.shear, stretch(hu, -hv, d))) / (hu * hv);
+          half(k.shear, stretch(hu, hv, d)) + half(k.shear, stretch(hu, -hv, d))) /
+         (hu * hv);
 }
 
 }  // namespace
 
-TEST_CASE("the springs' continuum limit is C11 = Y_w, C22 = Y_f, C12 = C66 = G for any cell shape") {
+TEST_CASE(
+    "the springs' continuum limit is C11 = Y_w, C22 = Y_f, C12 = C66 = G for any cell shape") {
   FabricDef fabric;
   fabric.stretch_warp = 900;
   fabric.stretch_weft = 500;
@@ -81,10 +85,13 @@ TEST_CASE("a grid of any size has the edges and hinges of its triangles, each on
   const int border = 2 * (rows - 1) + 2 * (columns - 1);
   CHECK(model.hinges.size() == static_cast<std::size_t>(axis_edges + cells - border));
   CHECK(std::set<Edge>(model.edges.begin(), model.edges.end()).size() == model.edges.size());
-  Vec3f up = (model.rest_positions[1] - model.rest_positions[0])
-                 .cross(model.rest_positions[static_cast<std::size_t>(columns)] - model.rest_positions[0]);
+  Vec3f up =
+      (model.rest_positions[1] - model.rest_positions[0])
+          .cross(model.rest_positions[static_cast<std::size_t>(columns)] - model.rest_positions[0]);
   for (const Triangle& t : model.triangles) {
-    const auto at = [&](std::size_t k) { return model.rest_positions[static_cast<std::size_t>(t[k])]; };
+    const auto at = [&](std::size_t k) {
+      return model.rest_positions[static_cast<std::size_t>(t[k])];
+    };
     CHECK((at(1) - at(0)).cross(at(2) - at(0)).dot(up) > 0);
   }
 }

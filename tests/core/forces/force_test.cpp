@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include <functional>
+
+#include <catch2/catch.hpp>
 
 #include "core/forces/air.h"
 #include "core/forces/force_pass.h"
@@ -170,8 +170,8 @@ TEST_CASE("a plate across the wind feels 1/2 rho C A u^2, one along it the skin 
 TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float, double) {
   using Real = TestType;
   const double tolerance = sizeof(Real) == 4 ? 2e-5 : 1e-12;
-  const auto [rows, columns] = GENERATE(table<int, int>(
-      {{2, 2}, {2, 9}, {9, 2}, {3, 3}, {5, 8}, {17, 16}, {7, 33}, {30, 20}}));
+  const auto [rows, columns] = GENERATE(
+      table<int, int>({{2, 2}, {2, 9}, {9, 2}, {3, 3}, {5, 8}, {17, 16}, {7, 33}, {30, 20}}));
   Random random(7);
   ClothDef def = test::flat_cloth(rows, columns, 1, 0.8);
   def.fabric.stretch_warp = def.fabric.stretch_weft = 5000;

@@ -1,6 +1,7 @@
+#include "core/forces/hinge.h"
+
 #include <catch2/catch.hpp>
 
-#include "core/forces/hinge.h"
 #include "tests/support/random.h"
 
 using namespace weft;
@@ -16,8 +17,8 @@ std::array<Vec3d, 4> folded(double theta, double wing = 0.3) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("the angle of a vector is that of the C library to 4 units in the last place", "",
-                   float, double) {
+TEMPLATE_TEST_CASE("the angle of a vector is that of the C library to 4 units in the last place",
+                   "", float, double) {
   using Real = TestType;
   const Real tolerance = 4 * std::numeric_limits<Real>::epsilon() * Real(3.2);
   for (int n = -20000; n <= 20000; ++n) {
@@ -73,7 +74,8 @@ TEST_CASE("damping is the damping coefficient times the rate of the angle") {
   CHECK(hinge_moment(hinge, 0.0, rate) == Approx(-0.3).epsilon(1e-5));
 }
 
-TEST_CASE("a hinge without area or edge has no angle and no force, whatever the order of its corners") {
+TEST_CASE(
+    "a hinge without area or edge has no angle and no force, whatever the order of its corners") {
   const Vec3d a(0, 0, 0), b(1, 0, 0), c(2, 0, 0), d(0, 1, 0);
   const std::array<std::array<Vec3d, 4>, 4> degenerate = {
       {{a, b, c, d}, {a, a, b, d}, {a, b, d, c}, {a, a, a, a}}};

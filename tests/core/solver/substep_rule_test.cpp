@@ -1,7 +1,8 @@
+#include "core/solver/substep_rule.h"
+
 #include <catch2/catch.hpp>
 
 #include "core/forces/force_pass.h"
-#include "core/solver/substep_rule.h"
 #include "tests/support/cloths.h"
 
 using namespace weft;
@@ -70,8 +71,8 @@ TEST_CASE("the model's bounds are above the highest frequencies and not more tha
   def.bending_model = GENERATE(BendingModel::hinges, BendingModel::quadratic);
   const ClothModel<double> model = build_cloth<double>(def);
   const Vec3Array<double> still(model.mass.size(), Vec3d::Zero());
-  const double stretch = highest_omega2(
-      model, [&](const auto& x, auto& f) { add_spring_forces(model, x, still, f); });
+  const double stretch =
+      highest_omega2(model, [&](const auto& x, auto& f) { add_spring_forces(model, x, still, f); });
   const double bending = highest_omega2(model, [&](const auto& x, auto& f) {
     add_hinge_forces(model, x, still, f);
     add_quadratic_bending_forces(model, x, f);

@@ -69,7 +69,8 @@ TEST_CASE("pins hold their particles to the bit; freed, they fall; shared ones n
   CHECK((world.state().x[60] - held).norm() > 0.01f);
 }
 
-TEST_CASE("a value that is not finite is seen in the same tick and the last good state comes back") {
+TEST_CASE(
+    "a value that is not finite is seen in the same tick and the last good state comes back") {
   World<float> world(hung_cloth());
   test::advance(world, 0.2);
   const ClothState<float> good = world.state();
@@ -149,8 +150,10 @@ TEST_CASE("a pick hits the cloth where a ray meets it, from both sides, and miss
     Vec3d sum = Vec3d::Zero();
     for (std::size_t k = 0; k < 3; ++k)
       sum += hit->barycentric[k] *
-             world.state().x[static_cast<std::size_t>(
-                 world.model().triangles[static_cast<std::size_t>(hit->triangle)][k])].cast<double>();
+             world.state()
+                 .x[static_cast<std::size_t>(
+                     world.model().triangles[static_cast<std::size_t>(hit->triangle)][k])]
+                 .cast<double>();
     CHECK((sum - hit->position).norm() < 1e-5);
     CHECK(hit->nearest_particle != kNone);
   }
@@ -186,10 +189,17 @@ TEST_CASE("fields are set by path and refused with what is allowed") {
   CHECK(def.cloth.rows == 40);
   CHECK(def.environment.wind == Vec3d(1, -2, 3.5));
   CHECK(def.environment.still_air);
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
-           {"fabric.shear", "nan"}, {"fabric.shear", "1e999"}, {"fabric.shear", "12x"},
-           {"cloth.rows", "2.5"}, {"cloth.rows", "1"}, {"environment.wind", "1,2"},
-           {"environment.wind", "1,2,3,4"}, {"environment.still_air", "yes"}, {"cloth.row", "3"}, {"", ""}})
+  for (const auto& [key, value] :
+       std::vector<std::pair<std::string, std::string>>{{"fabric.shear", "nan"},
+                                                        {"fabric.shear", "1e999"},
+                                                        {"fabric.shear", "12x"},
+                                                        {"cloth.rows", "2.5"},
+                                                        {"cloth.rows", "1"},
+                                                        {"environment.wind", "1,2"},
+                                                        {"environment.wind", "1,2,3,4"},
+                                                        {"environment.still_air", "yes"},
+                                                        {"cloth.row", "3"},
+                                                        {"", ""}})
     CHECK_THROWS_AS(set_field(def, key, value), DefinitionError);
   CHECK(def.cloth.rows == 40);
   CHECK(list_fields(def).size() > 20);
