@@ -96,7 +96,8 @@ class Viewer:
     @classmethod
     async def open(cls, server, acknowledge=True, query="", **options):
         socket = await websockets.connect(server.websocket + query, subprotocols=["weft.v1"],
-                                          compression=None, max_size=None, **options)
+                                          compression=None, max_size=None, ping_interval=None,
+                                          **options)
         viewer = cls(socket, acknowledge)
         viewer.welcome = await viewer.wait_text(lambda m: m["op"] == "welcome")
         viewer.id = viewer.welcome["viewer"]
