@@ -7,12 +7,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
 #include "server/clock.h"
 #include "server/options.h"
-#include "server/strain_statistics.h"
 #include "server/thread_pool.h"
 #include "server/translate.h"
 
@@ -78,7 +78,7 @@ double percentile(const std::vector<double>& sorted, std::size_t percent) {
 Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {
   const double simulated = options.ticks * world.tick_seconds();
   std::vector<float> scratch;
-  const StrainStatistics strain = strain_statistics(world.model(), world.state(), scratch);
+  const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   const Energies& energy = world.report().energies;
   Json stages = Json::object();
   for (std::size_t i = 0; i < kStageCount; ++i) {
@@ -110,7 +110,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"deepest_penetration", m.deepest},
       {"penetration_checks", m.checks},
       {"hash", proto::hash_text(world.hash())},
-      {"solver", "verlet"},
+      {"solver", kVerletName},
       {"substeps", world.report().substeps},
       {"substeps_of_run", {m.least_substeps, m.most_substeps}},
       {"divergences", m.divergences}};

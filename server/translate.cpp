@@ -5,8 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/diagnostics/strain.h"
 #include "core/error.h"
-#include "server/strain_statistics.h"
 
 namespace weft::server {
 namespace {
@@ -182,11 +182,11 @@ proto::State state_of(const ServedWorld& world) {
   state.still_air = environment.still_air;
   state.drag = environment.drag;
   state.fabric = "default";
-  state.solver = "verlet";
+  state.solver = kVerletName;
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());
   thread_local std::vector<float> scratch;
-  const StrainStatistics strain = strain_statistics(world.model(), world.state(), scratch);
+  const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   state.strain = {strain.largest, strain.p99};
   state.energy = to_wire(world.report().energies);
   return state;

@@ -115,17 +115,6 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real
   return energy;
 }
 
-template <class Real>
-void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                     std::vector<Real>& strain) {
-  strain.clear();
-  for (std::size_t n = 0; n < model.springs.size(); ++n) {
-    if (model.spring_kinds[n] == SpringKind::skip) continue;
-    const Spring<Real>& s = model.springs[n];
-    strain.push_back(std::abs((at(x, s.j) - at(x, s.i)).norm() - s.rest_length) / s.rest_length);
-  }
-}
-
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template void add_spring_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                \
                                   const Vec3Array<Real>&, Vec3Array<Real>&);                      \
@@ -136,9 +125,7 @@ void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
   template void add_air_forces(const ClothModel<Real>&, const Vec3Array<Real>&, double,           \
                                const Vec3Array<Real>&, const Vec3Array<Real>&, Vec3Array<Real>&); \
   template std::size_t quadratic_stencil_count(const ClothModel<Real>&);                          \
-  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);         \
-  template void collect_strains(const ClothModel<Real>&, const Vec3Array<Real>&,                  \
-                                std::vector<Real>&);
+  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -46,9 +46,4 @@ std::size_t quadratic_stencil_count(const ClothModel<Real>& model);
 template <class Real>
 ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
 
-/// Strain |l - L| / L of every structural and shear spring, into `strain` (cleared first).
-template <class Real>
-void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                     std::vector<Real>& strain);
-
 }  // namespace weft

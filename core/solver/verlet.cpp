@@ -155,20 +155,9 @@ double external_work(const Tick<Real>& tick) {
 }
 
 template <class Real>
-Energies energies_of(Tick<Real>& tick, double& largest_strain) {
+EnergyReading timed_energies(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
-  const ElasticEnergy elastic = elastic_energy(tick.model, tick.state.x);
-  largest_strain = elastic.largest_strain;
-  Energies e;
-  e.stretch = elastic.stretch;
-  e.bending = elastic.bending;
-  const Vec3d g = tick.surroundings.gravity.template cast<double>();
-  for (std::size_t i = 0; i < tick.state.v.size(); ++i) {
-    const auto mass = static_cast<double>(tick.model.mass[i]);
-    e.kinetic += 0.5 * mass * static_cast<double>(tick.state.v[i].squaredNorm());
-    e.gravity -= mass * g.dot(tick.state.x[i].template cast<double>());
-  }
-  return e;
+  return read_energies(tick.model, tick.state, tick.surroundings.gravity);
 }
 
 }  // namespace
@@ -190,7 +179,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air && work.grid.fits()) work.grid.load_wind(surroundings.wind);
   AdvanceResult result;
-  result.before = energies_of(tick, result.largest_strain);
+  result.before = timed_energies(tick).energies;
   evaluate_forces(tick, Real(0), state.v);
   kick(tick, kicks.opening, state.v, state.v);
   for (int s = 0; s < substeps; ++s) {
@@ -202,7 +191,9 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
     swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
   }
   contact.settle(state, tick.dt, profile);
-  result.after = energies_of(tick, result.largest_strain);
+  const EnergyReading end = timed_energies(tick);
+  result.after = end.energies;
+  result.largest_strain = end.largest_strain;
   return result;
 }
 

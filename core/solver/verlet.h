@@ -5,10 +5,14 @@
 #include "core/cloth/cloth_state.h"
 #include "core/contact/contact.h"
 #include "core/definition.h"
+#include "core/diagnostics/energies.h"
 #include "core/forces/grid_pass.h"
 #include "core/world/profile.h"
 
 namespace weft {
+
+/// Name of this solver, as reports give it.
+inline constexpr const char* kVerletName = "verlet";
 
 /// Settings of the solver `verlet`.
 struct SolverDef {
@@ -33,15 +37,6 @@ struct Surroundings {
   bool air = false;                         ///< evaluate the air forces at all
   double air_density = 0;                   ///< [kg/m^3]
   Vec3Array<Real> wind;                     ///< at each particle [m/s]; used if `air`
-};
-
-/// Energies at one instant [J].
-struct Energies {
-  double kinetic = 0;
-  double stretch = 0;
-  double bending = 0;
-  double gravity = 0;  ///< -sum m g . x
-  double total() const { return kinetic + stretch + bending + gravity; }
 };
 
 /// What one tick of the solver did.

@@ -91,6 +91,7 @@ void World<Real>::accept_state() {
   last_good_ = state_;
   account_.clear();
   contact_.reset();
+  report_present_state();
 }
 
 template <class Real>
@@ -166,7 +167,6 @@ void World<Real>::advance_or_recover(int substeps) {
     if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
-      report_.energies.kinetic = 0;
       accept_state();
       return;
     }
@@ -216,9 +216,19 @@ void World<Real>::finish_targets() {
 }
 
 template <class Real>
+void World<Real>::report_present_state() {
+  const Vec3<Real> gravity = environment_.gravity.template cast<Real>();
+  const EnergyReading reading = read_energies(model_, state_, gravity);
+  report_.energies = reading.energies;
+  report_.largest_strain = reading.largest_strain;
+}
+
+template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
   contact_.invalidate_rows();
-  return add_pin(model_, def, pins_, state_);
+  const PinId id = add_pin(model_, def, pins_, state_);
+  report_present_state();  // what is pinned has lost its velocity
+  return id;
 }
 
 template <class Real>
@@ -246,6 +256,7 @@ template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
+  report_present_state();
 }
 
 template <class Real>

@@ -44,7 +44,7 @@ struct TickReport {
   std::uint64_t tick = 0;  ///< number of the state that it led to; the start is 0
   double time = 0;         ///< simulated [s]
   int substeps = 0;
-  Energies energies;  ///< at the end [J]
+  Energies energies;  ///< at the end [J]; kept up to date when commands change it between ticks
   double work = 0;    ///< by hands and air [J]
   double largest_strain = 0;
   std::optional<Divergence> divergence;
@@ -122,6 +122,7 @@ class World {
   std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
   void restore_last_good();
   void finish_targets();
+  void report_present_state();
 
   WorldDef def_;
   EnvironmentDef environment_;

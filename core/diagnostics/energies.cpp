@@ -1,0 +1,28 @@
+#include "core/diagnostics/energies.h"
+
+#include "core/forces/force_pass.h"
+
+namespace weft {
+
+template <class Real>
+EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
+                            const Vec3<Real>& gravity) {
+  const ElasticEnergy elastic = elastic_energy(model, state.x);
+  Energies e;
+  e.stretch = elastic.stretch;
+  e.bending = elastic.bending;
+  const Vec3d g = gravity.template cast<double>();
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    const auto mass = static_cast<double>(model.mass[i]);
+    e.kinetic += 0.5 * mass * static_cast<double>(state.v[i].squaredNorm());
+    e.gravity -= mass * g.dot(state.x[i].template cast<double>());
+  }
+  return {e, elastic.largest_strain};
+}
+
+template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
+                                     const Vec3<float>&);
+template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,
+                                     const Vec3<double>&);
+
+}  // namespace weft

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+#include "core/cloth/cloth_state.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Energies at one instant [J].
+struct Energies {
+  double kinetic = 0;
+  double stretch = 0;
+  double bending = 0;
+  double gravity = 0;  ///< -sum m g . x
+  double total() const { return kinetic + stretch + bending + gravity; }
+};
+
+/// Energies together with what the same walk over the springs finds.
+struct EnergyReading {
+  Energies energies;
+  double largest_strain = 0;  ///< |l - L| / L of the structural and shear springs
+};
+
+/// Energies of the present state, summed in double. NaN is kept and seen.
+/// @param gravity  [m/s^2]
+template <class Real>
+EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
+                            const Vec3<Real>& gravity);
+
+extern template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
+                                            const Vec3<float>&);
+extern template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,
+                                            const Vec3<double>&);
+
+}  // namespace weft

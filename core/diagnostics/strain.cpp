@@ -1,0 +1,38 @@
+#include "core/diagnostics/strain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+namespace {
+
+template <class Real>
+void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                     std::vector<Real>& strains) {
+  strains.clear();
+  for (std::size_t n = 0; n < model.springs.size(); ++n) {
+    if (model.spring_kinds[n] == SpringKind::skip) continue;
+    const Spring<Real>& s = model.springs[n];
+    const Vec3<Real> d = x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)];
+    strains.push_back(std::abs(d.norm() - s.rest_length) / s.rest_length);
+  }
+}
+
+}  // namespace
+
+template <class Real>
+StrainStatistics strain_statistics(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                                   std::vector<Real>& scratch) {
+  collect_strains(model, x, scratch);
+  if (scratch.empty()) return {};
+  const auto p99 = scratch.begin() + static_cast<std::ptrdiff_t>((scratch.size() - 1) * 99 / 100);
+  std::nth_element(scratch.begin(), p99, scratch.end());
+  return {static_cast<double>(*std::max_element(p99, scratch.end())), static_cast<double>(*p99)};
+}
+
+template StrainStatistics strain_statistics(const ClothModel<float>&, const Vec3Array<float>&,
+                                            std::vector<float>&);
+template StrainStatistics strain_statistics(const ClothModel<double>&, const Vec3Array<double>&,
+                                            std::vector<double>&);
+
+}  // namespace weft
