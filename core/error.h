@@ -21,7 +21,8 @@ struct DefinitionError : std::runtime_error {
 
   DefinitionError(std::string field_in, std::string value_in, std::string limit_in,
                   std::string hint_in = {})
-      : std::runtime_error(field_in + " = " + value_in + ": allowed is " + limit_in +
+      : std::runtime_error(field_in + " = " + (value_in.empty() ? "(nothing)" : value_in) +
+                           ": allowed is " + limit_in +
                            (hint_in.empty() ? std::string() : " (" + hint_in + ")")),
         field(std::move(field_in)), value(std::move(value_in)), limit(std::move(limit_in)),
         hint(std::move(hint_in)) {}

@@ -1,6 +1,7 @@
 #include "proto/field_reader.h"
 
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,18 @@ std::string shown_value(const json& node) {
   const std::string text = node.dump();
   return text.size() <= kMostValueCharacters ? text : quoted_value(text);
 }
+
+namespace {
+
+/// Whether a double holds the number as it was sent. 2^53 + 1 has none, and the nearest one could
+/// be allowed where the number is not.
+bool is_exact(const json& node) {
+  constexpr auto kMost = static_cast<std::int64_t>(kLargestInteger);
+  if (node.is_number_unsigned()) return node.get<std::uint64_t>() <= std::uint64_t{kMost};
+  return !node.is_number_integer() || node.get<std::int64_t>() >= -kMost;
+}
+
+}  // namespace
 
 const json* FieldReader::find(const char* key) const {
   const auto it = object_.find(key);
@@ -53,10 +66,13 @@ void FieldReader::fail_type(std::string path, const json& node, const char* want
 void FieldReader::read_number(const std::string& path, const json& node, double& value,
                               Range range) {
   if (!node.is_number()) return fail_type(path, node, "a number");
-  const double number = node.get<double>();
+  const auto number = node.get<double>();
   // Written so that NaN, should one ever get here, is refused as well.
-  if (!(number >= range.minimum && number <= range.maximum))
-    return fail(range_error(path, number, range));
+  if (!is_exact(node) || !(number >= range.minimum && number <= range.maximum)) {
+    Error error = range_error(path, number, range);
+    error.value = shown_value(node);
+    return fail(std::move(error));
+  }
   value = number;
 }
 

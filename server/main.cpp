@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -44,70 +45,113 @@ std::string version_text() {
          version.simd + ")";
 }
 
+/// Adds an option whose value is read by us, because the library takes "" for 0 and does not say
+/// what is allowed.
+template <class Number>
+void add_number(CLI::App& command, const char* name, Number& value, const OptionRange& range,
+                const std::string& description) {
+  const auto read = [name, &value, range](const std::string& text) {
+    if constexpr (std::is_integral_v<Number>)
+      value = parse_whole_number(name, text, range);
+    else
+      value = parse_number(name, text, range);
+  };
+  command.add_option_function<std::string>(name, read, description + ", " + range.text())
+      ->type_name(std::is_integral_v<Number> ? "INT" : "NUMBER");
+}
+
+void add_switch(CLI::App& command, const char* name, bool& value, const char* description) {
+  command.add_flag(name, value, description)->disable_flag_override();
+}
+
 void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settings) {
-  CLI::App* serve = app.add_subcommand("serve", "Simulate a scene and serve it to viewers");
-  serve->add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
-  serve->add_option("--port", o.port, "Port, 0 to 65535; 0 picks a free one")
-      ->capture_default_str();
-  serve->add_flag("--open", o.open,
-                  "Let other machines in (needed for other addresses than loopback)");
-  serve->add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
-  serve->add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
-  serve->add_option("--rate", o.rate, "Ticks a second, 1 to 1000 (default: the scene's)");
-  serve->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")
-      ->capture_default_str();
-  serve->add_flag("--paused", o.paused, "Start paused");
-  serve->add_option("--web", o.web, "Directory of the page (default: web beside the program)");
-  serve->add_option("--allow-origin", o.allowed_origins,
-                    "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");
-  serve->add_option("--max-viewers", o.limits.viewers, "Most viewers")->capture_default_str();
-  serve->add_option("--max-connections", o.limits.connections, "Most sockets")
-      ->capture_default_str();
-  serve
-      ->add_option("--max-connections-per-address", o.limits.connections_per_address,
-                   "Most sockets from one address")
-      ->capture_default_str();
-  serve
-      ->add_option("--max-messages-per-second", o.limits.messages_per_second,
-                   "Most messages a second of one viewer")
-      ->capture_default_str();
-  serve->add_option("--max-seconds", o.max_seconds, "Stop by itself after this; 0: never")
-      ->capture_default_str();
-  serve->add_option("--log-level", o.log_level, "trace, debug, info, warning, error or off")
+  CLI::App& serve = *app.add_subcommand("serve", "Simulate a scene and serve it to viewers");
+  ConnectionLimits& l = o.limits;
+  serve.add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
+  add_number(serve, "--port", o.port, kPorts, "Port (8080); 0 picks a free one");
+  add_switch(serve, "--open", o.open,
+             "Let other machines in (needed for other addresses than loopback)");
+  serve.add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
+  serve.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
+  add_number(serve, "--rate", o.rate, kRates, "Ticks a second (the scene's)");
+  add_number(serve, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
+  add_switch(serve, "--paused", o.paused, "Start paused");
+  serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
+  serve.add_option("--allow-origin", o.allowed_origins,
+                   "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");
+  add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (64)");
+  add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (256)");
+  add_number(serve, "--max-connections-per-address", l.connections_per_address, kSocketCounts,
+             "Most sockets from one address (128)");
+  add_number(serve, "--max-messages-per-second", l.messages_per_second, kMessageRates,
+             "Most messages a second of one viewer (1000)");
+  add_number(serve, "--pong-seconds", l.pong_seconds, kPongSeconds,
+             "Close a viewer that gives no sign of life for so long (20)");
+  add_number(serve, "--max-seconds", o.max_seconds, kRunSeconds,
+             "Stop by itself after this (0: never)");
+  serve.add_option("--log-level", o.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
 }
 
 void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& settings) {
-  CLI::App* simulate = app.add_subcommand("simulate", "Run a scene as fast as possible and sum up");
-  simulate->add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
-  simulate->add_option("--ticks", o.ticks, "Ticks, 1 to 10000000")->capture_default_str();
-  simulate->add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
-  simulate->add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
-  simulate->add_flag("--json", o.json, "Print JSON");
-  simulate->add_option("--threads", o.threads, "Threads for the physics, 1 to 64")
-      ->capture_default_str();
+  CLI::App& simulate =
+      *app.add_subcommand("simulate", "Run a scene as fast as possible and sum up");
+  simulate.add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
+  add_number(simulate, "--ticks", o.ticks, kTickCounts, "Ticks (600)");
+  simulate.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
+  simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
+  add_switch(simulate, "--json", o.json, "Print JSON");
+  add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
+}
+
+/// What is wrong with an option that is known: no value, two, or one where none belongs.
+std::string describe_mismatch(const CLI::App& command, const std::string& wrong) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    const bool is_switch = option->get_items_expected_max() == 0;
+    if (is_switch && wrong.starts_with(option->get_lnames().front() + " ")) {
+      return name + " takes no value";
+    }
+    if (!wrong.starts_with(name + ":") && !wrong.starts_with(name + " ")) continue;
+    const bool repeated = option->count() > 1;
+    return name + (repeated ? " is given twice" : " has no value") +
+           "; allowed: " + option->get_description();
+  }
+  return wrong;
 }
 
 /// One line that names what was wrong and what is allowed there.
 std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  std::string allowed, wrong = error.what();
+  std::string allowed;
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
     for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
       allowed += sub->get_name() + ", ";
-    if (argc > 1) wrong = std::string("unknown command ") + argv[1];
+    std::string wrong = "no command";
+    if (argc > 1)
+      wrong = (*argv[1] == '-' ? "unknown option " : "unknown command ") + std::string(argv[1]);
     return wrong + "; allowed: " + allowed + "--help, --version";
   }
-  for (const CLI::Option* option : chosen.front()->get_options())
+  const CLI::App& command = *chosen.front();
+  const std::vector<std::string> rest = command.remaining();
+  if (rest.empty()) return describe_mismatch(command, error.what());
+  for (const CLI::Option* option : command.get_options())
     allowed += (allowed.empty() ? "" : ", ") + option->get_name();
   // The library lists what it did not understand from behind; the first one is the cause.
-  const std::vector<std::string> rest = chosen.front()->remaining();
-  for (int i = 1; i < argc; ++i) {
-    if (std::find(rest.begin(), rest.end(), argv[i]) == rest.end()) continue;
-    wrong = std::string("unknown option ") + argv[i];
-    break;
+  const auto unknown = [&rest](const char* argument) {
+    return std::find(rest.begin(), rest.end(), argument) != rest.end();
+  };
+  const auto* const first = std::find_if(argv + 1, argv + argc, unknown);
+  return std::string("unknown option ") + (first == argv + argc ? rest.back() : *first) +
+         "; allowed: " + allowed;
+}
+
+/// Prints an error as one line, whatever bytes the arguments had.
+void complain(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
-  return wrong + "; allowed: " + allowed;
+  std::fprintf(stderr, "weft: %s\n", text.c_str());
 }
 
 int run(int argc, char** argv) {
@@ -121,13 +165,13 @@ int run(int argc, char** argv) {
   bool scenes_json = false;
   add_serve(app, serve_options, serve_settings);
   add_simulate(app, simulate_options, simulate_settings);
-  app.add_subcommand("scenes", "List the built-in scenes")
-      ->add_flag("--json", scenes_json, "Print JSON");
+  add_switch(*app.add_subcommand("scenes", "List the built-in scenes"), "--json", scenes_json,
+             "Print JSON");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // help or version
-    std::fprintf(stderr, "weft: %s\n", describe(app, error, argc, argv).c_str());
+    complain(describe(app, error, argc, argv));
     return 2;
   }
   for (const std::string& text : serve_settings)
@@ -148,11 +192,11 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const OptionError& error) {
-    std::fprintf(stderr, "weft: %s\n", error.what());
+    complain(error.what());
   } catch (const weft::DefinitionError& error) {
-    std::fprintf(stderr, "weft: %s\n", error.what());
+    complain(error.what());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "weft: %s\n", error.what());
+    complain(error.what());
     return 1;
   }
   return 2;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 #include <boost/asio/ip/address.hpp>
@@ -16,13 +17,45 @@ std::string text_of(double value) {
   return text;
 }
 
-void check_range(const char* field, double value, double minimum, double maximum) {
-  // Written so that NaN fails as well.
-  if (!(value >= minimum && value <= maximum))
-    throw OptionError(field, text_of(value), text_of(minimum) + " to " + text_of(maximum));
+/// scheme://host[:port] as browsers send it, without a path.
+bool is_origin(const std::string& text) {
+  const std::size_t colon = text.find("://");
+  if (colon == std::string::npos || colon == 0) return false;
+  const std::string authority = text.substr(colon + 3);
+  return !authority.empty() && authority.find_first_of("/?#@ \t\r\n") == std::string::npos;
+}
+
+template <class Number>
+Number parse(const char* field, const std::string& text, const OptionRange& range,
+             const char* kind) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || text.empty() ||
+      !(static_cast<double>(value) >= range.minimum && static_cast<double>(value) <= range.maximum))
+    throw OptionError(field, text, kind + (" from " + range.text()));
+  return value;
 }
 
 }  // namespace
+
+std::string OptionRange::text() const {
+  return text_of(minimum) + " to " + text_of(maximum);
+}
+
+void check_range(const char* field, double value, const OptionRange& range) {
+  // Written so that NaN fails as well.
+  if (!(value >= range.minimum && value <= range.maximum))
+    throw OptionError(field, text_of(value), range.text());
+}
+
+int parse_whole_number(const char* field, const std::string& text, const OptionRange& range) {
+  return parse<int>(field, text, range, "a whole number");
+}
+
+double parse_number(const char* field, const std::string& text, const OptionRange& range) {
+  return parse<double>(field, text, range, "a number");
+}
 
 bool is_loopback(const std::string& address) {
   boost::system::error_code error;
@@ -38,14 +71,20 @@ void validate(const ServerOptions& options) {
     throw OptionError("--bind", options.bind,
                       "a loopback address such as 127.0.0.1, or any together with --open "
                       "(everyone who reaches the port may then command the cloth)");
-  check_range("--port", options.port, 0, 65535);
-  if (options.rate != 0) check_range("--rate", options.rate, 1, 1000);
-  check_range("--threads", options.threads, 1, 64);
-  check_range("--max-seconds", options.max_seconds, 0, 1e7);
-  check_range("--max-viewers", options.limits.viewers, 1, 10000);
-  check_range("--max-connections", options.limits.connections, 1, 100000);
-  check_range("--max-connections-per-address", options.limits.connections_per_address, 1, 100000);
-  check_range("--max-messages-per-second", options.limits.messages_per_second, 1, 1e6);
+  check_range("--port", options.port, kPorts);
+  if (options.rate != 0) check_range("--rate", options.rate, kRates);
+  check_range("--threads", options.threads, kThreadCounts);
+  check_range("--max-seconds", options.max_seconds, kRunSeconds);
+  check_range("--max-viewers", options.limits.viewers, kViewerCounts);
+  check_range("--max-connections", options.limits.connections, kSocketCounts);
+  check_range("--max-connections-per-address", options.limits.connections_per_address,
+              kSocketCounts);
+  check_range("--max-messages-per-second", options.limits.messages_per_second, kMessageRates);
+  check_range("--pong-seconds", options.limits.pong_seconds, kPongSeconds);
+  for (const std::string& origin : options.allowed_origins) {
+    if (!is_origin(origin))
+      throw OptionError("--allow-origin", origin, "an origin such as http://localhost:3000");
+  }
   static constexpr std::array<const char*, 6> kLevels = {"trace",   "debug", "info",
                                                          "warning", "error", "off"};
   if (std::find(kLevels.begin(), kLevels.end(), options.log_level) == kLevels.end())

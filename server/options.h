@@ -12,8 +12,34 @@ namespace weft::server {
 /// An option that cannot be accepted; what() names field, value and what is allowed.
 struct OptionError : std::runtime_error {
   OptionError(const std::string& field, const std::string& value, const std::string& allowed)
-      : std::runtime_error(field + " = " + value + ": allowed is " + allowed) {}
+      : std::runtime_error(field + " = " + (value.empty() ? "(nothing)" : value) + ": allowed is " +
+                           allowed) {}
 };
+
+/// What a number may be, ends included.
+struct OptionRange {
+  double minimum, maximum;
+  std::string text() const;  ///< e.g. "0 to 65535"
+};
+
+inline constexpr OptionRange kPorts{0, 65535};
+inline constexpr OptionRange kRates{1, 1000};  // [1/s]
+inline constexpr OptionRange kThreadCounts{1, 64};
+inline constexpr OptionRange kTickCounts{1, 10'000'000};
+inline constexpr OptionRange kRunSeconds{0, 1e7};  // [s]
+inline constexpr OptionRange kViewerCounts{1, 10'000};
+inline constexpr OptionRange kSocketCounts{1, 100'000};
+inline constexpr OptionRange kMessageRates{1, 1e6};    // [1/s]
+inline constexpr OptionRange kPongSeconds{0.1, 3600};  // [s]
+
+/// Throws OptionError if the value is NaN or out of range.
+void check_range(const char* field, double value, const OptionRange& range);
+
+/// Reads a decimal number; nothing may stand before or behind it. Throws OptionError if the text is
+/// none, or out of range.
+/// @param field  as the error names it, e.g. "--port"
+int parse_whole_number(const char* field, const std::string& text, const OptionRange& range);
+double parse_number(const char* field, const std::string& text, const OptionRange& range);
 
 /// What protects the server from its viewers.
 struct ConnectionLimits {

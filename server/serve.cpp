@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -175,6 +176,20 @@ class Network {
   std::chrono::steady_clock::time_point last_{};
 };
 
+/// Makes the network listen. Throws OptionError where it cannot.
+void listen(std::optional<Network>& network, asio::io_context& io, ServiceContext& context) {
+  const ServerOptions& options = context.options;
+  try {
+    network.emplace(io, context);
+  } catch (const boost::system::system_error& error) {
+    const std::string why = " (" + error.code().message() + ")";
+    if (error.code() == asio::error::address_in_use || error.code() == asio::error::access_denied)
+      throw OptionError("--port", std::to_string(options.port),
+                        "a port that is free, or 0 to let the system choose one" + why);
+    throw OptionError("--bind", options.bind, "an address of this machine" + why);
+  }
+}
+
 }  // namespace
 
 int serve(const ServerOptions& options) {
@@ -183,6 +198,8 @@ int serve(const ServerOptions& options) {
   Metrics metrics;
   Mailbox mailbox(options.limits.waiting_commands);
   const StaticFiles files(page_directory(options));
+  if (!options.web.empty() && !files.find("/"))
+    throw OptionError("--web", options.web, "a directory with the page's index.html");
   Bulletin bulletin;
 
   Hub hub(process_seconds, 60, {options.limits.queued_messages, options.limits.queued_bytes},
@@ -209,7 +226,8 @@ int serve(const ServerOptions& options) {
             options.threads > 1 ? &pool : nullptr);
   room.on_finished = [&mailbox](proto::ViewerId viewer) { mailbox.finished(viewer); };
 
-  Network network(io, context);
+  std::optional<Network> network;
+  listen(network, io, context);
   if (!is_loopback(options.bind))
     spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind,
                  context.port);
@@ -222,7 +240,7 @@ int serve(const ServerOptions& options) {
   spdlog::info("scene {} with {} particles, {} ticks a second", options.scene,
                room.world().model().mass.size(), room.world().def().tick_rate);
   print_addresses(options, context.port);
-  network.run();
+  network->run();
   mailbox.stop();
   simulation.join();
   return 0;

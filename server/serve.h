@@ -7,7 +7,7 @@ namespace weft::server {
 /// Serves until SIGINT, SIGTERM or `max_seconds`. Prints one line of JSON with the addresses to
 /// standard output when it listens.
 /// @return exit code
-/// Throws OptionError, DefinitionError or boost::system::system_error before it listens.
+/// Throws OptionError or DefinitionError before it listens.
 int serve(const ServerOptions& options);
 
 }  // namespace weft::server

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -141,16 +142,23 @@ TriangleMesh cloth_mesh(const World<float>& world) {
   return mesh;
 }
 
+/// Tells what is wrong before minutes are spent.
+void check_out(const std::string& out) {
+  if (out.empty()) return;
+  if (!out.ends_with(".obj") && !out.ends_with(".ply"))
+    throw OptionError("--out", out, "a file that ends in .obj or .ply");
+  const std::filesystem::path folder = std::filesystem::path(out).parent_path();
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    throw OptionError("--out", out, "a file in a folder that exists");
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
-  if (options.ticks < 1 || options.ticks > 10'000'000)
-    throw OptionError("--ticks", std::to_string(options.ticks), "1 to 10000000");
-  if (options.threads < 1 || options.threads > 64)
-    throw OptionError("--threads", std::to_string(options.threads), "1 to 64");
-  // Known before minutes are spent.
-  if (!options.out.empty() && !options.out.ends_with(".obj") && !options.out.ends_with(".ply"))
-    throw OptionError("--out", options.out, "a file that ends in .obj or .ply");
+  check_range("--ticks", options.ticks, kTickCounts);
+  check_range("--threads", options.threads, kThreadCounts);
+  check_out(options.out);
   WorldDef def = make_scene(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
   ThreadPool pool(options.threads);

@@ -2,6 +2,7 @@
 
 import json
 import os
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -16,15 +17,32 @@ def run(*arguments):
 class CommandLine(unittest.TestCase):
     def test_what_is_wrong_is_named_in_one_line_with_exit_code_2(self):
         table = [
-            ([], "subcommand"),
-            (["fly"], "fly"),
-            (["--fly"], "--fly"),
+            ([], "no command; allowed: serve, simulate"),
+            (["fly"], "unknown command fly; allowed: serve, simulate"),
+            (["--fly"], "unknown option --fly"),
             (["serve", "--prot", "3"], "--prot"),
-            (["serve", "--port", "x"], "--port"),
+            (["serve", "extra"], "unknown option extra; allowed: --help, --bind"),
+            (["serve", "--port"], "--port has no value; allowed: Port"),
+            (["serve", "--port", "1", "--port", "2"], "--port is given twice"),
+            (["serve", "--paused=maybe"], "--paused takes no value"),
+            (["serve", "--port", ""], "--port = (nothing): allowed is a whole number from 0 to 65535"),
+            (["serve", "--port", "x"], "--port = x: allowed is a whole number from 0 to 65535"),
+            (["serve", "--port", "1.5"], "--port = 1.5: allowed is a whole number"),
+            (["serve", "--port", "99999999999"], "0 to 65535"),
             (["serve", "--port", "70000"], "0 to 65535"),
             (["serve", "--port", "-1"], "0 to 65535"),
+            (["serve", "--rate", "0"], "--rate = 0: allowed is a number from 1 to 1000"),
             (["serve", "--rate", "0.1"], "1 to 1000"),
             (["serve", "--rate", "nan"], "1 to 1000"),
+            (["serve", "--rate", "sixty"], "--rate = sixty: allowed is a number from 1 to 1000"),
+            (["serve", "--max-seconds", "1e400"], "0 to 10000000"),
+            (["serve", "--max-viewers", "0"], "1 to 10000"),
+            (["serve", "--pong-seconds", "0"], "0.1 to 3600"),
+            (["serve", "--web", "/nowhere"], "--web = /nowhere: allowed is a directory"),
+            (["serve", "--allow-origin", "localhost"], "--allow-origin = localhost: allowed is an origin"),
+            (["serve", "--allow-origin", "http://a/b"], "http://localhost:3000"),
+            # an address kept for documentation, which no machine has
+            (["serve", "--bind", "192.0.2.1", "--open", "--port", "0"], "--bind = 192.0.2.1: allowed is"),
             (["serve", "--bind", "0.0.0.0"], "--open"),
             (["serve", "--bind", "here"], "address"),
             (["serve", "--scene", "nowhere"], "drape-sphere"),
@@ -32,6 +50,17 @@ class CommandLine(unittest.TestCase):
             (["serve", "--set", "wind"], "key=value"),
             (["serve", "--port", "0", "--set", "environment.wnd=1,0,0"], "environment.wind"),
             (["simulate", "--scene", "../default"], "default"),
+            (["simulate", "--scene", ""], "scene = (nothing): allowed is one of default"),
+            (["simulate", "--scene", "two\nlines"], "scene = two?lines"),
+            (["simulate", "--ticks", "1e3"], "--ticks = 1e3: allowed is a whole number"),
+            (["simulate", "--json=3"], "--json takes no value"),
+            (["simulate", "-x"], "unknown option -x"),
+            (["simulate", "--out", "/nowhere/cloth.obj"], "--out = /nowhere/cloth.obj: allowed is"),
+            (["simulate", "--set", "=3"], "key=value"),
+            (["simulate", "--set", "fabric.shear="], "fabric.shear = (nothing)"),
+            (["simulate", "--set", "environment.wind=1,2"], "three numbers"),
+            (["simulate", "--set", "environment.still_air=2"], "true or false"),
+            (["simulate", "--set", "tick_rate=0"], "1 to 1000"),
             (["simulate", "--ticks", "0"], "1 to 10000000"),
             (["simulate", "--threads", "65"], "1 to 64"),
             (["simulate", "--set", "fabric.shear=1e9"], "0 to 1e+06"),
@@ -48,6 +77,14 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(result.stdout, "")
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 self.assertIn(named, result.stderr)
+
+    def test_a_port_that_is_taken_is_named(self):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = str(taken.getsockname()[1])
+            result = run("serve", "--port", port)
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(result.stdout, "")
+        self.assertIn(f"--port = {port}: allowed is a port that is free", result.stderr)
 
     def test_help_and_version_succeed(self):
         self.assertIn("Examples:", run("--help").stdout)

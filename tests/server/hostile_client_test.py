@@ -3,6 +3,7 @@ stays what it was. A foreign client on real sockets."""
 
 import asyncio
 import json
+import re
 import socket
 import struct
 
@@ -407,6 +408,54 @@ class SlowReaders(SocketTest):
         self.assertEqual(len(viewer.frames), count)
         await viewer.ask("view", hz=240)
         await viewer.wait_frame(lambda f: True, count)
+
+
+class Overflow(SocketTest):
+    options = ("--paused",)
+
+    async def queries_taken(self):
+        """How many queries the server has taken, once it takes no more."""
+        counts = [-1]
+        while len(counts) < 4 or len(set(counts[-3:])) > 1:
+            await asyncio.sleep(0.05)
+            metrics = (await asyncio.get_running_loop().run_in_executor(None, self.server.get, "/metrics"))[2]
+            found = re.search(rb'weft_commands_total{op="query"} (\d+)', metrics)
+            counts.append(int(found[1]) if found else 0)
+        return counts[-1]
+
+    async def test_a_viewer_that_does_not_read_its_answers_is_closed_with_4000(self):
+        other, deaf = await self.viewer(), await self.viewer()
+        with self.assertRaises((ConnectionError, websockets.ConnectionClosed)):
+            # One round overflows the queue of 512 messages; more if the machine is too slow to settle.
+            for _ in range(10):
+                deaf.socket.transport.pause_reading()
+                for _ in range(900):
+                    await deaf.tell("query", id="deaf", what="positions")
+                self.assertGreater(await self.queries_taken(), 0)
+                deaf.socket.transport.resume_reading()
+                await deaf.ask("hash")
+        self.assertEqual(await deaf.wait_closed(), 4000)
+        await other.wait_text(lambda m: m["op"] == "roster" and len(m["viewers"]) == 1,
+                              max(i for i, m in enumerate(other.texts) if m["op"] == "roster"))
+        self.assertEqual((await other.ask("hash"))["op"], "result")
+
+
+class Silence(SocketTest):
+    options = ("--pong-seconds", "3", "--paused")
+
+    async def test_no_answer_to_pings_closes_with_4001_and_lets_go(self):
+        other, mute = await self.viewer(), await self.viewer(acknowledge=False)
+        quiet = await self.viewer(acknowledge=False)  # says nothing either, but its library answers pings
+        await mute.ask("drag", phase="start", particle=300)
+        await other.wait_text(lambda m: m["op"] == "grabs" and m["grabs"])
+
+        async def no_pong(data=b""):
+            pass
+        mute.socket.pong = no_pong
+        seen = len(other.texts)
+        self.assertEqual(await mute.wait_closed(), 4001)
+        await other.wait_text(lambda m: m["op"] == "grabs" and not m["grabs"], seen)
+        self.assertEqual((await quiet.ask("hash"))["op"], "result")
 
 
 class Ending(SocketTest):

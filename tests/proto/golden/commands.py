@@ -135,8 +135,10 @@ def refused_fields():
     yield refuse('{"op":"jump","id":"j"}', "unknown_op", field="op", value="jump", id="j")
     yield refuse('{"op":"Pause"}', "unknown_op", field="op", value="Pause")
     yield refuse('{"op":"pause","id":-1}', "out_of_range", field="id", value=-1)
-    yield refuse('{"op":"pause","id":9007199254740994}', "out_of_range", field="id",
-                 limit=limits(0, 9007199254740992))
+    for beyond in (2**53 + 1, 2**53 + 2, 2**63, 2**64 - 1):
+        yield refuse(f'{{"op":"pause","id":{beyond}}}', "out_of_range", field="id", value=beyond,
+                     limit=limits(0, 9007199254740992))
+    yield refuse('{"op":"step","n":9007199254740993}', "out_of_range", field="n")
     yield refuse('{"op":"pause","id":0.5}', "wrong_type", field="id", value=0.5)
     yield refuse('{"op":"pause","id":[1]}', "wrong_type", field="id", value=[1])
     yield refuse('{"op":"pause","id":""}', "wrong_length", field="id", value="")
