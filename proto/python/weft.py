@@ -25,10 +25,11 @@ import functools
 import json
 import math
 import operator
+import random
 import struct
 import sys
 import threading
-from collections.abc import AsyncIterator, Callable, Iterable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,6 +49,8 @@ if sys.byteorder != "little":
 SUBPROTOCOL = "weft.v1"
 REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.5
 MOST_MESSAGE_BYTES = 256 * 2**20
+FIRST_PAUSE, LONGEST_PAUSE = 0.25, 8.0  # before a new attempt to connect [s]
+FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # the same would happen again
 
 # --- errors ---
 
@@ -366,8 +369,18 @@ def _without_none(fields: dict) -> dict:
     return {name: value for name, value in fields.items() if value is not None}
 
 
+def _pause_before(attempt: int, jitter: float) -> float:
+    """Seconds to wait before an attempt to connect again; the first is 0. `jitter` is from 0 to 1."""
+    return min(LONGEST_PAUSE, FIRST_PAUSE * 2 ** min(attempt, 16)) * (0.5 + 0.5 * jitter)
+
+
 class Client:
     """A viewer of a Weft server. Make one with `connect`.
+
+    With `reconnect` it joins again by itself, with growing pauses, when the connection is lost; what is
+    asked meanwhile raises ConnectionLost, hands are gone, and who waits for a frame goes on waiting.
+    The event `status` tells of it: a dict with `phase` ("open", "waiting" or "closed"), and for the last
+    two `code` and `reason`.
 
     Commands return the server's `result` as a dict, or what is said there. They raise CommandError if
     the server refuses and ConnectionLost if the connection ends first.
@@ -376,14 +389,20 @@ class Client:
     messages `state`, `roster`, `pins`, `grabs`; each is None until it has come.
     """
 
-    def __init__(self, socket):
-        self._socket = socket
+    def __init__(self, socket, dial: Callable[[], Awaitable], hello: dict, reconnect: bool):
+        self._socket, self._dial = socket, dial
+        self._hello, self._view = _without_none(hello), {}  # said again after a reconnection
+        self._reconnect = reconnect
+        self._redial: asyncio.Task | None = None
+        self._connections = 1
+        self._attempts = 0  # to connect again since the last welcome
         self._waiting: dict[int, asyncio.Future] = {}
         self._transfers: dict[int, tuple[asyncio.Future, dict]] = {}
         self._listeners: dict[str, list[Callable[[Any], None]]] = {}
         self._next_id = self._next_drag = 1
         self._changed = asyncio.Condition()
-        self._end: WeftError | None = None
+        self._lost: WeftError | None = None  # why there is no connection now
+        self._ended = False  # and there will be none again
         self.welcome: dict | None = None
         self.mesh: dict | None = None
         self.mesh_data: MeshData | None = None
@@ -407,15 +426,18 @@ class Client:
         return lambda: listeners.remove(listener)
 
     async def close(self) -> None:
+        self._reconnect = False
         await self._socket.close()
+        if self._redial is not None:
+            self._redial.cancel()
         await self._reader
 
     # --- commands (section 5 of the specification) ---
 
     async def request(self, op: str, **fields) -> dict:
         """Sends any command and waits for its result."""
-        if self._end:
-            raise self._end
+        if self._lost:
+            raise self._lost
         id_, self._next_id = self._next_id, self._next_id + 1
         answer = asyncio.get_running_loop().create_future()
         self._waiting[id_] = answer
@@ -427,16 +449,21 @@ class Client:
 
     async def post(self, op: str, **fields) -> None:
         """Sends a command without waiting for an answer."""
-        if self._end:
-            raise self._end
+        if self._lost:
+            raise self._lost
+        await self._send(op, **fields)
+
+    async def _send(self, op: str, **fields) -> None:
         text = json.dumps({"op": op, **fields}, allow_nan=False)
         try:
             await self._socket.send(text)
         except websockets.ConnectionClosed as closed:
-            raise self._end or ConnectionLost(1006, str(closed)) from closed
+            raise self._lost or ConnectionLost(1006, str(closed)) from closed
 
     async def hello(self, *, name: str | None = None, color: str | None = None) -> dict:
-        return await self.request("hello", **_without_none({"name": name, "color": color}))
+        fields = _without_none({"name": name, "color": color})
+        self._hello.update(fields)
+        return await self.request("hello", **fields)
 
     async def pick(self, origin: Iterable[float], direction: Iterable[float]) -> Hit | None:
         """Where a ray meets the cloth."""
@@ -512,7 +539,9 @@ class Client:
         return await self.request("load", scene=scene)
 
     async def view(self, *, hz: float | None = None, codec: str | None = None) -> dict:
-        return await self.request("view", **_without_none({"hz": hz, "codec": codec}))
+        fields = _without_none({"hz": hz, "codec": codec})
+        self._view.update(fields)
+        return await self.request("view", **fields)
 
     async def ping(self) -> tuple[float, float]:
         """Round trip and the server's clock minus the own one [s]."""
@@ -551,15 +580,66 @@ class Client:
 
     async def _until(self, condition: Callable[[], bool]) -> None:
         async with self._changed:
-            await self._changed.wait_for(lambda: condition() or self._end is not None)
+            await self._changed.wait_for(lambda: condition() or self._ended)
         if not condition():
-            raise self._end
+            raise self._lost
 
     async def _ready(self) -> None:
         """Waits for what a client needs to begin."""
         await self._until(lambda: self.welcome is not None and self.mesh_data is not None)
 
     async def _read(self) -> None:
+        while True:
+            self._lose(await self._read_socket())
+            if not self._reconnect or self._is_final(self._lost):
+                break
+            try:
+                self._redial = asyncio.ensure_future(self._join_again())
+                await self._redial
+            except asyncio.CancelledError:
+                break
+        self._ended = True
+        self._tell("status", {"phase": "closed", **self._why()})
+        async with self._changed:
+            self._changed.notify_all()
+
+    @staticmethod
+    def _is_final(lost: WeftError) -> bool:
+        return isinstance(lost, ConnectionLost) and lost.code in FINAL_CODES
+
+    def _why(self) -> dict:
+        lost = self._lost
+        if isinstance(lost, ConnectionLost):
+            return {"code": lost.code, "reason": lost.reason}
+        return {"code": 4002, "reason": str(lost)}
+
+    def _lose(self, lost: WeftError) -> None:
+        """There is no connection now."""
+        self._lost, self.welcome = lost, None
+        self._transfers.clear()
+        for answer in self._waiting.values():
+            if not answer.done():
+                answer.set_exception(lost)
+
+    async def _join_again(self) -> None:
+        while True:
+            pause = _pause_before(self._attempts, random.random())
+            self._attempts += 1
+            self._tell("status", {"phase": "waiting", **self._why(), "retry_in": pause})
+            await asyncio.sleep(pause)
+            try:
+                self._socket = await self._dial()
+                self._connections += 1
+                if self._hello:
+                    await self._send("hello", **self._hello)
+                if self._view:
+                    await self._send("view", **self._view)
+                return
+            except ConnectionLost as lost:
+                self._lost = lost
+
+    async def _read_socket(self) -> WeftError:
+        """Reads until the connection ends; returns why it did."""
         fault = None
         try:
             async for message in self._socket:
@@ -573,26 +653,26 @@ class Client:
         if fault:
             await self._socket.close(4002, str(fault)[:100])
         code, reason = self._socket.close_code, self._socket.close_reason
-        self._end = fault or ConnectionLost(code or 1006, reason or "connection lost")
-        for answer in self._waiting.values():
-            if not answer.done():
-                answer.set_exception(self._end)
-        async with self._changed:
-            self._changed.notify_all()
+        return fault or ConnectionLost(code or 1006, reason or "connection lost")
 
     async def _take(self, message: str | bytes) -> None:
         if isinstance(message, str):
             name, value = self._take_text(message)
         else:
             name, value = await self._take_binary(message)
+        self._tell(name, value)
+        if name == "welcome":
+            self._tell("status", {"phase": "open"})
+        async with self._changed:
+            self._changed.notify_all()
+
+    def _tell(self, name: str, value) -> None:
         for listener in list(self._listeners.get(name, ())):
             try:
                 listener(value)
             except Exception as error:  # its own fault, not the connection's
                 context = {"message": f"a listener of {name} failed", "exception": error}
                 asyncio.get_running_loop().call_exception_handler(context)
-        async with self._changed:
-            self._changed.notify_all()
 
     def _take_text(self, text: str) -> tuple[str, Any]:
         try:
@@ -610,6 +690,8 @@ class Client:
             return self._refuse(message)
         if op in ("welcome", "state", "roster", "pins", "grabs"):
             setattr(self, op, message)
+        if op == "welcome":
+            self._lost, self._attempts = None, 0
         return op, message
 
     def _answer(self, message: dict) -> tuple[str, Any]:
@@ -664,10 +746,12 @@ class Drag:
     def __init__(self, client: Client, number: int, start: dict):
         self._client, self._start, self._target = client, start, start.get("target")
         self._repeater: asyncio.Task | None = None
+        self._connection = client._connections
         self.number = number
         self.grab: int | None = None  # the room's number, once it holds
 
     async def start(self) -> Drag:
+        self._connection = self._client._connections
         fields = {"phase": "start", "drag": self.number, **self._start}
         result = await self._client.request("drag", **fields)
         self.grab = result["grab"]
@@ -679,6 +763,8 @@ class Drag:
     async def move(self, target: Iterable[float]) -> dict:
         """Pulls towards another point [m]; returns when it has its place in a tick."""
         self._target = list(target)
+        if self._is_lost():
+            raise ConnectionLost(1006, "the hand was lost with its connection")
         fields = {"phase": "move", "drag": self.number, "target": self._target}
         return await self._client.request("drag", **fields)
 
@@ -688,11 +774,18 @@ class Drag:
             return None
         self._repeater.cancel()
         self._repeater = None
+        if self._is_lost():
+            return None
         return await self._client.request("drag", phase="end", drag=self.number)
+
+    def _is_lost(self) -> bool:
+        return self._connection != self._client._connections
 
     async def _repeat(self) -> None:
         while True:
             await asyncio.sleep(REPEAT_SECONDS)
+            if self._is_lost():
+                return
             fields = {"phase": "move", "drag": self.number, "target": self._target}
             try:
                 await self._client.post("drag", **fields)
@@ -715,11 +808,12 @@ class Drag:
 class _Connecting:
     """What `connect` returns: awaited it is a client, with `async with` one that closes itself."""
 
-    def __init__(self, url: str, name: str | None, color: str | None, timeout: float):
-        self._url, self._hello, self._timeout = url, {"name": name, "color": color}, timeout
+    def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool):
+        self._url, self._hello, self._timeout, self._reconnect = url, hello, timeout, reconnect
         self._client: Client | None = None
 
-    async def _connect(self) -> Client:
+    async def _dial(self):
+        """A socket that speaks weft.v1."""
         try:
             socket = await websockets.connect(
                 self._url,
@@ -731,9 +825,14 @@ class _Connecting:
             )
         except (OSError, asyncio.TimeoutError, websockets.InvalidHandshake) as error:
             raise ConnectionLost(1006, f"no connection to {self._url}: {error}") from error
-        self._client = Client(socket)
+        if socket.subprotocol != SUBPROTOCOL:
+            await socket.close(4002)
+            raise ProtocolError(f"the server does not speak {SUBPROTOCOL}")
+        return socket
+
+    async def _connect(self) -> Client:
+        self._client = Client(await self._dial(), self._dial, self._hello, self._reconnect)
         try:
-            _demand(socket.subprotocol == SUBPROTOCOL, f"the server does not speak {SUBPROTOCOL}")
             try:
                 await asyncio.wait_for(self._client._ready(), self._timeout)
             except asyncio.TimeoutError as error:
@@ -756,10 +855,15 @@ class _Connecting:
 
 
 def connect(
-    url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10
+    url: str,
+    *,
+    name: str | None = None,
+    color: str | None = None,
+    timeout: float = 10,
+    reconnect: bool = False,
 ) -> _Connecting:
     """Joins a server: `client = await connect(url)` or `async with connect(url) as client`."""
-    return _Connecting(url, name, color, timeout)
+    return _Connecting(url, {"name": name, "color": color}, timeout, reconnect)
 
 
 # --- blocking ---
@@ -798,12 +902,12 @@ class SyncClient:
     It has the commands and properties of `Client`. Listeners are called in that thread.
     """
 
-    def __init__(self, url: str, *, name=None, color=None, timeout: float = 10):
+    def __init__(self, url: str, *, name=None, color=None, timeout: float = 10, reconnect=False):
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="weft", daemon=True)
         self._thread.start()
         try:
-            joining = connect(url, name=name, color=color, timeout=timeout)
+            joining = connect(url, name=name, color=color, timeout=timeout, reconnect=reconnect)
             self._client: Client = self._run(joining._connect())
         except BaseException:
             self._stop()
@@ -860,6 +964,6 @@ for _name in (
     setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
 
 
-def open(url: str, *, name=None, color=None, timeout: float = 10) -> SyncClient:
+def open(url: str, *, name=None, color=None, timeout: float = 10, reconnect=False) -> SyncClient:
     """Joins a server, blocking; use it with `with`."""
-    return SyncClient(url, name=name, color=color, timeout=timeout)
+    return SyncClient(url, name=name, color=color, timeout=timeout, reconnect=reconnect)

@@ -30,15 +30,16 @@ class PlayedServer:
     they lack them) or bytes; by default an empty result.
     """
 
-    def __init__(self, welcome=(WELCOME, GRID, golden.read("mesh_grid.bin")), subprotocols=("weft.v1",)):
-        self.first, self.subprotocols = welcome, subprotocols
+    def __init__(self, welcome=(WELCOME, GRID, golden.read("mesh_grid.bin")), subprotocols=("weft.v1",),
+                 port=0):
+        self.first, self.subprotocols, self.port = welcome, subprotocols, port
         self.answers, self.heard, self.acks = {}, [], []
         self.socket = None
         self._news = asyncio.Condition()
 
     async def __aenter__(self):
         self._server = await websockets.serve(
-            self._serve, "127.0.0.1", 0, subprotocols=self.subprotocols, compression=None
+            self._serve, "127.0.0.1", self.port, subprotocols=self.subprotocols, compression=None
         )
         self.url = f"ws://127.0.0.1:{self._server.sockets[0].getsockname()[1]}/ws"
         return self
