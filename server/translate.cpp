@@ -30,19 +30,23 @@ std::vector<std::uint32_t> indices_of(const std::vector<Triangle>& triangles) {
   return out;
 }
 
-/// Fabric coordinates scaled to 0..1 in each direction.
+/// Fabric coordinates of each cloth scaled to 0..1 in each direction.
 std::vector<float> uv_of(const ClothModel<float>& model) {
-  std::array<float, 2> low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (const auto& point : model.material) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], point[i]);
-      high[i] = std::max(high[i], point[i]);
-    }
-  }
   std::vector<float> out;
   out.reserve(model.material.size() * 2);
-  for (const auto& point : model.material)
-    for (std::size_t i = 0; i < 2; ++i) out.push_back((point[i] - low[i]) / (high[i] - low[i]));
+  for (const ClothPart<float>& part : model.parts) {
+    const std::span points(model.material.data() + part.particles.first,
+                           static_cast<std::size_t>(part.particles.count));
+    std::array<float, 2> low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+    for (const auto& point : points) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        low[i] = std::min(low[i], point[i]);
+        high[i] = std::max(high[i], point[i]);
+      }
+    }
+    for (const auto& point : points)
+      for (std::size_t i = 0; i < 2; ++i) out.push_back((point[i] - low[i]) / (high[i] - low[i]));
+  }
   return out;
 }
 
@@ -255,9 +259,12 @@ proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
   announcement.scene = world.def().name;
   announcement.vertices = static_cast<std::uint32_t>(model.mass.size());
   announcement.triangles = static_cast<std::uint32_t>(model.triangles.size());
-  announcement.cloths = {{"cloth", 0, announcement.vertices, 0, announcement.triangles,
-                          static_cast<std::uint32_t>(model.rows),
-                          static_cast<std::uint32_t>(model.columns), model.fabric.thickness}};
+  const auto count = [](Index value) { return static_cast<std::uint32_t>(value); };
+  for (const ClothPart<float>& part : model.parts)
+    announcement.cloths.push_back({part.name, count(part.particles.first),
+                                   count(part.particles.count), count(part.triangles.first),
+                                   count(part.triangles.count), count(part.rows),
+                                   count(part.columns), part.fabric.thickness});
   for (const ColliderDef& collider : world.def().colliders)
     announcement.colliders.push_back({collider.name, std::visit(ShapeWriter{}, collider.shape)});
   return announcement;

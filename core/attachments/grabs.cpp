@@ -41,7 +41,8 @@ void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& g
   }
   double sum = 0;
   std::vector<double> weights;
-  for (Index i = 0; i < model.particle_count(); ++i) {
+  const IndexRange& part = part_of_particle(model, corners[0]).particles;
+  for (Index i = part.first; i < part.end(); ++i) {
     const auto p = static_cast<std::size_t>(i);
     const double du = static_cast<double>(model.material[p][0]) - u;
     const double dv = static_cast<double>(model.material[p][1]) - v;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/cloth/fabric.h"
 #include "core/definition.h"
@@ -34,6 +35,7 @@ struct DirectSprings {
 /// Particle (row r, column c) has index r * columns + c and starts at
 /// origin + u * width * c/(columns-1) + v * height * r/(rows-1).
 struct ClothDef {
+  std::string name = "cloth";
   int rows = 20;                 ///< particles along v
   int columns = 30;              ///< particles along u
   double width = 1;              ///< extent along u [m]
@@ -72,5 +74,10 @@ inline bool quadratic_bending_fits(const ClothDef& def) {
 /// Checks every range and the combination (u and v independent, direct springs finite).
 /// Throws DefinitionError.
 void validate(const ClothDef& def);
+
+/// How a field of one of several cloths is written: "cloth.rows" and "fabric.shear" for the first,
+/// "cloths[1].rows" and "cloths[1].fabric.shear" for the second.
+/// @param field  as written for the first
+std::string cloth_field(std::size_t cloth, const std::string& field);
 
 }  // namespace weft

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/cloth/cloth_def.h"
@@ -15,6 +16,7 @@ enum class SpringKind : std::uint8_t {
   weft,   ///< structural, along v
   shear,  ///< cell diagonal
   skip,   ///< every second neighbour (the seed's bending spring)
+  edge,   ///< an edge of a cloth that is no grid
 };
 
 /// A Hookean spring with a dashpot along it.
@@ -64,46 +66,83 @@ struct QuadraticBending {
   Real twist = 0;    ///< (B_w + B_f) / (h_u h_v), times |cell difference|^2 / 2 [N/m]
 };
 
-/// Everything about a cloth that does not change while it moves.
-template <class Real>
-struct ClothModel {
-  int rows = 0, columns = 0;
-  Real cell_u = 0, cell_v = 0;                ///< h_x, h_y, cell size [m]
-  Vec3Array<Real> rest_positions;             ///< where the cloth starts [m]
-  std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric [m]
-  std::vector<Real> mass;                     ///< [kg], positive
-  std::vector<Triangle> triangles;            ///< with alternating diagonals
-  std::vector<Real> triangle_area;            ///< at rest [m^2]
-  std::vector<Edge> edges;                    ///< unique edges of the triangles
-  std::vector<Spring<Real>> springs;          ///< ordered by first end, then kind
-  std::vector<SpringKind> spring_kinds;
-  std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
-  std::vector<Hinge<Real>> hinges;                ///< empty if bending is quadratic
-  QuadraticBending<Real> quadratic_bending;
-  FabricDef fabric;
+/// A stretch of consecutive indices.
+struct IndexRange {
+  Index first = 0, count = 0;
+  Index end() const { return first + count; }
+  bool contains(Index i) const { return i >= first && i < end(); }
+};
 
-  /// Bound of the highest squared frequency of the membrane and of bending [1/s^2], and the
-  /// matching bounds of damping rates [1/s]; see solver/substep_rule.h.
+/// Bounds of the highest squared frequency of the membrane and of bending [1/s^2], and the matching
+/// bounds of damping rates [1/s]; see solver/substep_rule.h.
+struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
   double membrane_damping_rate = 0, bending_damping_rate = 0;
+};
+
+/// One of the cloths of a model: its share of every list, and what is its own.
+template <class Real>
+struct ClothPart {
+  std::string name;
+  FabricDef fabric;
+  IndexRange particles, triangles, edges, springs, hinges;
+  int rows = 0, columns = 0;    ///< of a grid, whose particle (r, c) is particles.first +
+                                ///< r * columns + c; 0 if the cloth is no grid
+  Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
+  double longest_edge = 0;      ///< of the triangles at rest [m]
+  std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
+  QuadraticBending<Real> quadratic_bending;       ///< of a grid; the hinges are none then
+  FrequencyBounds bounds;
+};
+
+/// Everything about the cloths that does not change while they move. Several cloths stand one
+/// behind the other in every list; no spring, hinge or triangle joins two of them.
+template <class Real>
+struct ClothModel {
+  std::vector<ClothPart<Real>> parts;         ///< in the order of their particles; at least one
+  Vec3Array<Real> rest_positions;             ///< where the cloth starts [m]
+  std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric of its part [m]
+  std::vector<Real> mass;                     ///< [kg], positive
+  std::vector<Triangle> triangles;            ///< of a grid with alternating diagonals
+  std::vector<Real> triangle_area;            ///< at rest [m^2]
+  std::vector<Edge> edges;                    ///< unique edges of the triangles
+  std::vector<Spring<Real>> springs;          ///< of a grid ordered by first end, then kind
+  std::vector<SpringKind> spring_kinds;
+  std::vector<Hinge<Real>> hinges;  ///< none of a part whose bending is quadratic
 
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };
 
-/// Builds the grid cloth of PHYSICS.md section 2: structural and shear springs whose continuum
-/// limit is the fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in
-/// every direction. Throws DefinitionError if a field is out of range or a spring would have
-/// negative stiffness (shear too large for the cell's shape).
+/// Builds one cloth, as a model of one part.
+///
+/// A grid as in PHYSICS.md section 2: structural and shear springs whose continuum limit is the
+/// fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in every
+/// direction. Throws DefinitionError if a field is out of range or a spring would have negative
+/// stiffness (shear too large for the cell's shape).
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def);
 
-/// The particles whose material distance from particle `centre` is at most `radius` [m], ascending;
-/// at least the centre itself.
+/// Builds several cloths as one model. Errors name the cloth: `cloth.` and `fabric.` for the first,
+/// `cloths[k].` and `cloths[k].fabric.` for the others.
+/// @param defs  at least one
+template <class Real>
+ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs);
+
+/// The part that a particle belongs to.
+template <class Real>
+const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index particle);
+
+/// The particles of the same part whose material distance from particle `centre` is at most
+/// `radius` [m], ascending; at least the centre itself.
 template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius);
 
 extern template ClothModel<float> build_cloth<float>(const ClothDef&);
 extern template ClothModel<double> build_cloth<double>(const ClothDef&);
+extern template ClothModel<float> build_cloths<float>(const std::vector<ClothDef>&);
+extern template ClothModel<double> build_cloths<double>(const std::vector<ClothDef>&);
+extern template const ClothPart<float>& part_of_particle(const ClothModel<float>&, Index);
+extern template const ClothPart<double>& part_of_particle(const ClothModel<double>&, Index);
 extern template std::vector<Index> particles_in_disc(const ClothModel<float>&, Index, double);
 extern template std::vector<Index> particles_in_disc(const ClothModel<double>&, Index, double);
 

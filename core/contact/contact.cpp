@@ -10,14 +10,21 @@ namespace {
 /// of it before it needs pairs of its own.
 constexpr double kHiddenRise = 0.75;
 
+bool is_thinner(const ContactDef& a, const ContactDef& b) {
+  return a.thickness < b.thickness;
+}
+
 }  // namespace
 
 template <class Real>
-Contact<Real>::Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
-                       const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
-                       double longest_edge, Executor* executor)
-    : def_(def), thickness_(static_cast<Real>(def.thickness)), executor_(executor), edges_(edges),
-      triangles_(triangles), hidden_{kHiddenRise * def.thickness, longest_edge} {
+Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
+                       const std::vector<ColliderDef>& colliders, const std::vector<Edge>& edges,
+                       const std::vector<Triangle>& triangles, double longest_edge,
+                       Executor* executor)
+    : cloths_(cloths), executor_(executor), edges_(edges), triangles_(triangles) {
+  const auto [thinnest, thickest] = std::minmax_element(cloths.begin(), cloths.end(), is_thinner);
+  thickness_ = static_cast<Real>(thickest->thickness);
+  hidden_ = {kHiddenRise * thinnest->thickness, longest_edge};
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     add_shape(colliders[k].shape);
@@ -53,6 +60,13 @@ void Contact<Real>::add_shape(const ShapeDef& shape) {
 template <class Real>
 bool Contact<Real>::is_smooth(double radius) const {
   return hidden_.longest * hidden_.longest / (8 * radius) <= hidden_.rise;
+}
+
+template <class Real>
+Index Contact<Real>::cloth_of(Index particle) const {
+  std::size_t cloth = cloths_.size() - 1;
+  while (cloth > 0 && particle < cloths_[cloth].first_particle) --cloth;
+  return static_cast<Index>(cloth);
 }
 
 template <class Real>

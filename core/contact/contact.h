@@ -12,11 +12,12 @@
 
 namespace weft {
 
-/// Settings of the contact of a cloth with objects.
+/// Settings of the contact of a cloth with objects; each of several cloths has its own.
 struct ContactDef {
   double thickness = 0.004;  ///< distance that the mid-surface keeps from objects [m]
   double friction = 0.4;     ///< Coulomb coefficient
   double restitution = 0;  ///< k_diss of the seed's eq. (10): part of the normal velocity returned
+  Index first_particle = 0;  ///< of the cloth
 };
 
 /// A pair that may come into contact before candidates are collected again.
@@ -39,10 +40,12 @@ struct ContactRow {
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
   Real offset = 0;                         ///< [m]
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
+  Real thickness = 0;                      ///< that the cloth keeps [m]
+  Index cloth = 0;                         ///< whose friction and restitution it has
   bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
-/// Contact of one cloth with fixed objects (CONTACT.md's recipe for static objects).
+/// Contact of cloths with fixed objects (CONTACT.md's recipe for static objects).
 ///
 /// Three nested lists keep the work small, each valid while no particle has moved farther than its
 /// allowance, which is checked with the coming motion before every drift:
@@ -55,11 +58,12 @@ class Contact {
  public:
   Contact() = default;
 
-  /// @param edges,triangles  of the cloth
-  /// @param longest_edge     of the cloth at rest [m]
+  /// @param cloths           settings of each cloth, in the order of their particles; at least one
+  /// @param edges,triangles  of all cloths
+  /// @param longest_edge     of all cloths at rest [m]
   /// @param executor         runs the collection in chunks; may be null
   /// Throws DefinitionError if a collider is out of range.
-  Contact(const ContactDef& def, const std::vector<ColliderDef>& colliders,
+  Contact(const std::vector<ContactDef>& cloths, const std::vector<ColliderDef>& colliders,
           const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
           double longest_edge, Executor* executor);
 
@@ -146,8 +150,10 @@ class Contact {
   void certify(ClothState<Real>& state, Real dt);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt) const;
 
-  ContactDef def_;
-  Real thickness_ = 0;
+  Index cloth_of(Index particle) const;
+
+  std::vector<ContactDef> cloths_;
+  Real thickness_ = 0;  ///< the largest of all cloths, for reaches [m]
   Executor* executor_ = nullptr;
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;

@@ -92,6 +92,8 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
     row.share[k] =
         row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
   row.responds = responds;
+  row.cloth = cloth_of(row.particle[0]);
+  row.thickness = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].thickness);
   row.normal = normal;
   row.offset = height - distance;
   rows_.push_back(row);

@@ -50,7 +50,7 @@ template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   for (const ContactRow<Real>& row : rows_) {
     if (!row.responds) continue;
-    const Real lack = thickness_ - (row.normal.dot(weighted(row, state.x)) - row.offset);
+    const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
     share_out<Real>(row, row.normal * step, state.x);
@@ -61,11 +61,11 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
 /// none when touching, and a bounce after an impact.
 template <class Real>
 void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
-  const Real bounce = static_cast<Real>(def_.restitution);
   for (ContactRow<Real>& row : rows_) {
     if (!row.responds) continue;
+    const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
-    const Real room = std::max(Real(0), gap - thickness_ - Real(kTouchSlack));
+    const Real room = std::max(Real(0), gap - row.thickness - Real(kTouchSlack));
     row.least_speed = -room / dt;
     if (bounce == 0) continue;
     // It bounces in the step that would have brought it there, with the speed that it comes with.
@@ -78,7 +78,6 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
 /// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
 template <class Real>
 void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
-  const Real friction = static_cast<Real>(def_.friction);
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const ContactRow<Real>& row : rows_) {
@@ -88,6 +87,8 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
       const Real push = row.least_speed - vn;
       if (!(push > 0)) continue;
       Vec3<Real> change = row.normal * push;
+      const Real friction =
+          static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
       if (friction > 0) {
         ++friction_evaluations;
         const Vec3<Real> slip = v - row.normal * vn;

@@ -33,9 +33,10 @@ Vec3<Real> stencil_value(const Vec3Array<Real>& x, const Index* corners, const d
 }  // namespace
 
 template <class Real>
-void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                       const Vec3Array<Real>& v, Vec3Array<Real>& force) {
-  for (const Spring<Real>& s : model.springs) {
+void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                       const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (Index n = part.springs.first; n < part.springs.end(); ++n) {
+    const Spring<Real>& s = at(model.springs, n);
     const Vec3<Real> f = spring_force<Real>(s, at(x, s.j) - at(x, s.i), at(v, s.j) - at(v, s.i));
     at(force, s.i) += f;
     at(force, s.j) -= f;
@@ -43,9 +44,10 @@ void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
 }
 
 template <class Real>
-void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                      const Vec3Array<Real>& v, Vec3Array<Real>& force) {
-  for (const Hinge<Real>& h : model.hinges) {
+void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                      const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
+    const Hinge<Real>& h = at(model.hinges, n);
     const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
                                                      at(x, h.x[3]), h.smallest_normal2);
     Real rate = 0;
@@ -56,22 +58,22 @@ void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
 }
 
 template <class Real>
-void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force) {
-  visit_bending_stencils(model,
-                         [&](Real k, const Index* corners, const double* weights, int count) {
-                           const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
-                           for (int n = 0; n < count; ++n)
-                             at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
-                         });
+  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
+    const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
+    for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
+  });
 }
 
 template <class Real>
-void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, double density,
-                    const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
-  const Real pressure = static_cast<Real>(0.5 * density * model.fabric.air_normal);
-  const Real skin = static_cast<Real>(density > 0 ? model.fabric.air_tangential : 0);
-  for (const Triangle& t : model.triangles) {
+void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                    const Vec3Array<Real>& wind, double density, const Vec3Array<Real>& x,
+                    const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  const Real pressure = static_cast<Real>(0.5 * density * part.fabric.air_normal);
+  const Real skin = static_cast<Real>(density > 0 ? part.fabric.air_tangential : 0);
+  for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
+    const Triangle& t = at(model.triangles, n);
     const Vec3<Real> normal = (at(x, t[1]) - at(x, t[0])).cross(at(x, t[2]) - at(x, t[0]));
     const Vec3<Real> u = ((at(wind, t[0]) - at(v, t[0])) + (at(wind, t[1]) - at(v, t[1])) +
                           (at(wind, t[2]) - at(v, t[2]))) *
@@ -82,11 +84,11 @@ void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, 
 }
 
 template <class Real>
-std::size_t quadratic_stencil_count(const ClothModel<Real>& model) {
-  const QuadraticBending<Real>& q = model.quadratic_bending;
+std::size_t quadratic_stencil_count(const ClothPart<Real>& part) {
+  const QuadraticBending<Real>& q = part.quadratic_bending;
   if (q.along_u == 0 && q.along_v == 0 && q.twist == 0) return 0;
-  const auto rows = static_cast<std::size_t>(model.rows);
-  const auto columns = static_cast<std::size_t>(model.columns);
+  const auto rows = static_cast<std::size_t>(part.rows);
+  const auto columns = static_cast<std::size_t>(part.columns);
   return rows * (columns - 2) + (rows - 2) * columns + (rows - 1) * (columns - 1);
 }
 
@@ -106,25 +108,29 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real
                                                      at(x, h.x[3]), h.smallest_normal2);
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
-  if (quadratic_stencil_count(model) == 0) return energy;
-  visit_bending_stencils(model, [&](Real k, const Index* corners, const double* weights,
-                                    int count) {
+  const auto add_stencil = [&](Real k, const Index* corners, const double* weights, int count) {
     energy.bending += 0.5 * static_cast<double>(k) *
                       static_cast<double>(stencil_value(x, corners, weights, count).squaredNorm());
-  });
+  };
+  for (const ClothPart<Real>& part : model.parts) {
+    if (quadratic_stencil_count(part) > 0) visit_bending_stencils(part, add_stencil);
+  }
   return energy;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template void add_spring_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                \
-                                  const Vec3Array<Real>&, Vec3Array<Real>&);                      \
-  template void add_hinge_forces(const ClothModel<Real>&, const Vec3Array<Real>&,                 \
-                                 const Vec3Array<Real>&, Vec3Array<Real>&);                       \
-  template void add_quadratic_bending_forces(const ClothModel<Real>&, const Vec3Array<Real>&,     \
-                                             Vec3Array<Real>&);                                   \
-  template void add_air_forces(const ClothModel<Real>&, const Vec3Array<Real>&, double,           \
-                               const Vec3Array<Real>&, const Vec3Array<Real>&, Vec3Array<Real>&); \
-  template std::size_t quadratic_stencil_count(const ClothModel<Real>&);                          \
+#define WEFT_INSTANTIATE(Real)                                                               \
+  template void add_spring_forces(const ClothModel<Real>&, const ClothPart<Real>&,           \
+                                  const Vec3Array<Real>&, const Vec3Array<Real>&,            \
+                                  Vec3Array<Real>&);                                         \
+  template void add_hinge_forces(const ClothModel<Real>&, const ClothPart<Real>&,            \
+                                 const Vec3Array<Real>&, const Vec3Array<Real>&,             \
+                                 Vec3Array<Real>&);                                          \
+  template void add_quadratic_bending_forces(const ClothPart<Real>&, const Vec3Array<Real>&, \
+                                             Vec3Array<Real>&);                              \
+  template void add_air_forces(const ClothModel<Real>&, const ClothPart<Real>&,              \
+                               const Vec3Array<Real>&, double, const Vec3Array<Real>&,       \
+                               const Vec3Array<Real>&, Vec3Array<Real>&);                    \
+  template std::size_t quadratic_stencil_count(const ClothPart<Real>&);                      \
   template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -6,7 +6,8 @@
 namespace weft {
 
 // Forces element by element, in the order of the model's lists. They serve every cloth and are the
-// reference for the row-wise form of grid_pass.h.
+// reference for the row-wise form of grid_pass.h. Each function takes one part of the model; those
+// without a part do all of them in their order.
 
 /// Elastic energies at one instant [J], summed in double.
 struct ElasticEnergy {
@@ -18,32 +19,58 @@ struct ElasticEnergy {
 /// Adds the elastic and dashpot forces of all springs to `force` [N]; formula in spring.h.
 /// @param x,v  positions [m] and velocities [m/s] of all particles
 template <class Real>
-void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                       const Vec3Array<Real>& v, Vec3Array<Real>& force);
+void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                       const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
 /// Adds the elastic and damping forces of all hinges to `force` [N]; formula in hinge.h.
 template <class Real>
-void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
-                      const Vec3Array<Real>& v, Vec3Array<Real>& force);
+void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                      const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
 /// Adds the forces of the quadratic bending form to `force` [N]: -k w^T (w x) for each stencil w.
 template <class Real>
-void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force);
 
 /// Adds the force of the air on all triangles, a third to each corner [N]; formula in air.h.
 /// @param wind     velocity of the air at each particle [m/s]
 /// @param density  of the air [kg/m^3]
 template <class Real>
-void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, double density,
-                    const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
+void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                    const Vec3Array<Real>& wind, double density, const Vec3Array<Real>& x,
+                    const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
-/// Stencils of the quadratic form that one evaluation visits; 0 if the cloth has none.
+/// Stencils of the quadratic form that one evaluation of a part visits; 0 if it has none.
 template <class Real>
-std::size_t quadratic_stencil_count(const ClothModel<Real>& model);
+std::size_t quadratic_stencil_count(const ClothPart<Real>& part);
 
 /// Energies of springs and bending and the largest strain. NaN is kept and seen.
 template <class Real>
 ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
+
+template <class Real>
+void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                       const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const ClothPart<Real>& part : model.parts) add_spring_forces(model, part, x, v, force);
+}
+
+template <class Real>
+void add_hinge_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                      const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const ClothPart<Real>& part : model.parts) add_hinge_forces(model, part, x, v, force);
+}
+
+template <class Real>
+void add_quadratic_bending_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                                  Vec3Array<Real>& force) {
+  for (const ClothPart<Real>& part : model.parts) add_quadratic_bending_forces(part, x, force);
+}
+
+template <class Real>
+void add_air_forces(const ClothModel<Real>& model, const Vec3Array<Real>& wind, double density,
+                    const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const ClothPart<Real>& part : model.parts)
+    add_air_forces(model, part, wind, density, x, v, force);
+}
 
 }  // namespace weft

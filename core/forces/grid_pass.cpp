@@ -12,16 +12,17 @@ const Real* GridPass<Real>::at_origin(const std::vector<Real>& array) const {
 }
 
 template <class Real>
-void GridPass<Real>::prepare(const ClothModel<Real>& model) {
+void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_ = {};
-  if (!model.grid_springs || !model.hinges.empty()) return;
-  view_.rows = model.rows;
-  view_.columns = model.columns;
-  view_.stride = model.columns + 2 * kGridMargin;
-  view_.springs = *model.grid_springs;
-  view_.bending = model.quadratic_bending;
-  air_normal_ = static_cast<Real>(model.fabric.air_normal);
-  air_tangential_ = static_cast<Real>(model.fabric.air_tangential);
+  if (!part.grid_springs || part.hinges.count > 0) return;
+  first_ = static_cast<std::size_t>(part.particles.first);
+  view_.rows = part.rows;
+  view_.columns = part.columns;
+  view_.stride = part.columns + 2 * kGridMargin;
+  view_.springs = *part.grid_springs;
+  view_.bending = part.quadratic_bending;
+  air_normal_ = static_cast<Real>(part.fabric.air_normal);
+  air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
 
   const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4));
   for (Components* components : {&x_, &v_, &wind_, &slip_}) {
@@ -53,7 +54,8 @@ void GridPass<Real>::prepare(const ClothModel<Real>& model) {
 template <class Real>
 void GridPass<Real>::scatter(const Vec3Array<Real>& values, Components& components) const {
   for (int r = 0; r < view_.rows; ++r) {
-    const Vec3<Real>* from = values.data() + static_cast<std::ptrdiff_t>(r) * view_.columns;
+    const Vec3<Real>* from =
+        values.data() + first_ + static_cast<std::ptrdiff_t>(r) * view_.columns;
     const std::ptrdiff_t row = (r + 2) * view_.stride + kGridMargin;
     Real *x = components[0].data() + row, *y = components[1].data() + row,
          *z = components[2].data() + row;
@@ -78,7 +80,7 @@ void GridPass<Real>::load_wind(const Vec3Array<Real>& wind) {
 
 template <class Real>
 void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
-  grid_internal_forces(view_, force.data()->data());
+  grid_internal_forces(view_, force[first_].data());
 }
 
 template <class Real>
@@ -90,7 +92,7 @@ void GridPass<Real>::compute_air_forces(double density, Vec3Array<Real>& force) 
     for (std::ptrdiff_t i = 0; i < size; ++i) slip[i] = wind[i] - v[i];
   }
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
-  grid_air_forces(view_, pressure, air_tangential_, force.data()->data());
+  grid_air_forces(view_, pressure, air_tangential_, force[first_].data());
 }
 
 template class GridPass<float>;

@@ -30,26 +30,28 @@ struct GridView {
 inline constexpr int kGridMargin = 16;  ///< at least the widest vector, in numbers
 inline constexpr int kGridScratchRows = 48;
 
-/// The forces of a grid cloth row by row: every spring, bending stencil and triangle once, as
-/// vector code chosen for the processor when the program runs. The results do not depend on that
-/// choice: only + - * / and square roots, in a fixed order, without fused multiply-adds.
+/// The forces of one part of the model, a grid, row by row: every spring, bending stencil and
+/// triangle once, as vector code chosen for the processor when the program runs. The results do not
+/// depend on that choice: only + - * / and square roots, in a fixed order, without fused
+/// multiply-adds.
 template <class Real>
 class GridPass {
  public:
-  /// Sizes the arrays. A cloth with hinges, skip springs or direct springs does not fit and stays
-  /// with the element-wise form.
-  void prepare(const ClothModel<Real>& model);
+  /// Sizes the arrays. A part that is no grid or has hinges, skip springs or direct springs does
+  /// not fit and stays with the element-wise form.
+  void prepare(const ClothPart<Real>& part);
 
   bool fits() const { return view_.rows > 0; }
 
-  /// Takes positions and velocities for the calls below.
+  /// Takes positions and velocities of the whole model for the calls below.
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v);
   void load_wind(const Vec3Array<Real>& wind);
 
-  /// Forces of springs, dashpots and bending on each particle [N]; overwrites `force`.
+  /// Forces of springs, dashpots and bending on each particle of the part [N]; overwrites its
+  /// stretch of `force`, which is the whole model's.
   void compute_internal_forces(Vec3Array<Real>& force);
 
-  /// Force of the air on each particle [N]; overwrites `force`. Formula in air.h.
+  /// Force of the air on each particle [N]; overwrites as above. Formula in air.h.
   void compute_air_forces(double density, Vec3Array<Real>& force);
 
  private:
@@ -58,6 +60,7 @@ class GridPass {
   const Real* at_origin(const std::vector<Real>& array) const;
 
   GridView<Real> view_;
+  std::size_t first_ = 0;  ///< particle of the model that is particle 0 of the grid
   Real air_normal_ = 0, air_tangential_ = 0;
   Components x_, v_, wind_, slip_;
   std::vector<Real> cell_, border_half_, inner_, odd_, scratch_;

@@ -26,15 +26,15 @@ ClothDef hanging_cloth(int rows, int columns, double width, double height, doubl
 /// by six, three at each upper corner, gravity and wind.
 void build_default(WorldDef& def) {
   // Warp down, weft across: 30 particles down the columns of the page, 20 across.
-  def.cloth.rows = 20;
-  def.cloth.columns = 30;
-  def.cloth.width = 1.45;
-  def.cloth.height = 0.95;
-  def.cloth.origin = Vec3d(-0.475, 1.85, 0.3);
-  def.cloth.u = -Vec3d::UnitY();
-  def.cloth.v = Vec3d::UnitX();
-  def.cloth.fabric.stretch_warp = def.cloth.fabric.stretch_weft = 250;
-  def.cloth.fabric.shear = 25;
+  def.cloths[0].rows = 20;
+  def.cloths[0].columns = 30;
+  def.cloths[0].width = 1.45;
+  def.cloths[0].height = 0.95;
+  def.cloths[0].origin = Vec3d(-0.475, 1.85, 0.3);
+  def.cloths[0].u = -Vec3d::UnitY();
+  def.cloths[0].v = Vec3d::UnitX();
+  def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = 250;
+  def.cloths[0].fabric.shear = 25;
   for (const Index row : {0, 1, 2, 17, 18, 19}) def.pins.push_back({row * 30, 0});
   def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
   def.environment.wind = Vec3d(0.3, 0, -1.6);
@@ -43,7 +43,7 @@ void build_default(WorldDef& def) {
 }
 
 void build_curtain(WorldDef& def) {
-  def.cloth = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
+  def.cloths[0] = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
   for (Index i = 0; i < 33; i += 4) def.pins.push_back({i, 0.02});
   def.colliders = {kGround};
   def.environment.wind = Vec3d(0.2, 0, 0.9);
@@ -52,9 +52,9 @@ void build_curtain(WorldDef& def) {
 }
 
 void build_flag(WorldDef& def) {
-  def.cloth = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
-  def.cloth.origin = Vec3d(0.03, 2.3, 0);
-  def.cloth.fabric.areal_density = 0.1;
+  def.cloths[0] = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
+  def.cloths[0].origin = Vec3d(0.03, 2.3, 0);
+  def.cloths[0].fabric.areal_density = 0.1;
   def.pins = {{0, 0.05}, {12 * 37, 0.05}, {24 * 37, 0.05}};
   def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
   def.environment.wind = Vec3d(5, 0, 0.6);
@@ -62,16 +62,16 @@ void build_flag(WorldDef& def) {
 }
 
 void build_drape_sphere(WorldDef& def) {
-  def.cloth.rows = def.cloth.columns = 49;
-  def.cloth.width = def.cloth.height = 1.3;
-  def.cloth.origin = Vec3d(-0.65, 1.15, -0.65);
-  def.cloth.v = Vec3d::UnitZ();
+  def.cloths[0].rows = def.cloths[0].columns = 49;
+  def.cloths[0].width = def.cloths[0].height = 1.3;
+  def.cloths[0].origin = Vec3d(-0.65, 1.15, -0.65);
+  def.cloths[0].v = Vec3d::UnitZ();
   def.colliders = {kGround, {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
   def.environment.drag = 0.5;
 }
 
 void build_wall(WorldDef& def) {
-  def.cloth = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
+  def.cloths[0] = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
   for (Index i = 0; i < 25; i += 4) def.pins.push_back({i, 0.02});
   def.colliders = {
       kGround,

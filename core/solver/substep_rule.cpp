@@ -25,16 +25,18 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest) 
 }
 
 template <class Real>
-void bound_frequencies(ClothModel<Real>& model) {
+void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
   const std::size_t n = model.mass.size();
   std::vector<double> stretch(n, 0), stretch_damping(n, 0), bend(n, 0), bend_damping(n, 0);
-  for (const Spring<Real>& s : model.springs) {
+  for (Index k = part.springs.first; k < part.springs.end(); ++k) {
+    const Spring<Real>& s = model.springs[static_cast<std::size_t>(k)];
     for (const Index end : {s.i, s.j}) {
       stretch[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.stiffness);
       stretch_damping[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.damping);
     }
   }
-  for (const Hinge<Real>& h : model.hinges) {
+  for (Index k = part.hinges.first; k < part.hinges.end(); ++k) {
+    const Hinge<Real>& h = model.hinges[static_cast<std::size_t>(k)];
     const auto at = [&](int corner) {
       return model.rest_positions[static_cast<std::size_t>(h.x[corner])]
           .template cast<double>()
@@ -56,45 +58,46 @@ void bound_frequencies(ClothModel<Real>& model) {
       most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
     return most;
   };
-  model.membrane_omega2 = largest(stretch);
-  model.membrane_damping_rate = largest(stretch_damping);
-  model.bending_omega2 = largest(bend);
-  model.bending_damping_rate = largest(bend_damping);
+  part.bounds.membrane_omega2 = largest(stretch);
+  part.bounds.membrane_damping_rate = largest(stretch_damping);
+  part.bounds.bending_omega2 = largest(bend);
+  part.bounds.bending_damping_rate = largest(bend_damping);
 }
 
 template <class Real>
-void bound_quadratic_bending(ClothModel<Real>& model) {
+void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part) {
   std::vector<double> row_sum(model.mass.size(), 0);
-  visit_bending_stencils(model,
-                         [&](Real k, const Index* corners, const double* weights, int count) {
-                           double sum = 0;
-                           for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
-                           for (int n = 0; n < count; ++n)
-                             row_sum[static_cast<std::size_t>(corners[n])] +=
-                                 static_cast<double>(k) * std::abs(weights[n]) * sum;
-                         });
-  model.bending_omega2 = 0;
-  model.bending_damping_rate = 0;
+  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
+    double sum = 0;
+    for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
+    for (int n = 0; n < count; ++n)
+      row_sum[static_cast<std::size_t>(corners[n])] +=
+          static_cast<double>(k) * std::abs(weights[n]) * sum;
+  });
+  part.bounds.bending_omega2 = 0;
+  part.bounds.bending_damping_rate = 0;
   for (std::size_t i = 0; i < row_sum.size(); ++i)
-    model.bending_omega2 =
-        std::max(model.bending_omega2, row_sum[i] / static_cast<double>(model.mass[i]));
+    part.bounds.bending_omega2 =
+        std::max(part.bounds.bending_omega2, row_sum[i] / static_cast<double>(model.mass[i]));
 }
 
-template void bound_quadratic_bending(ClothModel<float>&);
-template void bound_quadratic_bending(ClothModel<double>&);
+template void bound_quadratic_bending(const ClothModel<float>&, ClothPart<float>&);
+template void bound_quadratic_bending(const ClothModel<double>&, ClothPart<double>&);
 
 template <class Real>
-void add_spring_damping(ClothModel<Real>& model, double damping_ratio) {
-  if (model.membrane_omega2 <= 0) return;
-  const double beta = 2 * damping_ratio / std::sqrt(model.membrane_omega2);
-  for (Spring<Real>& spring : model.springs)
+void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio) {
+  if (part.bounds.membrane_omega2 <= 0) return;
+  const double beta = 2 * damping_ratio / std::sqrt(part.bounds.membrane_omega2);
+  for (Index k = part.springs.first; k < part.springs.end(); ++k) {
+    Spring<Real>& spring = model.springs[static_cast<std::size_t>(k)];
     spring.damping = static_cast<Real>(beta * static_cast<double>(spring.stiffness));
-  model.membrane_damping_rate = beta * model.membrane_omega2;
+  }
+  part.bounds.membrane_damping_rate = beta * part.bounds.membrane_omega2;
 }
 
-template void bound_frequencies(ClothModel<float>&);
-template void bound_frequencies(ClothModel<double>&);
-template void add_spring_damping(ClothModel<float>&, double);
-template void add_spring_damping(ClothModel<double>&, double);
+template void bound_frequencies(const ClothModel<float>&, ClothPart<float>&);
+template void bound_frequencies(const ClothModel<double>&, ClothPart<double>&);
+template void add_spring_damping(ClothModel<float>&, ClothPart<float>&, double);
+template void add_spring_damping(ClothModel<double>&, ClothPart<double>&, double);
 
 }  // namespace weft

@@ -21,20 +21,21 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
 
 inline constexpr int kMostSubsteps = 20000;
 
-/// Fills the model's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
+/// Fills a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
 /// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state
 /// matrix k g g^T, and the damping rates already in the elements.
 template <class Real>
-void bound_frequencies(ClothModel<Real>& model);
+void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part);
 
 /// Replaces the bending bound by that of the quadratic form: each stencil w with energy k/2 |w x|^2
 /// adds k |w_i| sum|w| to the Gershgorin rows of its particles.
 template <class Real>
-void bound_quadratic_bending(ClothModel<Real>& model);
+void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);
 
-/// Gives every spring the dashpot c = beta k with beta = 2 zeta / omega of the membrane's highest
-/// mode. Without it a shaken cloth keeps its high modes hot for ever (NUMERICS.md d).
+/// Gives every spring of a part of the model the dashpot c = beta k with beta = 2 zeta / omega of
+/// the membrane's highest mode. Without it a shaken cloth keeps its high modes hot for ever
+/// (NUMERICS.md d).
 template <class Real>
-void add_spring_damping(ClothModel<Real>& model, double damping_ratio);
+void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio);
 
 }  // namespace weft

@@ -42,59 +42,80 @@ struct Tick {
   bool pulled() const { return surroundings.air || !grabs.list.empty(); }
 };
 
-/// Springs and bending element by element.
+/// Zeroes the forces on the particles of a part.
 template <class Real>
-void evaluate_elements(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
+void clear_part(const ClothPart<Real>& part, Vec3Array<Real>& force) {
+  std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());
+}
+
+/// Springs and bending of a part element by element.
+template <class Real>
+void evaluate_elements(Tick<Real>& tick, const ClothPart<Real>& part,
+                       const Vec3Array<Real>& velocity) {
   const ClothModel<Real>& model = tick.model;
   Vec3Array<Real>& force = tick.work.internal;
-  std::fill(force.begin(), force.end(), Vec3<Real>::Zero());
-  if (!model.springs.empty()) {
-    const StageTimer timer(tick.profile, Stage::stretch, model.springs.size());
-    add_spring_forces(model, tick.state.x, velocity, force);
+  clear_part(part, force);
+  const auto count = [](const IndexRange& range) { return static_cast<std::size_t>(range.count); };
+  if (part.springs.count > 0) {
+    const StageTimer timer(tick.profile, Stage::stretch, count(part.springs));
+    add_spring_forces(model, part, tick.state.x, velocity, force);
   }
-  if (!model.hinges.empty()) {
-    const StageTimer timer(tick.profile, Stage::bending, model.hinges.size());
-    add_hinge_forces(model, tick.state.x, velocity, force);
+  if (part.hinges.count > 0) {
+    const StageTimer timer(tick.profile, Stage::bending, count(part.hinges));
+    add_hinge_forces(model, part, tick.state.x, velocity, force);
   }
-  const std::size_t stencils = quadratic_stencil_count(model);
+  const std::size_t stencils = quadratic_stencil_count(part);
   if (stencils > 0) {
     const StageTimer timer(tick.profile, Stage::bending, stencils);
-    add_quadratic_bending_forces(model, tick.state.x, force);
+    add_quadratic_bending_forces(part, tick.state.x, force);
   }
 }
 
-/// Springs and quadratic bending row by row, in one pass; its time is booked under stretch.
+/// Springs and quadratic bending of a part row by row, in one pass; its time is booked under
+/// stretch.
 template <class Real>
-void evaluate_rows(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
-  const StageTimer timer(tick.profile, Stage::stretch, tick.model.springs.size());
-  tick.profile[Stage::bending].work += quadratic_stencil_count(tick.model);
-  tick.work.grid.load(tick.state.x, velocity);
-  tick.work.grid.compute_internal_forces(tick.work.internal);
+void evaluate_rows(Tick<Real>& tick, const ClothPart<Real>& part, GridPass<Real>& grid,
+                   const Vec3Array<Real>& velocity) {
+  const StageTimer timer(tick.profile, Stage::stretch,
+                         static_cast<std::size_t>(part.springs.count));
+  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
+  grid.load(tick.state.x, velocity);
+  grid.compute_internal_forces(tick.work.internal);
+}
+
+/// The air on each part; overwrites the external forces.
+template <class Real>
+void evaluate_air(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
+  const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
+  const Surroundings<Real>& around = tick.surroundings;
+  Vec3Array<Real>& force = tick.work.external;
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    const ClothPart<Real>& part = tick.model.parts[p];
+    if (tick.work.grids[p].fits()) {
+      tick.work.grids[p].compute_air_forces(around.air_density, force);
+      continue;
+    }
+    clear_part(part, force);
+    add_air_forces(tick.model, part, around.wind, around.air_density, tick.state.x, velocity,
+                   force);
+  }
 }
 
 /// All forces at the present positions, with `velocity` as seen by dashpots and air.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
-  const Surroundings<Real>& around = tick.surroundings;
   VerletWorkspace<Real>& work = tick.work;
-  const bool rows = work.grid.fits();
-  if (rows)
-    evaluate_rows(tick, velocity);
-  else
-    evaluate_elements(tick, velocity);
-  if (!tick.pulled()) return;
-  if (around.air) {
-    const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
-    if (rows) {
-      work.grid.compute_air_forces(around.air_density, work.external);
-    } else {
-      std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
-      add_air_forces(tick.model, around.wind, around.air_density, tick.state.x, velocity,
-                     work.external);
-    }
-  } else {
-    std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    if (work.grids[p].fits())
+      evaluate_rows(tick, tick.model.parts[p], work.grids[p], velocity);
+    else
+      evaluate_elements(tick, tick.model.parts[p], velocity);
   }
+  if (!tick.pulled()) return;
+  if (tick.surroundings.air)
+    evaluate_air(tick, velocity);
+  else
+    std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
   if (!tick.grabs.list.empty()) {
     const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
     add_grab_forces(progress, tick.state, tick.grabs, work.external);
@@ -166,7 +187,8 @@ template <class Real>
 void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   for (Vec3Array<Real>* array : {&internal, &external, &velocity})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
-  grid.prepare(model);
+  grids.assign(model.parts.size(), {});
+  for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
 }
 
 template <class Real>
@@ -177,7 +199,11 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, contact,
                   state, work,         profile};
   const Kicks<Real> kicks(dt, surroundings.drag);
-  if (surroundings.air && work.grid.fits()) work.grid.load_wind(surroundings.wind);
+  if (surroundings.air) {
+    for (GridPass<Real>& grid : work.grids) {
+      if (grid.fits()) grid.load_wind(surroundings.wind);
+    }
+  }
   AdvanceResult result;
   result.before = timed_energies(tick).energies;
   evaluate_forces(tick, Real(0), state.v);

@@ -49,10 +49,10 @@ struct AdvanceResult {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct VerletWorkspace {
-  Vec3Array<Real> internal;  ///< forces of springs and bending [N]
-  Vec3Array<Real> external;  ///< forces of hands and air [N]
-  Vec3Array<Real> velocity;  ///< estimate of the velocity that the dashpots see [m/s]
-  GridPass<Real> grid;       ///< row-wise form of the forces, for grids without hinges
+  Vec3Array<Real> internal;           ///< forces of springs and bending [N]
+  Vec3Array<Real> external;           ///< forces of hands and air [N]
+  Vec3Array<Real> velocity;           ///< estimate of the velocity that the dashpots see [m/s]
+  std::vector<GridPass<Real>> grids;  ///< for each part the row-wise form of its forces
 
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);

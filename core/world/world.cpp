@@ -25,13 +25,14 @@ double total_mass(const ClothModel<Real>& model) {
 template <class Real>
 Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                            const Runtime& runtime) {
-  ContactDef contact;
-  contact.thickness = def.cloth.fabric.thickness;
-  contact.friction = def.cloth.fabric.friction;
-  contact.restitution = def.cloth.fabric.restitution;
-  const double longest_edge =
-      std::hypot(static_cast<double>(model.cell_u), static_cast<double>(model.cell_v));
-  return Contact<Real>(contact, def.colliders, model.edges, model.triangles, longest_edge,
+  std::vector<ContactDef> cloths;
+  double longest_edge = 0;
+  for (const ClothPart<Real>& part : model.parts) {
+    cloths.push_back({part.fabric.thickness, part.fabric.friction, part.fabric.restitution,
+                      part.particles.first});
+    longest_edge = std::max(longest_edge, part.longest_edge);
+  }
+  return Contact<Real>(cloths, def.colliders, model.edges, model.triangles, longest_edge,
                        runtime.executor);
 }
 
@@ -57,8 +58,9 @@ std::string describe(const Divergence& d) {
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
-      model_(build_cloth<Real>(def.cloth)), contact_(make_contact(def, model_, runtime)),
+      model_(build_cloths<Real>(def.cloths)), contact_(make_contact(def, model_, runtime)),
       account_(total_mass(model_)) {
+  state_ = initial_state(model_);
   if (choose_substeps() > kMostSubsteps)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
@@ -110,26 +112,35 @@ const TickReport& World<Real>::step() {
 
 template <class Real>
 int World<Real>::choose_substeps() const {
-  StabilityBound bound{model_.membrane_omega2 + model_.bending_omega2,
-                       model_.membrane_damping_rate + model_.bending_damping_rate};
+  long count = 0;
+  for (const ClothPart<Real>& part : model_.parts)
+    count = std::max(count,
+                     substeps_for(stability_bound(part), tick_seconds(), def_.solver.min_substeps));
+  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+}
+
+template <class Real>
+StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part) const {
+  StabilityBound bound{part.bounds.membrane_omega2 + part.bounds.bending_omega2,
+                       part.bounds.membrane_damping_rate + part.bounds.bending_damping_rate};
   for (const Grab<Real>& grab : grabs_.list) {
+    if (!part.triangles.contains(grab.def.triangle)) continue;
     bound.omega2 += grab.bound.omega2;
     bound.damping_rate += grab.bound.damping_rate;
   }
-  if (has_air(environment_)) {
-    // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
-    double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
-    double speed2 = 0;
-    for (const Vec3<Real>& v : state_.v)
-      speed2 = std::max(speed2, static_cast<double>(v.squaredNorm()));
-    fastest += std::sqrt(speed2);
-    const FabricDef& fabric = model_.fabric;
-    bound.damping_rate +=
-        (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
-        fabric.areal_density;
-  }
-  const long count = substeps_for(bound, tick_seconds(), def_.solver.min_substeps);
-  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+  if (!has_air(environment_)) return bound;
+  // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
+  double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
+  double speed2 = 0;
+  for (Index i = part.particles.first; i < part.particles.end(); ++i)
+    speed2 =
+        std::max(speed2, static_cast<double>(state_.v[static_cast<std::size_t>(i)].squaredNorm()));
+  fastest += std::sqrt(speed2);
+  const FabricDef& fabric = part.fabric;
+  bound.damping_rate +=
+      (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
+      fabric.areal_density;
+  return bound;
 }
 
 template <class Real>

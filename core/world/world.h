@@ -8,6 +8,7 @@
 #include "core/attachments/pins.h"
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
+#include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
 #include "core/world/energy_account.h"
 #include "core/world/profile.h"
@@ -66,7 +67,7 @@ struct Runtime {
   double (*clock)() = nullptr;   ///< seconds, for the profile alone
 };
 
-/// One cloth with all that acts on it, advanced tick by tick. Not safe for use from several threads
+/// Cloths with all that acts on them, advanced tick by tick. Not safe for use from several threads
 /// at once. Everything that changes it is called between steps.
 template <class Real>
 class World {
@@ -117,6 +118,7 @@ class World {
 
  private:
   int choose_substeps() const;
+  StabilityBound stability_bound(const ClothPart<Real>& part) const;
   void blow_wind();
   void advance_or_recover(int substeps);
   std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;

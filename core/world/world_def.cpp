@@ -60,16 +60,22 @@ void validate(const EnvironmentDef& def) {
 }
 
 void validate(const WorldDef& def) {
-  visit_fields(def, [](const char* path, const FieldInfo& info, const auto& value) {
+  check_field("", {"cloths", 1, kMostCloths, "", "number of cloths"},
+              static_cast<double>(def.cloths.size()));
+  visit_fields(def, [](const std::string& path, const FieldInfo& info, const auto& value) {
     check_field(path, info, value);
   });
-  validate(def.cloth);
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {
   bool found = false;
-  visit_fields(def, [&](const char* path, const FieldInfo& info, auto& value) {
-    if (found || key != std::string(path) + info.name) return;
+  // The first cloth may be written like the others.
+  const std::string first = "cloths[0].";
+  std::string wanted = key;
+  if (key.starts_with(first))
+    wanted = (key.starts_with(first + "fabric.") ? "" : "cloth.") + key.substr(first.size());
+  visit_fields(def, [&](const std::string& path, const FieldInfo& info, auto& value) {
+    if (found || wanted != path + info.name) return;
     found = true;
     parse_field(path, info, text, value);
   });
@@ -78,10 +84,10 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
 
 std::vector<FieldListing> list_fields(const WorldDef& def) {
   std::vector<FieldListing> list;
-  visit_fields(def, [&list](const char* path, const FieldInfo& info, const auto& value) {
+  visit_fields(def, [&list](const std::string& path, const FieldInfo& info, const auto& value) {
     const bool flag = std::is_same_v<std::decay_t<decltype(value)>, bool>;
-    list.push_back({std::string(path) + info.name, text_of(value),
-                    flag ? "true or false" : allowed_values(info), info.meaning});
+    list.push_back({path + info.name, text_of(value), flag ? "true or false" : allowed_values(info),
+                    info.meaning});
   });
   return list;
 }

@@ -11,6 +11,8 @@
 
 namespace weft {
 
+inline constexpr std::size_t kMostCloths = 64;
+
 /// A scene: everything needed to start a world. Built-in scenes come from core/scenes.
 struct WorldDef {
   std::string name = "unnamed";
@@ -18,7 +20,7 @@ struct WorldDef {
   double tick_rate = 60;    ///< ticks a simulated second [1/s]
   EnvironmentDef environment;
   SolverDef solver;
-  ClothDef cloth;
+  std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;  ///< made at the start
 };
@@ -26,21 +28,24 @@ struct WorldDef {
 /// Describes every field of the definition that has a range to `visit(path, info, value)`.
 template <class Def, class Visitor>
 void visit_fields(Def& def, Visitor&& visit) {
-  const auto below = [&visit](const char* path) {
+  const auto below = [&visit](const std::string& path) {
     return [&visit, path](const FieldInfo& info, auto& value) { visit(path, info, value); };
   };
   below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks a simulated second"}, def.tick_rate);
   visit_fields_of_environment(def.environment, below("environment."));
   visit_fields_of_solver(def.solver, below("solver."));
-  visit_fields_of_cloth(def.cloth, below("cloth."));
-  visit_fields_of_fabric(def.cloth.fabric, below("fabric."));
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    visit_fields_of_cloth(def.cloths[k], below(cloth_field(k, "cloth.")));
+    visit_fields_of_fabric(def.cloths[k].fabric, below(cloth_field(k, "fabric.")));
+  }
 }
 
 /// Checks all ranges and combinations that need no model. Throws DefinitionError.
 void validate(const WorldDef& def);
 
-/// Sets one field by its path, e.g. "fabric.shear" = "20" or "environment.wind" = "3,0,0".
-/// Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
+/// Sets one field by its path, e.g. "fabric.shear" = "20", "environment.wind" = "3,0,0" or, where
+/// there are several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." are those of the
+/// first. Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
 void set_field(WorldDef& def, const std::string& key, const std::string& text);
 
 /// A field as people see it.

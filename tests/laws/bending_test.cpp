@@ -34,7 +34,7 @@ double rolled_rigidity(ClothDef def, double phi) {
   // Energy of one more period of the pattern in both directions, by differences: no border effects.
   const int c = def.columns, r = def.rows;
   const double energy = rolled(c + 2, r + 2) - rolled(c, r + 2) - rolled(c + 2, r) + rolled(c, r);
-  const double area = 4 * static_cast<double>(model.cell_u * model.cell_v);
+  const double area = 4 * static_cast<double>(model.parts[0].cell_u * model.parts[0].cell_v);
   return 2 * energy / (area * kCurvature * kCurvature);
 }
 

@@ -27,8 +27,8 @@ TEST_CASE("a hanging strip stretches by sigma g L^2 / 2k, exactly for any number
   const auto [rows, k, expected] = GENERATE(table<int, double, double>(
       {{6, 50, 0.01962}, {11, 50, 0.01962}, {24, 50, 0.01962}, {11, 1000, 0.000981}}));
   WorldDef def = hanging_strip(rows, 3, 0.2, 1);
-  def.cloth.fabric.stretch_warp = def.cloth.fabric.stretch_weft = k;
-  def.cloth.fabric.shear = 0;
+  def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = k;
+  def.cloths[0].fabric.shear = 0;
   def.environment.gravity = Vec3d(0, -9.81, 0);
   World<double> world(def);
   const double rest = test::settle(world, 30, 8);
@@ -67,7 +67,7 @@ TEST_CASE("pulled along the warp the modulus is Y_w - G^2 / Y_f away from the cl
   }
   const auto at = [&, n = columns](int r, int c) { return x[static_cast<std::size_t>(r * n + c)]; };
   const int middle = rows / 2;
-  const double strain = (at(middle, cut + 1) - at(middle, cut)).norm() / model.cell_u - 1;
+  const double strain = (at(middle, cut + 1) - at(middle, cut)).norm() / model.parts[0].cell_u - 1;
   CHECK(force / 1.2 / strain == Approx(500 - 60.0 * 60.0 / 300).epsilon(5e-3));
 }
 

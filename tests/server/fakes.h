@@ -102,10 +102,10 @@ struct RecordingOutput : RoomOutput {
 inline WorldDef small_scene(const std::string& name) {
   if (name != "small" && name != "other") throw DefinitionError("scene", name, "small or other");
   WorldDef def;
-  def.cloth.rows = name == "small" ? 6 : 5;
-  def.cloth.columns = 7;
-  def.cloth.width = def.cloth.height = 0.5;
-  def.cloth.origin = Vec3d(-0.25, 1, 0);
+  def.cloths[0].rows = name == "small" ? 6 : 5;
+  def.cloths[0].columns = 7;
+  def.cloths[0].width = def.cloths[0].height = 0.5;
+  def.cloths[0].origin = Vec3d(-0.25, 1, 0);
   def.pins = {{0, 0}, {6, 0}};
   return def;
 }

@@ -66,7 +66,7 @@ struct Particles {
   }
   Contact<Real> meet(const ContactDef& def, const std::vector<ColliderDef>& colliders,
                      Executor* executor = nullptr) const {
-    return Contact<Real>(def, colliders, edges, triangles, longest_edge(), executor);
+    return Contact<Real>({def}, colliders, edges, triangles, longest_edge(), executor);
   }
 
   void kick() {

@@ -8,7 +8,7 @@ namespace weft::test {
 /// A world without anything but a cloth in vacuum and without gravity.
 inline WorldDef empty_world(const ClothDef& cloth) {
   WorldDef def;
-  def.cloth = cloth;
+  def.cloths[0] = cloth;
   def.environment.gravity.setZero();
   def.environment.air_density = 0;
   return def;

@@ -68,7 +68,7 @@ TEST_CASE("a sheet strained by e along the warp stores Y e^2 / 2 a square metre 
   const double strain = 1e-4;
   for (Vec3d& x : world.state().x) x[0] *= 1 + strain;
   world.accept_state();
-  const double density = 0.5 * world.model().fabric.stretch_warp * strain * strain;
+  const double density = 0.5 * world.model().parts[0].fabric.stretch_warp * strain * strain;
   CHECK(world.report().energies.stretch == Approx(density).epsilon(1e-3));  // 1 m x 1 m
   CHECK(world.report().largest_strain == Approx(strain).epsilon(1e-6));
 }

@@ -87,7 +87,7 @@ TEST_CASE("the force of quadratic bending is minus the gradient of its energy, t
   ClothDef def = test::flat_cloth(4, 5, 1, 0.6);
   def.fabric.bending_warp = 3e-4;
   const ClothModel<double> model = build_cloth<double>(def);
-  REQUIRE(quadratic_stencil_count(model) > 0);
+  REQUIRE(quadratic_stencil_count(model.parts[0]) > 0);
   const Vec3Array<double> x = test::shaken(model, 0.05, random);
   const auto force = [&](const auto& at, auto& f) { add_quadratic_bending_forces(model, at, f); };
   const auto energy = [&](const auto& at) { return elastic_energy(model, at).bending; };
@@ -189,7 +189,7 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
   add_quadratic_bending_forces(model, x, elements);
   add_air_forces(model, wind, 1.225, x, v, air_elements);
   GridPass<Real> grid;
-  grid.prepare(model);
+  grid.prepare(model.parts[0]);
   REQUIRE(grid.fits());
   grid.load(x, v);
   grid.load_wind(wind);

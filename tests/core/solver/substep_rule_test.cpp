@@ -77,8 +77,8 @@ TEST_CASE("the model's bounds are above the highest frequencies and not more tha
     add_hinge_forces(model, x, still, f);
     add_quadratic_bending_forces(model, x, f);
   });
-  CHECK(model.membrane_omega2 >= stretch);
-  CHECK(model.membrane_omega2 <= 2 * stretch);
-  CHECK(model.bending_omega2 >= bending);
-  CHECK(model.bending_omega2 <= 2 * bending);
+  CHECK(model.parts[0].bounds.membrane_omega2 >= stretch);
+  CHECK(model.parts[0].bounds.membrane_omega2 <= 2 * stretch);
+  CHECK(model.parts[0].bounds.bending_omega2 >= bending);
+  CHECK(model.parts[0].bounds.bending_omega2 <= 2 * bending);
 }

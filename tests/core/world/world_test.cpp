@@ -185,8 +185,8 @@ TEST_CASE("fields are set by path and refused with what is allowed") {
   set_field(def, "cloth.rows", "40");
   set_field(def, "environment.wind", "1,-2,3.5");
   set_field(def, "environment.still_air", "true");
-  CHECK(def.cloth.fabric.shear == 12.5);
-  CHECK(def.cloth.rows == 40);
+  CHECK(def.cloths[0].fabric.shear == 12.5);
+  CHECK(def.cloths[0].rows == 40);
   CHECK(def.environment.wind == Vec3d(1, -2, 3.5));
   CHECK(def.environment.still_air);
   for (const auto& [key, value] :
@@ -201,6 +201,6 @@ TEST_CASE("fields are set by path and refused with what is allowed") {
                                                         {"cloth.row", "3"},
                                                         {"", ""}})
     CHECK_THROWS_AS(set_field(def, key, value), DefinitionError);
-  CHECK(def.cloth.rows == 40);
+  CHECK(def.cloths[0].rows == 40);
   CHECK(list_fields(def).size() > 20);
 }

@@ -1,0 +1,40 @@
+#include "core/cloth/cloth_def.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace weft {
+
+std::string cloth_field(std::size_t cloth, const std::string& field) {
+  if (cloth == 0) return field;
+  const std::string place = "cloths[" + std::to_string(cloth) + "].";
+  if (field.starts_with("cloth.")) return place + field.substr(6);
+  return field.starts_with("fabric.") ? place + field : field;
+}
+
+void validate(const ClothDef& def) {
+  visit_fields_of_cloth(
+      def, [](const FieldInfo& info, const auto& value) { check_field("cloth.", info, value); });
+  visit_fields_of_fabric(def.fabric, [](const FieldInfo& info, const auto& value) {
+    check_field("fabric.", info, value);
+  });
+  if (def.u.norm() < 1e-9)
+    throw DefinitionError("cloth.u", "0,0,0", "a direction", "give a vector that is not zero");
+  if (def.v.norm() < 1e-9 || std::abs(def.u.normalized().dot(def.v.normalized())) > 1e-6)
+    throw DefinitionError(
+        "cloth.v",
+        number_text(def.v[0]) + "," + number_text(def.v[1]) + "," + number_text(def.v[2]),
+        "a direction at right angles to cloth.u", "the cells are rectangles");
+  if (def.bending_model == BendingModel::quadratic && !quadratic_bending_fits(def))
+    throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
+                          "a rest angle or bending damping needs hinges");
+  if (!def.direct_springs) return;
+  const DirectSprings& d = *def.direct_springs;
+  check_field("cloth.direct_springs.", {"structural", 0, 1e6, "N/m", ""}, d.structural);
+  check_field("cloth.direct_springs.", {"shear", 0, 1e6, "N/m", ""}, d.shear);
+  check_field("cloth.direct_springs.", {"skip", 0, 1e6, "N/m", ""}, d.skip);
+  check_field("cloth.direct_springs.", {"dashpot", 0, 1e3, "N s/m", ""}, d.dashpot);
+}
+
+}  // namespace weft

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+
+namespace weft {
+
+/// Builds a rectangular cloth of rows x columns particles as a model of one part; see build_cloth.
+/// The definition is valid already. Throws DefinitionError on "fabric.shear" if a spring would have
+/// negative stiffness.
+template <class Real>
+ClothModel<Real> build_grid_cloth(const ClothDef& def);
+
+/// Sets name, fabric and ranges of the one part of a model whose lists are complete.
+template <class Real>
+void complete_part(const ClothDef& def, ClothModel<Real>& model) {
+  const auto all = [](const auto& list) { return IndexRange{0, static_cast<Index>(list.size())}; };
+  ClothPart<Real>& part = model.parts.front();
+  part.name = def.name;
+  part.fabric = def.fabric;
+  part.particles = all(model.mass);
+  part.triangles = all(model.triangles);
+  part.edges = all(model.edges);
+  part.springs = all(model.springs);
+  part.hinges = all(model.hinges);
+}
+
+}  // namespace weft
