@@ -108,6 +108,18 @@ class CommandLine(unittest.TestCase):
             self.assertIn(key, result)
         self.assertGreater(result["stages"]["stretch"]["work"], 0)
 
+    def test_ten_seconds_of_the_default_scene_keep_out_of_ground_and_model(self):
+        result = json.loads(run("simulate", "--scene", "default", "--ticks", "600", "--json").stdout)
+        self.assertLessEqual(result["deepest_penetration"], 0.004)  # the thickness
+        self.assertGreaterEqual(result["penetration_checks"], 100)
+        self.assertEqual(result["divergences"], 0)
+        self.assertGreater(result["stages"]["contact"]["work"], 0)  # it was blown against the model
+        self.assertGreater(result["strain"]["largest"], result["strain"]["p99"])
+        self.assertGreater(result["strain"]["p99"], 0)
+        self.assertEqual(set(result["tick_milliseconds"]), {"median", "p95"})
+        energy = result["energy"]
+        self.assertAlmostEqual(sum(v for k, v in energy.items() if k != "total"), energy["total"], places=9)
+
     def test_simulate_gives_the_same_hash_for_any_number_of_threads(self):
         hashes = {json.loads(run("simulate", "--ticks", "60", "--json", "--threads", n).stdout)["hash"]
                   for n in ("1", "2", "3")}

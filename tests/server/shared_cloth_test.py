@@ -19,11 +19,15 @@ class SharedCloth(SocketTest):
         a, b = await self.viewer(), await self.viewer()
         await a.wait_frame(lambda f: f.tick >= b.frames[0].tick + 60 if b.frames else False)
         await b.wait_frame(lambda f: f.tick >= a.frames[-1].tick)
-        sums = {f.sequence: f.sums for f in a.frames}
+        sums = {f.sequence: (f.tick, f.sums) for f in a.frames}
         shared = [f for f in b.frames if f.sequence in sums]
-        self.assertGreater(len(shared), 10)
+        self.assertGreater(len({f.tick for f in shared}), 10)
         for frame in shared:
-            self.assertEqual(frame.sums, sums[frame.sequence])
+            self.assertEqual((frame.tick, frame.sums), sums[frame.sequence])
+        # And what the checksums stand for: the positions of a tick, in whatever frame they come.
+        places = {f.tick: f.position_bytes for f in a.frames}
+        for frame in b.frames:
+            self.assertEqual(frame.position_bytes, places.get(frame.tick, frame.position_bytes))
 
     async def test_a_drag_by_one_moves_the_cloth_for_both(self):
         a, b = await self.viewer(), await self.viewer()
@@ -162,6 +166,44 @@ class LockStep(SocketTest):
                              (10, answer["binary"]["transfer"], 600, 3))
             values = list(struct.iter_unpack("<3" + letter, data[40:40 + rows * struct.calcsize("3" + letter)]))
             self.assertEqual(values, frame.positions)
+
+    async def test_no_command_moves_a_vertex_while_ticks_stand_still(self):
+        a, b = await self.viewer(), await self.viewer()
+        await a.ask("advance", n=30)
+        before = await b.positions()
+        commands = [
+            ("drag", dict(phase="start", drag=1, particle=590, target=[9, 9, 9], radius=0.2,
+                          stiffness=100000, max_force=1000000)),
+            ("drag", dict(phase="move", drag=1, target=[-9, 0, 100])),
+            ("pin", dict(particle=300, radius=0.2)),
+            ("pick", dict(origin=[0, 1, 5], direction=[0, 0, -1])),
+            ("camera", dict(position=[0, 0, 1], target=[0, 0, 0])),
+            ("set", dict(gravity=[0, 1000, 0], wind=[100, 0, 0], drag=0)),
+            ("speed", dict(speed=10)),
+            ("release", dict(all=True)),
+            ("drag", dict(phase="end", drag=1)),
+            ("hello", dict(name="mover")),
+            ("view", dict(hz=60)),
+            ("pause", {}),
+        ]
+        for op, fields in commands:
+            self.assertEqual((await a.ask(op, **fields))["op"], "result", op)
+            self.assertEqual(await b.positions(), before, op)
+        await a.ask("advance", n=1)
+        self.assertNotEqual(await b.positions(), before)
+
+    async def test_energies_are_told_before_the_first_tick_and_after_each_change(self):
+        a = await self.viewer()
+        state = await a.wait_text(lambda m: m["op"] == "state")
+        self.assertEqual(state["tick"], 0)
+        energy = state["energy"]
+        self.assertGreater(energy["gravity"], 1)  # 0.2 kg more than a metre above the ground
+        self.assertEqual(energy["kinetic"], 0)
+        self.assertAlmostEqual(energy["total"], energy["gravity"], delta=1e-3)
+        self.assertEqual((await a.ask("query", what="energies"))["data"], energy)
+        await a.ask("set", gravity=[0, -19.62, 0])
+        doubled = (await a.ask("query", what="energies"))["data"]
+        self.assertAlmostEqual(doubled["gravity"] / energy["gravity"], 2, places=6)
 
     async def test_every_query_answers(self):
         a = await self.viewer()

@@ -87,29 +87,25 @@ TEST_CASE(
   test::advance(world, 0.5);  // throws if anything is wrong afterwards
 }
 
-TEST_CASE("an energy without a source is seen in the same tick and taken back") {
+TEST_CASE("an unstable substep is caught in its tick, repeated with more, and the run goes on") {
+  // A mass too small for the substep rule, put behind its back: a little, so that the energy grows
+  // without a source, and so much that the numbers overflow within the tick.
+  const auto [factor, cause] = GENERATE(table<float, DivergenceCause>(
+      {{20, DivergenceCause::energy_runaway}, {4000, DivergenceCause::not_finite}}));
   World<float> world(hung_cloth());
   test::advance(world, 0.2);
-  const ClothState<float> good = world.state();
-  world.state().x[37] += Vec3f(30, 0, 0);  // a force of kilonewtons from nowhere
-  world.state().v[37] += Vec3f(0, 1e6f, 0);
-  const TickReport& report = world.step();
-  if (report.divergence) CHECK(report.divergence->particle != kNone);
-  for (const Vec3f& p : world.state().x) CHECK(p.allFinite());
-}
-
-TEST_CASE("an unstable substep is caught, repeated with more substeps, and the run goes on") {
-  WorldDef def = hung_cloth();
-  World<float> world(def);
-  test::advance(world, 0.2);
-  // A mass a thousand times too small for the substep rule, put behind its back.
-  world.state().inverse_mass[65] *= 4000;
-  bool seen = false;
+  world.state().inverse_mass[65] *= factor;
+  int seen = 0;
   for (int tick = 0; tick < 60; ++tick) {
-    seen |= world.step().divergence.has_value();
+    const TickReport& report = world.step();
     for (const Vec3f& p : world.state().x) REQUIRE(p.norm() < 10);
+    if (!report.divergence) continue;
+    CHECK(report.divergence->tick == report.tick);
+    CHECK(report.divergence->particle != kNone);
+    seen += report.divergence->cause == cause ? 1 : 0;
   }
-  CHECK(seen);
+  INFO("factor " << factor);
+  CHECK(seen > 0);
 }
 
 TEST_CASE("a hard pull is no divergence") {

@@ -1,0 +1,61 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+// A whole cloth on a slope, by Coulomb's law: it sticks below the threshold tan = mu and slides
+// above.
+
+using namespace weft;
+
+namespace {
+
+constexpr double kGravity = 9.81, kFriction = 0.4;
+
+/// A cloth that lies on a slope of the given tangent. The ground is level and gravity leans
+/// instead, so that downhill is +x.
+template <class Real>
+World<Real> cloth_on_slope(double tangent) {
+  ClothDef cloth = test::flat_cloth(8, 10, 0.9, 0.7);
+  cloth.fabric.friction = kFriction;
+  cloth.origin = Vec3d(0, cloth.fabric.thickness, 0);
+  WorldDef def = test::empty_world(cloth);
+  const double angle = std::atan(tangent);
+  def.environment.gravity = kGravity * Vec3d(std::sin(angle), -std::cos(angle), 0);
+  def.colliders = {{"ground", PlaneDef{}}};
+  return World<Real>(def);
+}
+
+template <class Real>
+double largest_move(const World<Real>& world, const Vec3Array<Real>& from) {
+  double largest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    largest = std::max(largest, static_cast<double>((world.state().x[i] - from[i]).norm()));
+  return largest;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a cloth on a slope 3 % below the friction threshold moves by less than 1e-5 m",
+                   "", float, double) {
+  World<TestType> world = cloth_on_slope<TestType>(0.97 * kFriction);
+  const Vec3Array<TestType> start = world.state().x;
+  test::advance(world, 2.0);
+  CHECK(largest_move(world, start) < 1e-5);
+  CHECK(world.deepest_penetration() <= world.model().fabric.thickness);
+}
+
+TEMPLATE_TEST_CASE("a cloth on a slope above the threshold slides with g (sin - mu cos), to 1 %",
+                   "", float, double) {
+  const double tangent = GENERATE(1.1 * kFriction, 2 * kFriction);
+  World<TestType> world = cloth_on_slope<TestType>(tangent);
+  const Vec3d start = test::centre_of_mass(world);
+  test::advance(world, 1.0);
+  const Vec3d moved = test::centre_of_mass(world) - start;
+  const double angle = std::atan(tangent);
+  const double acceleration = kGravity * (std::sin(angle) - kFriction * std::cos(angle));
+  CHECK(moved[0] == Approx(acceleration / 2).epsilon(0.01));
+  CHECK(std::abs(moved[1]) < 1e-4);
+  CHECK(std::abs(moved[2]) < 1e-4);
+}
