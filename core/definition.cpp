@@ -1,5 +1,6 @@
 #include "core/definition.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -27,7 +28,36 @@ std::string number_text(double value) {
   return status == std::errc() ? std::string(buffer, stop) : std::string("?");
 }
 
+FieldInfo choice(const char* name, const char* words, const char* meaning) {
+  const std::string_view all = words;
+  const auto bars = std::count(all.begin(), all.end(), '|');
+  return {name, 0, static_cast<double>(bars), "", meaning, words};
+}
+
+std::string choice_word(const FieldInfo& info, int value) {
+  std::string_view rest = info.words;
+  for (int k = 0; k < value && !rest.empty(); ++k) {
+    const std::size_t bar = rest.find('|');
+    rest.remove_prefix(bar == std::string_view::npos ? rest.size() : bar + 1);
+  }
+  return std::string(rest.substr(0, rest.find('|')));
+}
+
+int parse_choice(const std::string& path, const FieldInfo& info, const std::string& text) {
+  for (int value = 0; value <= static_cast<int>(info.maximum); ++value) {
+    if (choice_word(info, value) == text) return value;
+  }
+  throw DefinitionError(path + info.name, text, allowed_values(info), info.meaning);
+}
+
 std::string allowed_values(const FieldInfo& info) {
+  if (info.words) {
+    std::string text;
+    const int last = static_cast<int>(info.maximum);
+    for (int value = 0; value <= last; ++value)
+      text += (value == 0 ? "" : value == last ? " or " : ", ") + choice_word(info, value);
+    return text;
+  }
   std::string text = number_text(info.minimum) + " to " + number_text(info.maximum);
   if (*info.unit) text += std::string(" ") + info.unit;
   return text;

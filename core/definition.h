@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 
 #include "core/types.h"
 
@@ -12,12 +13,20 @@ namespace weft {
 
 /// What is allowed for a field and how to speak of it. Both ends of a range are allowed.
 struct FieldInfo {
-  const char* name;     ///< as written in a key, e.g. "areal_density"
-  double minimum;       ///< smallest allowed value (of each component)
-  double maximum;       ///< largest allowed value (of each component)
-  const char* unit;     ///< e.g. "kg/m^2"; empty if it has none
-  const char* meaning;  ///< one clause for people
+  const char* name;             ///< as written in a key, e.g. "areal_density"
+  double minimum;               ///< smallest allowed value (of each component)
+  double maximum;               ///< largest allowed value (of each component)
+  const char* unit;             ///< e.g. "kg/m^2"; empty if it has none
+  const char* meaning;          ///< one clause for people
+  const char* words = nullptr;  ///< of a choice: the words for 0, 1, 2 ..., parted by '|'
 };
+
+/// A field that takes one of a few words, kept as an enumeration that counts from 0.
+/// @param words  e.g. "verlet|relaxation"
+FieldInfo choice(const char* name, const char* words, const char* meaning);
+
+/// The word for a value of a choice.
+std::string choice_word(const FieldInfo& info, int value);
 
 /// One number with a range. Throws DefinitionError if it is not finite or outside.
 /// @param path   where the field stands, e.g. "fabric." ; put before the name in the error
@@ -25,6 +34,11 @@ void check_field(const std::string& path, const FieldInfo& info, double value);
 void check_field(const std::string& path, const FieldInfo& info, int value);
 void check_field(const std::string& path, const FieldInfo& info, bool value);
 void check_field(const std::string& path, const FieldInfo& info, const Vec3d& value);
+template <class Enum>
+requires std::is_enum_v<Enum>
+void check_field(const std::string& path, const FieldInfo& info, Enum value) {
+  check_field(path, info, static_cast<int>(value));
+}
 
 /// Reads a value from text ("0.2", "12", "true", "0,-9.81,0") into a field and checks its range.
 /// Throws DefinitionError, with the field untouched, if the text does not fit.
@@ -36,8 +50,16 @@ void parse_field(const std::string& path, const FieldInfo& info, const std::stri
                  bool& value);
 void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
                  Vec3d& value);
+/// Number of the word in a choice.
+int parse_choice(const std::string& path, const FieldInfo& info, const std::string& text);
+template <class Enum>
+requires std::is_enum_v<Enum>
+void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
+                 Enum& value) {
+  value = static_cast<Enum>(parse_choice(path, info, text));
+}
 
-/// The allowed values in words, e.g. "0.001 to 10 kg/m^2".
+/// The allowed values in words, e.g. "0.001 to 10 kg/m^2" or "verlet or relaxation".
 std::string allowed_values(const FieldInfo& info);
 
 /// A number as short text that reads back to the same number.

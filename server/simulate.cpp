@@ -111,7 +111,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"deepest_penetration", m.deepest},
       {"penetration_checks", m.checks},
       {"hash", proto::hash_text(world.hash())},
-      {"solver", kVerletName},
+      {"solver", solver_name(world.def())},
       {"substeps", world.report().substeps},
       {"substeps_of_run", {m.least_substeps, m.most_substeps}},
       {"divergences", m.divergences}};

@@ -186,7 +186,7 @@ proto::State state_of(const ServedWorld& world) {
   state.still_air = environment.still_air;
   state.drag = environment.drag;
   state.fabric = "default";
-  state.solver = kVerletName;
+  state.solver = solver_name(world.def());
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());
   thread_local std::vector<float> scratch;

@@ -11,11 +11,16 @@
 
 namespace weft {
 
-/// Name of this solver, as reports give it.
-inline constexpr const char* kVerletName = "verlet";
+/// Which solver moves the cloth.
+enum class SolverKind {
+  automatic,   ///< the one of the world's model: verlet for weft, relaxation for the seed
+  verlet,      ///< springs as forces, leapfrog
+  relaxation,  ///< springs as constraints, swept over (relaxation.h)
+};
 
-/// Settings of the solver `verlet`.
+/// The choice of a solver, and the settings of `verlet`.
 struct SolverDef {
+  SolverKind kind = SolverKind::automatic;
   int min_substeps = 1;  ///< at least so many substeps a tick; the stability rule may ask for more
   int damping_sweeps = 1;  ///< 1: dashpots see the velocity half a substep ago (first order in the
                            ///< dashpot term); 2 and more: fixed-point sweeps, second order
@@ -24,7 +29,9 @@ struct SolverDef {
 /// Describes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_solver(Def& s, Visitor&& visit) {
-  visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps a tick"}, s.min_substeps);
+  visit(choice("kind", "automatic|verlet|relaxation", "automatic: by the model"), s.kind);
+  visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps a tick of verlet"},
+        s.min_substeps);
   visit(FieldInfo{"damping_sweeps", 1, 10, "", "fixed-point sweeps on the dashpots"},
         s.damping_sweeps);
 }

@@ -66,7 +66,10 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
   const std::size_t n = model_.mass.size();
-  workspace_.prepare(model_);
+  if (solver_of(def_) == SolverKind::verlet)
+    verlet_.prepare(model_);
+  else
+    relaxation_.prepare(model_);
   surroundings_.wind.resize(n);
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);
@@ -112,17 +115,21 @@ const TickReport& World<Real>::step() {
 
 template <class Real>
 int World<Real>::choose_substeps() const {
+  const int fewest = solver_of(def_) == SolverKind::relaxation ? def_.relaxation.substeps
+                                                               : def_.solver.min_substeps;
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
-    count = std::max(count,
-                     substeps_for(stability_bound(part), tick_seconds(), def_.solver.min_substeps));
+    count = std::max(count, substeps_for(stability_bound(part), tick_seconds(), fewest));
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 
 template <class Real>
 StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part) const {
-  StabilityBound bound{part.bounds.membrane_omega2 + part.bounds.bending_omega2,
-                       part.bounds.membrane_damping_rate + part.bounds.bending_damping_rate};
+  StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
+  if (solver_of(def_) == SolverKind::verlet) {  // there the springs are forces too
+    bound.omega2 += part.bounds.membrane_omega2;
+    bound.damping_rate += part.bounds.membrane_damping_rate;
+  }
   for (const Grab<Real>& grab : grabs_.list) {
     if (!part.triangles.contains(grab.def.triangle)) continue;
     bound.omega2 += grab.bound.omega2;
@@ -158,9 +165,7 @@ void World<Real>::blow_wind() {
 template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
   for (int attempt = 0;; ++attempt) {
-    const AdvanceResult result =
-        advance_verlet(model_, surroundings_, def_.solver, tick_seconds() / substeps, substeps,
-                       grabs_, contact_, state_, workspace_, report_.profile);
+    const AdvanceResult result = advance(substeps);
     const StageTimer timer(report_.profile, Stage::diagnostics, 1);
     const std::optional<Divergence> divergence = examine(result, substeps);
     report_.substeps = substeps;
@@ -186,6 +191,18 @@ void World<Real>::advance_or_recover(int substeps) {
   }
 }
 
+/// One tick of the chosen solver.
+template <class Real>
+AdvanceResult World<Real>::advance(int substeps) {
+  const double dt = tick_seconds() / substeps;
+  if (solver_of(def_) == SolverKind::verlet)
+    return advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, contact_,
+                          state_, verlet_, report_.profile);
+  return advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
+                            def_.colliders.empty() ? nullptr : &contact_, state_, relaxation_,
+                            report_.profile);
+}
+
 template <class Real>
 std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, int substeps) const {
   Divergence d;
@@ -193,7 +210,9 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, int 
   d.substeps = substeps;
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
-  if (finite && !account_.is_runaway(result)) return std::nullopt;
+  // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
+  if (finite && (solver_of(def_) == SolverKind::relaxation || !account_.is_runaway(result)))
+    return std::nullopt;
   d.cause = finite ? DivergenceCause::energy_runaway : DivergenceCause::not_finite;
   d.value = finite ? account_.unexplained(result) : result.after.total();
   Real fastest = -1;

@@ -8,6 +8,7 @@
 #include "core/attachments/pins.h"
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
+#include "core/solver/relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
 #include "core/world/energy_account.h"
@@ -121,6 +122,7 @@ class World {
   StabilityBound stability_bound(const ClothPart<Real>& part) const;
   void blow_wind();
   void advance_or_recover(int substeps);
+  AdvanceResult advance(int substeps);
   std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
   void restore_last_good();
   void finish_targets();
@@ -136,7 +138,8 @@ class World {
   Grabs<Real> grabs_;
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
-  VerletWorkspace<Real> workspace_;
+  VerletWorkspace<Real> verlet_;
+  RelaxationWorkspace<Real> relaxation_;
   EnergyAccount account_;
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;

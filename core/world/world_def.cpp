@@ -21,6 +21,15 @@ std::string text_of(const Vec3d& v) {
   return number_text(v[0]) + "," + number_text(v[1]) + "," + number_text(v[2]);
 }
 
+/// A field's value as people write it.
+template <class Value>
+std::string text_of(const FieldInfo& info, const Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    return choice_word(info, static_cast<int>(value));
+  else
+    return text_of(value);
+}
+
 /// Number of single-character changes between two words; finds the key that was meant.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -52,6 +61,15 @@ DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
 }
 
 }  // namespace
+
+SolverKind solver_of(const WorldDef& def) {
+  if (def.solver.kind != SolverKind::automatic) return def.solver.kind;
+  return def.model == Model::seed ? SolverKind::relaxation : SolverKind::verlet;
+}
+
+const char* solver_name(const WorldDef& def) {
+  return solver_of(def) == SolverKind::relaxation ? "relaxation" : "verlet";
+}
 
 void validate(const EnvironmentDef& def) {
   visit_fields_of_environment(def, [](const FieldInfo& info, const auto& value) {
@@ -86,8 +104,8 @@ std::vector<FieldListing> list_fields(const WorldDef& def) {
   std::vector<FieldListing> list;
   visit_fields(def, [&list](const std::string& path, const FieldInfo& info, const auto& value) {
     const bool flag = std::is_same_v<std::decay_t<decltype(value)>, bool>;
-    list.push_back({path + info.name, text_of(value), flag ? "true or false" : allowed_values(info),
-                    info.meaning});
+    list.push_back({path + info.name, text_of(info, value),
+                    flag ? "true or false" : allowed_values(info), info.meaning});
   });
   return list;
 }

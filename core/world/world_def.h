@@ -6,6 +6,7 @@
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_def.h"
 #include "core/contact/collider.h"
+#include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/environment.h"
 
@@ -13,13 +14,21 @@ namespace weft {
 
 inline constexpr std::size_t kMostCloths = 64;
 
+/// Which set of parts a world is made of, where it does not choose them one by one.
+enum class Model {
+  weft,  ///< the best we have
+  seed,  ///< that of H.-H. Cheng, "Interactive Cloth Simulation": the baseline to compare with
+};
+
 /// A scene: everything needed to start a world. Built-in scenes come from core/scenes.
 struct WorldDef {
   std::string name = "unnamed";
   std::string description;  ///< one sentence on what to look at
-  double tick_rate = 60;    ///< ticks a simulated second [1/s]
+  Model model = Model::weft;
+  double tick_rate = 60;  ///< ticks a simulated second [1/s]
   EnvironmentDef environment;
   SolverDef solver;
+  RelaxationDef relaxation;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;  ///< made at the start
@@ -31,14 +40,23 @@ void visit_fields(Def& def, Visitor&& visit) {
   const auto below = [&visit](const std::string& path) {
     return [&visit, path](const FieldInfo& info, auto& value) { visit(path, info, value); };
   };
+  below("")(choice("model", "weft|seed", "solver and contact, unless they are chosen by name"),
+            def.model);
   below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks a simulated second"}, def.tick_rate);
   visit_fields_of_environment(def.environment, below("environment."));
   visit_fields_of_solver(def.solver, below("solver."));
+  visit_fields_of_relaxation(def.relaxation, below("relaxation."));
   for (std::size_t k = 0; k < def.cloths.size(); ++k) {
     visit_fields_of_cloth(def.cloths[k], below(cloth_field(k, "cloth.")));
     visit_fields_of_fabric(def.cloths[k].fabric, below(cloth_field(k, "fabric.")));
   }
 }
+
+/// The solver that the definition asks for: verlet or relaxation.
+SolverKind solver_of(const WorldDef& def);
+
+/// Name of the solver, as reports give it.
+const char* solver_name(const WorldDef& def);
 
 /// Checks all ranges and combinations that need no model. Throws DefinitionError.
 void validate(const WorldDef& def);
