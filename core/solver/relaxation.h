@@ -46,8 +46,8 @@ struct RelaxationWorkspace {
 /// where x - x_before = v dt and f holds gravity, air, hands and bending, and then sweeps over all
 /// springs (Provot 1995), moving both ends of each by half of what it is too long or too short;
 /// a pinned end leaves all of it to the other, and unequal masses share it inversely. Sweeps run
-/// forwards and backwards in turn: in one direction alone they carry errors along the grid and a
-/// fine one never comes to rest. At last v = (x' - x) / dt.
+/// forwards and backwards in turn, so that no end of the cloth is favoured by its numbers. At last
+/// v = (x' - x) / dt.
 ///
 /// With compliance the same sweeps are XPBD (Macklin, Mueller, Chentanez 2016): a spring of
 /// stiffness k gives way with compliance/k.
