@@ -39,6 +39,10 @@ struct Chain {
       model.springs.push_back({i, i + 1, 1.0, stiffness, 0.0});
       model.spring_kinds.push_back(SpringKind::warp);
     }
+    const auto count = static_cast<Index>(places.size());
+    model.parts[0].particles = {0, count};
+    model.parts[0].springs = {0, count - 1};
+    model.parts[0].triangles = {};
     solver.damping = 0;
   }
   void advance(double dt) {
