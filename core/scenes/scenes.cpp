@@ -30,14 +30,15 @@ void build_default(WorldDef& def) {
   def.cloths[0].columns = 30;
   def.cloths[0].width = 1.45;
   def.cloths[0].height = 0.95;
-  def.cloths[0].origin = Vec3d(-0.475, 1.85, 0.3);
+  // Behind the form, so that the form is seen and the cloth reaches round it.
+  def.cloths[0].origin = Vec3d(-0.475, 1.85, -0.28);
   def.cloths[0].u = -Vec3d::UnitY();
   def.cloths[0].v = Vec3d::UnitX();
   def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = 250;
   def.cloths[0].fabric.shear = 25;
   for (const Index row : {0, 1, 2, 17, 18, 19}) def.pins.push_back({row * 30, 0});
   def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
-  def.environment.wind = Vec3d(0.3, 0, -1.6);
+  def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
   def.environment.drag = 0.1;
 }
@@ -87,9 +88,8 @@ struct Entry {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> list = {
       {{"default",
-        "A cloth hung by six particles is blown against a dressmaker's form: watch it wrap the "
-        "bust "
-        "and slide off again."},
+        "A cloth hung by six particles is blown from behind against a dressmaker's form: watch it "
+        "wrap the back and reach round the hips."},
        build_default},
       {{"curtain", "A curtain on nine rings sways in gusts: pull its hem and let it swing."},
        build_curtain},
