@@ -10,7 +10,7 @@ import {
   until,
 } from './support/browser.mjs';
 import { start_server } from './support/server.mjs';
-import { cloth_on_canvas, overlap, projected_cloth } from './support/silhouette.mjs';
+import { brightness_at, cloth_on_canvas, overlap, projected_cloth } from './support/silhouette.mjs';
 
 const CALM = ['--set', 'environment.wind=0,0,0', '--set', 'environment.gust_speed=0'];
 const COLUMNS = 30; // of the default scene's grid
@@ -52,7 +52,7 @@ async function particle_pixel(page, particle) {
 }
 
 /** A particle near the middle of the cloth, and the mouse upon it. */
-async function point_at_cloth(page, particle = 12 * COLUMNS + 14) {
+async function point_at_cloth(page, particle = 4 * COLUMNS + 14) {
   await camera_at_rest(page);
   await until(async () => {
     const { x, y } = await particle_pixel(page, particle);
@@ -186,7 +186,8 @@ test('beside the cloth the mouse moves the camera and nothing else', bounded, ()
       for (const key of keys) await page.keyboard.up(key);
       return camera_at_rest(page);
     };
-    const rotation = ({ view }) => [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => view[i]);
+    const rotation = ({ view }) =>
+      [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => Math.round(view[i] * 1e9) + 0);
     const orbited = await sweep('left');
     assert.notDeepEqual(rotation(orbited), rotation(home));
     const panned = await sweep('right');
@@ -219,7 +220,7 @@ test('two pages see each other’s hands, with names and colours', bounded, () =
       assert.equal(seen.color, color('Ada'));
       assert.equal(seen.own, false);
       assert.equal(await ben.locator('.name').textContent(), 'Ada');
-      await point_at_cloth(ben, 4 * COLUMNS + 24);
+      await point_at_cloth(ben, 18 * COLUMNS + 8);
       await ben.mouse.down();
       await until(() => of(ada, 'Ben'), 'Ada sees the hand of Ben');
       assert.equal(script.last.grabs.length, 2);
@@ -305,7 +306,7 @@ test('one finger takes the cloth or turns, two shift and zoom, a long press pins
         type,
         touchPoints: points.map(([x, y], id) => ({ x, y, id })),
       });
-    const particle = 12 * COLUMNS + 14;
+    const particle = 4 * COLUMNS + 14;
     const home = await camera_at_rest(page);
     const height = (await position(script, particle))[1];
     const first = await particle_pixel(page, particle);
@@ -399,3 +400,36 @@ test('another scene is shown when one is chosen, and R starts it anew', bounded,
     await until(async () => (await read(page, 'scene')) === 'default');
   }),
 );
+
+test('who joins a paused room of another scene reads its name in the list', bounded, async () => {
+  const paused = await start_server(['--scene', 'wall', '--paused']);
+  const page = await open_page(browser, paused.url);
+  try {
+    const list = page.getByRole('combobox', { name: 'Scene' });
+    await until(async () => (await list.locator('option').count()) > 1, 'the list has come');
+    assert.equal(await list.inputValue(), 'wall');
+  } finally {
+    await page.context().close();
+    await paused.stop();
+  }
+});
+
+test('a cloth lies in the light, whichever of its sides is turned to it', bounded, async () => {
+  const brightness = [];
+  for (const [origin, u] of [['-0.5,1.6,0.15', '1,0,0'], ['0.5,1.6,0.15', '-1,0,0']]) {
+    const options = ['--set', `cloth.origin=${origin}`, '--set', `cloth.u=${u}`];
+    const wall = await start_server(['--scene', 'wall', '--paused', ...options]);
+    const page = await open_page(browser, wall.url);
+    try {
+      await camera_at_rest(page);
+      await until(() => read(page, 'fine'));
+      brightness.push(await brightness_at(page, await pixel_of(page, [0, 1.1, 0.15])));
+    } finally {
+      await page.context().close();
+      await wall.stop();
+    }
+  }
+  // The left side is a paler dye by itself.
+  const ratio = brightness[0] / brightness[1];
+  assert.ok(ratio > 0.8 && ratio < 1.25, `${brightness}`);
+});

@@ -9,6 +9,8 @@ const FARTHEST = 30; // [m]
 const LEAST_HEIGHT = 0.04; // above the ground [m]
 const HIGHEST_ELEVATION = 1.5; // [rad]
 
+const FRAME_MARGIN = 1.05; // by which a framed box is smaller than the view
+
 interface Pose {
   target: Vector3;
   distance: number;
@@ -18,6 +20,19 @@ interface Pose {
 
 function copy_pose(pose: Pose): Pose {
   return { ...pose, target: pose.target.clone() };
+}
+
+/** Unit vectors to the right, up and back of who looks. */
+function axes_of({ azimuth, elevation }: Pose) {
+  const level = Math.cos(elevation);
+  const back = new Vector3(Math.sin(azimuth) * level, Math.sin(elevation), Math.cos(azimuth) * level);
+  const right = new Vector3(Math.cos(azimuth), 0, -Math.sin(azimuth));
+  return { right, up: back.clone().cross(right), back };
+}
+
+function corners_of({ min, max }: Box3): Vector3[] {
+  const pick = (bits: number, bit: number) => ((bits >> bit) & 1 ? max : min);
+  return Array.from({ length: 8 }, (_, k) => new Vector3(pick(k, 0).x, pick(k, 1).y, pick(k, 2).z));
 }
 
 /** Looks at a target from around it; what is asked for is reached smoothly. */
@@ -55,20 +70,32 @@ export class OrbitCamera {
   }
 
   /**
-   * Brings a box into the picture.
+   * Brings a box into the picture: as near as possible with all of its corners in view.
    * @param covered parts of the view's height that panels cover at its ends
    */
   frame(box: Box3, covered: { above: number; below: number }, at_once: boolean): void {
     const { wanted } = this;
-    const size = box.getSize(new Vector3());
-    const tangent = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    const visible = Math.max(0.3, 1 - covered.above - covered.below);
-    const width = Math.hypot(size.x, size.z) / this.camera.aspect;
-    const extent = Math.max(size.y / visible, width * 0.92);
-    wanted.distance = (1.06 * extent) / (2 * tangent) + Math.min(size.x, size.z) * 0.5;
-    wanted.distance = Math.min(FARTHEST, Math.max(NEAREST, wanted.distance));
-    box.getCenter(wanted.target);
-    wanted.target.y -= (covered.below - covered.above) * wanted.distance * tangent;
+    const up_slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / FRAME_MARGIN;
+    const side_slope = up_slope * this.camera.aspect;
+    const [lowest, highest] = [2 * covered.below - 1, 1 - 2 * covered.above];
+    const { right, up, back } = axes_of(wanted);
+    const center = box.getCenter(new Vector3());
+    // From a distance d, a corner at a right, b up and c back of the centre is in view if
+    // |a| <= side_slope (d - c) and lowest <= (b - shift) / up_slope (d - c) <= highest.
+    let across = 0;
+    let least = Infinity;
+    let most = -Infinity;
+    for (const corner of corners_of(box)) {
+      corner.sub(center);
+      const [a, b, c] = [corner.dot(right), corner.dot(up), corner.dot(back)];
+      across = Math.max(across, Math.abs(a) / side_slope + c);
+      least = Math.min(least, b + lowest * up_slope * c);
+      most = Math.max(most, b + highest * up_slope * c);
+    }
+    const along = (most - least) / ((highest - lowest) * up_slope);
+    wanted.distance = Math.min(FARTHEST, Math.max(NEAREST, across, along));
+    const shift = (most + least - (highest + lowest) * up_slope * wanted.distance) / 2;
+    wanted.target.copy(center).addScaledVector(up, shift);
     this.limit();
     if (at_once) this.present = copy_pose(wanted);
   }

@@ -36,13 +36,23 @@ export function fabric_material(width: number, height: number): MeshPhysicalMate
   material.onBeforeCompile = (shader) => {
     shader.uniforms.hem = { value: new Vector2(HEM / width, HEM / height) };
     shader.vertexShader = shader.vertexShader
-      .replace('void main() {', 'varying vec2 fabric_place;\nvoid main() {\nfabric_place = uv;');
+      .replace('void main() {', 'varying vec2 fabric_place;\nvoid main() {\nfabric_place = uv;')
+      .replace('#include <shadowmap_vertex>', SHADOW_OF_BOTH_SIDES);
     shader.fragmentShader = shader.fragmentShader
       .replace('void main() {', 'uniform vec2 hem;\nvarying vec2 fabric_place;\nvoid main() {')
       .replace('#include <color_fragment>', HEM_SHADE);
   };
   return material;
 }
+
+/**
+ * The shadow is looked up a little in front of the surface. In front is the side that is seen, which
+ * may be the left side of the cloth; looked up behind it, the cloth would lie in its own shadow.
+ */
+const SHADOW_OF_BOTH_SIDES = `
+  transformedNormal = faceforward(transformedNormal, mvPosition.xyz, transformedNormal);
+  #include <shadowmap_vertex>
+`;
 
 /** A hem a little darker than the cloth, with the line of its seam; the left side is paler. */
 const HEM_SHADE = `

@@ -21,7 +21,7 @@ export class Objects {
   readonly group = new Group();
   /** Height of the ground [m], or null if there is none. */
   readonly ground: number | null = null;
-  private material = new MeshStandardMaterial({ color: '#d9d2c6', roughness: 0.72 });
+  private material = new MeshStandardMaterial({ color: '#c9bda9', roughness: 0.8 });
   private caster = new Raycaster();
 
   /**

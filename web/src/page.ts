@@ -49,6 +49,7 @@ export class Page {
   private camera_told_at = 0;
   private camera_moved = true;
   private dirty = true;
+  private unframed = false; // a scene of which no frame was shown yet
   private drawn_last_time = false;
   private changed_at = 0;
   /** Latency of a frame that came and is not drawn yet. */
@@ -94,7 +95,10 @@ export class Page {
       this.world?.dispose();
       this.world = new WorldView(announcement, data, this.stage);
       this.grabs = [];
-      if (!same) this.frame(true);
+      if (!same) {
+        this.frame(true);
+        this.unframed = true;
+      }
       this.dirty = true;
     });
     client.on('frame', (frame) => this.receive(frame));
@@ -214,6 +218,11 @@ export class Page {
 
   // ---- the picture --------------------------------------------------------------------------
 
+  /** Whether the picture on the screen is up to date and as fine as it gets. */
+  get fine(): boolean {
+    return this.stage.at_rest && !this.dirty;
+  }
+
   private size(): { width: number; height: number } {
     return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
   }
@@ -231,7 +240,12 @@ export class Page {
     const elapsed = Math.min(0.1, now - this.last_time);
     this.last_time = now;
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
-    if (this.world?.show(now, this.hold !== null)) this.dirty = true;
+    if (this.world?.show(now, this.hold !== null)) {
+      this.dirty = true;
+      // Who joins late finds the cloth elsewhere than at its start.
+      if (this.unframed) this.frame(true);
+      this.unframed = false;
+    }
     this.tell_camera(now);
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;

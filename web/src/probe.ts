@@ -51,6 +51,10 @@ export function expose_probe(page: Page): void {
     get pictures() {
       return page.pictures;
     },
+    /** Whether the picture is drawn as finely as it can be, as it is where nothing changes. */
+    get fine() {
+      return page.fine;
+    },
   };
   Object.defineProperty(window, 'weft', { value: Object.freeze(probe) });
 }

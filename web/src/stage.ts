@@ -36,7 +36,7 @@ export class Stage {
   private coarseness = 1;
   private still = false;
   private slow_pictures = 0;
-  private sun = new DirectionalLight('#fff4e6', 2.3);
+  private sun = new DirectionalLight('#fff4e6', 2.4);
 
   constructor(canvas: HTMLCanvasElement) {
     // Multisampling costs software renderers more than they can give, and leaves cracks there.
@@ -45,9 +45,9 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.environment = soft_boxes(this.renderer);
-    this.scene.environmentIntensity = 0.75;
+    this.scene.environmentIntensity = 0.7;
     this.scene.add(dome(), this.sun, this.sun.target);
-    this.scene.add(new HemisphereLight('#ffffff', '#d8d0c4', 0.9));
+    this.scene.add(new HemisphereLight('#ffffff', '#cfc4b4', 0.45));
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 3.5;
@@ -76,6 +76,11 @@ export class Stage {
   resize(width: number, height: number): void {
     this.renderer.setPixelRatio(this.pixel_ratio());
     this.renderer.setSize(width, height, false);
+  }
+
+  /** Whether it was told that the picture stands still. */
+  get at_rest(): boolean {
+    return this.still;
   }
 
   /**

@@ -15,6 +15,7 @@ export class Toolbar {
   private wind: VectorSlider;
   private gravity: VectorSlider;
   private paused = false;
+  private shown_scene = '';
 
   /** @param tell shows a sentence to the user */
   constructor(
@@ -78,6 +79,7 @@ export class Toolbar {
   }
 
   private choose(scene: string): void {
+    this.shown_scene = scene;
     if (this.scene.value === scene) return;
     if (![...this.scene.options].some(({ value }) => value === scene)) {
       this.scene.add(new Option(scene, scene));
@@ -86,7 +88,6 @@ export class Toolbar {
   }
 
   private async list_scenes(): Promise<void> {
-    const chosen = this.scene.value;
     try {
       const response = await fetch('api/v1/scenes');
       if (!response.ok) return;
@@ -99,7 +100,8 @@ export class Toolbar {
         return option;
       });
       this.scene.replaceChildren(...options);
-      if (chosen) this.choose(chosen);
+      // The state may have come while the list was under way.
+      if (this.shown_scene) this.choose(this.shown_scene);
     } catch {
       // The connection was lost again; its return asks anew.
     }

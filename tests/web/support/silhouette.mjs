@@ -1,10 +1,7 @@
 import { project } from './browser.mjs';
 
-/**
- * Pixels of the page's picture that show the cloth. It is the one thing in the studio with a strong
- * colour; panels are hidden for the picture.
- */
-export async function cloth_on_canvas(page) {
+/** The page's picture, without panels: its size and four bytes a pixel. */
+async function picture_of(page) {
   const show_panels = (visibility) =>
     page.evaluate((value) => {
       for (const panel of document.querySelectorAll('body > :not(main), #labels')) {
@@ -15,23 +12,45 @@ export async function cloth_on_canvas(page) {
   const png = (await page.screenshot()).toString('base64');
   await show_panels('');
   const blank = await page.context().newPage();
-  const text = await blank.evaluate(async (base64) => {
+  const picture = await blank.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
     const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
     const canvas = new OffscreenCanvas(image.width, image.height);
     const context = canvas.getContext('2d');
     context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    let mask = '';
-    for (let i = 0; i < data.length; i += 4) {
-      const most = Math.max(data[i], data[i + 1], data[i + 2]);
-      const least = Math.min(data[i], data[i + 1], data[i + 2]);
-      mask += (most - least) / most > 0.45 ? '1' : '0';
+    const { data, width, height } = context.getImageData(0, 0, image.width, image.height);
+    let text = '';
+    for (let i = 0; i < data.length; i += 0x8000) {
+      text += String.fromCharCode(...data.subarray(i, i + 0x8000));
     }
-    return mask;
+    return { width, height, text: btoa(text) };
   }, png);
   await blank.close();
-  return Uint8Array.from(text, Number);
+  return { ...picture, data: Buffer.from(picture.text, 'base64') };
+}
+
+/** Pixels of the page's picture that show the cloth: the one thing in the studio of a strong colour. */
+export async function cloth_on_canvas(page) {
+  const { data } = await picture_of(page);
+  return Uint8Array.from({ length: data.length / 4 }, (_, pixel) => {
+    const color = data.subarray(pixel * 4, pixel * 4 + 3);
+    const most = Math.max(...color);
+    return (most - Math.min(...color)) / most > 0.45 ? 1 : 0;
+  });
+}
+
+/** Mean of the colour's parts, 0 to 255, around a pixel. */
+export async function brightness_at(page, { x, y }, reach = 4) {
+  const { data, width } = await picture_of(page);
+  let sum = 0;
+  let count = 0;
+  for (let row = Math.round(y) - reach; row <= Math.round(y) + reach; row++) {
+    for (let column = Math.round(x) - reach; column <= Math.round(x) + reach; column++) {
+      for (let part = 0; part < 3; part++) sum += data[(row * width + column) * 4 + part];
+      count += 3;
+    }
+  }
+  return sum / count;
 }
 
 /**
