@@ -34,3 +34,14 @@ export function smooth_normals(
     normals[i + 2] /= length;
   }
 }
+
+/** Positions moved inwards along the smooth normals by a distance [m]. */
+export function inner_offset(
+  positions: Float32Array,
+  triangles: Uint32Array,
+  distance: number,
+): Float32Array {
+  const normals = new Float32Array(positions.length);
+  smooth_normals(positions, triangles, normals);
+  return positions.map((value, i) => value - normals[i] * distance);
+}

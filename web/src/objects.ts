@@ -11,7 +11,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import { smooth_normals } from './normals.js';
+import { inner_offset } from './normals.js';
 import type { Collider, MeshData, Vec3 } from '../../proto/js/messages.js';
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
@@ -95,13 +95,6 @@ function place_object(mesh: Mesh, collider: Collider): void {
   const axis = new Vector3(...collider.b).sub(a);
   mesh.position.copy(a).addScaledVector(axis, 0.5);
   mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
-}
-
-/** Positions moved inwards along the smooth normals by a distance [m]. */
-function inner_offset(positions: Float32Array, triangles: Uint32Array, distance: number) {
-  const normals = new Float32Array(positions.length);
-  smooth_normals(positions, triangles, normals);
-  return positions.map((value, i) => value - normals[i] * distance);
 }
 
 /** Smooth where faces meet at small angles, sharp at edges; corners get normals of their own. */

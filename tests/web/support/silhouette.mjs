@@ -98,13 +98,32 @@ function fill_triangle([a, b, c], { width, height }, depth, mask, value) {
   }
 }
 
-/** Common pixels of two masks, as a part of those in either. */
-export function overlap(a, b) {
-  let both = 0;
-  let either = 0;
-  for (let i = 0; i < a.length; i++) {
-    both += a[i] & b[i];
-    either += a[i] | b[i];
+/**
+ * Compares what is seen with what is expected.
+ * @returns overlap: common pixels as a part of those in either; area and outline: pixels of what is
+ *     expected, all and those at its edge; differing: pixels in one alone, and inside: those of them
+ *     that are farther than two pixels from the edge
+ */
+export function compare(seen, expected, width) {
+  const on_edge = (pixel, reach) => {
+    for (let row = -reach; row <= reach; row++) {
+      for (let column = -reach; column <= reach; column++) {
+        const other = expected[pixel + row * width + column] ?? 0;
+        if (other !== expected[pixel]) return true;
+      }
+    }
+    return false;
+  };
+  const found = { both: 0, either: 0, area: 0, outline: 0, differing: 0, inside: 0 };
+  for (let pixel = 0; pixel < expected.length; pixel++) {
+    if (!(seen[pixel] | expected[pixel])) continue;
+    found.either += 1;
+    found.both += seen[pixel] & expected[pixel];
+    found.area += expected[pixel];
+    if (expected[pixel] && on_edge(pixel, 1)) found.outline += 1;
+    if (seen[pixel] === expected[pixel]) continue;
+    found.differing += 1;
+    if (!on_edge(pixel, 2)) found.inside += 1;
   }
-  return both / either;
+  return { ...found, overlap: found.both / found.either };
 }
