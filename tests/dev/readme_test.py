@@ -1,0 +1,78 @@
+"""The commands and the script of README.md work as they are written there."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(os.environ["WEFT_SOURCE_DIR"])
+PROGRAM = os.environ["WEFT_PROGRAM"]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+USAGE = subprocess.run([ROOT / "dev", "help"], capture_output=True, text=True, check=True).stdout
+
+
+def blocks(language):
+    """The fenced blocks of a language; "" for those that name none."""
+    pairs = re.findall(r"^```(\w*)\n(.*?)^```\n", README, re.MULTILINE | re.DOTALL)
+    return [text for name, text in pairs if name == language]
+
+
+class Readme(unittest.TestCase):
+    def test_each_command_of_the_program_works(self):
+        commands = [line for block in blocks("") for line in block.splitlines()
+                    if line.startswith("build/weft ")]
+        self.assertGreaterEqual(len(commands), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            for command in commands:
+                with self.subTest(command=command):
+                    arguments = command.split()[1:]
+                    if arguments[0] == "serve":
+                        arguments += ["--max-seconds", "1"]
+                    result = subprocess.run([PROGRAM, *arguments], cwd=folder, timeout=120,
+                                            capture_output=True, text=True)
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertTrue(result.stdout)
+                    if "--json" in arguments:
+                        json.loads(result.stdout)
+                    if "--out" in arguments:
+                        out = Path(folder, arguments[arguments.index("--out") + 1])
+                        self.assertGreater(out.stat().st_size, 1000)
+
+    def test_the_script_works(self):
+        (script,) = blocks("python")
+        server = subprocess.Popen([PROGRAM, "serve", "--port", "0", "--max-seconds", "100"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        try:
+            address = json.loads(server.stdout.readline())["websocket"]
+            self.assertEqual(script.count("ws://127.0.0.1:8080/ws"), 1)
+            script = script.replace("ws://127.0.0.1:8080/ws", address)
+            result = subprocess.run([sys.executable, "-B", "-c", script], cwd=ROOT, timeout=60,
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("'tick': 60", result.stdout)
+        finally:
+            server.terminate()
+            server.wait(timeout=20)
+            server.stdout.close()
+
+    def test_each_command_of_dev_is_one_that_it_has(self):
+        words = re.findall(r"\./dev ([a-z]+)", README)
+        self.assertIn("run", words)
+        self.assertIn("test", words)
+        for word in words:
+            self.assertTrue(word == "help" or re.search(rf"^  {word}\b", USAGE, re.MULTILINE), word)
+
+    def test_every_file_that_it_names_is_there(self):
+        names = re.findall(r"`((?:core|proto|server|web|tests)/[\w./]*)`", README)
+        names += re.findall(r"\]\(([\w./]+)\)", README)
+        self.assertGreater(len(names), 5)
+        for name in names:
+            self.assertTrue((ROOT / name).exists(), name)
+
+
+if __name__ == "__main__":
+    unittest.main()
