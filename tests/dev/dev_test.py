@@ -200,8 +200,8 @@ class DevScript(unittest.TestCase):
         (self.machine / "bin" / "git").symlink_to("/bin/true")
         status, out, _ = self.dev("test", "--full")
         self.assertEqual(status, 1)
-        self.assertEqual(len(self.calls("ctest")), 5)
-        self.assertEqual(out.splitlines()[-1], "steps: 2 passed, 5 failed")
+        self.assertEqual(len(self.calls("ctest")), 6)
+        self.assertEqual(out.splitlines()[-1], "steps: 2 passed, 6 failed")
 
     def test_a_second_build_is_not_configured_again_unless_the_tree_moved(self):
         self.dev("build")
