@@ -19,12 +19,12 @@ namespace {
 
 using Pairs = std::set<std::array<Index, 2>>;
 
-template <class Real, std::size_t n>
+template <class Real, std::size_t Corners>
 std::vector<Aabb<Real>> boxes_around(const Vec3Array<Real>& x,
-                                     const std::vector<std::array<Index, n>>& primitives,
+                                     const std::vector<std::array<Index, Corners>>& primitives,
                                      Real margin) {
   std::vector<Aabb<Real>> boxes;
-  for (const std::array<Index, n>& p : primitives) {
+  for (const std::array<Index, Corners>& p : primitives) {
     Aabb<Real> box;
     for (const Index v : p) box.add(x[static_cast<std::size_t>(v)]);
     boxes.push_back(box.grown(margin));
