@@ -16,7 +16,7 @@ struct Tick {
   const RelaxationDef& solver;
   Real dt;
   Grabs<Real>& grabs;
-  Contact<Real>* contact;
+  const Collision<Real>& collision;
   ClothState<Real>& state;
   RelaxationWorkspace<Real>& work;
   Profile& profile;
@@ -118,12 +118,13 @@ void move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
   for (std::size_t i = 0; i < state.x.size(); ++i)
     state.v[i] = (tick.work.wanted[i] - state.x[i]) / tick.dt;
-  if (!tick.contact) {
+  if (tick.collision.empty()) {
     std::swap(state.x, tick.work.wanted);
     return;
   }
-  tick.contact->resolve(state, tick.dt, tick.profile);
+  tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;
+  tick.collision.after_drift(state, tick.dt, tick.profile);
 }
 
 /// Work of the external forces over the last move [J].
@@ -155,10 +156,10 @@ template <class Real>
 AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                                  const Surroundings<Real>& surroundings,
                                  const RelaxationDef& solver, double dt, int substeps,
-                                 Grabs<Real>& grabs, Contact<Real>* contact,
+                                 Grabs<Real>& grabs, const Collision<Real>& collision,
                                  ClothState<Real>& state, RelaxationWorkspace<Real>& work,
                                  Profile& profile) {
-  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, contact,
+  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
                   state, work,         profile};
   AdvanceResult result;
   result.before = timed_energies(tick).energies;
@@ -175,11 +176,12 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
   return result;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                               \
-  template struct RelaxationWorkspace<Real>;                                                 \
-  template AdvanceResult advance_relaxation(                                                 \
-      const ClothModel<Real>&, const Surroundings<Real>&, const RelaxationDef&, double, int, \
-      Grabs<Real>&, Contact<Real>*, ClothState<Real>&, RelaxationWorkspace<Real>&, Profile&);
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template struct RelaxationWorkspace<Real>;                                                    \
+  template AdvanceResult advance_relaxation(const ClothModel<Real>&, const Surroundings<Real>&, \
+                                            const RelaxationDef&, double, int, Grabs<Real>&,    \
+                                            const Collision<Real>&, ClothState<Real>&,          \
+                                            RelaxationWorkspace<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -3,7 +3,7 @@
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/contact.h"
+#include "core/contact/collision.h"
 #include "core/definition.h"
 #include "core/solver/verlet.h"
 #include "core/world/profile.h"
@@ -58,7 +58,7 @@ template <class Real>
 AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                                  const Surroundings<Real>& surroundings,
                                  const RelaxationDef& solver, double dt, int substeps,
-                                 Grabs<Real>& grabs, Contact<Real>* contact,
+                                 Grabs<Real>& grabs, const Collision<Real>& collision,
                                  ClothState<Real>& state, RelaxationWorkspace<Real>& work,
                                  Profile& profile);
 

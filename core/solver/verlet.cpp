@@ -34,7 +34,7 @@ struct Tick {
   const SolverDef& solver;
   Real dt;
   Grabs<Real>& grabs;
-  Contact<Real>& contact;
+  const Collision<Real>& collision;
   ClothState<Real>& state;
   VerletWorkspace<Real>& work;
   Profile& profile;
@@ -194,9 +194,9 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model) {
 template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
-                             Contact<Real>& contact, ClothState<Real>& state,
+                             const Collision<Real>& collision, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile) {
-  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, contact,
+  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
                   state, work,         profile};
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air) {
@@ -209,14 +209,15 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   evaluate_forces(tick, Real(0), state.v);
   kick(tick, kicks.opening, state.v, state.v);
   for (int s = 0; s < substeps; ++s) {
-    contact.resolve(state, tick.dt, profile);
+    collision.before_drift(state, tick.dt, profile);
     result.work += external_work(tick);
     drift(tick);
+    collision.after_drift(state, tick.dt, profile);
     const bool last = s + 1 == substeps;
     const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
     swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
   }
-  contact.settle(state, tick.dt, profile);
+  collision.settle(state, tick.dt, profile);
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;
   result.largest_strain = end.largest_strain;
@@ -227,7 +228,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   template struct VerletWorkspace<Real>;                                                 \
   template AdvanceResult advance_verlet(                                                 \
       const ClothModel<Real>&, const Surroundings<Real>&, const SolverDef&, double, int, \
-      Grabs<Real>&, Contact<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, Profile&);
+      Grabs<Real>&, const Collision<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

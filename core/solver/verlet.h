@@ -3,7 +3,7 @@
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/contact.h"
+#include "core/contact/collision.h"
 #include "core/definition.h"
 #include "core/diagnostics/energies.h"
 #include "core/forces/grid_pass.h"
@@ -68,14 +68,15 @@ struct VerletWorkspace {
 /// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions
 /// and velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet
 /// loses float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 +
-/// a dt/2). Contact corrects the velocities between each kick and drift.
+/// a dt/2). Contact corrects the velocities between each kick and drift, the
+/// seed's also positions after it.
 ///
 /// @param dt        substep [s], stable by substep_rule.h
 /// @param substeps  at least 1
 template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
-                             Contact<Real>& contact, ClothState<Real>& state,
+                             const Collision<Real>& collision, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile);
 
 }  // namespace weft

@@ -66,6 +66,10 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
   const std::size_t n = model_.mass.size();
+  const bool something_to_meet =
+      !def_.colliders.empty() || def_.contact.seed.self != SelfContact::none;
+  if (contact_of(def_) == ContactModel::seed && something_to_meet)
+    seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
   if (solver_of(def_) == SolverKind::verlet)
     verlet_.prepare(model_);
   else
@@ -191,16 +195,23 @@ void World<Real>::advance_or_recover(int substeps) {
   }
 }
 
+/// The contact that was chosen; none where there is nothing to meet.
+template <class Real>
+Collision<Real> World<Real>::collision() {
+  if (seed_contact_) return {nullptr, &*seed_contact_};
+  const bool weft = contact_of(def_) == ContactModel::weft && !def_.colliders.empty();
+  return {weft ? &contact_ : nullptr, nullptr};
+}
+
 /// One tick of the chosen solver.
 template <class Real>
 AdvanceResult World<Real>::advance(int substeps) {
   const double dt = tick_seconds() / substeps;
   if (solver_of(def_) == SolverKind::verlet)
-    return advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, contact_,
+    return advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
                           state_, verlet_, report_.profile);
   return advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
-                            def_.colliders.empty() ? nullptr : &contact_, state_, relaxation_,
-                            report_.profile);
+                            collision(), state_, relaxation_, report_.profile);
 }
 
 template <class Real>

@@ -123,6 +123,7 @@ class World {
   void blow_wind();
   void advance_or_recover(int substeps);
   AdvanceResult advance(int substeps);
+  Collision<Real> collision();
   std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
   void restore_last_good();
   void finish_targets();
@@ -138,6 +139,7 @@ class World {
   Grabs<Real> grabs_;
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
+  std::optional<SeedContact<Real>> seed_contact_;  ///< if it was chosen
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   EnergyAccount account_;

@@ -67,6 +67,11 @@ SolverKind solver_of(const WorldDef& def) {
   return def.model == Model::seed ? SolverKind::relaxation : SolverKind::verlet;
 }
 
+ContactModel contact_of(const WorldDef& def) {
+  if (def.contact.model != ContactModel::automatic) return def.contact.model;
+  return def.model == Model::seed ? ContactModel::seed : ContactModel::weft;
+}
+
 const char* solver_name(const WorldDef& def) {
   return solver_of(def) == SolverKind::relaxation ? "relaxation" : "verlet";
 }
@@ -83,6 +88,18 @@ void validate(const WorldDef& def) {
   visit_fields(def, [](const std::string& path, const FieldInfo& info, const auto& value) {
     check_field(path, info, value);
   });
+  if (contact_of(def) == ContactModel::seed) {
+    const SeedContactDef& seed = def.contact.seed;
+    if (seed.correction == Correction::fold_map && !(seed.lift < seed.fold_depth))
+      throw DefinitionError("contact.lift", number_text(seed.lift),
+                            "less than contact.fold_depth, " + number_text(seed.fold_depth) + " m",
+                            "the map lifts the deepest particle to it");
+  } else if (def.contact.seed.self != SelfContact::none) {
+    throw DefinitionError("contact.self",
+                          text_of(choice("", "none|particles|triangles|triangles_and_edges", ""),
+                                  def.contact.seed.self),
+                          "none", "set contact.model to seed for contact of the cloth with itself");
+  }
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {

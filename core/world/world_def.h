@@ -6,6 +6,7 @@
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_def.h"
 #include "core/contact/collider.h"
+#include "core/contact/seed_contact.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/environment.h"
@@ -20,6 +21,19 @@ enum class Model {
   seed,  ///< that of H.-H. Cheng, "Interactive Cloth Simulation": the baseline to compare with
 };
 
+/// Which contact keeps the cloth off objects and itself.
+enum class ContactModel {
+  automatic,  ///< that of the world's model
+  weft,       ///< certified planes (contact.h): nothing passes through
+  seed,       ///< proximity and impulses (seed_contact.h)
+};
+
+/// The choice of the contact, and the settings of the seed's.
+struct CollisionDef {
+  ContactModel model = ContactModel::automatic;
+  SeedContactDef seed;
+};
+
 /// A scene: everything needed to start a world. Built-in scenes come from core/scenes.
 struct WorldDef {
   std::string name = "unnamed";
@@ -29,6 +43,7 @@ struct WorldDef {
   EnvironmentDef environment;
   SolverDef solver;
   RelaxationDef relaxation;
+  CollisionDef contact;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;  ///< made at the start
@@ -45,6 +60,9 @@ void visit_fields(Def& def, Visitor&& visit) {
   below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks a simulated second"}, def.tick_rate);
   visit_fields_of_environment(def.environment, below("environment."));
   visit_fields_of_solver(def.solver, below("solver."));
+  below("contact.")(choice("model", "automatic|weft|seed", "automatic: by the model"),
+                    def.contact.model);
+  visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
   for (std::size_t k = 0; k < def.cloths.size(); ++k) {
     visit_fields_of_cloth(def.cloths[k], below(cloth_field(k, "cloth.")));
@@ -54,6 +72,9 @@ void visit_fields(Def& def, Visitor&& visit) {
 
 /// The solver that the definition asks for: verlet or relaxation.
 SolverKind solver_of(const WorldDef& def);
+
+/// The contact that the definition asks for: weft or seed.
+ContactModel contact_of(const WorldDef& def);
 
 /// Name of the solver, as reports give it.
 const char* solver_name(const WorldDef& def);

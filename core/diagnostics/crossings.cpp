@@ -1,0 +1,102 @@
+#include "core/diagnostics/crossings.h"
+
+#include "core/geometry/bvh.h"
+#include "core/math/exact_sign.h"
+
+namespace weft {
+namespace {
+
+using Positions = std::vector<Vec3d>;
+
+const Vec3d& at(const Positions& x, Index i) {
+  return x[static_cast<std::size_t>(i)];
+}
+
+template <class Real>
+Positions in_double(const Vec3Array<Real>& x) {
+  Positions result;
+  result.reserve(x.size());
+  for (const Vec3<Real>& p : x) result.push_back(p.template cast<double>());
+  return result;
+}
+
+bool share_vertex(const Edge& edge, const Triangle& t) {
+  for (const Index i : edge)
+    if (i == t[0] || i == t[1] || i == t[2]) return true;
+  return false;
+}
+
+/// Adds all pairs of an edge over x and a triangle over y.
+/// @param one_cloth  both belong to the same particles, so pairs that share one are left out
+void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
+                   const std::vector<Triangle>& triangles, bool one_cloth, Crossings& sum) {
+  std::vector<Aabb<double>> boxes;
+  for (const Triangle& t : triangles) {
+    Aabb<double> box;
+    for (const Index v : t) box.add(at(y, v));
+    boxes.push_back(box);
+  }
+  Bvh<double> tree;
+  tree.build(boxes);
+  for (const Edge& edge : edges) {
+    const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
+    Aabb<double> box;
+    box.add(p);
+    box.add(q);
+    tree.for_each_overlap(box, [&](Index k) {
+      const Triangle& t = triangles[static_cast<std::size_t>(k)];
+      if (one_cloth && share_vertex(edge, t)) return;
+      const Crossings found = crossing_of(p, q, at(y, t[0]), at(y, t[1]), at(y, t[2]));
+      sum.proper += found.proper;
+      sum.touching += found.touching;
+    });
+  }
+}
+
+}  // namespace
+
+Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b,
+                      const Vec3d& c) {
+  const int side_p = orientation(a, b, c, p), side_q = orientation(a, b, c, q);
+  if (side_p * side_q > 0 || (side_p == 0 && side_q == 0)) return {};
+  const int ab = orientation(p, q, a, b), bc = orientation(p, q, b, c),
+            ca = orientation(p, q, c, a);
+  const bool outside = ab * bc < 0 || bc * ca < 0 || ca * ab < 0;
+  if (outside) return {};
+  const bool proper = side_p * side_q < 0 && ab != 0 && bc != 0 && ca != 0;
+  // All three zero: the triangle has no area as seen along the edge.
+  if (!proper && ab == 0 && bc == 0 && ca == 0) return {};
+  return proper ? Crossings{1, 0} : Crossings{0, 1};
+}
+
+template <class Real>
+Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
+                               const std::vector<Triangle>& triangles) {
+  Crossings sum;
+  const Positions positions = in_double(x);
+  add_crossings(positions, edges, positions, triangles, true, sum);
+  return sum;
+}
+
+template <class Real>
+Crossings count_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
+                          const std::vector<Triangle>& triangles, const TriangleMesh& mesh) {
+  Crossings sum;
+  const Positions positions = in_double(x);
+  add_crossings(positions, edges, mesh.positions, mesh.triangles, false, sum);
+  std::vector<Edge> mesh_edges;
+  for (const MeshEdge& e : edges_of(mesh)) mesh_edges.push_back({e.a, e.b});
+  add_crossings(mesh.positions, mesh_edges, positions, triangles, false, sum);
+  return sum;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template Crossings count_self_crossings(const Vec3Array<Real>&, const std::vector<Edge>&, \
+                                          const std::vector<Triangle>&);                    \
+  template Crossings count_crossings(const Vec3Array<Real>&, const std::vector<Edge>&,      \
+                                     const std::vector<Triangle>&, const TriangleMesh&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
