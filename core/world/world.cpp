@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
-#include "core/world/state_hash.h"
 #include "core/world/wind.h"
 
 namespace weft {
@@ -262,88 +260,6 @@ void World<Real>::report_present_state() {
   const EnergyReading reading = read_energies(model_, state_, gravity);
   report_.energies = reading.energies;
   report_.largest_strain = reading.largest_strain;
-}
-
-template <class Real>
-PinId World<Real>::pin(const PinDef& def) {
-  contact_.invalidate_rows();
-  const PinId id = add_pin(model_, def, pins_, state_);
-  report_present_state();  // what is pinned has lost its velocity
-  return id;
-}
-
-template <class Real>
-bool World<Real>::unpin(PinId id) {
-  contact_.invalidate_rows();
-  return remove_pin(model_, id, pins_, state_);
-}
-
-template <class Real>
-GrabId World<Real>::grab(const GrabDef& def) {
-  return add_grab(model_, state_, def, grabs_);
-}
-
-template <class Real>
-bool World<Real>::move_grab(GrabId id, const Vec3d& target) {
-  return weft::move_grab(id, target, grabs_);
-}
-
-template <class Real>
-bool World<Real>::release(GrabId id) {
-  return remove_grab(id, grabs_);
-}
-
-template <class Real>
-void World<Real>::set_environment(const EnvironmentDef& environment) {
-  validate(environment);
-  environment_ = environment;
-  report_present_state();
-}
-
-template <class Real>
-std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& direction) const {
-  check_field("pick.", {"origin", -1e6, 1e6, "m", "start of the ray"}, origin);
-  check_field("pick.", {"direction", -1e6, 1e6, "", "direction of the ray"}, direction);
-  const double length = direction.norm();
-  if (!(length > 1e-12))
-    throw DefinitionError("pick.direction", "0,0,0", "a direction",
-                          "give a vector that is not zero");
-  std::vector<Aabb<Real>> boxes;
-  triangle_boxes(state_.x, model_.triangles, boxes);
-  Bvh<Real> hierarchy = pick_tree_;
-  hierarchy.refit(boxes);
-  const Vec3<Real> from = origin.template cast<Real>();
-  const Vec3<Real> along = (direction / length).template cast<Real>();
-  const auto hit = cast_ray<Real>(from, along, hierarchy, state_.x, model_.triangles);
-  if (!hit) return std::nullopt;
-  ClothHit result;
-  result.distance = static_cast<double>(hit->distance);
-  result.triangle = hit->triangle;
-  const Triangle& corners = model_.triangles[static_cast<std::size_t>(hit->triangle)];
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.barycentric[k] = static_cast<double>(hit->barycentric[k]);
-    result.position += result.barycentric[k] *
-                       state_.x[static_cast<std::size_t>(corners[k])].template cast<double>();
-  }
-  for (const Index i : corners) {
-    const double d =
-        (state_.x[static_cast<std::size_t>(i)].template cast<double>() - result.position).norm();
-    if (d >= nearest) continue;
-    nearest = d;
-    result.nearest_particle = i;
-  }
-  return result;
-}
-
-template <class Real>
-std::uint64_t World<Real>::hash() const {
-  return state_hash(state_, pins_, grabs_, tick_);
-}
-
-template <class Real>
-double World<Real>::deepest_penetration() const {
-  return contact_.deepest_penetration(state_.x);
 }
 
 template class World<float>;

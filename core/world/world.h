@@ -11,6 +11,7 @@
 #include "core/solver/relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
+#include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
 #include "core/world/profile.h"
 #include "core/world/world_def.h"
@@ -102,6 +103,11 @@ class World {
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;
 
+  /// Boxes of one level of one of the seed's trees around the present state; see debug_trees.h.
+  /// Throws DefinitionError if there is no such tree or level.
+  std::vector<Aabb<float>> debug_boxes(const std::string& tree, int level);
+  std::vector<std::string> debug_tree_names();
+
   const WorldDef& def() const { return def_; }
   const EnvironmentDef& environment() const { return environment_; }
   const ClothModel<Real>& model() const { return model_; }
@@ -143,6 +149,7 @@ class World {
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   EnergyAccount account_;
+  std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;

@@ -6,9 +6,12 @@
 #include <catch2/catch.hpp>
 
 #include "core/cloth/cloth_model.h"
+#include "core/error.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/scenes/dress_form.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
 #include "tests/support/allocations.h"
 #include "tests/support/cloths.h"
 
@@ -200,4 +203,28 @@ TEST_CASE("refitting and walking the trees take no memory") {
   triangles.for_each_own_pair([&](Index, Index) { ++visits; });
   CHECK(visits > 0);
   CHECK(count_allocations() == before);
+}
+
+TEST_CASE("a world shows the boxes of its trees by level, around the cloth as it is now") {
+  World<float> world(make_scene("default"));
+  CHECK(world.debug_tree_names() ==
+        std::vector<std::string>{"particles", "edges", "triangles", "object:form"});
+  for (int tick = 0; tick < 20; ++tick) world.step();
+  Aabb<float> cloth;
+  for (const Vec3f& p : world.state().x) cloth.add(p);
+  for (const char* tree : {"particles", "edges", "triangles"}) {
+    const auto boxes = world.debug_boxes(tree, 0);
+    REQUIRE(boxes.size() == 1);
+    CHECK(boxes[0].lower == cloth.lower);
+    CHECK(boxes[0].upper == cloth.upper);
+    for (const int level : {3, 5}) {  // more than half of 2^level
+      CHECK(world.debug_boxes(tree, level).size() > 1u << (level - 1));
+      CHECK(world.debug_boxes(tree, level).size() <= 1u << level);
+    }
+  }
+  // 600 particles; what is deeper than the last level is the last.
+  CHECK(world.debug_boxes("particles", 99).size() == 600);
+  CHECK(world.debug_boxes("object:form", 99).size() == 1418);
+  CHECK_THROWS_AS(world.debug_boxes("object:nobody", 0), DefinitionError);
+  CHECK_THROWS_AS(world.debug_boxes("particles", -1), DefinitionError);
 }

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/contact/collider.h"
+#include "core/geometry/bottom_up_tree.h"
+#include "core/geometry/cloth_trees.h"
+
+namespace weft {
+
+/// The seed's trees over a world, whatever contact it uses, for a picture of their boxes:
+/// "particles", "edges" and "triangles" of all cloths, and "object:<name>" over the triangles of
+/// each mesh collider.
+template <class Real>
+class DebugTrees {
+ public:
+  DebugTrees(const ClothModel<Real>& model, const std::vector<ColliderDef>& colliders);
+
+  /// Names of all trees.
+  std::vector<std::string> names() const;
+
+  /// Boxes of one level of a tree around the cloth at x; level 0 is one box around everything, and
+  /// a level below the last is the last. Throws DefinitionError, with the names, if there is no
+  /// such tree, and if the level is below 0.
+  std::vector<Aabb<float>> boxes(const std::string& tree, int level, const Vec3Array<Real>& x);
+
+ private:
+  std::vector<Edge> edges_;
+  std::vector<Triangle> triangles_;
+  ClothTrees<Real> cloth_;
+  std::vector<std::pair<std::string, BottomUpTree<Real>>> objects_;
+};
+
+extern template class DebugTrees<float>;
+extern template class DebugTrees<double>;
+
+}  // namespace weft
