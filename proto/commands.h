@@ -43,13 +43,19 @@ struct SurfacePoint {
 /// Where to take hold of the cloth. Whether the index exists is for the receiver to check.
 using Hold = std::variant<Particle, SurfacePoint>;
 
+enum class DragMode : std::uint8_t { live, sling };
+
+inline constexpr double kLiveStiffness = 150;  ///< if none is asked for [N/m]
+inline constexpr double kSlingStiffness = 20;  ///< if none is asked for [N/m]
+
 struct DragStart {
   std::uint32_t drag = 0;  ///< the viewer's own number of it
   Hold hold;
-  std::optional<Vec3> target;  ///< [m]; absent: where the held point is
-  double radius = 0.03;        ///< of the held disc in the fabric [m]
-  double stiffness = 150;      ///< [N/m]
-  double max_force = 50;       ///< [N]
+  std::optional<Vec3> target;         ///< [m]; absent: where the held point is
+  double radius = 0.03;               ///< of the held disc in the fabric [m]
+  double stiffness = kLiveStiffness;  ///< [N/m]
+  double max_force = 50;              ///< [N]
+  DragMode mode = DragMode::live;
   bool operator==(const DragStart&) const = default;
 };
 
@@ -61,6 +67,7 @@ struct DragMove {
 
 struct DragEnd {
   std::uint32_t drag = 0;
+  bool fire = true;  ///< of a sling: give the impulse
   bool operator==(const DragEnd&) const = default;
 };
 
@@ -180,6 +187,7 @@ using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, Rel
 
 /// The word in `op`, e.g. "drag".
 const char* name_of(const Command& command);
+const char* name_of(DragMode mode);
 const char* name_of(QueryWhat what);
 const char* name_of(QueryFormat format);
 const char* name_of(Codec codec);

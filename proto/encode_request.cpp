@@ -42,6 +42,7 @@ struct FieldWriter {
     out["radius"] = c.radius;
     out["stiffness"] = c.stiffness;
     out["max_force"] = c.max_force;
+    out["mode"] = name_of(c.mode);
   }
   void operator()(const DragMove& c) {
     out["phase"] = "move";
@@ -51,6 +52,7 @@ struct FieldWriter {
   void operator()(const DragEnd& c) {
     out["phase"] = "end";
     out["drag"] = c.drag;
+    if (!c.fire) out["fire"] = false;
   }
   void operator()(const Pin& c) {
     put_hold(out, c.hold);
@@ -116,6 +118,9 @@ struct Name {
 
 const char* name_of(const Command& command) {
   return std::visit(Name{}, command);
+}
+const char* name_of(DragMode mode) {
+  return kDragModeWords[static_cast<std::size_t>(mode)];
 }
 const char* name_of(QueryWhat what) {
   return kQueryWhatWords[static_cast<std::size_t>(what)];

@@ -141,7 +141,8 @@ Json json_of(const GrabInfo& grab) {
               {"stiffness", grab.stiffness},
               {"max_force", grab.max_force},
               {"held", grab.held},
-              {"target", grab.target}};
+              {"target", grab.target},
+              {"mode", name_of(grab.mode)}};
   put_if(out, "force", grab.force);
   return out;
 }

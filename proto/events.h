@@ -132,6 +132,7 @@ struct GrabInfo {
   SurfacePoint point;
   double radius = 0, stiffness = 0, max_force = 0;
   Vec3 held{}, target{};
+  DragMode mode = DragMode::live;
   std::optional<Vec3> force;  ///< on the cloth [N]; only in answers to `query`
 };
 

@@ -87,7 +87,11 @@ Command read_drag(FieldReader& in) {
   std::uint32_t drag = 0;
   in.read("phase", phase, kDragPhaseWords);
   in.read_if_there("drag", drag, kIndexRange);
-  if (phase == DragPhase::end) return DragEnd{drag};
+  if (phase == DragPhase::end) {
+    DragEnd end{drag};
+    in.read_if_there("fire", end.fire);
+    return end;
+  }
   if (phase == DragPhase::move) {
     DragMove move{drag, {}};
     in.read("target", move.target, kPositionRange);
@@ -96,6 +100,8 @@ Command read_drag(FieldReader& in) {
   DragStart start;
   start.drag = drag;
   start.hold = read_hold(in);
+  in.read_if_there("mode", start.mode, kDragModeWords);
+  if (start.mode == DragMode::sling) start.stiffness = kSlingStiffness;
   in.read_if_there("target", start.target, kPositionRange);
   in.read_if_there("radius", start.radius, kRadiusRange);
   in.read_if_there("stiffness", start.stiffness, kStiffnessRange);

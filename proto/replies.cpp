@@ -68,6 +68,7 @@ struct ReplyWriter {
     out["drag"] = r.drag;
     out["grab"] = r.grab;
     put_if(out, "target", r.target);
+    put_if(out, "impulse", r.impulse);
   }
   void operator()(const PinReply& r) {
     start("pin", r.tick);

@@ -41,9 +41,10 @@ struct PickReply {
 
 struct DragReply {
   std::uint64_t tick = 0;
-  std::uint32_t drag = 0;      ///< the viewer's number
-  std::uint32_t grab = 0;      ///< the room's
-  std::optional<Vec3> target;  ///< [m]; of a start
+  std::uint32_t drag = 0;       ///< the viewer's number
+  std::uint32_t grab = 0;       ///< the room's
+  std::optional<Vec3> target;   ///< [m]; of a start
+  std::optional<Vec3> impulse;  ///< [N s]; of a sling that was fired
 };
 
 struct PinReply {

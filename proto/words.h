@@ -21,6 +21,8 @@ inline constexpr std::array<const char*, 1> kCodecWords = {"f32"};
 enum class DragPhase : std::uint8_t { start, move, end };
 inline constexpr std::array<const char*, 3> kDragPhaseWords = {"start", "move", "end"};
 
+inline constexpr std::array<const char*, 2> kDragModeWords = {"live", "sling"};
+
 template <std::size_t N>
 std::vector<std::string> list_words(const std::array<const char*, N>& words) {
   return {words.begin(), words.end()};

@@ -131,7 +131,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const GrabId grab = world_->grab(def);
   hands_.push_back({grab, viewer, command.drag, clock_()});
   grabs_changed_ = frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target)});
+  return proto::Reply(
+      proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target), {}});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
@@ -142,7 +143,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
   world_->move_grab(hand->grab, from_wire(command.target));
   hand->heard = clock_();
   frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab, {}});
+  return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab, {}, {}});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
@@ -150,11 +151,14 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
   if (hand == hands_.end())
     return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
                        command.drag);
-  const GrabId grab = hand->grab;
-  world_->release(grab);
+  proto::DragReply reply{world_->tick(), command.drag, hand->grab, {}, {}};
+  if (const auto impulse = command.fire ? world_->fire(hand->grab) : std::nullopt)
+    reply.impulse = to_wire(*impulse);
+  else
+    world_->release(hand->grab);
   hands_.erase(hand);
   grabs_changed_ = frame_wanted_ = true;
-  return proto::Reply(proto::DragReply{world_->tick(), command.drag, grab, {}});
+  return proto::Reply(reply);
 }
 
 void Room::end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin) {

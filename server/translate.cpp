@@ -134,6 +134,7 @@ GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
   def.radius = start.radius;
   def.stiffness = start.stiffness;
   def.max_force = start.max_force;
+  def.mode = start.mode == proto::DragMode::sling ? GrabMode::sling : GrabMode::live;
   if (start.target) {
     def.target = from_wire(*start.target);
     return def;
@@ -227,6 +228,7 @@ proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, pro
   info.max_force = grab.def.max_force;
   info.held = to_wire(Vec3d(held_point(grab, world.state().x).cast<double>()));
   info.target = to_wire(Vec3d(grab.target.cast<double>()));
+  info.mode = grab.def.mode == GrabMode::sling ? proto::DragMode::sling : proto::DragMode::live;
   info.force = to_wire(Vec3d(grab.force.cast<double>()));
   return info;
 }

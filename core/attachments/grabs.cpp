@@ -89,14 +89,35 @@ auto find(GrabId id, Grabs<Real>& grabs) {
                       [id](const Grab<Real>& grab) { return grab.id == id; });
 }
 
+template <class Real>
+Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
+  const Real size = force.norm(), most = static_cast<Real>(limit);
+  return size > most ? Vec3<Real>(force * (most / size)) : force;
+}
+
+/// Force of a sling if it were fired now [N].
+template <class Real>
+Vec3<Real> sling_force(const Grab<Real>& grab, const ClothState<Real>& state) {
+  const Vec3<Real> pull = grab.target - held_point(grab, state.x);
+  return bounded<Real>(pull * static_cast<Real>(grab.def.stiffness), grab.def.max_force);
+}
+
+template <class Real>
+void share_force(const std::vector<Index>& particles, const std::vector<Real>& weights,
+                 const Vec3<Real>& shared, Vec3Array<Real>& force) {
+  for (std::size_t n = 0; n < particles.size(); ++n)
+    force[static_cast<std::size_t>(particles[n])] += shared * weights[n];
+}
+
 }  // namespace
 
 template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs) {
   validate(def, model.triangles.size());
-  if (grabs.list.size() >= kMostGrabs)
-    throw DefinitionError("drag", std::to_string(grabs.list.size() + 1),
+  const std::size_t busy = grabs.list.size() + grabs.shots.size();
+  if (busy >= kMostGrabs)
+    throw DefinitionError("drag", std::to_string(busy + 1),
                           "at most " + std::to_string(kMostGrabs) + " at once",
                           "release one first");
   Grab<Real> grab;
@@ -111,9 +132,11 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   grab.offset = hit - weighted_mean(grab, state.x);
   grab.target = def.target.cast<Real>();
   grab.target_before = hit;
-  const double per_mass = inverse_held_mass(model, grab);
-  grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
-  grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
+  if (def.mode == GrabMode::live) {
+    const double per_mass = inverse_held_mass(model, grab);
+    grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
+    grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
+  }
   grabs.list.push_back(std::move(grab));
   return grabs.list.back().id;
 }
@@ -137,6 +160,24 @@ bool remove_grab(GrabId id, Grabs<Real>& grabs) {
 }
 
 template <class Real>
+std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real>& state,
+                                     Grabs<Real>& grabs) {
+  const auto found = find(id, grabs);
+  if (found == grabs.list.end() || found->def.mode != GrabMode::sling) return std::nullopt;
+  const Vec3<Real> force = sling_force(*found, state);
+  grabs.shots.push_back({std::move(found->particles), std::move(found->weights), force, ticks});
+  grabs.list.erase(found);
+  return force;
+}
+
+template <class Real>
+void finish_tick(Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) grab.target_before = grab.target;
+  for (Shot<Real>& shot : grabs.shots) --shot.ticks_left;
+  std::erase_if(grabs.shots, [](const Shot<Real>& shot) { return shot.ticks_left <= 0; });
+}
+
+template <class Real>
 Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x) {
   return weighted_mean(grab, x) + grab.offset;
 }
@@ -145,16 +186,19 @@ template <class Real>
 void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
                      Vec3Array<Real>& force) {
   for (Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode == GrabMode::sling) {
+      grab.force = sling_force(grab, state);
+      continue;
+    }
     const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
-    Vec3<Real> pull = (target - held_point(grab, state.x)) * static_cast<Real>(grab.def.stiffness) -
-                      weighted_mean(grab, state.v) * grab.damping;
-    const auto limit = static_cast<Real>(grab.def.max_force);
-    const Real size = pull.norm();
-    if (size > limit) pull *= limit / size;
-    grab.force = pull;
-    for (std::size_t n = 0; n < grab.particles.size(); ++n)
-      force[static_cast<std::size_t>(grab.particles[n])] += pull * grab.weights[n];
+    const Vec3<Real> pull =
+        (target - held_point(grab, state.x)) * static_cast<Real>(grab.def.stiffness) -
+        weighted_mean(grab, state.v) * grab.damping;
+    grab.force = bounded(pull, grab.def.max_force);
+    share_force(grab.particles, grab.weights, grab.force, force);
   }
+  for (const Shot<Real>& shot : grabs.shots)
+    share_force(shot.particles, shot.weights, shot.force, force);
 }
 
 #define WEFT_INSTANTIATE(Real)                                                               \
@@ -162,6 +206,9 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
                            Grabs<Real>&);                                                    \
   template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                               \
   template bool remove_grab(GrabId, Grabs<Real>&);                                           \
+  template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,        \
+                                                Grabs<Real>&);                               \
+  template void finish_tick(Grabs<Real>&);                                                   \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
   template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)

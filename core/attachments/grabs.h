@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -10,8 +11,19 @@
 
 namespace weft {
 
-/// A hand that holds the cloth at a point of a triangle and pulls it towards a target with a damped
-/// spring of bounded force. It never sets a position.
+/// What a hand does with the cloth that it holds.
+enum class GrabMode : std::uint8_t {
+  live,   ///< pulls it to the target all the time
+  sling,  ///< leaves it alone; the force is given when it is fired (the seed's drag)
+};
+
+/// For how long a fired sling pushes, rounded to ticks, at least one [s]. One tick alone would give
+/// its whole impulse to the few grams of the held disc before the cloth around them can follow.
+inline constexpr double kSlingSeconds = 0.1;
+
+/// A hand that holds the cloth at a point of a triangle. A live one pulls it towards a target with
+/// a damped spring of bounded force. A sling gives, when fired, the constant force stiffness
+/// (target - held point) for kSlingSeconds, bounded too. Neither sets a position.
 struct GrabDef {
   Index triangle = 0;                                               ///< that was hit
   std::array<double, 3> barycentric = {1.0 / 3, 1.0 / 3, 1.0 / 3};  ///< of the hit, >= 0, sum 1
@@ -19,6 +31,7 @@ struct GrabDef {
   double stiffness = 150;  ///< of the spring [N/m], 0 to 1e5
   double max_force = 50;   ///< [N], 0 to 1e6; beyond it the hand lags
   Vec3d target = Vec3d::Zero();  ///< where the hit point shall go [m], components within 1e4
+  GrabMode mode = GrabMode::live;
 };
 
 using GrabId = std::uint32_t;
@@ -28,21 +41,38 @@ struct Grab {
   GrabId id = 0;
   GrabDef def;
   std::vector<Index> particles;
-  std::vector<Real> weights;              ///< of the particles, sum 1
-  Vec3<Real> offset;                      ///< held point minus weighted mean when taken [m]
-  Vec3<Real> target, target_before;       ///< at the end and at the start of the coming tick [m]
-  Real damping = 0;                       ///< of the spring [N s/m]
-  StabilityBound bound;                   ///< what it adds to the substep rule
-  Vec3<Real> force = Vec3<Real>::Zero();  ///< on the cloth, in the last substep [N]
+  std::vector<Real> weights;         ///< of the particles, sum 1
+  Vec3<Real> offset;                 ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target, target_before;  ///< at the end and at the start of the coming tick [m]
+  Real damping = 0;                  ///< of the spring [N s/m]
+  StabilityBound bound;              ///< what it adds to the substep rule
+  /// Of a live hand: on the cloth, in the last substep; of a sling: if it were fired now [N].
+  Vec3<Real> force = Vec3<Real>::Zero();
+};
+
+/// A sling that was fired, while it still pushes.
+template <class Real>
+struct Shot {
+  std::vector<Index> particles;
+  std::vector<Real> weights;  ///< of the particles, sum 1
+  Vec3<Real> force;           ///< constant [N]
+  int ticks_left = 0;
 };
 
 template <class Real>
 struct Grabs {
-  std::vector<Grab<Real>> list;  ///< in the order of their making
+  std::vector<Grab<Real>> list;   ///< in the order of their making
+  std::vector<Shot<Real>> shots;  ///< in the order of their firing
   GrabId next_id = 1;
 };
 
-inline constexpr std::size_t kMostGrabs = 256;
+/// True if nothing pulls or pushes.
+template <class Real>
+bool idle(const Grabs<Real>& grabs) {
+  return grabs.list.empty() && grabs.shots.empty();
+}
+
+inline constexpr std::size_t kMostGrabs = 256;  ///< of hands and shots together
 
 /// Takes hold. The target starts where the point is unless `def.target` says otherwise.
 /// Throws DefinitionError if a field is out of range or there are too many grabs.
@@ -55,15 +85,28 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
 template <class Real>
 bool move_grab(GrabId id, const Vec3d& target, Grabs<Real>& grabs);
 
-/// Lets go. False if there is no such grab.
+/// Lets go; a sling is not fired. False if there is no such grab.
 template <class Real>
 bool remove_grab(GrabId id, Grabs<Real>& grabs);
+
+/// Lets go of a sling and fires it: over the coming ticks the cloth gets its force, evenly.
+/// @param ticks  for how many, at least 1
+/// @returns the force [N]; its impulse is the force times the ticks' duration. Nothing, and nothing
+///     changes, if there is no such grab or it is a live one.
+template <class Real>
+std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real>& state,
+                                     Grabs<Real>& grabs);
+
+/// To be called after each tick: targets are reached, shots grow older.
+template <class Real>
+void finish_tick(Grabs<Real>& grabs);
 
 /// The point that the hand holds, now [m].
 template <class Real>
 Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x);
 
-/// Adds the hands' forces to `force` [N]: clamp(k (target - p) - c dp/dt) shared by weight.
+/// Adds the forces of hands and shots to `force` [N]: clamp(k (target - p) - c dp/dt) of a live
+/// hand, the constant force of a shot, shared by weight.
 /// @param progress  how much of the tick has passed, 0 to 1
 template <class Real>
 void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,

@@ -39,7 +39,7 @@ struct Tick {
   VerletWorkspace<Real>& work;
   Profile& profile;
 
-  bool pulled() const { return surroundings.air || !grabs.list.empty(); }
+  bool pulled() const { return surroundings.air || !idle(grabs); }
 };
 
 /// Zeroes the forces on the particles of a part.
@@ -116,8 +116,9 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
     evaluate_air(tick, velocity);
   else
     std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
-  if (!tick.grabs.list.empty()) {
-    const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
+  if (!idle(tick.grabs)) {
+    const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
+    const StageTimer timer(tick.profile, Stage::attachments, hands);
     add_grab_forces(progress, tick.state, tick.grabs, work.external);
   }
 }

@@ -30,6 +30,13 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
     feed(hash, &grab.target, 1);
     feed(hash, &grab.def.stiffness, 1);
     feed(hash, &grab.def.max_force, 1);
+    if (grab.def.mode == GrabMode::sling) feed(hash, &grab.def.mode, 1);
+  }
+  for (const Shot<Real>& shot : grabs.shots) {
+    feed(hash, shot.particles.data(), shot.particles.size());
+    feed(hash, shot.weights.data(), shot.weights.size());
+    feed(hash, &shot.force, 1);
+    feed(hash, &shot.ticks_left, 1);
   }
   return XXH64_digest(&hash);
 }

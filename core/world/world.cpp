@@ -86,6 +86,7 @@ void World<Real>::reset() {
   pins_ = make_pins(model_);
   pins_.next_id = next_pin;
   grabs_.list.clear();
+  grabs_.shots.clear();
   for (const PinDef& pin_def : def_.pins) pin(pin_def);
   tick_ = 0;
   report_ = TickReport{};
@@ -109,7 +110,7 @@ const TickReport& World<Real>::step() {
   blow_wind();
   contact_.begin_tick(tick_seconds());
   advance_or_recover(substeps);
-  finish_targets();
+  finish_tick(grabs_);
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   return report_;
@@ -247,11 +248,6 @@ void World<Real>::restore_last_good() {
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
   }
-}
-
-template <class Real>
-void World<Real>::finish_targets() {
-  for (Grab<Real>& grab : grabs_.list) grab.target_before = grab.target;
 }
 
 template <class Real>

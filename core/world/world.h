@@ -89,6 +89,11 @@ class World {
   bool move_grab(GrabId id, const Vec3d& target);
   bool release(GrabId id);
 
+  /// Lets go of a sling and fires it: from the coming tick on, the cloth gets its force for
+  /// kSlingSeconds, rounded to ticks.
+  /// @returns the impulse that it gives [N s]; nothing if there is no such sling
+  std::optional<Vec3d> fire(GrabId id);
+
   /// Throws DefinitionError if a field is out of range; nothing changes then.
   void set_environment(const EnvironmentDef& environment);
 
@@ -132,7 +137,6 @@ class World {
   Collision<Real> collision();
   std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
   void restore_last_good();
-  void finish_targets();
   void report_present_state();
 
   WorldDef def_;

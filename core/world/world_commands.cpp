@@ -1,5 +1,7 @@
 // What is asked of a world between its steps, and commands to it.
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/error.h"
@@ -36,6 +38,14 @@ bool World<Real>::move_grab(GrabId id, const Vec3d& target) {
 template <class Real>
 bool World<Real>::release(GrabId id) {
   return remove_grab(id, grabs_);
+}
+
+template <class Real>
+std::optional<Vec3d> World<Real>::fire(GrabId id) {
+  const int ticks = std::max(1, static_cast<int>(std::lround(kSlingSeconds * def_.tick_rate)));
+  const auto force = fire_sling(id, ticks, state_, grabs_);
+  if (!force) return std::nullopt;
+  return force->template cast<double>() * (ticks * tick_seconds());
 }
 
 template <class Real>
@@ -109,6 +119,7 @@ std::vector<std::string> World<Real>::debug_tree_names() {
   template GrabId World<Real>::grab(const GrabDef&);                                    \
   template bool World<Real>::move_grab(GrabId, const Vec3d&);                           \
   template bool World<Real>::release(GrabId);                                           \
+  template std::optional<Vec3d> World<Real>::fire(GrabId);                              \
   template void World<Real>::set_environment(const EnvironmentDef&);                    \
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \

@@ -62,11 +62,14 @@ export class Drag {
     this.#schedule(wait);
   }
 
-  /** Lets go. A target that waits is sent first. */
-  end() {
+  /**
+   * Lets go. A target that waits is sent first.
+   * @param {{fire?: boolean}} [options]  fire: false lets go of a sling without its impulse
+   */
+  end(options = {}) {
     if (!this.active) return;
     if (this.#pending) this.#sendTarget();
-    this.#send({ phase: 'end', drag: this.number });
+    this.#send({ phase: 'end', drag: this.number, ...options });
     this.finish('end');
   }
 

@@ -157,6 +157,7 @@ export interface Grab {
   max_force: number;
   held: Vec3;
   target: Vec3;
+  mode: 'live' | 'sling';
   force?: Vec3;
 }
 
@@ -228,6 +229,8 @@ export interface DragOptions {
   radius?: number;
   stiffness?: number;
   max_force?: number;
+  /** A sling leaves the cloth alone until it is let go; then it gives its force for 0.1 s. */
+  mode?: 'live' | 'sling';
 }
 
 /** A hand at the tick of a frame. */

@@ -479,14 +479,16 @@ class Client:
             hit["distance"],
         )
 
-    def drag(self, hold, *, target=None, radius=None, stiffness=None, max_force=None) -> Drag:
+    def drag(
+        self, hold, *, target=None, radius=None, stiffness=None, max_force=None, mode=None
+    ) -> Drag:
         """A hand; it takes hold with `async with` or `await start()`.
 
         `hold` is a Hit, a particle's number, or a dict with `particle` or `triangle` and
-        `barycentric`.
+        `barycentric`. With mode="sling" the cloth is left alone until the hand lets go.
         """
         number, self._next_drag = self._next_drag, self._next_drag + 1
-        fields = {"radius": radius, "stiffness": stiffness, "max_force": max_force}
+        fields = {"radius": radius, "stiffness": stiffness, "max_force": max_force, "mode": mode}
         fields["target"] = None if target is None else list(target)
         return Drag(self, number, {**_hold_fields(hold), **_without_none(fields)})
 
@@ -768,15 +770,16 @@ class Drag:
         fields = {"phase": "move", "drag": self.number, "target": self._target}
         return await self._client.request("drag", **fields)
 
-    async def end(self) -> dict | None:
-        """Lets go."""
+    async def end(self, *, fire=None) -> dict | None:
+        """Lets go; a sling gives its impulse then, unless fire is False."""
         if self._repeater is None:
             return None
         self._repeater.cancel()
         self._repeater = None
         if self._is_lost():
             return None
-        return await self._client.request("drag", phase="end", drag=self.number)
+        fields = {"phase": "end", "drag": self.number, **_without_none({"fire": fire})}
+        return await self._client.request("drag", **fields)
 
     def _is_lost(self) -> bool:
         return self._connection != self._client._connections
@@ -886,8 +889,8 @@ class SyncDrag:
     def move(self, target: Iterable[float]) -> dict:
         return self._owner._run(self._drag.move(target))
 
-    def end(self) -> dict | None:
-        return self._owner._run(self._drag.end())
+    def end(self, *, fire=None) -> dict | None:
+        return self._owner._run(self._drag.end(fire=fire))
 
     def __enter__(self) -> SyncDrag:
         return self.start()

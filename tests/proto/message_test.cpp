@@ -101,9 +101,17 @@ std::string drag_error() {
 }
 
 std::vector<std::string> events() {
-  const GrabInfo grab{
-      17,          3, 1, {411, {0.2, 0.5, 0.3}}, 0.03, 150, 50, {0.1, 0.9, 0.2}, {0.2, 1.1, 0.4},
-      std::nullopt};
+  const GrabInfo grab{17,
+                      3,
+                      1,
+                      {411, {0.2, 0.5, 0.3}},
+                      0.03,
+                      150,
+                      50,
+                      {0.1, 0.9, 0.2},
+                      {0.2, 1.1, 0.4},
+                      DragMode::live,
+                      std::nullopt};
   Notice notice{NoticeLevel::warning,
                 "lease_expired",
                 "drag 1 was released after 2 s without a target",
@@ -133,8 +141,9 @@ std::vector<std::string> replies() {
       encode_reply(1, HelloReply{3, "Ada", "#e4572e", "operator"}),
       encode_reply(2, PickReply{5161, hit}),
       encode_reply(2, PickReply{5161, std::nullopt}),
-      encode_reply(3, DragReply{5162, 1, 17, Vec3{0, 1.1, 0.2}}),
-      encode_reply(4, DragReply{5301, 1, 17, {}}),
+      encode_reply(3, DragReply{5162, 1, 17, Vec3{0, 1.1, 0.2}, {}}),
+      encode_reply(4, DragReply{5301, 1, 17, {}, {}}),
+      encode_reply(4, DragReply{5301, 2, 18, {}, Vec3{0, 0.6, 0.2}}),
       encode_reply(5, PinReply{5310, 9, 299, 7}),
       encode_reply(6, ReleaseReply{5400, {9}}),
       encode_reply(14, PauseReply{5160, false}),

@@ -238,6 +238,35 @@ test('beside the cloth the mouse moves the camera and nothing else', bounded, ()
   }),
 );
 
+test('a sling waits for the hand to let go; what breaks the hold off does not throw', bounded, () =>
+  with_page({}, async (page, script) => {
+    await page.keyboard.press('s');
+    const sling = page.getByRole('button', { name: 'Sling', exact: true });
+    assert.equal(await sling.getAttribute('aria-pressed'), 'true');
+    const particle = await drag_cloth(page, 90, -60);
+    await until(() => script.last.grabs.length === 1);
+    const [grab] = script.last.grabs;
+    assert.equal(grab.mode, 'sling');
+    const speed = async () => Math.hypot(...(await script.query('velocities'))[particle]);
+    await until(async () => Math.hypot(...(await script.query('grabs'))[0].force) > 1);
+    assert.ok((await speed()) < 0.3, 'the cloth is left alone');
+    await page.evaluate(() => window.dispatchEvent(new Event('blur')));
+    await until(() => script.last.grabs.length === 0);
+    assert.ok((await speed()) < 0.3, 'it was not thrown');
+    await page.mouse.up();
+    await drag_cloth(page, 90, -60);
+    await until(() => script.last.grabs.length === 1);
+    await until(async () => Math.hypot(...(await script.query('grabs'))[0].force) > 1);
+    await script.pause();
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    await script.advance(3);
+    assert.ok((await speed()) > 0.5, 'it is thrown');
+    await sling.click();
+    assert.equal(await sling.getAttribute('aria-pressed'), 'false');
+  }),
+);
+
 test('two pages see each other’s hands, with names and colours', bounded, () =>
   with_page({ name: 'Ada' }, async (ada, script) => {
     const ben = await open_page(browser, server.url, { name: 'Ben' });
@@ -380,14 +409,15 @@ test('one finger takes the cloth or turns, two shift and zoom, a long press pins
 
 test('on a narrow screen every control is within reach and has a name', bounded, () =>
   with_page({ width: 400, height: 720 }, async (page, script) => {
-    const controls = ['button', 'slider', 'combobox'];
+    const controls = ['button', 'slider'];
     const names = [
       ['button', 'Pause'],
       ['button', 'One step'],
       ['button', 'Reset'],
+      ['button', 'Sling'],
       ['button', 'Frame the cloth'],
       ['button', 'Help'],
-      ['combobox', 'Scene'],
+      ['button', 'Scenes'],
       ['slider', 'Wind'],
       ['slider', 'Gravity'],
     ];
@@ -418,9 +448,23 @@ test('on a narrow screen every control is within reach and has a name', bounded,
   }),
 );
 
+const scene_title = (page) => page.getByRole('button', { name: 'Scenes' }).textContent();
+
 test('another scene is shown when one is chosen, and R starts it anew', bounded, () =>
   with_page({}, async (page, script) => {
-    await page.getByRole('combobox', { name: 'Scene' }).selectOption('flag');
+    const other = await open_page(browser, server.url, { name: 'Ben' });
+    await page.getByRole('button', { name: 'Scenes' }).click();
+    const list = page.getByRole('dialog', { name: 'Scenes' });
+    const known = (await (await fetch(new URL('api/v1/scenes', server.url))).json()).scenes;
+    for (const { description } of known) assert.ok(await list.getByText(description).isVisible());
+    const chosen = list.locator('[aria-current]');
+    assert.match(await chosen.textContent(), /^Default/);
+    await list.getByRole('button', { name: /^Flag/ }).click();
+    assert.ok(!(await list.isVisible()));
+    await until(async () => (await read(other, 'scene')) === 'flag', 'the other viewer follows');
+    await until(async () => (await scene_title(other)) === 'Flag');
+    assert.deepEqual(other.complaints, []);
+    await other.context().close();
     await until(async () => (await read(page, 'scene')) === 'flag');
     await until(async () => (await read(page, 'tick')) > 30);
     await page.locator('#view').focus();
@@ -435,9 +479,9 @@ test('who joins a paused room of another scene reads its name in the list', boun
   const paused = await start_server(['--scene', 'wall', '--paused']);
   const page = await open_page(browser, paused.url);
   try {
-    const list = page.getByRole('combobox', { name: 'Scene' });
-    await until(async () => (await list.locator('option').count()) > 1, 'the list has come');
-    assert.equal(await list.inputValue(), 'wall');
+    await until(() => page.locator('#scene-list li').count(), 'the list has come');
+    assert.equal(await scene_title(page), 'Wall');
+    assert.match(await page.locator('#scene-list [aria-current]').textContent(), /^Wall/);
   } finally {
     await page.context().close();
     await paused.stop();

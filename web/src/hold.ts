@@ -5,6 +5,10 @@ import type { OrbitCamera } from './camera.js';
 import type { ClothHit } from './ray.js';
 
 const RADIUS = 0.03; // of the fabric in the hand [m]
+
+/** Live: the cloth follows. Sling: it is thrown when it is let go. */
+export type HandMode = 'live' | 'sling';
+
 const NEAREST = 0.1; // of the hand to the eye [m]
 const FARTHEST = 20; // [m]
 
@@ -21,6 +25,7 @@ export class Hold {
     client: WeftClient,
     hit: ClothHit,
     private camera: OrbitCamera,
+    mode: HandMode,
     lost: (reason: string) => void,
   ) {
     const { triangle, barycentric, position } = hit;
@@ -28,7 +33,8 @@ export class Hold {
     this.barycentric = barycentric;
     this.target = position;
     this.depth = camera.depth(position);
-    this.drag = client.drag({ triangle, barycentric }, { target: position, radius: RADIUS });
+    const options = { target: position, radius: RADIUS, mode };
+    this.drag = client.drag({ triangle, barycentric }, options);
     void this.drag.ended.then((reason) => reason !== 'end' && lost(reason));
   }
 
@@ -51,7 +57,8 @@ export class Hold {
     this.depth = Math.min(FARTHEST, Math.max(NEAREST, this.depth * factor));
   }
 
-  end(): void {
-    this.drag.end();
+  /** @param fire whether a sling gives the cloth its impulse */
+  end(fire: boolean): void {
+    this.drag.end(fire ? {} : { fire: false });
   }
 }

@@ -13,7 +13,8 @@ export interface Actions {
   take(point: Vector2): boolean;
   follow(point: Vector2): void;
   push(factor: number): void;
-  let_go(): void;
+  /** @param meant the pointer went up, in place of the hold being broken off */
+  let_go(meant: boolean): void;
   toggle_pin(point: Vector2): void;
   orbit(azimuth: number, elevation: number): void;
   pan(dx: number, dy: number): void;
@@ -114,7 +115,7 @@ export class Input {
     if (place < 0) return;
     this.fingers.splice(place, 1);
     if (event.pointerType === 'touch') this.point = null;
-    if (this.fingers.length === 0) this.enter('idle');
+    if (this.fingers.length === 0) this.enter('idle', true);
   }
 
   private leave(): void {
@@ -171,9 +172,9 @@ export class Input {
     this.press_timer = 0;
   }
 
-  private enter(state: InputState): void {
+  private enter(state: InputState, meant = false): void {
     this.stop_waiting();
-    if (this.state === 'holding' && state !== 'holding') this.actions.let_go();
+    if (this.state === 'holding' && state !== 'holding') this.actions.let_go(meant);
     this.state = state;
     this.actions.changed();
   }

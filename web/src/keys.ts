@@ -6,7 +6,9 @@ export interface KeyActions {
   toggle_pause(): void;
   step(): void;
   reset(): void;
+  toggle_sling(): void;
   frame(): void;
+  scenes(): void;
   help(): void;
   orbit(azimuth: number, elevation: number): void;
   zoom(factor: number): void;
@@ -18,7 +20,9 @@ export function listen_to_keys(actions: KeyActions): void {
     m: () => actions.toggle_pin(),
     '.': () => actions.step(),
     r: () => actions.reset(),
+    s: () => actions.toggle_sling(),
     f: () => actions.frame(),
+    l: () => actions.scenes(),
     '?': () => actions.help(),
   };
   const outside_controls: Record<string, () => void> = {
@@ -33,8 +37,8 @@ export function listen_to_keys(actions: KeyActions): void {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const element = event.target instanceof Element ? event.target : null;
-    // A list jumps to the entry that begins with a letter; a dialog is read and closed.
-    if (element?.closest('select, dialog')) return;
+    // A dialog is read and closed.
+    if (element?.closest('dialog')) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const free = !element?.closest('button, input');
     const action = anywhere[key] ?? (free ? outside_controls[key] : undefined);

@@ -63,7 +63,7 @@ export class Page {
       take: (point) => this.take(point),
       follow: (point) => this.hold?.follow(point),
       push: (factor) => this.hold?.push(factor),
-      let_go: () => this.let_go(),
+      let_go: (meant) => this.let_go(meant),
       toggle_pin: (point) => this.toggle_pin(point),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       pan: (dx, dy) => this.orbit.pan(dx, dy),
@@ -75,7 +75,9 @@ export class Page {
       toggle_pause: () => this.toolbar.toggle_pause(),
       step: () => this.toolbar.one_step(),
       reset: () => this.toolbar.reset(),
+      toggle_sling: () => this.toolbar.toggle_sling(),
       frame: () => this.frame(),
+      scenes: () => this.toolbar.show_scenes(),
       help: () => this.toolbar.show_help(),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       zoom: (factor) => this.orbit.zoom(factor),
@@ -166,12 +168,13 @@ export class Page {
   private take(point: Vector2): boolean {
     const hit = this.pick(point);
     if (!hit) return false;
-    this.hold = new Hold(this.client, hit, this.orbit, (reason) => this.lost(reason));
+    const { hand_mode } = this.toolbar;
+    this.hold = new Hold(this.client, hit, this.orbit, hand_mode, (reason) => this.lost(reason));
     return true;
   }
 
-  private let_go(): void {
-    this.hold?.end();
+  private let_go(meant: boolean): void {
+    this.hold?.end(meant);
     this.hold = null;
     this.pending_latency = null;
   }

@@ -1,7 +1,9 @@
 import type { WeftClient } from '../../proto/js/index.js';
 import type { State, Vec3 } from '../../proto/js/messages.js';
 import { tell_refusal } from './connection.js';
+import type { HandMode } from './hold.js';
 import { element } from './panels.js';
+import { SceneList } from './scene_list.js';
 
 const SEND_INTERVAL = 60; // between values of a slider that moves [ms]
 const QUIET_TIME = 600; // in which a slider just moved is not set by the state [ms]
@@ -10,12 +12,12 @@ const QUIET_TIME = 600; // in which a slider just moved is not set by the state 
 export class Toolbar {
   private pause = element<HTMLButtonElement>('pause');
   private step = element<HTMLButtonElement>('step');
-  private scene = element<HTMLSelectElement>('scene');
+  private scenes: SceneList;
+  private sling = element<HTMLButtonElement>('sling');
   private help = element<HTMLDialogElement>('help');
   private wind: VectorSlider;
   private gravity: VectorSlider;
   private paused = false;
-  private shown_scene = '';
 
   /** @param tell shows a sentence to the user */
   constructor(
@@ -30,10 +32,11 @@ export class Toolbar {
     this.pause.addEventListener('click', () => this.toggle_pause());
     this.step.addEventListener('click', () => this.one_step());
     element('reset').addEventListener('click', () => this.reset());
+    this.sling.addEventListener('click', () => this.toggle_sling());
     element('frame').addEventListener('click', frame);
     element('help-button').addEventListener('click', () => this.show_help());
     this.help.addEventListener('click', (event) => event.target === this.help && this.help.close());
-    this.scene.addEventListener('change', () => this.run(client.load(this.scene.value)));
+    this.scenes = new SceneList((scene) => this.run(client.load(scene)));
     this.enable(false);
   }
 
@@ -42,7 +45,7 @@ export class Toolbar {
     for (const id of ['pause', 'step', 'reset', 'scene', 'wind', 'gravity']) {
       element<HTMLButtonElement>(id).disabled = !connected;
     }
-    if (connected) void this.list_scenes();
+    if (connected) void this.scenes.fetch();
   }
 
   state(state: State): void {
@@ -53,7 +56,7 @@ export class Toolbar {
     this.pause.title = `${action} (Space)`;
     this.wind.show(state.wind);
     this.gravity.show(state.gravity);
-    this.choose(state.scene);
+    this.scenes.choose(state.scene);
   }
 
   toggle_pause(): void {
@@ -70,6 +73,19 @@ export class Toolbar {
     this.run(this.client.reset());
   }
 
+  /** How the hand takes hold. */
+  get hand_mode(): HandMode {
+    return this.sling.getAttribute('aria-pressed') === 'true' ? 'sling' : 'live';
+  }
+
+  toggle_sling(): void {
+    this.sling.setAttribute('aria-pressed', String(this.hand_mode === 'live'));
+  }
+
+  show_scenes(): void {
+    this.scenes.open();
+  }
+
   show_help(): void {
     if (!this.help.open) this.help.showModal();
   }
@@ -77,40 +93,6 @@ export class Toolbar {
   private run(answer: Promise<unknown>): void {
     tell_refusal(answer, this.tell);
   }
-
-  private choose(scene: string): void {
-    this.shown_scene = scene;
-    if (this.scene.value === scene) return;
-    if (![...this.scene.options].some(({ value }) => value === scene)) {
-      this.scene.add(new Option(scene, scene));
-    }
-    this.scene.value = scene;
-  }
-
-  private async list_scenes(): Promise<void> {
-    try {
-      const response = await fetch('api/v1/scenes');
-      if (!response.ok) return;
-      const { scenes } = (await response.json()) as {
-        scenes: { name: string; description: string }[];
-      };
-      const options = scenes.map(({ name, description }) => {
-        const option = new Option(title_of(name), name);
-        option.title = description;
-        return option;
-      });
-      this.scene.replaceChildren(...options);
-      // The state may have come while the list was under way.
-      if (this.shown_scene) this.choose(this.shown_scene);
-    } catch {
-      // The connection was lost again; its return asks anew.
-    }
-  }
-}
-
-function title_of(name: string): string {
-  const words = name.replaceAll('-', ' ');
-  return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** A slider for the length of a vector, whose direction stays. */

@@ -6,7 +6,8 @@ def accepted(text, **request):
 
 
 HIT = dict(triangle=411, barycentric=[0.25, 0.5, 0.25])
-DRAG = dict(radius=0.03, stiffness=150, max_force=50)
+DRAG = dict(radius=0.03, stiffness=150, max_force=50, mode="live")
+SLING = dict(radius=0.03, stiffness=20, max_force=50, mode="sling")
 
 # The request is the command with all defaults written out.
 ACCEPTED = [
@@ -33,7 +34,7 @@ ACCEPTED = [
     accepted(
         '{"op":"drag","phase":"start","drag":2147483647,"particle":2.0,"target":[-10000,10000,0],'
         '"radius":0,"stiffness":1e5,"max_force":0}',
-        op="drag", phase="start", drag=2147483647, particle=2, target=[-10000, 10000, 0],
+        op="drag", phase="start", drag=2147483647, particle=2, target=[-10000, 10000, 0], mode="live",
         radius=0, stiffness=100000, max_force=0,
     ),
     accepted(
@@ -45,6 +46,19 @@ ACCEPTED = [
         op="drag", phase="move", drag=1, target=[0.1, -0.0, 5e-324],
     ),
     accepted('{"op":"drag","phase":"end","drag":1}', op="drag", phase="end", drag=1),
+    accepted('{"op":"drag","phase":"end","fire":true}', op="drag", phase="end", drag=0),
+    accepted(
+        '{"op":"drag","phase":"end","drag":1,"fire":false}',
+        op="drag", phase="end", drag=1, fire=False,
+    ),
+    accepted(
+        '{"op":"drag","phase":"start","particle":3,"mode":"sling"}',
+        op="drag", phase="start", drag=0, particle=3, **SLING,
+    ),
+    accepted(
+        '{"op":"drag","phase":"start","particle":3,"stiffness":7,"mode":"sling"}',
+        op="drag", phase="start", drag=0, particle=3, **{**SLING, "stiffness": 7},
+    ),
     accepted('{"op":"pin","particle":0}', op="pin", particle=0, radius=0),
     accepted(
         '{"op":"pin","triangle":0,"barycentric":[1,0,0],"radius":100}',
@@ -164,6 +178,9 @@ def refused_fields():
     yield refuse('{"op":"drag","phase":"shake"}', "unknown_value", field="phase", value="shake",
                  limit={"allowed": ["start", "move", "end"]})
     yield refuse(START + '"drag":1}', "missing_field", field="particle")
+    yield refuse(START + '"particle":1,"mode":"throw"}', "unknown_value", field="mode",
+                 value="throw", limit={"allowed": ["live", "sling"]})
+    yield refuse('{"op":"drag","phase":"end","fire":1}', "wrong_type", field="fire", value=1)
     yield refuse(START + '"particle":1,"triangle":2,"barycentric":[1,0,0]}', "conflicting_fields",
                  field="triangle")
     yield refuse(START + '"triangle":2}', "missing_field", field="barycentric")

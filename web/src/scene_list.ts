@@ -1,0 +1,77 @@
+import { element } from './panels.js';
+
+interface Scene {
+  name: string;
+  /** One sentence on what to look at. */
+  description: string;
+}
+
+/** The scenes of the server, each with its sentence, in a dialog behind a button that names the one. */
+export class SceneList {
+  private button = element<HTMLButtonElement>('scene');
+  private dialog = element<HTMLDialogElement>('scenes');
+  private list = element('scene-list');
+  private scenes: Scene[] = [];
+  private shown = '';
+
+  /** @param load asked for by a choice */
+  constructor(private load: (scene: string) => void) {
+    this.button.addEventListener('click', () => this.open());
+    this.dialog.addEventListener('click', ({ target }) => target === this.dialog && this.dialog.close());
+  }
+
+  open(): void {
+    if (!this.button.disabled && !this.dialog.open) this.dialog.showModal();
+  }
+
+  /** The scene that is on, whoever chose it. */
+  choose(scene: string): void {
+    if (this.shown === scene) return;
+    this.shown = scene;
+    this.write();
+  }
+
+  /** Asks the server which scenes there are. */
+  async fetch(): Promise<void> {
+    try {
+      const response = await fetch('api/v1/scenes');
+      if (!response.ok) return;
+      this.scenes = ((await response.json()) as { scenes: Scene[] }).scenes;
+      this.write();
+    } catch {
+      // The connection was lost again; its return asks anew.
+    }
+  }
+
+  private write(): void {
+    this.button.firstElementChild!.textContent = title_of(this.shown);
+    const described = this.scenes.find(({ name }) => name === this.shown);
+    this.button.title = described?.description ?? '';
+    this.list.replaceChildren(...this.scenes.map((scene) => this.entry(scene)));
+  }
+
+  private entry({ name, description }: Scene): HTMLElement {
+    const choice = document.createElement('button');
+    choice.type = 'button';
+    choice.append(text_element('b', title_of(name)), text_element('span', description));
+    if (name === this.shown) choice.setAttribute('aria-current', 'true');
+    choice.addEventListener('click', () => {
+      this.dialog.close();
+      this.load(name);
+    });
+    const item = document.createElement('li');
+    item.append(choice);
+    return item;
+  }
+}
+
+function text_element(tag: string, text: string): HTMLElement {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  return made;
+}
+
+function title_of(name: string): string {
+  const words = name.replaceAll('-', ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
