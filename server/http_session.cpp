@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <boost/beast/http/write.hpp>
 
 #include "server/http_routes.h"
+#include "server/lingering_close.h"
 #include "server/session.h"
 
 namespace weft::server {
@@ -59,7 +61,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     "the header is larger than 16 KiB");
     stream_.async_read_some(buffer_.prepare(4096),
                             [self = shared_from_this()](error_code error, std::size_t bytes) {
-                              if (error) return self->end();
+                              if (error) return;
                               self->buffer_.commit(bytes);
                               self->take_request();
                             });
@@ -68,6 +70,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void parse(std::size_t header_bytes) {
     http::request_parser<http::empty_body> parser;
     parser.header_limit(static_cast<std::uint32_t>(kMostHeaderBytes));
+    // A body of any announced length is refused below, by name. (In Boost 1.74 `none` allows none.)
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());
     error_code error;
     parser.put(asio::buffer(buffer_.data().data(), header_bytes), error);
     const bool has_body =
@@ -107,7 +111,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_ = std::move(response);
     expire_after(context_.options.limits.idle_seconds);
     const auto done = [self = shared_from_this()](error_code error, std::size_t) {
-      if (error || !self->response_.keep_alive() || self->context_.stopping) return self->end();
+      if (error) return;
+      if (!self->response_.keep_alive() || self->context_.stopping) return self->end();
       self->expire_after(self->context_.options.limits.idle_seconds);
       self->take_request();
     };
@@ -120,9 +125,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::async_write(stream_, response_, done);
   }
 
+  // The connection counts until it is gone, so that its bounds bound all of them.
   void end() {
-    error_code ignored;
-    stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    async_lingering_close(stream_, [self = shared_from_this()](error_code) {});
   }
 
   ServiceContext& context_;

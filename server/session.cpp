@@ -13,22 +13,17 @@
 #include "proto/data.h"
 #include "proto/replies.h"
 #include "server/close_codes.h"
+#include "server/lingering_close.h"
 #include "server/rate_limit.h"
 
 namespace boost::beast {
 
-// Beast closes a stream through these; its buffered stream has none of its own.
-template <class NextLayer, class Buffer>
-void teardown(role_type role, buffered_read_stream<NextLayer, Buffer>& stream, error_code& ec) {
-  using websocket::teardown;
-  teardown(role, stream.next_layer(), ec);
-}
-
-template <class NextLayer, class Buffer, class Handler>
-void async_teardown(role_type role, buffered_read_stream<NextLayer, Buffer>& stream,
+// Beast closes a stream through these; its buffered stream has none of its own. That of a socket,
+// in Boost 1.74, closes after the first read even if there is more to read.
+template <class Buffer, class Handler>
+void async_teardown(role_type, buffered_read_stream<tcp_stream, Buffer>& stream,
                     Handler&& handler) {
-  using websocket::async_teardown;
-  async_teardown(role, stream.next_layer(), std::forward<Handler>(handler));
+  weft::server::async_lingering_close(stream.next_layer(), std::forward<Handler>(handler));
 }
 
 template <class NextLayer, class Buffer>
