@@ -1,8 +1,8 @@
 #include "core/attachments/pins.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "core/definition.h"
 #include "core/error.h"
 
 namespace weft {
@@ -17,13 +17,11 @@ Pins make_pins(const ClothModel<Real>& model) {
 template <class Real>
 PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state) {
-  check_field("pin.", {"particle", 0, model.particle_count() - 1.0, "", "index of a particle"},
-              def.particle);
-  check_field("pin.", {"radius", 0, 100, "m", "radius of the pinned disc"}, def.radius);
+  PinnedParticles held = find_pinned(model, def);
   if (pins.list.size() >= kMostPins)
     throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
                           "at most " + std::to_string(kMostPins) + " pins", "release some first");
-  Pin pin{pins.next_id++, def, particles_in_disc(model, def.particle, def.radius)};
+  Pin pin{pins.next_id++, def, held.centre, std::move(held.particles)};
   for (const Index i : pin.particles) {
     const auto p = static_cast<std::size_t>(i);
     ++pins.pin_count[p];

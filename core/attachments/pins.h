@@ -3,17 +3,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/attachments/pin_place.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 
 namespace weft {
-
-/// Fixes a disc of the fabric where it is. A single particle is a point singularity whose strain
-/// grows with resolution; a disc of fixed physical radius is not (PHYSICS.md section 2).
-struct PinDef {
-  Index particle = 0;  ///< centre of the disc
-  double radius = 0;   ///< in the fabric [m], 0 to 100; 0 fixes the particle alone
-};
 
 /// Names a pin for its whole life; never used again for another.
 using PinId = std::uint32_t;
@@ -21,6 +15,7 @@ using PinId = std::uint32_t;
 struct Pin {
   PinId id = 0;
   PinDef def;
+  Index centre = 0;              ///< a particle in the middle of those held
   std::vector<Index> particles;  ///< ascending
 };
 
@@ -37,8 +32,8 @@ inline constexpr std::size_t kMostPins = 4096;
 template <class Real>
 Pins make_pins(const ClothModel<Real>& model);
 
-/// Pins a disc at its present position with velocity zero.
-/// Throws DefinitionError if the particle or the radius is out of range or there are too many pins.
+/// Pins particles at their present positions with velocity zero.
+/// Throws DefinitionError if the place does not exist or there are too many pins.
 template <class Real>
 PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state);

@@ -22,6 +22,12 @@ ClothDef hanging_cloth(int rows, int columns, double width, double height, doubl
   return cloth;
 }
 
+/// Pins discs along the edge v = 0, evenly from corner to corner.
+void pin_along_top(WorldDef& def, int count, double radius) {
+  for (int k = 0; k < count; ++k)
+    def.pins.push_back({MaterialPoint{static_cast<double>(k) / (count - 1), 0}, radius, {}});
+}
+
 /// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung
 /// by six, three at each upper corner, gravity and wind.
 void build_default(WorldDef& def) {
@@ -36,7 +42,8 @@ void build_default(WorldDef& def) {
   def.cloths[0].v = Vec3d::UnitX();
   def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = 250;
   def.cloths[0].fabric.shear = 25;
-  for (const Index row : {0, 1, 2, 17, 18, 19}) def.pins.push_back({row * 30, 0});
+  for (const int row : {0, 1, 2, 17, 18, 19})
+    def.pins.push_back({MaterialPoint{0, row / 19.0}, 0, {}});
   def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
   def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
@@ -45,7 +52,7 @@ void build_default(WorldDef& def) {
 
 void build_curtain(WorldDef& def) {
   def.cloths[0] = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
-  for (Index i = 0; i < 33; i += 4) def.pins.push_back({i, 0.02});
+  pin_along_top(def, 9, 0.02);
   def.colliders = {kGround};
   def.environment.wind = Vec3d(0.2, 0, 0.9);
   def.environment.gust_speed = 1.0;
@@ -56,7 +63,9 @@ void build_flag(WorldDef& def) {
   def.cloths[0] = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
   def.cloths[0].origin = Vec3d(0.03, 2.3, 0);
   def.cloths[0].fabric.areal_density = 0.1;
-  def.pins = {{0, 0.05}, {12 * 37, 0.05}, {24 * 37, 0.05}};
+  def.pins = {{Corner::top_left, 0.05, {}},
+              {MaterialPoint{0, 0.5}, 0.05, {}},
+              {Corner::bottom_left, 0.05, {}}};
   def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
   def.environment.wind = Vec3d(5, 0, 0.6);
   def.environment.gust_speed = 1.5;
@@ -73,7 +82,7 @@ void build_drape_sphere(WorldDef& def) {
 
 void build_wall(WorldDef& def) {
   def.cloths[0] = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
-  for (Index i = 0; i < 25; i += 4) def.pins.push_back({i, 0.02});
+  pin_along_top(def, 7, 0.02);
   def.colliders = {
       kGround,
       {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1), Eigen::Quaterniond::Identity()}}};

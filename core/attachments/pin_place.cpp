@@ -1,0 +1,119 @@
+#include "core/attachments/pin_place.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// Part of the fabric's extent by which rounding may move a particle off the line it stands on.
+constexpr double kRounding = 1e-5;
+
+struct MaterialBounds {
+  std::array<double, 2> low, high;
+};
+
+template <class Real>
+MaterialBounds bounds_of(const ClothModel<Real>& model, const IndexRange& range) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  MaterialBounds bounds{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (Index i = range.first; i < range.end(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto value = static_cast<double>(model.material[static_cast<std::size_t>(i)][k]);
+      bounds.low[k] = std::min(bounds.low[k], value);
+      bounds.high[k] = std::max(bounds.high[k], value);
+    }
+  }
+  return bounds;
+}
+
+template <class Real>
+const ClothPart<Real>& named_part(const ClothModel<Real>& model, const std::string& name) {
+  std::string names;
+  for (const ClothPart<Real>& part : model.parts) {
+    if (part.name == name) return part;
+    names += (names.empty() ? "" : ", ") + part.name;
+  }
+  throw DefinitionError("pin.cloth", name, "one of " + names);
+}
+
+template <class Real>
+Index nearest_particle(const ClothModel<Real>& model, const IndexRange& range,
+                       const MaterialPoint& point) {
+  visit_fields_of_point(
+      point, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
+  const MaterialBounds bounds = bounds_of(model, range);
+  const std::array<double, 2> part = {point.u, point.v};
+  Index nearest = range.first;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = range.first; i < range.end(); ++i) {
+    double distance2 = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double wanted = bounds.low[k] + part[k] * (bounds.high[k] - bounds.low[k]);
+      const double d = static_cast<double>(model.material[static_cast<std::size_t>(i)][k]) - wanted;
+      distance2 += d * d;
+    }
+    if (distance2 >= least) continue;
+    least = distance2;
+    nearest = i;
+  }
+  return nearest;
+}
+
+template <class Real>
+PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRange& range,
+                                   const EdgeStrip& strip) {
+  visit_fields_of_strip(
+      strip, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
+  const MaterialBounds bounds = bounds_of(model, range);
+  const std::size_t axis = strip.side == Side::left || strip.side == Side::right ? 0 : 1;
+  const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
+  const double slack = kRounding * (bounds.high[axis] - bounds.low[axis]);
+  PinnedParticles held;
+  for (Index i = range.first; i < range.end(); ++i) {
+    const auto value = static_cast<double>(model.material[static_cast<std::size_t>(i)][axis]);
+    const double inside = far_side ? bounds.high[axis] - value : value - bounds.low[axis];
+    if (inside <= strip.width + slack) held.particles.push_back(i);
+  }
+  const double across = far_side ? 1 : 0;
+  held.centre = nearest_particle(
+      model, range, axis == 0 ? MaterialPoint{across, 0.5} : MaterialPoint{0.5, across});
+  // On a mesh the particle nearest to the side's middle may lie farther inside.
+  if (!std::binary_search(held.particles.begin(), held.particles.end(), held.centre))
+    held.centre = held.particles[held.particles.size() / 2];
+  return held;
+}
+
+}  // namespace
+
+template <class Real>
+PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def) {
+  visit_fields_of_pin(
+      def, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
+  const IndexRange part =
+      def.cloth.empty() ? model.parts.front().particles : named_part(model, def.cloth).particles;
+  if (const auto* strip = std::get_if<EdgeStrip>(&def.place))
+    return particles_of_strip(model, part, *strip);
+  PinnedParticles held;
+  if (const auto* index = std::get_if<Index>(&def.place)) {
+    const IndexRange range = def.cloth.empty() ? IndexRange{0, model.particle_count()} : part;
+    check_field("pin.", {"particle", 0, range.count - 1.0, "", "index of a particle"}, *index);
+    held.centre = range.first + *index;
+  } else if (const auto* corner = std::get_if<Corner>(&def.place)) {
+    const bool right = *corner == Corner::top_right || *corner == Corner::bottom_right;
+    const bool bottom = *corner == Corner::bottom_left || *corner == Corner::bottom_right;
+    held.centre = nearest_particle(model, part, {right ? 1.0 : 0.0, bottom ? 1.0 : 0.0});
+  } else {
+    held.centre = nearest_particle(model, part, std::get<MaterialPoint>(def.place));
+  }
+  held.particles = particles_in_disc(model, held.centre, def.radius);
+  return held;
+}
+
+template PinnedParticles find_pinned(const ClothModel<float>&, const PinDef&);
+template PinnedParticles find_pinned(const ClothModel<double>&, const PinDef&);
+
+}  // namespace weft

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+
+namespace weft {
+
+// Places of a cloth that stay where they are when its resolution changes. They are told in the
+// fabric: `left` is u = 0, `right` the largest u, `top` is v = 0 (row 0 of a grid), `bottom` the
+// largest v, wherever these lie in space.
+
+enum class Corner : std::uint8_t { top_left, top_right, bottom_left, bottom_right };
+enum class Side : std::uint8_t { top, bottom, left, right };
+
+/// All particles within `width` of one side of the fabric.
+struct EdgeStrip {
+  Side side = Side::top;
+  double width = 0;  ///< [m], 0 to 100; 0: the outermost line alone
+};
+
+/// The particle nearest to a point of the fabric; of equally near ones the first.
+struct MaterialPoint {
+  double u = 0, v = 0;  ///< each 0 to 1 of the fabric's extent
+};
+
+/// A particle by its index, or a place.
+using PinPlace = std::variant<Index, Corner, EdgeStrip, MaterialPoint>;
+
+/// Fixes a piece of the fabric where it is. A single particle is a point singularity whose strain
+/// grows with resolution; a disc of fixed physical radius is not (PHYSICS.md section 2).
+struct PinDef {
+  PinPlace place = Index(0);
+  double radius = 0;  ///< of the disc in the fabric [m], 0 to 100; 0 fixes the particle alone.
+                      ///< A strip has its width instead
+  std::string cloth = {};  ///< name; empty: the first cloth, and a particle counts over all cloths
+};
+
+/// What a pin holds.
+struct PinnedParticles {
+  Index centre = 0;
+  std::vector<Index> particles;  ///< ascending; at least the centre
+};
+
+/// Finds the particles of a pin. Throws DefinitionError on "pin.cloth", "pin.particle",
+/// "pin.radius", "pin.width", "pin.u" or "pin.v".
+template <class Real>
+PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def);
+
+/// Words for corners and sides, in the order of the enumerations.
+inline constexpr const char* kCornerNames[] = {"top_left", "top_right", "bottom_left",
+                                               "bottom_right"};
+inline constexpr const char* kSideNames[] = {"top", "bottom", "left", "right"};
+
+/// Describes each number of a place or pin to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_strip(Def& strip, Visitor&& visit) {
+  visit(FieldInfo{"width", 0, 100, "m", "width of the pinned strip"}, strip.width);
+}
+template <class Def, class Visitor>
+void visit_fields_of_point(Def& point, Visitor&& visit) {
+  visit(FieldInfo{"u", 0, 1, "", "place along u, as a part of the fabric's extent"}, point.u);
+  visit(FieldInfo{"v", 0, 1, "", "place along v, as a part of the fabric's extent"}, point.v);
+}
+template <class Def, class Visitor>
+void visit_fields_of_pin(Def& pin, Visitor&& visit) {
+  visit(FieldInfo{"radius", 0, 100, "m", "radius of the pinned disc"}, pin.radius);
+}
+
+}  // namespace weft

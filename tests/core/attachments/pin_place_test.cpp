@@ -1,0 +1,125 @@
+#include "core/attachments/pin_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/cloths.h"
+
+using namespace weft;
+
+namespace {
+
+ClothModel<double> two_cloths() {
+  ClothDef first = test::flat_cloth(5, 7, 1.2, 0.8), second = test::flat_cloth(3, 4, 0.6, 0.4);
+  second.name = "second";
+  return build_cloths<double>({first, second});
+}
+
+std::string refused_field(const PinDef& def) {
+  try {
+    find_pinned(two_cloths(), def);
+  } catch (const DefinitionError& error) {
+    return error.field;
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE("corners are the ends of the first and last row") {
+  const ClothModel<double> model = two_cloths();
+  const auto at = [&](Corner corner, const char* cloth) {
+    return find_pinned(model, {corner, 0, cloth}).particles;
+  };
+  CHECK(at(Corner::top_left, "") == std::vector<Index>{0});
+  CHECK(at(Corner::top_right, "") == std::vector<Index>{6});
+  CHECK(at(Corner::bottom_left, "") == std::vector<Index>{28});
+  CHECK(at(Corner::bottom_right, "") == std::vector<Index>{34});
+  CHECK(at(Corner::top_right, "second") == std::vector<Index>{35 + 3});
+  CHECK(at(Corner::bottom_left, "second") == std::vector<Index>{35 + 8});
+}
+
+TEST_CASE("a strip holds the rows or columns within its width, and no other") {
+  const ClothModel<double> model = two_cloths();
+  const auto [side, width, rows_or_columns] = GENERATE(table<Side, double, int>({
+      {Side::top, 0, 1},
+      {Side::top, 0.2, 2},
+      {Side::bottom, 0.39, 2},
+      {Side::left, 0, 1},
+      {Side::right, 0.4, 3},
+      {Side::right, 0.41, 3},
+      {Side::bottom, 100, 5},
+  }));
+  const bool lines_are_rows = side == Side::top || side == Side::bottom;
+  const PinnedParticles held = find_pinned(model, {EdgeStrip{side, width}, 0, ""});
+  CHECK(held.particles.size() ==
+        static_cast<std::size_t>(rows_or_columns * (lines_are_rows ? 7 : 5)));
+  CHECK(std::binary_search(held.particles.begin(), held.particles.end(), held.centre));
+  for (const Index i : held.particles) {
+    const int row = i / 7, column = i % 7;
+    const int line = side == Side::top      ? row
+                     : side == Side::bottom ? 4 - row
+                     : side == Side::left   ? column
+                                            : 6 - column;
+    CHECK(line < rows_or_columns);
+  }
+}
+
+TEST_CASE("a point of the fabric is its nearest particle, at any resolution") {
+  for (const int rows : {9, 17, 33}) {
+    const ClothModel<double> model = build_cloth<double>(test::flat_cloth(rows, 2 * rows - 1));
+    const PinnedParticles held = find_pinned(model, {MaterialPoint{0.25, 0.5}, 0.1, ""});
+    const auto& m = model.material[static_cast<std::size_t>(held.centre)];
+    CHECK(m[0] == Approx(0.25));
+    CHECK(m[1] == Approx(0.5));
+    // About pi r^2 / h^2 particles; fewer on a coarse grid.
+    const double cells = 3.14159 * 0.01 * (rows - 1) * (2 * rows - 2);
+    CHECK(static_cast<double>(held.particles.size()) == Approx(cells).epsilon(0.5));
+  }
+}
+
+TEST_CASE("a place that does not exist is refused by its field") {
+  CHECK(refused_field({Index(-1), 0, ""}) == "pin.particle");
+  CHECK(refused_field({Index(47), 0, ""}) == "pin.particle");
+  CHECK(refused_field({Index(46), 0, ""}) == "nothing");
+  CHECK(refused_field({Index(12), 0, "second"}) == "pin.particle");
+  CHECK(refused_field({Index(11), 0, "second"}) == "nothing");
+  CHECK(refused_field({Index(0), -1, ""}) == "pin.radius");
+  CHECK(refused_field({Index(0), 0, "third"}) == "pin.cloth");
+  CHECK(refused_field({EdgeStrip{Side::top, -1}, 0, ""}) == "pin.width");
+  CHECK(refused_field({MaterialPoint{1.5, 0}, 0, ""}) == "pin.u");
+  CHECK(refused_field({MaterialPoint{0, std::nan("")}, 0, ""}) == "pin.v");
+}
+
+TEST_CASE("every scene keeps its pins at any resolution") {
+  for (const SceneInfo& scene : scenes()) {
+    INFO(scene.name);
+    const World<float> as_built(make_scene(scene.name));
+    WorldDef def = make_scene(scene.name);
+    for (ClothDef& cloth : def.cloths) {
+      cloth.rows = 40;
+      cloth.columns = 40;
+    }
+    const World<float> finer(def);
+    REQUIRE(finer.pins().list.size() == as_built.pins().list.size());
+    for (std::size_t k = 0; k < finer.pins().list.size(); ++k) {
+      const auto where = [k](const World<float>& world) {
+        return world.model().rest_positions[static_cast<std::size_t>(world.pins().list[k].centre)];
+      };
+      CHECK((where(finer) - where(as_built)).norm() < 0.05);
+    }
+  }
+}
+
+TEST_CASE("the default scene hangs by six particles, three at each upper corner") {
+  const World<float> world(make_scene("default"));
+  std::vector<Index> held;
+  for (const Pin& pin : world.pins().list)
+    held.insert(held.end(), pin.particles.begin(), pin.particles.end());
+  CHECK(held == std::vector<Index>{0, 30, 60, 17 * 30, 18 * 30, 19 * 30});
+}
