@@ -1,10 +1,18 @@
 #include "core/geometry/mesh_file.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
 #include <memory>
 
 #include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "core/definition.h"
 #include "core/error.h"
 
 // The only file that includes assimp.
@@ -44,7 +52,130 @@ std::unique_ptr<aiMesh> to_assimp(const TriangleMesh& mesh) {
   return result;
 }
 
+std::string ending_of(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string_view::npos ? std::string() : std::string(name.substr(dot + 1));
+}
+
+DefinitionError unreadable(const std::string& name, const std::string& why) {
+  return {"mesh", name, "a whole OBJ, PLY, STL or GLB file", why};
+}
+
+std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << (8 * k);
+  return value;
+}
+
+/// What every file of the format has; assimp reads past the end of those that do not.
+void check_head(std::string_view bytes, const std::string& ending, const std::string& name) {
+  if (ending == "glb") {
+    constexpr std::size_t kHead = 20;
+    if (bytes.size() < kHead || !bytes.starts_with("glTF") ||
+        little_endian(bytes, 8) != bytes.size() || little_endian(bytes, 12) > bytes.size() - kHead)
+      throw unreadable(name, "its head does not tell its own size");
+  } else if (ending == "stl") {
+    constexpr std::size_t kHead = 84, kTriangle = 50;
+    const bool binary = bytes.size() >= kHead &&
+                        bytes.size() == kHead + kTriangle * std::size_t(little_endian(bytes, 80));
+    const bool text = bytes.starts_with("solid") && bytes.find("endsolid") != bytes.npos;
+    if (!binary && !text) throw unreadable(name, "it is neither text nor as long as its head says");
+  } else if (ending == "ply") {
+    if (!bytes.starts_with("ply") || bytes.find("end_header") == bytes.npos)
+      throw unreadable(name, "it has no PLY header");
+  }
+}
+
+/// Collects the meshes of a scene into one, vertices at one place into one.
+class Welder {
+ public:
+  Welder(MeshFile& file, const std::string& name, const MeshFileLimits& limits)
+      : file_(file), name_(name), limits_(limits) {}
+
+  void add(const aiMesh& mesh) {
+    const bool has_uv = mesh.HasTextureCoords(0);
+    std::vector<Index> place(mesh.mNumVertices, kNone);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3) continue;
+      Triangle triangle;
+      for (unsigned k = 0; k < 3; ++k) {
+        const unsigned i = face.mIndices[k];
+        if (i >= mesh.mNumVertices) throw unreadable(name_, "a face names no vertex");
+        if (place[i] == kNone) place[i] = weld(mesh, i, has_uv);
+        triangle[k] = place[i];
+      }
+      file_.mesh.triangles.push_back(triangle);
+      check("triangles", file_.mesh.triangles.size(), limits_.triangles);
+    }
+    all_have_uv_ = all_have_uv_ && has_uv;
+  }
+
+  void finish() {
+    if (!all_have_uv_) file_.uv.clear();
+  }
+
+ private:
+  void check(const char* what, std::size_t count, std::size_t most) const {
+    if (count > most)
+      throw DefinitionError("mesh", name_, "at most " + std::to_string(most) + " " + what);
+  }
+
+  Index weld(const aiMesh& mesh, unsigned i, bool has_uv) {
+    const aiVector3D& p = mesh.mVertices[i];
+    // Adding zero makes -0 and 0 one place.
+    const std::array<float, 3> key = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+    const auto [there, is_new] =
+        places_.insert({key, static_cast<Index>(file_.mesh.positions.size())});
+    if (!is_new) return there->second;
+    for (const float x : key) {
+      if (!(std::abs(x) <= 1e6F)) throw unreadable(name_, "a vertex is not finite or far away");
+    }
+    file_.mesh.positions.emplace_back(key[0], key[1], key[2]);
+    file_.uv.push_back({0, 0});
+    if (has_uv) file_.uv.back() = {mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y};
+    check("vertices", file_.mesh.positions.size(), limits_.vertices);
+    return there->second;
+  }
+
+  MeshFile& file_;
+  const std::string& name_;
+  const MeshFileLimits& limits_;
+  std::map<std::array<float, 3>, Index> places_;
+  bool all_have_uv_ = true;
+};
+
 }  // namespace
+
+bool is_mesh_file_name(std::string_view name) {
+  const std::string ending = ending_of(name);
+  return ending == "obj" || ending == "ply" || ending == "stl" || ending == "glb";
+}
+
+MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFileLimits& limits) {
+  if (!is_mesh_file_name(name))
+    throw DefinitionError("mesh", name, "a name that ends in .obj, .ply, .stl or .glb");
+  if (bytes.size() > limits.bytes)
+    throw DefinitionError("mesh", name, "at most " + std::to_string(limits.bytes) + " bytes",
+                          "it has " + std::to_string(bytes.size()));
+  const std::string ending = ending_of(name);
+  check_head(bytes, ending, name);
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices,
+      ending.c_str());
+  if (!scene) throw unreadable(name, importer.GetErrorString());
+  MeshFile file;
+  Welder welder(file, name, limits);
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) welder.add(*scene->mMeshes[m]);
+  welder.finish();
+  if (file.mesh.triangles.empty()) throw unreadable(name, "it has no triangles");
+  return file;
+}
 
 void write_mesh(const TriangleMesh& mesh, const std::string& path) {
   const std::string format = format_of(path);

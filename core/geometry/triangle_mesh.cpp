@@ -25,6 +25,12 @@ Vec3d doubled_normal(const TriangleMesh& mesh, Index t) {
 
 }  // namespace
 
+TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
+  const Eigen::Quaterniond turn = placement.orientation.normalized();
+  for (Vec3d& p : mesh.positions) p = placement.position + turn * (p * placement.scale);
+  return mesh;
+}
+
 std::vector<MeshEdge> edges_of(const TriangleMesh& mesh) {
   std::map<Edge, MeshEdge> found;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

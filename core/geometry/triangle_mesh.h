@@ -13,6 +13,17 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
+/// Where a mesh comes from and how it was put into the world: p = position + R (scale p_source).
+struct MeshPlacement {
+  std::string source;              ///< name of a built-in mesh or file; empty: made by code
+  double scale = 1;                ///< 1e-4 to 1e4
+  Vec3d position = Vec3d::Zero();  ///< [m], within 1000
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+};
+
+/// The mesh with the placement applied.
+TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement);
+
 /// An edge with the triangles beside it.
 struct MeshEdge {
   Index a = 0, b = 0;                              ///< ends, smaller index first

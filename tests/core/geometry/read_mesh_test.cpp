@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/geometry/mesh_file.h"
+
+using namespace weft;
+
+namespace {
+
+template <class T>
+void put(std::string& bytes, T value) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  bytes.append(raw, sizeof(T));
+}
+
+const TriangleMesh& brick() {
+  static const TriangleMesh mesh = box_mesh(Vec3d(0.5, 0.25, 0.125));
+  return mesh;
+}
+
+std::string as_obj(const TriangleMesh& mesh, bool with_uv = false) {
+  std::ostringstream out;
+  for (const Vec3d& p : mesh.positions) out << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  if (with_uv) {
+    for (const Vec3d& p : mesh.positions) out << "vt " << p[0] + 1 << ' ' << p[1] + p[2] << '\n';
+  }
+  for (const Triangle& t : mesh.triangles) {
+    out << 'f';
+    for (const Index i : t) {
+      out << ' ' << i + 1;
+      if (with_uv) out << '/' << i + 1;
+    }
+    out << '\n';
+  }
+  return out.str();
+}
+
+std::string as_ply(const TriangleMesh& mesh) {
+  std::ostringstream out;
+  out << "ply\nformat ascii 1.0\nelement vertex " << mesh.positions.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3d& p : mesh.positions) out << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const Triangle& t : mesh.triangles)
+    out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+  return out.str();
+}
+
+Vec3d corner(const TriangleMesh& mesh, std::size_t t, std::size_t k) {
+  return mesh.positions[static_cast<std::size_t>(mesh.triangles[t][k])];
+}
+
+std::string as_binary_stl(const TriangleMesh& mesh) {
+  std::string out(80, ' ');
+  put(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3d n = unit_normal(mesh, static_cast<Index>(t));
+    for (int axis = 0; axis < 3; ++axis) put(out, static_cast<float>(n[axis]));
+    for (std::size_t k = 0; k < 3; ++k)
+      for (int axis = 0; axis < 3; ++axis) put(out, static_cast<float>(corner(mesh, t, k)[axis]));
+    put(out, std::uint16_t(0));
+  }
+  return out;
+}
+
+std::string as_text_stl(const TriangleMesh& mesh) {
+  std::ostringstream out;
+  out << "solid brick\n";
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3d n = unit_normal(mesh, static_cast<Index>(t));
+    out << "facet normal " << n[0] << ' ' << n[1] << ' ' << n[2] << "\nouter loop\n";
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d p = corner(mesh, t, k);
+      out << "vertex " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    }
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid brick\n";
+  return out.str();
+}
+
+/// A node that is moved by (10, 0, 0) and holds the mesh.
+std::string as_glb(const TriangleMesh& mesh) {
+  std::string data;
+  for (const Vec3d& p : mesh.positions)
+    for (int axis = 0; axis < 3; ++axis)
+      put(data, static_cast<float>(p[axis] - (axis == 0 ? 10 : 0)));
+  const std::size_t indices_at = data.size();
+  for (const Triangle& t : mesh.triangles)
+    for (const Index i : t) put(data, static_cast<std::uint32_t>(i));
+  std::ostringstream json;
+  json << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+       << R"("nodes":[{"mesh":0,"translation":[10,0,0]}],)"
+       << R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+       << R"("buffers":[{"byteLength":)" << data.size() << "}],"
+       << R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << indices_at
+       << R"(},{"buffer":0,"byteOffset":)" << indices_at << R"(,"byteLength":)"
+       << data.size() - indices_at << "}],"
+       << R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)"
+       << mesh.positions.size() << R"(,"min":[-10.5,-0.25,-0.125],"max":[-9.5,0.25,0.125]},)"
+       << R"({"bufferView":1,"componentType":5125,"type":"SCALAR","count":)"
+       << 3 * mesh.triangles.size() << "}]}";
+  std::string text = json.str();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string out = "glTF";
+  put(out, std::uint32_t(2));
+  put(out, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + data.size()));
+  put(out, static_cast<std::uint32_t>(text.size()));
+  out += "JSON" + text;
+  put(out, static_cast<std::uint32_t>(data.size()));
+  out += std::string("BIN\0", 4) + data;
+  return out;
+}
+
+std::string refusal(std::string_view bytes, const std::string& name,
+                    const MeshFileLimits& limits = {}) {
+  try {
+    read_mesh(bytes, name, limits);
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "mesh");
+    CHECK(error.value == name);
+    return error.limit;
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("the same brick comes out of OBJ, PLY, both kinds of STL, and GLB with a moved node") {
+  const auto [name, bytes] = GENERATE(table<std::string, std::string>({
+      {"brick.obj", as_obj(brick())},
+      {"brick.ply", as_ply(brick())},
+      {"brick.stl", as_binary_stl(brick())},
+      {"text.stl", as_text_stl(brick())},
+      {"brick.glb", as_glb(brick())},
+  }));
+  INFO(name);
+  const MeshFile file = read_mesh(bytes, name);
+  CHECK(file.mesh.positions.size() == 8);
+  REQUIRE(file.mesh.triangles.size() == 12);
+  for (std::size_t t = 0; t < 12; ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK((corner(file.mesh, t, k) - corner(brick(), t, k)).norm() < 1e-6);
+  }
+  CHECK(is_closed(file.mesh));
+  CHECK(enclosed_volume(file.mesh) == Approx(8 * 0.5 * 0.25 * 0.125));
+  CHECK(file.uv.empty());
+}
+
+TEST_CASE("uv come with their vertices") {
+  const MeshFile file = read_mesh(as_obj(brick(), true), "brick.obj");
+  REQUIRE(file.uv.size() == 8);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec3d& p = file.mesh.positions[i];
+    CHECK(file.uv[i][0] == Approx(p[0] + 1));
+    CHECK(file.uv[i][1] == Approx(p[1] + p[2]).margin(1e-6));
+  }
+}
+
+TEST_CASE("polygons are cut into triangles of the same area; points and lines are left out") {
+  const MeshFile file =
+      read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1 2 3 4\nl 5 6\np 5\n",
+                "square.obj");
+  CHECK(file.mesh.positions.size() == 4);
+  CHECK(file.mesh.triangles.size() == 2);
+  CHECK(surface_area(file.mesh) == Approx(1));
+}
+
+TEST_CASE("files that are no whole mesh are refused by name, cut at any length") {
+  CHECK(refusal("", "a.obj") != "accepted");
+  CHECK(refusal("hello", "a.xyz") == "a name that ends in .obj, .ply, .stl or .glb");
+  CHECK(refusal("v 0 0 0\nv 1 0 0\n", "points.obj") != "accepted");
+  CHECK(refusal("v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "nan.obj") != "accepted");
+  CHECK(refusal("v 0 0 0\nv 1 0 0\nv 0 1e9 0\nf 1 2 3\n", "far.obj") != "accepted");
+  CHECK(refusal("solid x", "8.stl") != "accepted");
+  const std::string stl = as_binary_stl(brick()), glb = as_glb(brick());
+  for (std::size_t size = 0; size < stl.size(); size += 7)
+    CHECK(refusal(stl.substr(0, size), "cut.stl") != "accepted");
+  for (std::size_t size = 0; size < glb.size(); size += 7)
+    CHECK(refusal(glb.substr(0, size), "cut.glb") != "accepted");
+}
+
+TEST_CASE("a file larger than its limits is refused with the limit") {
+  const std::string obj = as_obj(brick());
+  CHECK(refusal(obj, "brick.obj", {10, 100, 100}) == "at most 10 bytes");
+  CHECK(refusal(obj, "brick.obj", {10000, 7, 100}) == "at most 7 vertices");
+  CHECK(refusal(obj, "brick.obj", {10000, 100, 11}) == "at most 11 triangles");
+  CHECK(refusal(obj, "brick.obj", {10000, 8, 12}) == "accepted");
+}
