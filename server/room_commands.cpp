@@ -174,7 +174,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
   if (world_->pins().list.size() >= options_.limits.pins)
     return too_many("pins", options_.limits.pins);
   const Index particle = nearest_corner(*world_, *point);
-  const PinId pin = world_->pin({particle, command.radius});
+  const PinId pin = world_->pin({particle, command.radius, {}});
   pin_owners_[pin] = viewer;
   pins_changed_ = frame_wanted_ = true;
   const auto count = static_cast<std::uint32_t>(world_->pins().list.back().particles.size());

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/strain.h"
 #include "core/error.h"
 
@@ -48,6 +49,19 @@ std::vector<float> uv_of(const ClothModel<float>& model) {
       for (std::size_t i = 0; i < 2; ++i) out.push_back((point[i] - low[i]) / (high[i] - low[i]));
   }
   return out;
+}
+
+/// The fabrics of all cloths, each name once.
+std::string fabric_names(const std::vector<ClothDef>& cloths) {
+  std::vector<std::string> names;
+  std::string text;
+  for (const ClothDef& cloth : cloths) {
+    const std::string name = fabric_name(cloth.fabric);
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    names.push_back(name);
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
 }
 
 struct ShapeWriter {
@@ -186,7 +200,7 @@ proto::State state_of(const ServedWorld& world) {
   state.air_density = environment.air_density;
   state.still_air = environment.still_air;
   state.drag = environment.drag;
-  state.fabric = "default";
+  state.fabric = fabric_names(world.def().cloths);
   state.solver = solver_name(world.def());
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());
@@ -207,7 +221,7 @@ std::vector<proto::StageWork> work_of(const ServedWorld& world) {
 }
 
 proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner) {
-  const auto particle = static_cast<std::size_t>(pin.def.particle);
+  const auto particle = static_cast<std::size_t>(pin.centre);
   return {pin.id,
           owner,
           static_cast<std::uint32_t>(particle),

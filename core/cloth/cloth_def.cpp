@@ -10,7 +10,7 @@ std::string cloth_field(std::size_t cloth, const std::string& field) {
   if (cloth == 0) return field;
   const std::string place = "cloths[" + std::to_string(cloth) + "].";
   if (field.starts_with("cloth.")) return place + field.substr(6);
-  return field.starts_with("fabric.") ? place + field : field;
+  return field == "fabric" || field.starts_with("fabric.") ? place + field : field;
 }
 
 void validate(const ClothDef& def) {
@@ -28,13 +28,17 @@ void validate(const ClothDef& def) {
         "a direction at right angles to cloth.u", "the cells are rectangles");
   if (def.bending_model == BendingModel::quadratic && !quadratic_bending_fits(def))
     throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
-                          "a rest angle or bending damping needs hinges");
+                          "a mesh, a rest angle or bending damping needs hinges");
+  if (def.mesh && def.skip_stiffness != 0)
+    throw DefinitionError("cloth.skip_stiffness", number_text(def.skip_stiffness), "0 on a mesh",
+                          "only a grid has second neighbours");
+  if (def.mesh && def.direct_springs)
+    throw DefinitionError("cloth.direct_springs", "given", "none on a mesh",
+                          "only a grid has rows and columns");
   if (!def.direct_springs) return;
-  const DirectSprings& d = *def.direct_springs;
-  check_field("cloth.direct_springs.", {"structural", 0, 1e6, "N/m", ""}, d.structural);
-  check_field("cloth.direct_springs.", {"shear", 0, 1e6, "N/m", ""}, d.shear);
-  check_field("cloth.direct_springs.", {"skip", 0, 1e6, "N/m", ""}, d.skip);
-  check_field("cloth.direct_springs.", {"dashpot", 0, 1e3, "N s/m", ""}, d.dashpot);
+  visit_fields_of_direct_springs(*def.direct_springs, [](const FieldInfo& info, double value) {
+    check_field("cloth.direct_springs.", info, value);
+  });
 }
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 
 #include "core/cloth/fabric.h"
 #include "core/definition.h"
+#include "core/geometry/triangle_mesh.h"
 
 namespace weft {
 
@@ -30,7 +31,16 @@ struct DirectSprings {
   double dashpot = 0;     ///< along every spring [N s/m]
 };
 
-/// A rectangular cloth of rows x columns particles, flat at rest.
+/// A cloth of any shape, at rest as it lies: every vertex a particle, every edge a spring.
+struct ClothMesh {
+  TriangleMesh
+      mesh;  ///< in world coordinates [m]; every vertex used, at most two triangles an edge
+  std::vector<std::array<double, 2>> uv;  ///< of each vertex, u along the warp, any scale; empty:
+                                          ///< by projection along the axis that the mesh faces
+  MeshPlacement placement = {};           ///< how `mesh` was made; not applied again
+};
+
+/// A cloth: rectangular with rows x columns particles, flat at rest, or a triangle mesh.
 ///
 /// Particle (row r, column c) has index r * columns + c and starts at
 /// origin + u * width * c/(columns-1) + v * height * r/(rows-1).
@@ -49,11 +59,12 @@ struct ClothDef {
   MassLumping mass_lumping = MassLumping::area;
   std::optional<DirectSprings> direct_springs;
   FabricDef fabric;
+  std::optional<ClothMesh> mesh;  ///< instead of the rectangle, whose numbers then do not matter
 };
 
-/// Describes each field to `visit(info, value)`, without those of the fabric.
+/// Describes each field of a grid to `visit(info, value)`.
 template <class Def, class Visitor>
-void visit_fields_of_cloth(Def& c, Visitor&& visit) {
+void visit_fields_of_grid(Def& c, Visitor&& visit) {
   visit(FieldInfo{"rows", 2, 2048, "", "particles along v"}, c.rows);
   visit(FieldInfo{"columns", 2, 2048, "", "particles along u"}, c.columns);
   visit(FieldInfo{"width", 1e-3, 100, "m", "extent along u"}, c.width);
@@ -61,14 +72,39 @@ void visit_fields_of_cloth(Def& c, Visitor&& visit) {
   visit(FieldInfo{"origin", -100, 100, "m", "where particle 0 starts"}, c.origin);
   visit(FieldInfo{"u", -1e3, 1e3, "", "direction of a row"}, c.u);
   visit(FieldInfo{"v", -1e3, 1e3, "", "direction of a column"}, c.v);
-  visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
   visit(FieldInfo{"skip_stiffness", 0, 1e6, "N/m", "springs to every second neighbour"},
         c.skip_stiffness);
 }
 
-/// Whether the quadratic form may stand for the hinges: flat at rest and without bending damping.
+/// The same for what every cloth has, grid or mesh.
+template <class Def, class Visitor>
+void visit_fields_of_any_cloth(Def& c, Visitor&& visit) {
+  visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
+}
+
+template <class Def, class Visitor>
+void visit_fields_of_cloth(Def& c, Visitor&& visit) {
+  visit_fields_of_grid(c, visit);
+  visit_fields_of_any_cloth(c, visit);
+}
+
+/// Describes each field of the direct springs.
+template <class Def, class Visitor>
+void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
+  visit(FieldInfo{"structural", 0, 1e6, "N/m", "neighbours in a row or column"}, d.structural);
+  visit(FieldInfo{"shear", 0, 1e6, "N/m", "cell diagonals"}, d.shear);
+  visit(FieldInfo{"skip", 0, 1e6, "N/m", "every second neighbour"}, d.skip);
+  visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
+}
+
+/// Words for the enumerations, in their order.
+inline constexpr const char* kMassLumpingNames[] = {"area", "equal"};
+inline constexpr const char* kBendingModelNames[] = {"automatic", "hinges", "quadratic"};
+
+/// Whether the quadratic form may stand for the hinges: a grid, flat at rest and without bending
+/// damping.
 inline bool quadratic_bending_fits(const ClothDef& def) {
-  return def.rest_angle == 0 && def.fabric.bending_damping == 0;
+  return !def.mesh && def.rest_angle == 0 && def.fabric.bending_damping == 0;
 }
 
 /// Checks every range and the combination (u and v independent, direct springs finite).

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/cloth/grid_cloth.h"
+#include "core/cloth/mesh_cloth.h"
 #include "core/error.h"
 
 namespace weft {
@@ -51,7 +52,7 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def) {
   validate(def);
-  return build_grid_cloth<Real>(def);
+  return def.mesh ? build_mesh_cloth<Real>(def) : build_grid_cloth<Real>(def);
 }
 
 template <class Real>

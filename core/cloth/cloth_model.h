@@ -117,8 +117,9 @@ struct ClothModel {
 ///
 /// A grid as in PHYSICS.md section 2: structural and shear springs whose continuum limit is the
 /// fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in every
-/// direction. Throws DefinitionError if a field is out of range or a spring would have negative
-/// stiffness (shear too large for the cell's shape).
+/// direction. A mesh as in mesh_cloth.h. Throws DefinitionError if a field is out of range, a
+/// spring would have negative stiffness (shear too large for the cell's shape) or a mesh is
+/// degenerate.
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def);
 

@@ -123,7 +123,7 @@ ClothModel<Real> build_grid_cloth(const ClothDef& def) {
   lump_masses(def, model);
   split_cells(def, model);
   model.springs = grid_springs<Real>(def, model.spring_kinds);
-  connect_triangles({def.rest_angle, def.fabric.bending_damping,
+  connect_triangles({def.rest_angle, false, def.fabric.bending_damping,
                      [&](double du, double dv) { return hinge_rigidity(def.fabric, du, dv); }},
                     model);
   complete_part(def, model);

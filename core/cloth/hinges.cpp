@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/forces/hinge.h"
+
 namespace weft {
 namespace {
 
@@ -56,6 +58,12 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
   hinge.stiffness = static_cast<Real>(rigidity * length2 / area);
   hinge.damping = static_cast<Real>(settings.damping) * hinge.stiffness;
   hinge.rest_angle = static_cast<Real>(settings.rest_angle);
+  if (settings.add_own_angle) {
+    const auto x = [&](std::size_t k) -> const Vec3<Real>& {
+      return model.rest_positions[static_cast<std::size_t>(hinge.x[k])];
+    };
+    hinge.rest_angle += hinge_angle<Real>(x(0), x(1), x(2), x(3)).theta;
+  }
   hinge.smallest_normal2 = static_cast<Real>(kCrumpledArea * kCrumpledArea * area * area);
   model.hinges.push_back(hinge);
 }

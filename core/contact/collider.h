@@ -35,6 +35,7 @@ struct BoxDef {
 /// A triangle mesh, given in world coordinates. A closed one is solid; an open one has two sides.
 struct MeshDef {
   TriangleMesh mesh;
+  MeshPlacement placement = {};  ///< how `mesh` was made, for scene files; not applied again
 };
 
 using ShapeDef = std::variant<PlaneDef, SphereDef, CapsuleDef, BoxDef, MeshDef>;

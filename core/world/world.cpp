@@ -87,7 +87,17 @@ void World<Real>::reset() {
   pins_.next_id = next_pin;
   grabs_.list.clear();
   grabs_.shots.clear();
-  for (const PinDef& pin_def : def_.pins) pin(pin_def);
+  for (std::size_t k = 0; k < def_.pins.size(); ++k) {
+    try {
+      pin(def_.pins[k]);
+    } catch (const DefinitionError& error) {
+      const std::size_t dot = error.field.find('.');
+      throw DefinitionError(
+          "pins[" + std::to_string(k) + "]" +
+              (dot == std::string::npos ? std::string() : error.field.substr(dot)),
+          error.value, error.limit, error.hint);
+    }
+  }
   tick_ = 0;
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/error.h"
 
 namespace weft {
@@ -47,10 +48,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
-  std::string all, nearest;
+  std::string all = "fabric", nearest;
   std::size_t best = key.size() / 2 + 1;
   for (const FieldListing& field : list_fields(def)) {
-    all += (all.empty() ? "" : ", ") + field.key;
+    all += ", " + field.key;
     const std::size_t distance = edit_distance(key, field.key);
     if (distance < best) {
       best = distance;
@@ -100,6 +101,13 @@ void validate(const WorldDef& def) {
                                   def.contact.seed.self),
                           "none", "set contact.model to seed for contact of the cloth with itself");
   }
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    for (std::size_t j = 0; j < k; ++j) {
+      if (def.cloths[j].name == def.cloths[k].name)
+        throw DefinitionError("cloths[" + std::to_string(k) + "].name", def.cloths[k].name,
+                              "a name that no other cloth has", "pins name their cloth");
+    }
+  }
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {
@@ -109,6 +117,12 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
   std::string wanted = key;
   if (key.starts_with(first))
     wanted = (key.starts_with(first + "fabric.") ? "" : "cloth.") + key.substr(first.size());
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    if (key != cloth_field(k, "fabric") && key != "cloths[" + std::to_string(k) + "].fabric")
+      continue;
+    def.cloths[k].fabric = make_fabric(text);
+    return;
+  }
   visit_fields(def, [&](const std::string& path, const FieldInfo& info, auto& value) {
     if (found || wanted != path + info.name) return;
     found = true;

@@ -84,7 +84,8 @@ void validate(const WorldDef& def);
 
 /// Sets one field by its path, e.g. "fabric.shear" = "20", "environment.wind" = "3,0,0" or, where
 /// there are several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." are those of the
-/// first. Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
+/// first. "fabric" = "cotton" (or "cloths[1].fabric") takes all values of a preset.
+/// Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
 void set_field(WorldDef& def, const std::string& key, const std::string& text);
 
 /// A field as people see it.

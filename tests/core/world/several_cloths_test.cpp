@@ -103,6 +103,7 @@ TEST_CASE("each cloth keeps its own thickness and friction") {
   def.cloths[1].fabric.friction = 0.1;
   for (ClothDef& cloth : def.cloths) cloth.origin = Vec3d(0, cloth.fabric.thickness, 0);
   def.cloths[1].origin[0] = 1;
+  def.cloths[1].name = "thick";
   def.environment.gravity = Vec3d(9.81 * 0.5, -9.81, 0);  // atan 0.5 is between both frictions
   def.colliders = {{"ground", PlaneDef{}}};
   World<double> world(def);
@@ -150,6 +151,7 @@ TEST_CASE("a field of a later cloth is set and refused by its place in the list"
   CHECK(refused_field([](WorldDef& d) { d.cloths[1].fabric.shear = 1e5; }) ==
         "cloths[1].fabric.shear");
   CHECK(refused_field([](WorldDef& d) { d.cloths[0].fabric.shear = 1e5; }) == "fabric.shear");
+  CHECK(refused_field([](WorldDef& d) { d.cloths[1].name = "cloth"; }) == "cloths[1].name");
   CHECK(refused_field([](WorldDef& d) { d.cloths.clear(); }) == "cloths");
   CHECK(refused_field([](WorldDef& d) { d.cloths.resize(65); }) == "cloths");
 }

@@ -1,0 +1,131 @@
+#include "core/cloth/fabric_presets.h"
+
+#include "core/error.h"
+
+// Sources:
+//   Penava   Penava, Simic Penava, Knezic 2014, Determination of the elastic constants of plain
+//   woven
+//            fabrics by a tensile test: thickness t, areal density, Young's modulus E; the stretch
+//            stiffness is E t.
+//   ASTM     D1388: B = sigma g c^3 with c the bending length; c is ours where no measurement is
+//            named, from the middle of what the literature on drape gives for such a fabric.
+//   KES      Kawabata: shear G of 1 gf/(cm degree) is 56.188 N/m, bending B of 1 gf cm^2/cm is
+//            9.80665e-5 N m.
+//   Denim    Regenerated cellulose-based denim fabric for tropical regions, Journal of Textiles
+//            2016, table 5 (KES): G 1.5 to 3.4 gf/(cm degree).
+//   ours     chosen by us; not a measurement.
+// Contact thickness, restitution and damping stay those of every fabric: they belong to the
+// simulation and not to the material. Friction is ours: cloth on a smooth object.
+
+namespace weft {
+namespace {
+
+constexpr double kGravity = 9.81;     // [m/s^2]
+constexpr double kKesShear = 56.188;  // [N/m] in 1 gf/(cm degree)
+
+/// Bending rigidity of a fabric with a bending length [N m] (ASTM D1388).
+constexpr double rigidity(double areal_density, double bending_length) {
+  return areal_density * kGravity * bending_length * bending_length * bending_length;
+}
+
+FabricDef cotton() {
+  FabricDef f;
+  f.areal_density = 0.1503;                                    // Penava
+  f.stretch_warp = f.stretch_weft = 0.821e6 * 0.318e-3;        // Penava: E t
+  f.shear = 0.8 * kKesShear;                                   // ours, a plain weave
+  f.bending_warp = f.bending_weft = rigidity(0.1503, 0.0215);  // ASTM, c ours
+  f.friction = 0.5;                                            // ours
+  return f;
+}
+
+FabricDef silk() {
+  FabricDef f;
+  f.areal_density = 0.07;                                    // ours, a light plain silk
+  f.stretch_warp = f.stretch_weft = 400;                     // ours
+  f.shear = 0.3 * kKesShear;                                 // ours
+  f.bending_warp = f.bending_weft = rigidity(0.07, 0.0115);  // ASTM, c ours
+  f.friction = 0.25;                                         // ours
+  return f;
+}
+
+FabricDef wool() {
+  FabricDef f;
+  f.areal_density = 0.2348;                                   // Penava
+  f.stretch_warp = f.stretch_weft = 0.170e6 * 0.568e-3;       // Penava: E t
+  f.shear = 0.6 * kKesShear;                                  // ours, a suiting
+  f.bending_warp = f.bending_weft = rigidity(0.2348, 0.019);  // ASTM, c ours
+  f.friction = 0.6;                                           // ours
+  return f;
+}
+
+FabricDef denim() {
+  FabricDef f;
+  f.areal_density = 0.324;                                    // ours
+  f.stretch_warp = f.stretch_weft = 1500;                     // ours
+  f.shear = 1.6 * kKesShear;                                  // Denim, median
+  f.bending_warp = f.bending_weft = rigidity(0.324, 0.0267);  // ASTM, c ours: 6e-5 N m
+  f.friction = 0.6;                                           // ours
+  return f;
+}
+
+FabricDef leather() {
+  FabricDef f;
+  f.areal_density = 0.6;                                   // ours, 0.9 mm of garment leather
+  f.stretch_warp = f.stretch_weft = 2500;                  // ours
+  f.shear = 700;                                           // ours: no weave, so nearly isotropic
+  f.bending_warp = f.bending_weft = rigidity(0.6, 0.024);  // ASTM, c ours
+  f.friction = 0.6;                                        // ours
+  return f;
+}
+
+FabricDef nylon() {
+  FabricDef f;
+  f.areal_density = 0.05;                                   // ours, flag cloth
+  f.stretch_warp = f.stretch_weft = 1000;                   // ours
+  f.shear = 0.7 * kKesShear;                                // ours
+  f.bending_warp = f.bending_weft = rigidity(0.05, 0.011);  // ASTM, c ours
+  f.friction = 0.3;                                         // ours
+  return f;
+}
+
+bool same(const FabricDef& a, const FabricDef& b) {
+  std::vector<double> values;
+  visit_fields_of_fabric(a, [&](const FieldInfo&, double value) { values.push_back(value); });
+  std::size_t k = 0;
+  bool equal = true;
+  visit_fields_of_fabric(
+      b, [&](const FieldInfo&, double value) { equal = equal && values[k++] == value; });
+  return equal;
+}
+
+}  // namespace
+
+const std::vector<FabricPreset>& fabric_presets() {
+  static const std::vector<FabricPreset> presets = {
+      {"cotton", "plain cotton: crisp, falls in few folds", cotton()},
+      {"silk", "light silk: soft, many fine folds", silk()},
+      {"wool", "wool suiting: soft to pull, round folds", wool()},
+      {"denim", "denim: heavy and stiff", denim()},
+      {"leather", "garment leather: heavy, stiff in every direction", leather()},
+      {"nylon", "flag nylon: very light and hard to stretch", nylon()}};
+  return presets;
+}
+
+FabricDef make_fabric(const std::string& name) {
+  std::string names;
+  for (const FabricPreset& preset : fabric_presets()) {
+    if (preset.name == name) return preset.fabric;
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  throw DefinitionError("fabric", name, "one of " + names);
+}
+
+std::string fabric_name(const FabricDef& fabric) {
+  if (same(fabric, FabricDef{})) return "default";
+  for (const FabricPreset& preset : fabric_presets()) {
+    if (same(fabric, preset.fabric)) return preset.name;
+  }
+  return "custom";
+}
+
+}  // namespace weft

@@ -1,0 +1,263 @@
+#include "core/cloth/mesh_cloth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/cloth/grid_cloth.h"
+#include "core/cloth/hinges.h"
+#include "core/error.h"
+#include "core/solver/substep_rule.h"
+
+namespace weft {
+namespace {
+
+using Uv = std::vector<std::array<double, 2>>;
+
+std::string at(const char* list, std::size_t index) {
+  return std::string("cloth.mesh.") + list + "[" + std::to_string(index) + "]";
+}
+
+void refuse_unused_and_coincident(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index i : t) used[static_cast<std::size_t>(i)] = true;
+  }
+  std::map<std::array<double, 3>, std::size_t> places;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (!used[i])
+      throw DefinitionError(at("positions", i), "in no triangle", "vertices of triangles alone",
+                            "a particle that nothing holds is no cloth");
+    const Vec3d& p = mesh.positions[i];
+    const auto [there, is_new] = places.insert({{p[0], p[1], p[2]}, i});
+    if (!is_new)
+      throw DefinitionError(at("positions", i),
+                            "where vertex " + std::to_string(there->second) + " is",
+                            "vertices at different places", "merge vertices that coincide");
+  }
+}
+
+void refuse_crowded_edges(const TriangleMesh& mesh) {
+  struct Beside {
+    int triangles = 0;
+    Index opposite = kNone;
+  };
+  std::map<Edge, Beside> edges;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      const Index opposite = mesh.triangles[t][(k + 2) % 3];
+      Beside& beside = edges[{std::min(a, b), std::max(a, b)}];
+      const std::string edge = "edge " + std::to_string(a) + "-" + std::to_string(b);
+      if (++beside.triangles > 2)
+        throw DefinitionError(at("triangles", t), "third at " + edge,
+                              "at most two triangles at an edge", "a cloth is a surface");
+      if (beside.opposite == opposite)
+        throw DefinitionError(at("triangles", t), "a triangle that is there already",
+                              "each triangle once", "remove double triangles");
+      beside.opposite = opposite;
+    }
+  }
+}
+
+double doubled_area(const Uv& uv, const Triangle& t) {
+  const auto& a = uv[static_cast<std::size_t>(t[0])];
+  const auto& b = uv[static_cast<std::size_t>(t[1])];
+  const auto& c = uv[static_cast<std::size_t>(t[2])];
+  return std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+}
+
+/// Projection along the axis that most of the surface faces, upwards where that is possible.
+Uv projected(const TriangleMesh& mesh) {
+  Vec3d faced = Vec3d::Zero();
+  for (const Triangle& t : mesh.triangles) {
+    const auto x = [&](std::size_t k) -> const Vec3d& {
+      return mesh.positions[static_cast<std::size_t>(t[k])];
+    };
+    faced += (x(1) - x(0)).cross(x(2) - x(0)).cwiseAbs();
+  }
+  Uv uv;
+  for (const Vec3d& p : mesh.positions) {
+    if (faced[2] >= faced[0] && faced[2] >= faced[1])
+      uv.push_back({p[0], -p[1]});
+    else if (faced[1] >= faced[0])
+      uv.push_back({p[0], p[2]});
+    else
+      uv.push_back({p[2], -p[1]});
+  }
+  return uv;
+}
+
+/// Material coordinates in metres.
+Uv material_of(const ClothMesh& cloth) {
+  constexpr double kSmallestPart = 1e-9;  // of a triangle's share that counts as an area
+  const double area = surface_area(cloth.mesh);
+  double whole = 0, least = INFINITY;
+  if (!cloth.uv.empty()) {
+    for (const Triangle& t : cloth.mesh.triangles) {
+      const double a = doubled_area(cloth.uv, t);
+      whole += 0.5 * a;
+      least = std::min(least, a);
+    }
+  }
+  const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
+  if (!(whole > 0) || !(least > kSmallestPart * mean)) return projected(cloth.mesh);
+  Uv material = cloth.uv;
+  const double scale = std::sqrt(area / whole);
+  for (auto& point : material) {
+    for (double& x : point) x *= scale;
+  }
+  return material;
+}
+
+/// cos^2 of the angle between an edge and the warp.
+double warp_part(double du, double dv) {
+  const double d2 = du * du + dv * dv;
+  return d2 > 0 ? du * du / d2 : 0.5;
+}
+
+double stiffness_along(const FabricDef& f, double cos2) {
+  const double sin2 = 1 - cos2;
+  return f.stretch_warp * cos2 * cos2 + f.stretch_weft * sin2 * sin2 + 6 * f.shear * sin2 * cos2;
+}
+
+template <class Real>
+void place_particles(const ClothDef& def, const std::vector<Index>& order,
+                     ClothModel<Real>& model) {
+  const TriangleMesh& mesh = def.mesh->mesh;
+  const Uv material = material_of(*def.mesh);
+  std::vector<Index> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto old = static_cast<std::size_t>(order[k]);
+    place[old] = static_cast<Index>(k);
+    model.rest_positions.push_back(mesh.positions[old].template cast<Real>());
+    model.material.push_back(
+        {static_cast<Real>(material[old][0]), static_cast<Real>(material[old][1])});
+  }
+  const auto new_index = [&](Index old) { return place[static_cast<std::size_t>(old)]; };
+  std::vector<std::pair<Triangle, double>> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& old = mesh.triangles[t];
+    const auto x = [&](std::size_t k) -> const Vec3d& {
+      return mesh.positions[static_cast<std::size_t>(old[k])];
+    };
+    triangles.push_back({{new_index(old[0]), new_index(old[1]), new_index(old[2])},
+                         0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm()});
+  }
+  std::stable_sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) {
+    return *std::min_element(a.first.begin(), a.first.end()) <
+           *std::min_element(b.first.begin(), b.first.end());
+  });
+  for (const auto& [triangle, area] : triangles) {
+    model.triangles.push_back(triangle);
+    model.triangle_area.push_back(static_cast<Real>(area));
+  }
+}
+
+template <class Real>
+void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
+  std::vector<double> mass(model.rest_positions.size(), 0);
+  double whole = 0;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const double share = def.fabric.areal_density * static_cast<double>(model.triangle_area[t]) / 3;
+    whole += 3 * share;
+    for (const Index i : model.triangles[t]) mass[static_cast<std::size_t>(i)] += share;
+  }
+  if (def.mass_lumping == MassLumping::equal)
+    std::fill(mass.begin(), mass.end(), whole / static_cast<double>(mass.size()));
+  for (const double m : mass) model.mass.push_back(static_cast<Real>(m));
+}
+
+/// One spring for each edge, in the order of the edges.
+template <class Real>
+void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
+  std::map<Edge, double> area;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = model.triangles[t][k], b = model.triangles[t][(k + 1) % 3];
+      area[{std::min(a, b), std::max(a, b)}] += static_cast<double>(model.triangle_area[t]);
+    }
+  }
+  for (const Edge& edge : model.edges) {
+    const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
+    const double cos2 = warp_part(static_cast<double>(model.material[j][0] - model.material[i][0]),
+                                  static_cast<double>(model.material[j][1] - model.material[i][1]));
+    const double length2 =
+        (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
+    const double stiffness = stiffness_along(fabric, cos2) * area.at(edge) / length2;
+    model.parts.front().longest_edge =
+        std::max(model.parts.front().longest_edge, std::sqrt(length2));
+    if (stiffness == 0) continue;
+    Spring<Real> spring;
+    spring.i = edge[0];
+    spring.j = edge[1];
+    spring.rest_length = static_cast<Real>(std::sqrt(length2));
+    spring.stiffness = static_cast<Real>(stiffness);
+    model.springs.push_back(spring);
+    model.spring_kinds.push_back(SpringKind::edge);
+  }
+}
+
+}  // namespace
+
+std::vector<Index> breadth_first_order(std::size_t vertices,
+                                       const std::vector<Triangle>& triangles) {
+  std::vector<std::vector<Index>> neighbours(vertices);
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t other : {(k + 1) % 3, (k + 2) % 3})
+        neighbours[static_cast<std::size_t>(t[k])].push_back(t[other]);
+    }
+  }
+  std::vector<Index> order;
+  std::vector<bool> seen(vertices, false);
+  const auto visit = [&](Index i) {
+    if (seen[static_cast<std::size_t>(i)]) return;
+    seen[static_cast<std::size_t>(i)] = true;
+    order.push_back(i);
+  };
+  std::size_t next = 0;
+  for (std::size_t start = 0; start < vertices; ++start) {
+    visit(static_cast<Index>(start));
+    for (; next < order.size(); ++next) {
+      std::vector<Index>& beside = neighbours[static_cast<std::size_t>(order[next])];
+      std::sort(beside.begin(), beside.end());
+      for (const Index i : beside) visit(i);
+    }
+  }
+  return order;
+}
+
+template <class Real>
+ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
+  const TriangleMesh& mesh = def.mesh->mesh;
+  validate(mesh, "cloth.mesh.");
+  refuse_unused_and_coincident(mesh);
+  refuse_crowded_edges(mesh);
+  if (!def.mesh->uv.empty() && def.mesh->uv.size() != mesh.positions.size())
+    throw DefinitionError("cloth.mesh.uv", std::to_string(def.mesh->uv.size()) + " pairs",
+                          std::to_string(mesh.positions.size()) + ", one a vertex, or none");
+  ClothModel<Real> model;
+  model.parts.emplace_back();
+  ClothPart<Real>& part = model.parts.front();
+  place_particles(def, breadth_first_order(mesh.positions.size(), mesh.triangles), model);
+  lump_masses(def, model);
+  const FabricDef& fabric = def.fabric;
+  connect_triangles({def.rest_angle, true, fabric.bending_damping,
+                     [&](double du, double dv) {
+                       // An edge along v bends with curvature along u.
+                       const double cos2 = warp_part(du, dv);
+                       return fabric.bending_weft * cos2 + fabric.bending_warp * (1 - cos2);
+                     }},
+                    model);
+  add_edge_springs(fabric, model);
+  complete_part(def, model);
+  bound_frequencies(model, part);
+  add_spring_damping(model, part, fabric.damping_ratio);
+  return model;
+}
+
+template ClothModel<float> build_mesh_cloth<float>(const ClothDef&);
+template ClothModel<double> build_mesh_cloth<double>(const ClothDef&);
+
+}  // namespace weft
