@@ -20,6 +20,22 @@ double parse_number(const std::string& field, const FieldInfo& info, std::string
   return value;
 }
 
+/// Number of single-character changes between two words; finds the key that was meant.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -120,6 +136,18 @@ void parse_field(const std::string& path, const FieldInfo& info, const std::stri
   }
   check_field(path, info, parsed);
   value = parsed;
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
+  std::string nearest;
+  std::size_t best = word.size() / 2 + 1;
+  for (const std::string& candidate : words) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance >= best) continue;
+    best = distance;
+    nearest = candidate;
+  }
+  return nearest;
 }
 
 }  // namespace weft

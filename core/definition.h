@@ -2,6 +2,7 @@
 
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "core/types.h"
 
@@ -61,6 +62,9 @@ void parse_field(const std::string& path, const FieldInfo& info, const std::stri
 
 /// The allowed values in words, e.g. "0.001 to 10 kg/m^2" or "verlet or relaxation".
 std::string allowed_values(const FieldInfo& info);
+
+/// Of some words the one that is most like the given one; empty if none is like it.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
 /// A number as short text that reads back to the same number.
 std::string number_text(double value);

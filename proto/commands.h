@@ -169,7 +169,8 @@ struct Ping {
 };
 
 struct Load {
-  std::string scene;  ///< 1 to 64 of a-z A-Z 0-9 . _ -, not beginning with a dot
+  std::string scene;       ///< 1 to 64 of a-z A-Z 0-9 . _ -, not beginning with a dot
+  std::string definition;  ///< JSON text of a scene instead, not checked yet; empty: by name
   bool operator==(const Load&) const = default;
 };
 

@@ -80,7 +80,12 @@ struct FieldWriter {
     put_if(out, "viewer", c.viewer);
   }
   void operator()(const Ping& c) { out["t"] = c.t; }
-  void operator()(const Load& c) { out["scene"] = c.scene; }
+  void operator()(const Load& c) {
+    if (c.definition.empty())
+      out["scene"] = c.scene;
+    else
+      out["scene"] = Json::parse(c.definition);
+  }
   void operator()(const View& c) {
     put_if(out, "hz", c.hz);
     if (c.codec) out["codec"] = name_of(*c.codec);

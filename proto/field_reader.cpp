@@ -119,6 +119,13 @@ void FieldReader::read(const char* key, std::string& value) {
   value = node->get_ref<const std::string&>();
 }
 
+bool FieldReader::read_object_text(const char* key, std::string& text) {
+  const json* node = ok() ? find(key) : nullptr;
+  if (!node || !node->is_object()) return false;
+  text = node->dump();
+  return true;
+}
+
 void FieldReader::read_id(const char* key, std::optional<Id>& value) {
   const json* node = find(key);
   if (node == nullptr) return;

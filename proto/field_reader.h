@@ -35,6 +35,9 @@ class FieldReader {
   void read(const char* key, Vec3& value, Range range);
   void read(const char* key, std::string& value);
 
+  /// The JSON text of a field that is an object; false, with `text` untouched, if it is none.
+  bool read_object_text(const char* key, std::string& text);
+
   /// A word out of a list; `value` becomes the enumerator of the same place.
   template <class Enum, std::size_t N>
   void read(const char* key, Enum& value, const std::array<const char*, N>& words) {

@@ -211,6 +211,7 @@ Command read_ping(FieldReader& in) {
 
 Command read_load(FieldReader& in) {
   Load load;
+  if (in.read_object_text("scene", load.definition)) return load;
   in.read("scene", load.scene);
   if (!in.ok()) return load;
   if (load.scene.empty() || load.scene.size() > kMostSceneBytes)

@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/limits.h"
 #include "proto/utf8.h"
 
 namespace weft::proto {
@@ -126,11 +125,12 @@ class StrictBuilder {
 
 }  // namespace
 
-Result<json> parse_object(std::string_view text) {
-  if (text.size() > kMostMessageBytes) {
-    Error error = make_error(ErrorCode::too_large, "the message has more than 64 KiB");
+Result<json> parse_object(std::string_view text, std::size_t most_bytes) {
+  if (text.size() > most_bytes) {
+    Error error = make_error(ErrorCode::too_large, "the message has more than " +
+                                                       std::to_string(most_bytes / 1024) + " KiB");
     error.value = std::to_string(text.size());
-    error.limit = Limit{{}, static_cast<double>(kMostMessageBytes), {}, {}};
+    error.limit = Limit{{}, static_cast<double>(most_bytes), {}, {}};
     return error;
   }
   if (!is_utf8(text)) return make_error(ErrorCode::bad_utf8, "the message is not UTF-8");

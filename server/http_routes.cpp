@@ -9,6 +9,7 @@
 #include <boost/beast/http/rfc7230.hpp>
 
 #include "proto/events.h"
+#include "server/scene_schema.h"
 
 namespace weft::server {
 namespace {
@@ -170,6 +171,8 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
     return response(request, http::status::ok, kJson, proto::encode_version(context.version));
   if (path == "/api/v1/scenes")
     return response(request, http::status::ok, kJson, proto::encode_scenes(context.scenes));
+  if (path == kSceneSchemaPath)
+    return response(request, http::status::ok, "application/schema+json", scene_schema());
   if (path.starts_with(kMeshPath)) return mesh_response(context, request, path);
   if (path == "/ws") {
     error.code = "upgrade_required";

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/mesh_child.h"
 #include "server/options.h"
 #include "server/serve.h"
 #include "server/simulate.h"
@@ -28,7 +30,9 @@ Examples:
   weft simulate --scene default --ticks 600       ten seconds of cloth, as fast as possible
   weft simulate --scene flag --ticks 300 --set environment.wind=8,0,0 --out flag.obj
   weft simulate --scene drape-sphere --ticks 600 --json
+  weft serve --scene my.json                      a scene of your own; weft scenes --schema
   weft scenes                                     what there is
+  weft scenes --json flag                         one as a file to start from
 )";
 
 /// Splits "key=value"; the key may not be empty.
@@ -71,7 +75,9 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_number(serve, "--port", o.port, kPorts, "Port (8080); 0 picks a free one");
   add_switch(serve, "--open", o.open,
              "Let other machines in (needed for other addresses than loopback)");
-  serve.add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
+  serve.add_option("--scene", o.scene, "Built-in scene, or a file that ends in .json")
+      ->capture_default_str();
+  serve.add_option("--scenes", o.scenes, "Directory of scenes and meshes that clients may name");
   serve.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   add_number(serve, "--rate", o.rate, kRates, "Ticks a second (the scene's)");
   add_number(serve, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
@@ -96,7 +102,9 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
 void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& settings) {
   CLI::App& simulate =
       *app.add_subcommand("simulate", "Run a scene as fast as possible and sum up");
-  simulate.add_option("--scene", o.scene, "Built-in scene")->capture_default_str();
+  simulate.add_option("--scene", o.scene, "Built-in scene, or a file that ends in .json")
+      ->capture_default_str();
+  simulate.add_option("--scenes", o.scenes, "Directory of further scenes and their meshes");
   add_number(simulate, "--ticks", o.ticks, kTickCounts, "Ticks (600)");
   simulate.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
@@ -118,6 +126,13 @@ std::string describe_mismatch(const CLI::App& command, const std::string& wrong)
            "; allowed: " + option->get_description();
   }
   return wrong;
+}
+
+void add_scenes(CLI::App& app, ScenesOptions& o) {
+  CLI::App& scenes = *app.add_subcommand("scenes", "List the built-in scenes");
+  scenes.add_option("NAME", o.name, "With --json: this scene as a file");
+  add_switch(scenes, "--json", o.json, "Print JSON");
+  add_switch(scenes, "--schema", o.schema, "Print the JSON Schema of scene files");
 }
 
 /// One line that names what was wrong and what is allowed there.
@@ -162,11 +177,10 @@ int run(int argc, char** argv) {
   ServerOptions serve_options;
   SimulateOptions simulate_options;
   std::vector<std::string> serve_settings, simulate_settings;
-  bool scenes_json = false;
+  ScenesOptions scenes_options;
   add_serve(app, serve_options, serve_settings);
   add_simulate(app, simulate_options, simulate_settings);
-  add_switch(*app.add_subcommand("scenes", "List the built-in scenes"), "--json", scenes_json,
-             "Print JSON");
+  add_scenes(app, scenes_options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -178,7 +192,7 @@ int run(int argc, char** argv) {
     serve_options.settings.push_back(split_setting(text));
   for (const std::string& text : simulate_settings)
     simulate_options.settings.push_back(split_setting(text));
-  if (app.got_subcommand("scenes")) return list_scenes(scenes_json);
+  if (app.got_subcommand("scenes")) return list_scenes(scenes_options);
   if (app.got_subcommand("simulate")) return simulate(simulate_options);
   validate(serve_options);
   spdlog::set_level(spdlog::level::from_str(serve_options.log_level));
@@ -190,6 +204,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("weft"));
   try {
+    if (argc == 3 && std::string_view(argv[1]) == kMeshChildCommand) return run_mesh_child(argv[2]);
     return run(argc, argv);
   } catch (const OptionError& error) {
     complain(error.what());

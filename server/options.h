@@ -60,11 +60,12 @@ struct ServerOptions {
   std::string bind = "127.0.0.1";  ///< address; others than loopback need `open`
   int port = 8080;                 ///< 0 to 65535; 0 lets the system choose
   bool open = false;               ///< serve other machines, without authentication
-  std::string scene = "default";
-  double rate = 0;      ///< ticks a second, 1 to 1000; 0: the scene's own
-  int threads = 1;      ///< for the physics, 1 to 64
-  bool paused = false;  ///< start paused
-  std::string web;      ///< directory of the page; empty: beside the executable
+  std::string scene = "default";   ///< a name, or a file that ends in .json
+  std::string scenes;              ///< directory with further scenes and meshes; empty: none
+  double rate = 0;                 ///< ticks a second, 1 to 1000; 0: the scene's own
+  int threads = 1;                 ///< for the physics, 1 to 64
+  bool paused = false;             ///< start paused
+  std::string web;                 ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;                   ///< besides the server's own
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   double max_seconds = 0;          ///< stop by itself after this; 0: never

@@ -28,7 +28,8 @@ Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock cl
            Metrics& metrics, Executor* executor)
     : options_(std::move(options)), scenes_(std::move(scenes)), output_(output),
       clock_(std::move(clock)), metrics_(metrics), executor_(executor), paused_(options_.paused) {
-  WorldDef def = definition_of(options_.scene);
+  WorldDef def = options_.scene_def ? *options_.scene_def : definition_of(options_.scene);
+  if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
   start_world(def);
   meter_.restart(clock_());

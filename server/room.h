@@ -28,11 +28,14 @@ namespace weft::server {
 using SceneSource = std::function<WorldDef(const std::string&)>;
 
 struct RoomOptions {
-  std::string scene = "default";
-  double tick_rate = 0;  ///< [1/s]; 0: as each scene says
+  std::string scene = "default";      ///< name of the first scene
+  std::optional<WorldDef> scene_def;  ///< the first scene itself, where no name leads to it
+  double tick_rate = 0;               ///< [1/s]; 0: as each scene says
   std::vector<std::pair<std::string, std::string>>
       settings;                          ///< of the first scene; core's set_field
   std::vector<std::string> scene_names;  ///< for people who mistype one
+  /// Reads a scene that a client sends as JSON; throws DefinitionError. Without it none is taken.
+  std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
   std::string version, session;  ///< for `welcome`
   proto::ServerLimits limits;
@@ -120,6 +123,7 @@ class Room {
   std::vector<proto::PinInfo> pins() const;
   std::vector<proto::GrabInfo> grabs(bool with_force) const;
   WorldDef definition_of(const std::string& scene) const;
+  WorldDef definition_of(const proto::Load& command) const;
 
   // room_commands.cpp: one function a command
   void handle(proto::ViewerId viewer, const proto::Request& request);

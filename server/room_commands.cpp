@@ -344,21 +344,36 @@ Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
   return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
 }
 
+WorldDef Room::definition_of(const proto::Load& command) const {
+  if (command.definition.empty()) return definition_of(command.scene);
+  try {
+    WorldDef def = options_.read_scene(command.definition);
+    if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
+    return def;
+  } catch (const DefinitionError& error) {
+    const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
+    throw DefinitionError(field, error.value, error.limit, error.hint);
+  }
+}
+
 Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
+  if (!command.definition.empty() && !options_.read_scene)
+    return make_error(ErrorCode::not_supported, "this server takes scenes by name alone");
   const auto& names = options_.scene_names;
-  if (std::find(names.begin(), names.end(), command.scene) == names.end()) {
+  if (command.definition.empty() &&
+      std::find(names.begin(), names.end(), command.scene) == names.end()) {
     proto::Error error = proto::word_error("scene", command.scene, names);
     error.code = ErrorCode::unknown_scene;
     return error;
   }
-  start_world(definition_of(command.scene));
+  start_world(definition_of(command));
   steps_left_ = 0;
   meter_.restart(clock_());
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
-  notify(proto::NoticeLevel::info, "loaded", "the scene is now " + command.scene, viewer);
+  notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
   tell_changes();
-  return proto::Reply(proto::LoadReply{0, command.scene, epoch_});
+  return proto::Reply(proto::LoadReply{0, world_->def().name, epoch_});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Ping&) {

@@ -16,11 +16,11 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "core/scenes/scenes.h"
 #include "server/close_codes.h"
 #include "server/listener.h"
 #include "server/network_output.h"
 #include "server/room.h"
+#include "server/scene_library.h"
 #include "server/simulation_loop.h"
 #include "server/thread_pool.h"
 #include "server/version.h"
@@ -87,21 +87,20 @@ std::string random_session() {
 }
 
 std::string page_directory(const ServerOptions& options) {
-  if (!options.web.empty()) return options.web;
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? std::string() : (program.parent_path() / "web").string();
+  return options.web.empty() ? beside_program("web") : options.web;
 }
 
-RoomOptions room_options(const ServerOptions& options) {
+RoomOptions room_options(const ServerOptions& options, const SceneLibrary& library) {
   RoomOptions room;
   room.scene = options.scene;
+  room.scene_def = library.opened(options.scene);
+  room.read_scene = [&library](const std::string& json) { return library.from_client(json); };
   room.tick_rate = options.rate;
   room.settings = options.settings;
   room.paused = options.paused;
   room.version = version_info().version;
   room.session = random_session();
-  for (const SceneInfo& scene : scenes()) room.scene_names.push_back(scene.name);
+  for (const SceneInfo& scene : library.list()) room.scene_names.push_back(scene.name);
   room.limits.messages_per_second = options.limits.messages_per_second;
   room.limits.viewers = static_cast<std::uint32_t>(options.limits.viewers);
   return room;
@@ -201,6 +200,9 @@ int serve(const ServerOptions& options) {
   if (!options.web.empty() && !files.find("/"))
     throw OptionError("--web", options.web, "a directory with the page's index.html");
   Bulletin bulletin;
+  // Reads its folder in processes of its own, so before any thread is there.
+  const SceneLibrary library(beside_program("meshes"), options.scenes);
+  for (const std::string& problem : library.problems()) spdlog::warn("scene folder: {}", problem);
 
   Hub hub(process_seconds, 60, {options.limits.queued_messages, options.limits.queued_bytes},
           metrics);
@@ -217,13 +219,16 @@ int serve(const ServerOptions& options) {
                          1,
                          0,
                          false};
-  for (const SceneInfo& scene : scenes()) context.scenes.push_back({scene.name, scene.description});
+  for (const SceneInfo& scene : library.list())
+    context.scenes.push_back({scene.name, scene.description});
   // Destroyed before what the sessions use, because handlers that it still holds own them.
   asio::io_context io(1);
   NetworkOutput output(io, hub);
   ThreadPool pool(options.threads);
-  Room room(room_options(options), make_scene, output, process_seconds, metrics,
-            options.threads > 1 ? &pool : nullptr);
+  Room room(
+      room_options(options, library),
+      [&library](const std::string& name) { return library.named(name); }, output, process_seconds,
+      metrics, options.threads > 1 ? &pool : nullptr);
   room.on_finished = [&mailbox](proto::ViewerId viewer) { mailbox.finished(viewer); };
 
   std::optional<Network> network;

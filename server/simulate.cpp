@@ -14,6 +14,8 @@
 #include "core/world/world.h"
 #include "server/clock.h"
 #include "server/options.h"
+#include "server/scene_library.h"
+#include "server/scene_schema.h"
 #include "server/thread_pool.h"
 #include "server/translate.h"
 
@@ -159,7 +161,7 @@ int simulate(const SimulateOptions& options) {
   check_range("--ticks", options.ticks, kTickCounts);
   check_range("--threads", options.threads, kThreadCounts);
   check_out(options.out);
-  WorldDef def = make_scene(options.scene);
+  WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
@@ -173,13 +175,23 @@ int simulate(const SimulateOptions& options) {
   return 0;
 }
 
-int list_scenes(bool json) {
+int list_scenes(const ScenesOptions& options) {
+  if (options.schema) {
+    std::fputs(scene_schema().c_str(), stdout);
+    return 0;
+  }
+  if (!options.name.empty()) {
+    if (!options.json) throw OptionError("NAME", options.name, "a name together with --json");
+    std::fputs(write_scene(SceneLibrary(beside_program("meshes")).named(options.name)).c_str(),
+               stdout);
+    return 0;
+  }
   Json list = Json::array();
   for (const SceneInfo& scene : scenes()) {
     list.push_back({{"name", scene.name}, {"description", scene.description}});
-    if (!json) std::printf("%-14s %s\n", scene.name.c_str(), scene.description.c_str());
+    if (!options.json) std::printf("%-14s %s\n", scene.name.c_str(), scene.description.c_str());
   }
-  if (json) std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
+  if (options.json) std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
   return 0;
 }
 

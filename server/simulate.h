@@ -8,8 +8,9 @@ namespace weft::server {
 
 /// What `weft simulate` can be told.
 struct SimulateOptions {
-  std::string scene = "default";
-  int ticks = 600;                                            ///< 1 to 10,000,000
+  std::string scene = "default";  ///< a name, or a file that ends in .json
+  std::string scenes;             ///< directory with further scenes and meshes; empty: none
+  int ticks = 600;                ///< 1 to 10,000,000
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   std::string out;    ///< file for the cloth at the end, .obj or .ply; empty: none
   bool json = false;  ///< summary as one JSON object instead of a table
@@ -21,7 +22,15 @@ struct SimulateOptions {
 /// Throws OptionError or DefinitionError if something cannot be accepted.
 int simulate(const SimulateOptions& options);
 
-/// Prints the built-in scenes.
-int list_scenes(bool json);
+/// What `weft scenes` can be told.
+struct ScenesOptions {
+  std::string name;     ///< with `json`: this scene as a file; empty: the list
+  bool json = false;    ///< for programs
+  bool schema = false;  ///< the JSON Schema of scene files
+};
+
+/// Prints the built-in scenes, one of them as a scene file, or the schema of such files.
+/// Throws OptionError or DefinitionError.
+int list_scenes(const ScenesOptions& options);
 
 }  // namespace weft::server

@@ -67,7 +67,7 @@ template <class Real>
 PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRange& range,
                                    const EdgeStrip& strip) {
   visit_fields_of_strip(
-      strip, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
+      strip, [](const FieldInfo& info, auto value) { check_field("pin.", info, value); });
   const MaterialBounds bounds = bounds_of(model, range);
   const std::size_t axis = strip.side == Side::left || strip.side == Side::right ? 0 : 1;
   const bool far_side = strip.side == Side::right || strip.side == Side::bottom;

@@ -34,8 +34,8 @@ using PinPlace = std::variant<Index, Corner, EdgeStrip, MaterialPoint>;
 /// grows with resolution; a disc of fixed physical radius is not (PHYSICS.md section 2).
 struct PinDef {
   PinPlace place = Index(0);
-  double radius = 0;  ///< of the disc in the fabric [m], 0 to 100; 0 fixes the particle alone.
-                      ///< A strip has its width instead
+  double radius = 0;       ///< of the disc in the fabric [m], 0 to 100; 0 fixes the particle alone.
+                           ///< A strip has its width instead
   std::string cloth = {};  ///< name; empty: the first cloth, and a particle counts over all cloths
 };
 
@@ -50,14 +50,19 @@ struct PinnedParticles {
 template <class Real>
 PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def);
 
-/// Words for corners and sides, in the order of the enumerations.
-inline constexpr const char* kCornerNames[] = {"top_left", "top_right", "bottom_left",
-                                               "bottom_right"};
-inline constexpr const char* kSideNames[] = {"top", "bottom", "left", "right"};
-
-/// Describes each number of a place or pin to `visit(info, value)`.
+/// Describes each field of a place or pin to `visit(info, value)`.
+template <class Value, class Visitor>
+void visit_field_of_particle(Value& particle, Visitor&& visit) {
+  visit(FieldInfo{"particle", 0, 1e7, "", "index in its cloth"}, particle);
+}
+template <class Value, class Visitor>
+void visit_field_of_corner(Value& corner, Visitor&& visit) {
+  visit(choice("corner", "top_left|top_right|bottom_left|bottom_right", "corner of the fabric"),
+        corner);
+}
 template <class Def, class Visitor>
 void visit_fields_of_strip(Def& strip, Visitor&& visit) {
+  visit(choice("side", "top|bottom|left|right", "side of the fabric"), strip.side);
   visit(FieldInfo{"width", 0, 100, "m", "width of the pinned strip"}, strip.width);
 }
 template <class Def, class Visitor>

@@ -79,6 +79,9 @@ void visit_fields_of_grid(Def& c, Visitor&& visit) {
 /// The same for what every cloth has, grid or mesh.
 template <class Def, class Visitor>
 void visit_fields_of_any_cloth(Def& c, Visitor&& visit) {
+  visit(choice("bending_model", "automatic|hinges|quadratic", "how the cloth resists bending"),
+        c.bending_model);
+  visit(choice("mass_lumping", "area|equal", "how the particles share the mass"), c.mass_lumping);
   visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
 }
 
@@ -96,10 +99,6 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"skip", 0, 1e6, "N/m", "every second neighbour"}, d.skip);
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
-
-/// Words for the enumerations, in their order.
-inline constexpr const char* kMassLumpingNames[] = {"area", "equal"};
-inline constexpr const char* kBendingModelNames[] = {"automatic", "hinges", "quadratic"};
 
 /// Whether the quadratic form may stand for the hinges: a grid, flat at rest and without bending
 /// damping.

@@ -52,7 +52,7 @@ FabricDef wool() {
   FabricDef f;
   f.areal_density = 0.2348;                                   // Penava
   f.stretch_warp = f.stretch_weft = 0.170e6 * 0.568e-3;       // Penava: E t
-  f.shear = 0.6 * kKesShear;                                  // ours, a suiting
+  f.shear = 0.4 * kKesShear;                                  // ours, a suiting
   f.bending_warp = f.bending_weft = rigidity(0.2348, 0.019);  // ASTM, c ours
   f.friction = 0.6;                                           // ours
   return f;
@@ -72,7 +72,7 @@ FabricDef leather() {
   FabricDef f;
   f.areal_density = 0.6;                                   // ours, 0.9 mm of garment leather
   f.stretch_warp = f.stretch_weft = 2500;                  // ours
-  f.shear = 700;                                           // ours: no weave, so nearly isotropic
+  f.shear = 600;                                           // ours: no weave, so nearly isotropic
   f.bending_warp = f.bending_weft = rigidity(0.6, 0.024);  // ASTM, c ours
   f.friction = 0.6;                                        // ours
   return f;

@@ -8,40 +8,39 @@
 namespace weft {
 namespace {
 
+/// Unit within what rounding to three digits does.
+void check_unit(const std::string& field, const Eigen::Quaterniond& orientation) {
+  const double norm = orientation.norm();
+  if (!(std::abs(norm - 1) < 1e-3))
+    throw DefinitionError(field, "of norm " + number_text(norm), "a unit quaternion [x, y, z, w]",
+                          "its norm must be 1");
+}
+
 struct Validator {
   const std::string& path;
 
-  void position(const char* name, const Vec3d& value) const {
-    check_field(path, {name, -1000, 1000, "m", "a position"}, value);
-  }
-  void radius(double value) const {
-    check_field(path, {"radius", 1e-3, 100, "m", "radius of the shape"}, value);
+  template <class Shape>
+  void check_fields(const Shape& shape) const {
+    visit_fields_of_shape(shape, [this](const FieldInfo& info, const auto& value) {
+      check_field(path, info, value);
+    });
   }
   void operator()(const PlaneDef& plane) const {
-    position("point", plane.point);
-    position("normal", plane.normal);
+    check_fields(plane);
     if (plane.normal.norm() < 1e-9)
       throw DefinitionError(path + "normal", "0,0,0", "a direction",
                             "give a vector that is not zero");
   }
-  void operator()(const SphereDef& sphere) const {
-    position("center", sphere.centre);
-    radius(sphere.radius);
-  }
-  void operator()(const CapsuleDef& capsule) const {
-    position("a", capsule.a);
-    position("b", capsule.b);
-    radius(capsule.radius);
-  }
+  void operator()(const SphereDef& sphere) const { check_fields(sphere); }
+  void operator()(const CapsuleDef& capsule) const { check_fields(capsule); }
   void operator()(const BoxDef& box) const {
-    position("center", box.centre);
-    check_field(path, {"half_extents", 1e-3, 100, "m", "half the sides"}, box.half_extents);
-    const double norm = box.orientation.norm();
-    if (!(std::abs(norm - 1) < 1e-3))
-      throw DefinitionError(path + "orientation", number_text(norm), "a unit quaternion",
-                            "its norm must be 1");
+    check_fields(box);
+    check_unit(path + "orientation", box.orientation);
   }
-  void operator()(const MeshDef& def) const { weft::validate(def.mesh, path); }
+  void operator()(const MeshDef& def) const {
+    check_unit(path + "orientation", def.placement.orientation);
+    weft::validate(def.mesh, path);
+  }
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
+#include "core/definition.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/types.h"
 
@@ -38,6 +40,10 @@ struct MeshDef {
   MeshPlacement placement = {};  ///< how `mesh` was made, for scene files; not applied again
 };
 
+/// Matches a definition, constant or not.
+template <class T, class Def>
+concept DefOf = std::is_same_v<std::remove_const_t<T>, Def>;
+
 using ShapeDef = std::variant<PlaneDef, SphereDef, CapsuleDef, BoxDef, MeshDef>;
 
 /// An object that the cloth cannot enter.
@@ -45,6 +51,30 @@ struct ColliderDef {
   std::string name;
   ShapeDef shape;
 };
+
+// Describe each field of a shape to `visit(info, value)`; orientations, unit quaternions, apart.
+
+template <class Visitor>
+void visit_fields_of_shape(DefOf<PlaneDef> auto& plane, Visitor&& visit) {
+  visit(FieldInfo{"point", -1000, 1000, "m", "on the plane"}, plane.point);
+  visit(FieldInfo{"normal", -1000, 1000, "", "out of the solid side, of any length"}, plane.normal);
+}
+template <class Visitor>
+void visit_fields_of_shape(DefOf<SphereDef> auto& sphere, Visitor&& visit) {
+  visit(FieldInfo{"center", -1000, 1000, "m", "middle of the sphere"}, sphere.centre);
+  visit(FieldInfo{"radius", 1e-3, 100, "m", "radius of the sphere"}, sphere.radius);
+}
+template <class Visitor>
+void visit_fields_of_shape(DefOf<CapsuleDef> auto& capsule, Visitor&& visit) {
+  visit(FieldInfo{"a", -1000, 1000, "m", "one end of the segment"}, capsule.a);
+  visit(FieldInfo{"b", -1000, 1000, "m", "other end of the segment"}, capsule.b);
+  visit(FieldInfo{"radius", 1e-3, 100, "m", "distance of the surface from it"}, capsule.radius);
+}
+template <class Visitor>
+void visit_fields_of_shape(DefOf<BoxDef> auto& box, Visitor&& visit) {
+  visit(FieldInfo{"center", -1000, 1000, "m", "middle of the box"}, box.centre);
+  visit(FieldInfo{"half_extents", 1e-3, 100, "m", "half of each side"}, box.half_extents);
+}
 
 /// Throws DefinitionError if a shape is out of range; `path` stands before the field's name.
 void validate(const ColliderDef& def, const std::string& path);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/definition.h"
 #include "core/types.h"
 
 namespace weft {
@@ -20,6 +21,13 @@ struct MeshPlacement {
   Vec3d position = Vec3d::Zero();  ///< [m], within 1000
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
+
+/// Describes each field of a placement but its orientation to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_placement(Def& placement, Visitor&& visit) {
+  visit(FieldInfo{"scale", 1e-4, 1e4, "", "metres in a unit of the mesh"}, placement.scale);
+  visit(FieldInfo{"position", -1000, 1000, "m", "where its origin stands"}, placement.position);
+}
 
 /// The mesh with the placement applied.
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement);

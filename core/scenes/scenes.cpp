@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/error.h"
-#include "core/scenes/dress_form.h"
+#include "core/scenes/built_in_meshes.h"
 
 namespace weft {
 namespace {
@@ -22,6 +23,13 @@ ClothDef hanging_cloth(int rows, int columns, double width, double height, doubl
   return cloth;
 }
 
+/// A built-in mesh in its place.
+MeshDef mesh_object(const std::string& name, const std::string& mesh_directory,
+                    MeshPlacement placement) {
+  placement.source = name;
+  return {placed(built_in_mesh(name, mesh_directory).mesh, placement), placement};
+}
+
 /// Pins discs along the edge v = 0, evenly from corner to corner.
 void pin_along_top(WorldDef& def, int count, double radius) {
   for (int k = 0; k < count; ++k)
@@ -30,7 +38,7 @@ void pin_along_top(WorldDef& def, int count, double radius) {
 
 /// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung
 /// by six, three at each upper corner, gravity and wind.
-void build_default(WorldDef& def) {
+void build_default(WorldDef& def, const std::string&) {
   // Warp down, weft across: 30 particles down the columns of the page, 20 across.
   def.cloths[0].rows = 20;
   def.cloths[0].columns = 30;
@@ -44,13 +52,13 @@ void build_default(WorldDef& def) {
   def.cloths[0].fabric.shear = 25;
   for (const int row : {0, 1, 2, 17, 18, 19})
     def.pins.push_back({MaterialPoint{0, row / 19.0}, 0, {}});
-  def.colliders = {kGround, {"form", MeshDef{make_dress_form()}}};
+  def.colliders = {kGround, {"form", mesh_object("dress-form", {}, {})}};
   def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
   def.environment.drag = 0.1;
 }
 
-void build_curtain(WorldDef& def) {
+void build_curtain(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
   pin_along_top(def, 9, 0.02);
   def.colliders = {kGround};
@@ -59,7 +67,7 @@ void build_curtain(WorldDef& def) {
   def.environment.drag = 0.1;
 }
 
-void build_flag(WorldDef& def) {
+void build_flag(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
   def.cloths[0].origin = Vec3d(0.03, 2.3, 0);
   def.cloths[0].fabric.areal_density = 0.1;
@@ -71,7 +79,7 @@ void build_flag(WorldDef& def) {
   def.environment.gust_speed = 1.5;
 }
 
-void build_drape_sphere(WorldDef& def) {
+void build_drape_sphere(WorldDef& def, const std::string&) {
   def.cloths[0].rows = def.cloths[0].columns = 49;
   def.cloths[0].width = def.cloths[0].height = 1.3;
   def.cloths[0].origin = Vec3d(-0.65, 1.15, -0.65);
@@ -80,7 +88,7 @@ void build_drape_sphere(WorldDef& def) {
   def.environment.drag = 0.5;
 }
 
-void build_wall(WorldDef& def) {
+void build_wall(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
   pin_along_top(def, 7, 0.02);
   def.colliders = {
@@ -89,9 +97,86 @@ void build_wall(WorldDef& def) {
   def.environment.drag = 0.3;
 }
 
+BoxDef upright_box(const Vec3d& centre, const Vec3d& half_extents) {
+  return {centre, half_extents, Eigen::Quaterniond::Identity()};
+}
+
+/// A square sheet that lies at `height`, centred over the origin.
+ClothDef lying_cloth(int particles, double side, double height) {
+  ClothDef cloth;
+  cloth.rows = cloth.columns = particles;
+  cloth.width = cloth.height = side;
+  cloth.origin = Vec3d(-side / 2, height, -side / 2);
+  cloth.v = Vec3d::UnitZ();
+  return cloth;
+}
+
+void build_table(WorldDef& def, const std::string&) {
+  constexpr double kTop = 0.74, kHalfTop = 0.02, kLeg = 0.03;
+  const Vec3d half_top(0.5, kHalfTop, 0.35);
+  def.cloths[0] = lying_cloth(49, 1.5, kTop + 0.1);
+  def.cloths[0].height = 1.2;
+  def.cloths[0].rows = 41;
+  def.cloths[0].origin[2] = -0.6;
+  def.cloths[0].fabric = make_fabric("cotton");
+  def.colliders = {kGround, {"top", upright_box(Vec3d(0, kTop - kHalfTop, 0), half_top)}};
+  const double half_leg = (kTop - 2 * kHalfTop) / 2;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double z : {-1.0, 1.0})
+      def.colliders.push_back(
+          {"leg", upright_box(Vec3d(x * (half_top[0] - kLeg), half_leg, z * (half_top[2] - kLeg)),
+                              Vec3d(kLeg, half_leg, kLeg))});
+  }
+  def.environment.drag = 0.5;
+}
+
+void build_hammock(WorldDef& def, const std::string&) {
+  constexpr double kLength = 2.0, kWidth = 0.8, kHeight = 1.2;
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = 25;
+  cloth.columns = 61;
+  cloth.width = kLength;
+  cloth.height = kWidth;
+  cloth.origin = Vec3d(-kLength / 2, kHeight, -kWidth / 2);
+  cloth.v = Vec3d::UnitZ();
+  cloth.fabric = make_fabric("wool");
+  def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}, {EdgeStrip{Side::right, 0}, 0, {}}};
+  const double post = kLength / 2 + 0.06;
+  def.colliders = {kGround,
+                   {"left-post", CapsuleDef{Vec3d(-post, 0, 0), Vec3d(-post, 1.4, 0), 0.04}},
+                   {"right-post", CapsuleDef{Vec3d(post, 0, 0), Vec3d(post, 1.4, 0), 0.04}}};
+  def.environment.drag = 0.5;
+}
+
+void build_two_flags(WorldDef& def, const std::string&) {
+  constexpr double kWidth = 0.9, kHeight = 0.6;
+  def.cloths.clear();
+  for (const auto& [name, top] : {std::pair("silk", 2.4), std::pair("denim", 1.6)}) {
+    ClothDef flag = hanging_cloth(21, 31, kWidth, kHeight, top, 0);
+    flag.name = name;
+    flag.origin = Vec3d(0.03, top, 0);
+    flag.fabric = make_fabric(name);
+    def.cloths.push_back(flag);
+    for (const Corner corner : {Corner::top_left, Corner::bottom_left})
+      def.pins.push_back({corner, 0.05, name});
+  }
+  def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.55, 0), 0.02}}};
+  def.environment.wind = Vec3d(1.8, 0, 0.3);
+  def.environment.gust_speed = 0.4;
+}
+
+void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
+  def.cloths[0] = lying_cloth(49, 1.3, 0.85);
+  def.cloths[0].fabric = make_fabric("silk");
+  MeshPlacement placement;
+  placement.scale = 0.08;  // ten units high: 0.77 m
+  def.colliders = {kGround, {"bunny", mesh_object("bunny", mesh_directory, placement)}};
+  def.environment.drag = 0.5;
+}
+
 struct Entry {
   SceneInfo info;
-  void (*build)(WorldDef&);
+  void (*build)(WorldDef&, const std::string& mesh_directory);
 };
 
 const std::vector<Entry>& entries() {
@@ -109,7 +194,23 @@ const std::vector<Entry>& entries() {
        build_drape_sphere},
       {{"wall",
         "A cloth hangs before a wall: pull it through as hard as you like, it stays on its side."},
-       build_wall}};
+       build_wall},
+      {{"table",
+        "A tablecloth falls on a table and hangs over its edges: the corners fall in folds beside "
+        "the legs."},
+       build_table},
+      {{"hammock",
+        "A hammock of wool sags between two posts: push it and watch the wave run from end to "
+        "end."},
+       build_hammock},
+      {{"two-flags",
+        "Silk above and denim below in the same wind: the light flag streams, the heavy one "
+        "hangs."},
+       build_two_flags},
+      {{"drop-on-bunny",
+        "A silk sheet falls over a rabbit: ears and back show through as the folds settle.",
+        "bunny"},
+       build_drop_on_bunny}};
   return list;
 }
 
@@ -124,7 +225,7 @@ const std::vector<SceneInfo>& scenes() {
   return list;
 }
 
-WorldDef make_scene(const std::string& name) {
+WorldDef make_scene(const std::string& name, const std::string& mesh_directory) {
   std::string names;
   for (const Entry& entry : entries()) {
     names += (names.empty() ? "" : ", ") + entry.info.name;
@@ -132,7 +233,7 @@ WorldDef make_scene(const std::string& name) {
     WorldDef def;
     def.name = entry.info.name;
     def.description = entry.info.description;
-    entry.build(def);
+    entry.build(def, mesh_directory);
     return def;
   }
   throw DefinitionError("scene", name, "one of " + names);

@@ -31,33 +31,12 @@ std::string text_of(const FieldInfo& info, const Value& value) {
     return text_of(value);
 }
 
-/// Number of single-character changes between two words; finds the key that was meant.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
 DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
-  std::string all = "fabric", nearest;
-  std::size_t best = key.size() / 2 + 1;
-  for (const FieldListing& field : list_fields(def)) {
-    all += ", " + field.key;
-    const std::size_t distance = edit_distance(key, field.key);
-    if (distance < best) {
-      best = distance;
-      nearest = field.key;
-    }
-  }
+  std::vector<std::string> keys = {"fabric"};
+  for (const FieldListing& field : list_fields(def)) keys.push_back(field.key);
+  std::string all;
+  for (const std::string& known : keys) all += (all.empty() ? "" : ", ") + known;
+  const std::string nearest = nearest_word(key, keys);
   return {"key", key, "one of " + all, nearest.empty() ? "" : "did you mean " + nearest + "?"};
 }
 

@@ -49,9 +49,10 @@ struct WorldDef {
   std::vector<PinDef> pins;  ///< made at the start
 };
 
-/// Describes every field of the definition that has a range to `visit(path, info, value)`.
+/// Describes every field that is not a cloth's, a collider's or a pin's to `visit(path, info,
+/// value)`. A path such as "solver." is an object of that name in a scene file, too.
 template <class Def, class Visitor>
-void visit_fields(Def& def, Visitor&& visit) {
+void visit_fields_of_world(Def& def, Visitor&& visit) {
   const auto below = [&visit](const std::string& path) {
     return [&visit, path](const FieldInfo& info, auto& value) { visit(path, info, value); };
   };
@@ -64,6 +65,15 @@ void visit_fields(Def& def, Visitor&& visit) {
                     def.contact.model);
   visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
+}
+
+/// The same with the fields of all cloths.
+template <class Def, class Visitor>
+void visit_fields(Def& def, Visitor&& visit) {
+  const auto below = [&visit](const std::string& path) {
+    return [&visit, path](const FieldInfo& info, auto& value) { visit(path, info, value); };
+  };
+  visit_fields_of_world(def, visit);
   for (std::size_t k = 0; k < def.cloths.size(); ++k) {
     visit_fields_of_cloth(def.cloths[k], below(cloth_field(k, "cloth.")));
     visit_fields_of_fabric(def.cloths[k].fabric, below(cloth_field(k, "fabric.")));

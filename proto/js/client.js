@@ -127,7 +127,7 @@ export class WeftClient extends Session {
     return this.request('hash');
   }
 
-  /** @param {string} scene */
+  /** @param {string | object} scene  name, or a scene as the schema says */
   load(scene) {
     return this.request('load', { scene });
   }

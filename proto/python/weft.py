@@ -537,7 +537,7 @@ class Client:
     async def hash(self) -> str:
         return (await self.request("hash"))["hash"]
 
-    async def load(self, scene: str) -> dict:
+    async def load(self, scene: str | dict) -> dict:
         return await self.request("load", scene=scene)
 
     async def view(self, *, hz: float | None = None, codec: str | None = None) -> dict:

@@ -97,6 +97,10 @@ ACCEPTED = [
     ),
     accepted('{"op":"ping","t":-1.5}', op="ping", t=-1.5),
     accepted('{"op":"load","scene":"drape-sphere_2.v"}', op="load", scene="drape-sphere_2.v"),
+    accepted(
+        '{"op":"load","scene":{"cloths":[{"rows":5,"width":0.5}],"name":"mine"}}',
+        op="load", scene={"cloths": [{"rows": 5, "width": 0.5}], "name": "mine"},
+    ),
     accepted('{"op":"view","hz":0}', op="view", hz=0),
     accepted('{"op":"view","hz":59.94,"codec":"f32"}', op="view", hz=59.94, codec="f32"),
 ]

@@ -1,0 +1,182 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/cloth/fabric_presets.h"
+#include "core/geometry/mesh_file.h"
+#include "core/world/world_def.h"
+
+// What a scene file is made of, told once. The reader, the writer and the JSON Schema walk the same
+// description, and the ranges in it are those of the definitions themselves, so they cannot
+// disagree. Each walker `Io` has
+//
+//   fields(walk)                         numbers, vectors, flags, words: walk(visit) calls
+//                                        visit(FieldInfo, value&) for each
+//   text(TextInfo, value&)               a string
+//   orientation(name, meaning, value&)   a quaternion [x, y, z, w]
+//   preset(fabric&)                      the key "preset"; true if nothing else has to be told
+//   object(name, meaning, describe)      describe(Io&) of what is inside
+//   optional(name, meaning, value&, describe)   an object that may be absent
+//   list(ListInfo, vector&, describe)    describe(Io&, element&)
+//   tagged(TagInfo, index, describe)     a word that decides what else is there: describe(Io&, i);
+//                                        called last, as everything before is common to all
+//   mesh(placement, take)                take(MeshFile) with the mesh that the placement names
+//
+// Still missing here, with their places kept free: `colliders[].motion`, `fan`.
+
+namespace weft::server {
+
+struct TextInfo {
+  const char* name;
+  std::size_t least, most;  ///< characters
+  bool plain;               ///< letters, digits, `.`, `_`, `-` alone, not beginning with a dot
+  bool required;
+  const char* meaning;
+};
+
+struct ListInfo {
+  const char* name;
+  std::size_t least, most;
+  const char* meaning;
+};
+
+struct TagInfo {
+  FieldInfo choice;
+  bool required;  ///< false: without it the first word holds
+};
+
+inline constexpr std::size_t kMostColliders = 64;
+inline constexpr std::size_t kMostScenePins = 1024;
+
+/// All fields that `visit_fields_of_world` gives with this path.
+template <class Io>
+void describe_group(Io& io, WorldDef& def, const std::string& group) {
+  io.fields([&](auto&& visit) {
+    visit_fields_of_world(def, [&](const std::string& path, const FieldInfo& info, auto& value) {
+      if (path == group) visit(info, value);
+    });
+  });
+}
+
+template <class Io>
+void describe_placement(Io& io, MeshPlacement& placement) {
+  io.text({"source", 1, 200, false, true, "name of a mesh: dress-form, bunny, or a file"},
+          placement.source);
+  io.fields([&](auto&& visit) { visit_fields_of_placement(placement, visit); });
+  io.orientation("orientation", "how it is turned", placement.orientation);
+}
+
+template <class Io>
+void describe_fabric(Io& io, FabricDef& fabric) {
+  if (io.preset(fabric)) return;
+  io.fields([&](auto&& visit) { visit_fields_of_fabric(fabric, visit); });
+}
+
+template <class Io>
+void describe_cloth(Io& io, ClothDef& cloth) {
+  io.text({"name", 1, 64, true, false, "pins name their cloth by it"}, cloth.name);
+  io.object("fabric", "material", [&](Io& in) { describe_fabric(in, cloth.fabric); });
+  io.fields([&](auto&& visit) { visit_fields_of_any_cloth(cloth, visit); });
+  io.tagged({choice("form", "grid|mesh", "a rectangle, or the vertices of a mesh"), false},
+            cloth.mesh ? 1 : 0, [&](Io& in, int form) {
+              if (form == 0) {
+                cloth.mesh.reset();
+                in.fields([&](auto&& visit) { visit_fields_of_grid(cloth, visit); });
+                in.optional("direct_springs", "stiffness by hand instead of the fabric's",
+                            cloth.direct_springs, [](Io& inner, DirectSprings& springs) {
+                              inner.fields([&](auto&& visit) {
+                                visit_fields_of_direct_springs(springs, visit);
+                              });
+                            });
+                return;
+              }
+              if (!cloth.mesh) cloth.mesh.emplace();
+              in.object("mesh", "where it comes from", [&](Io& inner) {
+                ClothMesh& mesh = *cloth.mesh;
+                describe_placement(inner, mesh.placement);
+                inner.mesh(mesh.placement, [&](const MeshFile& file) {
+                  mesh.mesh = placed(file.mesh, mesh.placement);
+                  mesh.uv = file.uv;
+                });
+              });
+            });
+}
+
+/// Makes alternative `index` of a variant the present one, unless it is already.
+template <std::size_t K = 0, class Variant>
+void choose_alternative(Variant& variant, int index) {
+  if constexpr (K < std::variant_size_v<Variant>) {
+    if (static_cast<int>(K) != index) return choose_alternative<K + 1>(variant, index);
+    if (variant.index() != K) variant.template emplace<K>();
+  }
+}
+
+template <class Io, class Shape>
+void describe_shape(Io& io, Shape& shape) {
+  if constexpr (std::is_same_v<Shape, MeshDef>) {
+    describe_placement(io, shape.placement);
+    io.mesh(shape.placement,
+            [&](const MeshFile& file) { shape.mesh = placed(file.mesh, shape.placement); });
+  } else {
+    io.fields([&](auto&& visit) { visit_fields_of_shape(shape, visit); });
+    if constexpr (std::is_same_v<Shape, BoxDef>)
+      io.orientation("orientation", "how the box is turned", shape.orientation);
+  }
+}
+
+template <class Io>
+void describe_collider(Io& io, ColliderDef& collider) {
+  io.text({"name", 1, 64, true, false, "for people"}, collider.name);
+  io.tagged({choice("shape", "plane|sphere|capsule|box|mesh", "what it is"), true},
+            static_cast<int>(collider.shape.index()), [&](Io& in, int shape) {
+              choose_alternative(collider.shape, shape);
+              std::visit([&](auto& present) { describe_shape(in, present); }, collider.shape);
+            });
+}
+
+template <class Io>
+void describe_pin(Io& io, PinDef& pin) {
+  io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, pin.cloth);
+  io.fields([&](auto&& visit) { visit_fields_of_pin(pin, visit); });
+  io.tagged({choice("place", "particle|corner|edge|point", "how the place is told"), true},
+            static_cast<int>(pin.place.index()), [&](Io& in, int place) {
+              choose_alternative(pin.place, place);
+              in.fields([&](auto&& visit) {
+                if (auto* particle = std::get_if<Index>(&pin.place))
+                  visit_field_of_particle(*particle, visit);
+                else if (auto* corner = std::get_if<Corner>(&pin.place))
+                  visit_field_of_corner(*corner, visit);
+                else if (auto* strip = std::get_if<EdgeStrip>(&pin.place))
+                  visit_fields_of_strip(*strip, visit);
+                else
+                  visit_fields_of_point(std::get<MaterialPoint>(pin.place), visit);
+              });
+            });
+}
+
+template <class Io>
+void describe_scene(Io& io, WorldDef& def) {
+  io.text({"name", 1, 64, true, false, "plain name of the scene"}, def.name);
+  io.text({"description", 0, 500, false, false, "one sentence on what to look at"},
+          def.description);
+  std::vector<std::string> groups;
+  visit_fields_of_world(def, [&](const std::string& path, const FieldInfo&, auto&) {
+    if (groups.empty() || groups.back() != path) groups.push_back(path);
+  });
+  for (const std::string& group : groups) {
+    if (group.empty())
+      describe_group(io, def, group);
+    else
+      io.object(group.substr(0, group.size() - 1).c_str(), "see the fields",
+                [&](Io& in) { describe_group(in, def, group); });
+  }
+  io.list(ListInfo{"cloths", 1, kMostCloths, "what is simulated"}, def.cloths,
+          [](Io& in, ClothDef& cloth) { describe_cloth(in, cloth); });
+  io.list(ListInfo{"colliders", 0, kMostColliders, "what the cloths cannot enter"}, def.colliders,
+          [](Io& in, ColliderDef& collider) { describe_collider(in, collider); });
+  io.list(ListInfo{"pins", 0, kMostScenePins, "what is held at the start"}, def.pins,
+          [](Io& in, PinDef& pin) { describe_pin(in, pin); });
+}
+
+}  // namespace weft::server

@@ -1,0 +1,136 @@
+#include "core/scenes/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/world/world.h"
+#include "tests/support/worlds.h"
+
+// Each built-in scene shows what its sentence says, by numbers.
+
+using namespace weft;
+
+namespace {
+
+/// Where the build puts the meshes of installed packages; not there when only core is built.
+std::string mesh_directory() {
+  const char* build = std::getenv("WEFT_BUILD_DIR");
+  return build ? std::string(build) + "/meshes" : std::string();
+}
+
+/// Mean angle of a flag's rows below the horizontal, from the hoist to the fly [rad].
+double droop(const World<float>& world, std::size_t part) {
+  const ClothPart<float>& flag = world.model().parts[part];
+  double sum = 0;
+  for (int r = 0; r < flag.rows; ++r) {
+    const auto at = [&](int column) {
+      return world.state()
+          .x[static_cast<std::size_t>(flag.particles.first + r * flag.columns + column)];
+    };
+    const Vec3f along = at(flag.columns - 1) - at(0);
+    sum += std::atan2(-along[1], std::hypot(along[0], along[2]));
+  }
+  return sum / flag.rows;
+}
+
+}  // namespace
+
+TEST_CASE("every scene has a name, one sentence and unique names") {
+  std::set<std::string> names;
+  for (const SceneInfo& scene : scenes()) {
+    CHECK(names.insert(scene.name).second);
+    CHECK(scene.description.size() > 20);
+    CHECK(scene.description.back() == '.');
+    CHECK(scene.description.find(": ") != std::string::npos);  // what it is: what to look at
+  }
+  CHECK_THROWS_AS(make_scene("nothing"), DefinitionError);
+}
+
+TEST_CASE("the tablecloth rests on the table, hangs over all sides, and enters nothing") {
+  World<float> world(make_scene("table"));
+  double deepest = 0;
+  for (int tick = 0; tick < 240; ++tick) {
+    world.step();
+    REQUIRE_FALSE(world.report().divergence);
+    if (tick % 10 == 0) deepest = std::max(deepest, world.deepest_penetration());
+  }
+  CHECK(deepest == 0);
+  const ClothPart<float>& cloth = world.model().parts[0];
+  const auto at = [&](int row, int column) {
+    return world.state().x[static_cast<std::size_t>(row * cloth.columns + column)];
+  };
+  // The top is at 0.74 m.
+  const Vec3f middle = at(cloth.rows / 2, cloth.columns / 2);
+  CHECK(middle[1] == Approx(0.74 + cloth.fabric.thickness).margin(1e-3));
+  CHECK(world.state()
+            .v[static_cast<std::size_t>((cloth.rows / 2) * cloth.columns + cloth.columns / 2)]
+            .norm() < 0.01);
+  CHECK(at(0, cloth.columns / 2)[1] < 0.65);
+  CHECK(at(cloth.rows - 1, cloth.columns / 2)[1] < 0.65);
+  CHECK(at(cloth.rows / 2, 0)[1] < 0.65);
+  CHECK(at(cloth.rows / 2, cloth.columns - 1)[1] < 0.65);
+  // Corners are farthest from the top, and hang lowest.
+  CHECK(at(0, 0)[1] < at(0, cloth.columns / 2)[1]);
+  for (const Vec3f& x : world.state().x) CHECK(x[1] > 0);
+}
+
+TEST_CASE("the hammock sags as a heavy elastic strip between two ends does") {
+  World<float> world(make_scene("hammock"));
+  REQUIRE(test::settle(world, 3, 8) < 0.02);
+  const ClothPart<float>& cloth = world.model().parts[0];
+  double lowest = 1e9;
+  for (const Vec3f& x : world.state().x) lowest = std::min(lowest, static_cast<double>(x[1]));
+  const double sag = 1.2 - lowest;
+  // Shallow parabola of span L, at first straight and without tension: the arc is longer than L by
+  // 8 d^2 / 3 L, the tension is w L^2 / 8 d, so d^3 = 3 w L^4 / 64 Y with w = sigma g.
+  const FabricDef& fabric = cloth.fabric;
+  const double w = fabric.areal_density * 9.81;
+  const double uniaxial = fabric.stretch_warp - fabric.shear * fabric.shear / fabric.stretch_weft;
+  const double expected = std::cbrt(3 * w * 16 / (64 * uniaxial));
+  CHECK(sag == Approx(expected).epsilon(0.1));
+}
+
+TEST_CASE("in the same wind the silk flag streams and the denim flag hangs") {
+  World<float> world(make_scene("two-flags"));
+  double silk = 0, denim = 0;
+  int samples = 0;
+  for (int tick = 0; tick < 480; ++tick) {
+    world.step();
+    REQUIRE_FALSE(world.report().divergence);
+    if (tick < 180 || tick % 5 != 0) continue;
+    silk += droop(world, 0);
+    denim += droop(world, 1);
+    ++samples;
+  }
+  CHECK(denim / samples > silk / samples + 0.3);
+  CHECK(world.deepest_penetration() == 0);
+}
+
+TEST_CASE("the sheet comes to lie over the bunny, touches ears and ground, and enters nothing") {
+  if (!std::ifstream(mesh_directory() + "/bunny.ply")) {
+    WARN("the bunny's package is not installed");
+    return;
+  }
+  World<float> world(make_scene("drop-on-bunny", mesh_directory()));
+  double deepest = 0;
+  for (int tick = 0; tick < 240; ++tick) {
+    world.step();
+    REQUIRE_FALSE(world.report().divergence);
+    if (tick % 10 == 0) deepest = std::max(deepest, world.deepest_penetration());
+  }
+  CHECK(deepest == 0);
+  float highest = 0, lowest = 9;
+  for (const Vec3f& x : world.state().x) {
+    highest = std::max(highest, x[1]);
+    lowest = std::min(lowest, x[1]);
+  }
+  // The ears end at 9.65 units of 8 cm.
+  CHECK(highest == Approx(0.772).margin(0.02));
+  CHECK(lowest < 0.15);
+}
