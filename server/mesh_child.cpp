@@ -21,7 +21,7 @@ namespace weft::server {
 namespace {
 
 constexpr double kMostWallSeconds = 30;
-constexpr rlim_t kMostProcessorSeconds = 10;
+constexpr rlim_t kMostProcessorSeconds = 5;
 constexpr rlim_t kMostMemory = rlim_t{1} << 30;
 constexpr char kGood = 'M', kRefused = 'E';
 

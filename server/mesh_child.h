@@ -14,7 +14,7 @@ inline constexpr MeshFileLimits kFolderMeshLimits = {32 << 20, 200'000, 400'000}
 
 /// Parses a mesh file in a process of its own, because the library that knows the formats hangs on
 /// some files and reads past the end of others. The child gets nothing but the file on its standard
-/// input: no environment, 10 s of processor time, 1 GiB of memory, no file to write, and from the
+/// input: no environment, 5 s of processor time, 1 GiB of memory, no file to write, and from the
 /// moment it starts to parse no system call but those for memory, reading and writing (Linux on
 /// x86-64 and ARM; elsewhere the other limits hold). What it answers is checked like the file.
 ///
