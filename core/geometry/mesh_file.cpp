@@ -126,12 +126,13 @@ class Welder {
     const aiVector3D& p = mesh.mVertices[i];
     // Adding zero makes -0 and 0 one place.
     const std::array<float, 3> key = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    const auto [there, is_new] =
-        places_.insert({key, static_cast<Index>(file_.mesh.positions.size())});
-    if (!is_new) return there->second;
+    // Before the search: what is not a number has no place in an order.
     for (const float x : key) {
       if (!(std::abs(x) <= 1e6F)) throw unreadable(name_, "a vertex is not finite or far away");
     }
+    const auto [there, is_new] =
+        places_.insert({key, static_cast<Index>(file_.mesh.positions.size())});
+    if (!is_new) return there->second;
     file_.mesh.positions.emplace_back(key[0], key[1], key[2]);
     file_.uv.push_back({0, 0});
     if (has_uv) file_.uv.back() = {mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y};

@@ -29,7 +29,8 @@ class Readme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for command in commands:
                 with self.subTest(command=command):
-                    arguments = command.split()[1:]
+                    text, _, target = command.partition(" > ")
+                    arguments = text.split()[1:]
                     if arguments[0] == "serve":
                         arguments += ["--max-seconds", "1"]
                     result = subprocess.run([PROGRAM, *arguments], cwd=folder, timeout=120,
@@ -38,6 +39,8 @@ class Readme(unittest.TestCase):
                     self.assertTrue(result.stdout)
                     if "--json" in arguments:
                         json.loads(result.stdout)
+                    if target:
+                        Path(folder, target).write_text(result.stdout, encoding="utf-8")
                     if "--out" in arguments:
                         out = Path(folder, arguments[arguments.index("--out") + 1])
                         self.assertGreater(out.stat().st_size, 1000)
