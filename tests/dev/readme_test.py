@@ -76,6 +76,20 @@ class Readme(unittest.TestCase):
         for name in names:
             self.assertTrue((ROOT / name).exists(), name)
 
+    def test_every_test_that_the_tests_page_names_is_in_its_file(self):
+        page = (ROOT / "tests/README.md").read_text(encoding="utf-8")
+        names = re.findall(r"`([\w./]+)`|(?<=[ ;])\"([^\"]+)\"", page)
+        text, found = "", 0
+        for file, name in names:
+            if "/" in file:
+                place = ROOT / "tests" / file
+                self.assertTrue(place.exists() or file == "build/weft", file)
+                text = place.read_text(encoding="utf-8") if place.is_file() else ""
+            elif name:
+                self.assertIn(name, text)
+                found += 1
+        self.assertGreater(found, 40)
+
 
 if __name__ == "__main__":
     unittest.main()
