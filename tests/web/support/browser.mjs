@@ -4,7 +4,7 @@ import { require_package } from './packages.mjs';
 
 const { chromium } = require_package('playwright-core');
 
-const LONGEST_WAIT = 60_000; // a bound for what has gone wrong, not a demand on speed [ms]
+const LONGEST_WAIT = 120_000; // a bound for what has gone wrong, not a demand on speed [ms]
 
 export function launch_browser() {
   return chromium.launch({
