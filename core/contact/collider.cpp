@@ -47,6 +47,18 @@ struct Validator {
 
 void validate(const ColliderDef& def, const std::string& path) {
   std::visit(Validator{path}, def.shape);
+  visit_fields_of_collider(
+      def, [&path](const FieldInfo& info, const auto& value) { check_field(path, info, value); });
+  validate(def.motion, path + "motion.");
+  for (std::size_t k = 0; k < def.motion.keyframes.size(); ++k)
+    check_may_turn(def, {Vec3d::Zero(), def.motion.keyframes[k].rotation},
+                   path + "motion.keyframes[" + std::to_string(k) + "].");
+}
+
+void check_may_turn(const ColliderDef& def, const Pose& pose, const std::string& path) {
+  if (!std::holds_alternative<PlaneDef>(def.shape) || pose.rotation.vec().isZero(0)) return;
+  throw DefinitionError(path + "rotation", "a turn", "no turn of a plane",
+                        "it has no end and so no bound on its speed: use a box");
 }
 
 TriangleMesh world_mesh(const BoxDef& box) {

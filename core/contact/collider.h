@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/contact/collider_motion.h"
 #include "core/definition.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/types.h"
@@ -50,7 +51,16 @@ using ShapeDef = std::variant<PlaneDef, SphereDef, CapsuleDef, BoxDef, MeshDef>;
 struct ColliderDef {
   std::string name;
   ShapeDef shape;
+  MotionDef motion = {};   ///< keyframes, if it moves by itself
+  double max_force = 100;  ///< beyond which it lags [N], 0.01 to 1e6
 };
+
+/// Describes each field of a collider, but for shape and motion, to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_collider(Def& collider, Visitor&& visit) {
+  visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which a moving one lags"},
+        collider.max_force);
+}
 
 // Describe each field of a shape to `visit(info, value)`; orientations, unit quaternions, apart.
 
@@ -76,8 +86,12 @@ void visit_fields_of_shape(DefOf<BoxDef> auto& box, Visitor&& visit) {
   visit(FieldInfo{"half_extents", 1e-3, 100, "m", "half of each side"}, box.half_extents);
 }
 
-/// Throws DefinitionError if a shape is out of range; `path` stands before the field's name.
+/// Throws DefinitionError if a shape or its motion is out of range; `path` stands before
+/// the name of the field.
 void validate(const ColliderDef& def, const std::string& path);
+
+/// Throws DefinitionError if the pose would turn a plane, which has no bound on its speed.
+void check_may_turn(const ColliderDef& def, const Pose& pose, const std::string& path);
 
 /// The mesh that stands for a box in contact, in world coordinates.
 TriangleMesh world_mesh(const BoxDef& box);

@@ -27,8 +27,16 @@ Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
   hidden_ = {kHiddenRise * thinnest->thickness, longest_edge};
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
-    add_shape(colliders[k].shape);
+    add_shape(colliders[k].shape, k);
+    frames_.emplace_back();
+    frames_.back().pivot = pivot_of(colliders[k].shape);
+    frames_.back().radius = radius_of(colliders[k].shape);
+    frames_.back().pose = rest_pose(colliders[k].shape);
   }
+  own_planes_ = planes_;
+  own_balls_ = balls_;
+  own_rods_ = rods_;
+  x_own_.resize(meshes_.size());
   // Beyond the size of a triangle the pairs grow with the square of the skin.
   for (const MeshShape<Real>& mesh : meshes_)
     widest_skin_ = std::min(widest_skin_, mesh.triangle_size);
@@ -38,20 +46,21 @@ Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
 }
 
 template <class Real>
-void Contact<Real>::add_shape(const ShapeDef& shape) {
+void Contact<Real>::add_shape(const ShapeDef& shape, std::size_t collider) {
   if (const auto* plane = std::get_if<PlaneDef>(&shape)) {
     const Vec3d n = plane->normal.normalized();
-    planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point))});
+    planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point)), collider});
   } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
     balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius),
-                      is_smooth(sphere->radius)});
+                      is_smooth(sphere->radius), collider});
   } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
     rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
-                     static_cast<Real>(capsule->radius), is_smooth(capsule->radius)});
-  } else if (const auto* box = std::get_if<BoxDef>(&shape)) {
-    meshes_.push_back(prepare_mesh<Real>(world_mesh(*box), hidden_));
+                     static_cast<Real>(capsule->radius), is_smooth(capsule->radius), collider});
   } else {
-    meshes_.push_back(prepare_mesh<Real>(std::get<MeshDef>(shape).mesh, hidden_));
+    const auto* box = std::get_if<BoxDef>(&shape);
+    meshes_.push_back(
+        prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh, hidden_));
+    mesh_collider_.push_back(collider);
   }
 }
 
@@ -74,28 +83,48 @@ void Contact<Real>::reset() {
   collected_ = rows_built_ = false;
   clearance_.clear();
   rows_.clear();
+  moving_rows_.clear();
 }
 
 template <class Real>
-void Contact<Real>::begin_tick(double tick_seconds) {
+void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   tick_seconds_ = static_cast<Real>(tick_seconds);
+  colliders_ = colliders;
+  work_ = 0;
+  any_tracked_ = false;
+  surface_speed_ = 0;
+  if (!colliders) return;
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    ColliderFrame<Real>& frame = frames_[k];
+    const ColliderState& state = (*colliders)[k];
+    const bool tracked = state.is_active();
+    if (tracked && !frame.tracked) rows_built_ = false;  // the old ones do not follow it
+    frame.tracked = tracked;
+    any_tracked_ = any_tracked_ || tracked;
+    const double turn = state.twist.angular.norm();
+    const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
+    surface_speed_ = std::max(surface_speed_, static_cast<Real>(speed));
+  }
 }
 
 template <class Real>
 void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) {
   if (empty()) return;
+  plan_colliders(dt);
   bool holds;
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);
     holds = rows_hold(state, dt);
   }
   if (!holds) rebuild_rows(state, dt, profile);
-  if (rows_.empty()) return;
-  const StageTimer timer(profile, Stage::contact, rows_.size());
-  push_out(state, dt);
-  aim_rows(state, dt);
-  solve_rows(state, profile);
-  certify(state, dt);
+  if (!rows_.empty()) {
+    const StageTimer timer(profile, Stage::contact, rows_.size());
+    push_out(state, dt);
+    aim_rows(state, dt);
+    solve_rows(state, profile);
+    certify(state, dt);
+  }
+  move_colliders(dt);
 }
 
 template <class Real>
@@ -118,9 +147,11 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
       const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
       deepest = std::max(deepest, static_cast<double>(rod.radius - (p - q).norm()));
     }
-    for (const MeshShape<Real>& mesh : meshes_) {
-      if (!mesh.closed || mesh.triangle_tree.bounds().squared_distance(p) > 0) continue;
-      const MeshDistance<Real> d = distance_to_mesh(mesh, p, Real(1000));
+    for (std::size_t m = 0; m < meshes_.size(); ++m) {
+      const MeshShape<Real>& mesh = meshes_[m];
+      const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
+      if (!mesh.closed || mesh.triangle_tree.bounds().squared_distance(own) > 0) continue;
+      const MeshDistance<Real> d = distance_to_mesh(mesh, own, Real(1000));
       deepest = std::max(deepest, static_cast<double>(-d.distance));
     }
   };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collider.h"
+#include "core/contact/collider_frame.h"
 #include "core/contact/mesh_shape.h"
 #include "core/executor.h"
 #include "core/world/profile.h"
@@ -42,10 +42,22 @@ struct ContactRow {
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
   Real thickness = 0;                      ///< that the cloth keeps [m]
   Index cloth = 0;                         ///< whose friction and restitution it has
+  Index mover = kNone;                     ///< number among the rows with moving objects
   bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
-/// Contact of cloths with fixed objects (CONTACT.md's recipe for static objects).
+/// What a row with an object that moves has besides.
+template <class Real>
+struct MovingRow {
+  std::size_t row = 0;
+  std::size_t collider = 0;
+  Vec3d own_normal = Vec3d::Zero();  ///< of the plane, in the object's own frame
+  double own_offset = 0;             ///< [m]
+  Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
+  Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
+};
+
+/// Contact of cloths with objects, at rest or moving (CONTACT.md's recipe for objects).
 ///
 /// Three nested lists keep the work small, each valid while no particle has moved farther than its
 /// allowance, which is checked with the coming motion before every drift:
@@ -53,6 +65,10 @@ struct ContactRow {
 /// for a few substeps). Rows are solved on velocities between kick and drift, with Coulomb friction
 /// that sticks truly, and at last every particle is certified against its planes: one that would
 /// cross does not move. So no particle passes through an object, whatever pulls at it.
+///
+/// The planes of an object that moves go with it, and its way is added to the particles' own where
+/// lists are said to hold. What it meets gives way or is carried along; where it cannot, the object
+/// stands still for that substep: not moving is allowed to all.
 template <class Real>
 class Contact {
  public:
@@ -71,7 +87,15 @@ class Contact {
   void reset();
 
   /// @param tick_seconds  length of the tick [s]
-  void begin_tick(double tick_seconds);
+  /// @param colliders     as planned for the tick, in the order of their definitions; moved on in
+  ///                      each `resolve` of it. Null: all stand as defined.
+  void begin_tick(double tick_seconds, ColliderStates* colliders = nullptr);
+
+  /// Puts the shapes where the colliders are.
+  void place(const ColliderStates& colliders);
+
+  /// Work of moving objects on the cloth in this tick [J].
+  double work() const { return work_; }
 
   /// Says that masses changed (a pin) or that the cloth was put elsewhere: the planes are not
   /// valid.
@@ -94,16 +118,19 @@ class Contact {
   struct Plane {
     Vec3<Real> normal;
     Real offset;
+    std::size_t collider;
   };
   struct Ball {
     Vec3<Real> centre;
     Real radius;
     bool smooth;  ///< particles alone keep the cloth off it
+    std::size_t collider;
   };
   struct Rod {
     Vec3<Real> a, b;
     Real radius;
     bool smooth;
+    std::size_t collider;
   };
   /// What a chunk of the collection finds.
   struct Found {
@@ -115,7 +142,7 @@ class Contact {
   bool empty() const {
     return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty();
   }
-  void add_shape(const ShapeDef& shape);
+  void add_shape(const ShapeDef& shape, std::size_t collider);
   bool is_smooth(double radius) const;
 
   // contact_collect.cpp
@@ -141,7 +168,7 @@ class Contact {
   std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i);
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
-               bool responds = true);
+               std::size_t collider, bool responds = true);
 
   // contact_solve.cpp
   void push_out(ClothState<Real>& state, Real dt);
@@ -149,6 +176,24 @@ class Contact {
   void solve_rows(ClothState<Real>& state, Profile& profile);
   void certify(ClothState<Real>& state, Real dt);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt) const;
+
+  // contact_movers.cpp
+  void place_collider(std::size_t collider, const Pose& pose);
+  void plan_colliders(Real dt);
+  void move_colliders(Real dt);
+  void take_to_own(const Vec3Array<Real>& x);
+  const Vec3Array<Real>& in_frame_of(std::size_t mesh, const Vec3Array<Real>& x) const;
+  void follow(const ContactRow<Real>& row, std::size_t collider, Real mobility);
+  void take_reaction(const ContactRow<Real>& row, const Vec3<Real>& point,
+                     const Vec3<Real>& change);
+  Real height_after(const ContactRow<Real>& row, const Vec3<Real>& end) const;
+  bool keep_off_mover(const ContactRow<Real>& row, ClothState<Real>& state, Real dt);
+  void certify_with_movers(ClothState<Real>& state, Real dt);
+  bool hold_or_block(bool carry, ClothState<Real>& state, Real dt);
+  bool hold_row(const ContactRow<Real>& row, bool carry, ClothState<Real>& state, Real dt);
+  void block(std::size_t collider);
+  Real least_height(const ContactRow<Real>& row, bool moves) const;
+  void take_back_pushes(ClothState<Real>& state);
 
   Index cloth_of(Index particle) const;
 
@@ -162,6 +207,7 @@ class Contact {
   std::vector<Ball> balls_;
   std::vector<Rod> rods_;
   std::vector<MeshShape<Real>> meshes_;
+  std::vector<std::size_t> mesh_collider_;  ///< the collider of each mesh
   Real widest_skin_ =
       std::numeric_limits<Real>::infinity();  ///< about a triangle of the meshes [m]
 
@@ -186,6 +232,21 @@ class Contact {
       nearby_;                ///< triangles near one particle, while its rows are built
   std::vector<char> inside_;  ///< particles inside a closed mesh
   std::vector<ContactRow<Real>> rows_;
+
+  std::vector<Plane> own_planes_;  ///< as defined
+  std::vector<Ball> own_balls_;
+  std::vector<Rod> own_rods_;
+  std::vector<ColliderFrame<Real>> frames_;  ///< of each collider
+  ColliderStates* colliders_ = nullptr;      ///< of the tick under way
+  bool any_tracked_ = false;                 ///< whether one of them moves in this tick
+  Real surface_speed_ = 0;                   ///< of the fastest [m/s]
+  Real gone_ = 0;      ///< longest way of an object since the pairs were collected [m]
+  Real way_rows_ = 0;  ///< since the rows were built, and in the coming substep [m]
+  Real way_step_ = 0;  ///< in the coming substep alone [m]
+  std::vector<Vec3Array<Real>> x_own_;  ///< active particles in the frame of each mesh
+  std::vector<MovingRow<Real>> moving_rows_;
+  Vec3Array<Real> x_unpushed_;  ///< before the push-out
+  double work_ = 0;
 };
 
 extern template class Contact<float>;

@@ -45,9 +45,11 @@ Real Contact<Real>::analytic_clearance(const Vec3<Real>& p, Real reach) const {
 template <class Real>
 Real Contact<Real>::clearance(const Vec3<Real>& p, Real reach) const {
   Real nearest = analytic_clearance(p, reach);
-  for (const MeshShape<Real>& mesh : meshes_) {
-    if (mesh.triangle_tree.bounds().squared_distance(p) > reach * reach) continue;
-    const MeshDistance<Real> d = distance_to_mesh(mesh, p, reach);
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshShape<Real>& mesh = meshes_[m];
+    const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
+    if (mesh.triangle_tree.bounds().squared_distance(own) > reach * reach) continue;
+    const MeshDistance<Real> d = distance_to_mesh(mesh, own, reach);
     if (d.triangle != kNone) nearest = std::min(nearest, d.distance);
   }
   return nearest;
@@ -61,16 +63,18 @@ Real Contact<Real>::least_clearance(const Vec3<Real>& p, Real reach) const {
   const Real nearest = analytic_clearance(p, reach);
   Real bound = nearest * nearest;
   if (!(nearest > 0)) return nearest;
-  for (const MeshShape<Real>& mesh : meshes_) {
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshShape<Real>& mesh = meshes_[m];
+    const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
     bound = mesh.triangle_tree.nearest(
-        bound, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
+        bound, [&](const Aabb<Real>& box) { return box.squared_distance(own); },
         [&](Index t, Real best) {
           const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
           const auto corner = [&](std::size_t k) {
             return mesh.positions[static_cast<std::size_t>(triangle[k])];
           };
           const Real distance2 =
-              (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point)
+              (own - closest_on_triangle<Real>(own, corner(0), corner(1), corner(2)).point)
                   .squaredNorm();
           return std::min(best, distance2 * kSlack);
         });
@@ -88,6 +92,8 @@ void Contact<Real>::collect(const ClothState<Real>& state, Real dt, Profile& pro
   collect_feature_pairs(state, profile);
   mark_paired();
   x_collected_ = state.x;
+  for (ColliderFrame<Real>& frame : frames_) frame.way_collected = 0;
+  gone_ = 0;
   collected_ = true;
 }
 
@@ -115,11 +121,11 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
   run_chunks(executor_, kChunks, [&](int chunk) {
     const auto c = static_cast<std::size_t>(chunk);
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
-      const Real speed = state.v[i].norm();
+      const Real speed = state.v[i].norm() + surface_speed_;
       const Real most = std::max(widest_skin_, speed * dt * Real(kSkinSubsteps));
       skin_[i] = std::max(thickness_ * 2, std::min(speed * tick_seconds_ * Real(kSkinTicks), most));
       const Real needed = thickness_ + span_[i] + skin_[i];
-      if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm();
+      if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm() + gone_;
       if (clearance_[i] > needed) continue;
       // Who was near before had its clearance measured by its pairs. Those without pairs are
       // measured now and then, in turns, to see whether they have gone.
@@ -197,19 +203,24 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
     fresh_clearance_[static_cast<std::size_t>(i)] = analytic_clearance(x(i), thickness_ + skin(i));
     has_pairs_[static_cast<std::size_t>(i)] = 0;
   }
+  take_to_own(state.x);
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
+    const Vec3Array<Real>& own = in_frame_of(m, state.x);
+    const auto own_x = [&](Index i) -> const Vec3<Real>& {
+      return own[static_cast<std::size_t>(i)];
+    };
     collect_kind(active_particles_.size(), particle_pairs_[m], profile,
                  [&](std::size_t n, Found& found) {
                    const Index i = active_particles_[n];
                    const Real reach = thickness_ + skin(i);
                    if (clear(i) > reach) return;
                    Aabb<Real> box;
-                   box.add(x(i));
+                   box.add(own_x(i));
                    bool any = false;
                    Real nearest = reach;
                    mesh.triangle_tree.for_each_overlap(box.grown(reach), [&](Index t) {
-                     const MeshDistance<Real> d = distance_to_triangle(mesh, t, x(i));
+                     const MeshDistance<Real> d = distance_to_triangle(mesh, t, own_x(i));
                      ++found.tests;
                      if (std::abs(d.distance) > reach) return;
                      found.pairs.push_back({i, t, std::abs(d.distance)});
@@ -220,7 +231,7 @@ void Contact<Real>::collect_particle_pairs(const ClothState<Real>& state, Profil
                    // Deep inside a solid nothing is within reach, yet the particle must find its
                    // way out.
                    if (!any && mesh.closed && clearance_[p] < 0) {
-                     const MeshDistance<Real> d = distance_to_mesh(mesh, x(i), Real(1000));
+                     const MeshDistance<Real> d = distance_to_mesh(mesh, own_x(i), Real(1000));
                      if (d.triangle != kNone && d.distance < 0)
                        found.pairs.push_back({i, d.triangle, Real(0)});
                      nearest = std::min(nearest, d.distance);
@@ -266,11 +277,12 @@ void Contact<Real>::mark_paired() {
 /// Edges against ridges and triangles against corners of the meshes.
 template <class Real>
 void Contact<Real>::collect_feature_pairs(const ClothState<Real>& state, Profile& profile) {
-  const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto skin = [&](Index i) { return skin_[static_cast<std::size_t>(i)]; };
   const auto clear = [&](Index i) { return clearance_[static_cast<std::size_t>(i)]; };
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
+    const Vec3Array<Real>& own = in_frame_of(m, state.x);
+    const auto x = [&](Index i) -> const Vec3<Real>& { return own[static_cast<std::size_t>(i)]; };
     const auto at = [&](Index v) -> const Vec3<Real>& {
       return mesh.positions[static_cast<std::size_t>(v)];
     };

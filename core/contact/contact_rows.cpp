@@ -38,9 +38,11 @@ Separation<Real> separate(const Vec3<Real>& p, const Vec3<Real>& q, const Vec3<R
 template <class Real>
 bool Contact<Real>::rows_hold(const ClothState<Real>& state, Real dt) const {
   if (!collected_ || !rows_built_) return false;
+  const Real less = way_rows_ + way_step_;  // what objects have taken of the reach, and will
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec3<Real> next = state.x[i] + state.v[i] * dt;
-    if (!((next - x_rows_[i]).squaredNorm() <= row_reach_[i] * row_reach_[i])) return false;
+    const Real reach = row_reach_[i] - less;
+    if (!((next - x_rows_[i]).squaredNorm() <= reach * std::abs(reach))) return false;
   }
   return true;
 }
@@ -52,11 +54,12 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   row_reach_.resize(n);
   const auto allow = [&] {
     for (std::size_t i = 0; i < n; ++i) {
-      const Real moved = (state.x[i] - x_collected_[i]).norm();
+      const Real moved = (state.x[i] - x_collected_[i]).norm() + gone_;
       const Real left = skin_[i] - moved;
       const Real step = state.v[i].norm() * dt;
-      if (!(left >= step * Real(1.5))) return false;
-      const Real wanted = std::max(thickness_ / 2, step * Real(kRowSubsteps));
+      // An object and what it carries along both go its way.
+      if (!(left >= step * Real(1.5) + way_step_ * Real(3))) return false;
+      const Real wanted = std::max(thickness_ / 2, (step + way_step_) * Real(kRowSubsteps));
       row_reach_[i] = paired_[i] ? std::min(left, wanted) : left;
     }
     return true;
@@ -67,7 +70,11 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   }
   const StageTimer timer(profile, Stage::narrow_phase, 0);
   x_rows_ = state.x;
+  for (ColliderFrame<Real>& frame : frames_) frame.way_rows = 0;
+  way_rows_ = way_step_;
+  take_to_own(state.x);
   rows_.clear();
+  moving_rows_.clear();
   add_particle_rows(state, profile);
   add_edge_rows(state, profile);
   add_triangle_rows(state, profile);
@@ -77,7 +84,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
 template <class Real>
 void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                             const std::array<Real, 3>& weights, const Vec3<Real>& normal,
-                            Real distance, bool responds) {
+                            Real distance, std::size_t collider, bool responds) {
   ContactRow<Real> row;
   Real mobility = 0, height = 0;
   for (const Index i : particles) {
@@ -87,15 +94,21 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
     mobility += weights[k] * weights[k] * state.inverse_mass[static_cast<std::size_t>(i)];
     height += weights[k] * normal.dot(state.x[static_cast<std::size_t>(i)]);
   }
-  if (!(mobility > 0)) return;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+  // What is pinned stops only what moves.
+  const bool held = !(mobility > 0);
+  if (held && !frames_[collider].tracked) return;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count) && !held; ++k)
     row.share[k] =
         row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
-  row.responds = responds;
+  row.responds = responds && !held;
   row.cloth = cloth_of(row.particle[0]);
   row.thickness = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].thickness);
   row.normal = normal;
   row.offset = height - distance;
+  if (frames_[collider].tracked) {
+    row.mover = static_cast<Index>(moving_rows_.size());
+    follow(row, collider, mobility);
+  }
   rows_.push_back(row);
 }
 
@@ -106,9 +119,11 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
 template <class Real>
 std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i) {
   const auto p = static_cast<std::size_t>(i);
-  const Vec3<Real>& x = state.x[p];
+  const std::size_t collider = mesh_collider_[m];
+  const ColliderFrame<Real>& frame = frames_[collider];
+  const Vec3<Real>& x = in_frame_of(m, state.x)[p];
   const Real reach = thickness_ + row_reach_[p];
-  const Real moved = (x - x_collected_[p]).norm();
+  const Real moved = (state.x[p] - x_collected_[p]).norm() + frame.way_collected;
   // Whoever is inside looks for the way out, however far it is.
   const bool outside = clearance_[p] >= 0;
   const auto& pairs = particle_pairs_[m];  // in the order of the active particles
@@ -123,14 +138,15 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
   if (nearby_.empty()) return 0;
   if (nearby_[nearest].distance < 0) {
     inside_[p] = 1;
-    add_row(state, {i}, {Real(1), 0, 0}, nearby_[nearest].normal, nearby_[nearest].distance);
+    add_row(state, {i}, {Real(1), 0, 0}, frame.world_direction(nearby_[nearest].normal),
+            nearby_[nearest].distance, collider);
     return nearby_.size();
   }
   for (const MeshDistance<Real>& d : nearby_) {
     const Real distance = std::abs(d.distance);
     if (distance > reach) continue;
     const Vec3<Real> normal = d.distance < 0 ? (-d.normal).eval() : d.normal;
-    add_row(state, {i}, {Real(1), 0, 0}, normal, distance);
+    add_row(state, {i}, {Real(1), 0, 0}, frame.world_direction(normal), distance, collider);
   }
   return nearby_.size();
 }
@@ -141,22 +157,23 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
   const auto reach_of = [&](Index i) {
     return thickness_ + row_reach_[static_cast<std::size_t>(i)];
   };
-  const auto add = [&](Index i, const Vec3<Real>& normal, Real distance) {
-    if (distance <= reach_of(i)) add_row(state, {i}, {Real(1), 0, 0}, normal, distance);
+  const auto add = [&](Index i, const Vec3<Real>& normal, Real distance, std::size_t collider) {
+    if (distance <= reach_of(i)) add_row(state, {i}, {Real(1), 0, 0}, normal, distance, collider);
   };
   cursor_.assign(meshes_.size(), 0);
   inside_.assign(state.x.size(), 0);
   for (const Index i : active_particles_) {
     const Vec3<Real>& p = state.x[static_cast<std::size_t>(i)];
-    for (const Plane& plane : planes_) add(i, plane.normal, plane.normal.dot(p) - plane.offset);
+    for (const Plane& plane : planes_)
+      add(i, plane.normal, plane.normal.dot(p) - plane.offset, plane.collider);
     for (const Ball& ball : balls_) {
       const auto s = separate<Real>(p, ball.centre, Vec3<Real>::UnitY());
-      add(i, s.normal, s.distance - ball.radius);
+      add(i, s.normal, s.distance - ball.radius, ball.collider);
     }
     for (const Rod& rod : rods_) {
       const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
       const auto s = separate<Real>(p, q, Vec3<Real>::UnitY());
-      add(i, s.normal, s.distance - rod.radius);
+      add(i, s.normal, s.distance - rod.radius, rod.collider);
     }
     tests += planes_.size() + balls_.size() + rods_.size();
     for (std::size_t m = 0; m < meshes_.size(); ++m) tests += add_mesh_rows(state, m, i);
@@ -174,9 +191,10 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
   const auto between_ends = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
   const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius,
-                       bool responds) {
+                       std::size_t collider, bool responds) {
     if (d.distance - radius > reach_of(e)) return;
-    add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius, responds);
+    add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius, collider,
+            responds);
   };
   for (const Index k : near_edges_) {
     const Edge& e = edges_[static_cast<std::size_t>(k)];
@@ -184,31 +202,37 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       if (ball.smooth) continue;
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
       const Vec3<Real> p = x(e[0]) + (x(e[1]) - x(e[0])) * s;
-      add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY()), ball.radius, between_ends(s));
+      add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY()), ball.radius, ball.collider,
+          between_ends(s));
     }
     for (const Rod& rod : rods_) {
       if (rod.smooth) continue;
       const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]), rod.a, rod.b);
-      add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY()), rod.radius, between_ends(c.s));
+      add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY()), rod.radius, rod.collider,
+          between_ends(c.s));
     }
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
+    const ColliderFrame<Real>& frame = frames_[mesh_collider_[m]];
+    const Vec3Array<Real>& own = in_frame_of(m, state.x);
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
       const Edge& e = edges_[static_cast<std::size_t>(pair.cloth)];
       if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])])
         continue;
       const Real moved = std::max((x(e[0]) - x_collected_[static_cast<std::size_t>(e[0])]).norm(),
                                   (x(e[1]) - x_collected_[static_cast<std::size_t>(e[1])]).norm());
-      if (pair.distance - moved > reach_of(e)) continue;
+      if (pair.distance - moved - frame.way_collected > reach_of(e)) continue;
       const MeshEdge& other = mesh.edges[static_cast<std::size_t>(pair.feature)];
-      const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]),
+      const auto c = closest_of_segments<Real>(own[static_cast<std::size_t>(e[0])],
+                                               own[static_cast<std::size_t>(e[1])],
                                                mesh.positions[static_cast<std::size_t>(other.a)],
                                                mesh.positions[static_cast<std::size_t>(other.b)]);
       ++tests;
       const Vec3<Real>& outward = mesh.edge_normals[static_cast<std::size_t>(pair.feature)];
-      add(e, c.s, separate<Real>(c.p, c.q, outward), Real(0),
-          between_ends(c.s) && between_ends(c.t));
+      Separation<Real> d = separate<Real>(c.p, c.q, outward);
+      d.normal = frame.world_direction(d.normal);
+      add(e, c.s, d, Real(0), mesh_collider_[m], between_ends(c.s) && between_ends(c.t));
     }
   }
   profile[Stage::narrow_phase].work += tests;
@@ -224,27 +248,28 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   };
   /// A point of the object with a radius against the inside of a cloth triangle.
   const auto add = [&](const Triangle& t, const Vec3<Real>& q, Real radius,
-                       const Vec3<Real>& outward) {
+                       const Vec3<Real>& outward, std::size_t collider) {
     const TrianglePoint<Real> c = closest_on_triangle<Real>(q, x(t[0]), x(t[1]), x(t[2]));
     ++tests;
     const Separation<Real> d = separate<Real>(c.point, q, outward);
     if (d.distance - radius > thickness_ + over(t, row_reach_)) return;
-    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius,
+    add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius, collider,
             c.feature == 0);
   };
   for (const Index k : near_triangles_) {
     const Triangle& t = triangles_[static_cast<std::size_t>(k)];
     for (const Ball& ball : balls_) {
-      if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY());
+      if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
     }
     for (const Rod& rod : rods_) {
       if (rod.smooth) continue;
-      add(t, rod.a, rod.radius, Vec3<Real>::UnitY());
-      add(t, rod.b, rod.radius, Vec3<Real>::UnitY());
+      add(t, rod.a, rod.radius, Vec3<Real>::UnitY(), rod.collider);
+      add(t, rod.b, rod.radius, Vec3<Real>::UnitY(), rod.collider);
     }
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
+    const ColliderFrame<Real>& frame = frames_[mesh_collider_[m]];
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
       const Triangle& t = triangles_[static_cast<std::size_t>(pair.cloth)];
       if (std::any_of(t.begin(), t.end(),
@@ -253,22 +278,24 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
       Real moved = 0;
       for (const Index i : t)
         moved = std::max(moved, (x(i) - x_collected_[static_cast<std::size_t>(i)]).norm());
-      if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
-      add(t, mesh.positions[static_cast<std::size_t>(pair.feature)], Real(0),
-          mesh.vertex_normals[static_cast<std::size_t>(pair.feature)]);
+      if (pair.distance - moved - frame.way_collected > thickness_ + over(t, row_reach_)) continue;
+      const auto v = static_cast<std::size_t>(pair.feature);
+      add(t, frame.world(mesh.positions[v]), Real(0), frame.world_direction(mesh.vertex_normals[v]),
+          mesh_collider_[m]);
     }
   }
   profile[Stage::narrow_phase].work += tests;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                     \
-  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real) const;                     \
-  template void Contact<Real>::rebuild_rows(const ClothState<Real>&, Real, Profile&);              \
-  template void Contact<Real>::add_particle_rows(const ClothState<Real>&, Profile&);               \
-  template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);                   \
-  template void Contact<Real>::add_triangle_rows(const ClothState<Real>&, Profile&);               \
-  template void Contact<Real>::add_row(const ClothState<Real>&, std::initializer_list<Index>,      \
-                                       const std::array<Real, 3>&, const Vec3<Real>&, Real, bool); \
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real) const;                \
+  template void Contact<Real>::rebuild_rows(const ClothState<Real>&, Real, Profile&);         \
+  template void Contact<Real>::add_particle_rows(const ClothState<Real>&, Profile&);          \
+  template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);              \
+  template void Contact<Real>::add_triangle_rows(const ClothState<Real>&, Profile&);          \
+  template void Contact<Real>::add_row(const ClothState<Real>&, std::initializer_list<Index>, \
+                                       const std::array<Real, 3>&, const Vec3<Real>&, Real,   \
+                                       std::size_t, bool);                                    \
   template std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>&, std::size_t, Index);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

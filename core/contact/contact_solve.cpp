@@ -48,6 +48,8 @@ void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<
 
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
+  const bool pinched = !moving_rows_.empty();
+  if (pinched) x_unpushed_ = state.x;
   for (const ContactRow<Real>& row : rows_) {
     if (!row.responds) continue;
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
@@ -55,6 +57,7 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
     share_out<Real>(row, row.normal * step, state.x);
   }
+  if (pinched) take_back_pushes(state);
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,
@@ -67,9 +70,15 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
     const Real room = std::max(Real(0), gap - row.thickness - Real(kTouchSlack));
     row.least_speed = -room / dt;
+    if (row.mover != kNone) {
+      MovingRow<Real>& moving = moving_rows_[static_cast<std::size_t>(row.mover)];
+      moving.surface = frames_[moving.collider].velocity_at(weighted(row, state.x));
+    }
     if (bounce == 0) continue;
     // It bounces in the step that would have brought it there, with the speed that it comes with.
-    const Real speed = row.normal.dot(weighted(row, state.v));
+    Real speed = row.normal.dot(weighted(row, state.v));
+    if (row.mover != kNone)
+      speed -= row.normal.dot(moving_rows_[static_cast<std::size_t>(row.mover)].surface);
     if (speed < std::min(row.least_speed, -Real(kBounceSpeed))) row.least_speed = -bounce * speed;
   }
 }
@@ -82,7 +91,8 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const ContactRow<Real>& row : rows_) {
       if (!row.responds) continue;
-      const Vec3<Real> v = weighted(row, state.v);
+      Vec3<Real> v = weighted(row, state.v);
+      if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
       const Real vn = row.normal.dot(v);
       const Real push = row.least_speed - vn;
       if (!(push > 0)) continue;
@@ -96,6 +106,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
         change -= speed > most ? (slip * (most / speed)).eval() : slip;
       }
       share_out(row, change, state.v);
+      if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
     }
   }
   profile[Stage::friction].work += friction_evaluations;
@@ -128,6 +139,7 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
 /// which the planes are all that matters. Not moving is always allowed.
 template <class Real>
 void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
+  if (!moving_rows_.empty()) return certify_with_movers(state, dt);
   bool kept = true;
   for (int round = 0; round < kCertifyRounds && kept; ++round) {
     kept = false;
@@ -139,7 +151,8 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3<Real> end = state.x[i] + state.v[i] * dt;
-    if (!((end - x_rows_[i]).squaredNorm() <= row_reach_[i] * row_reach_[i])) state.v[i].setZero();
+    const Real reach = row_reach_[i] - way_rows_;
+    if (!((end - x_rows_[i]).squaredNorm() <= reach * std::abs(reach))) state.v[i].setZero();
   }
 }
 

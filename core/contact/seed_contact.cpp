@@ -32,10 +32,50 @@ SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     shapes_.push_back(make_seed_shape<Real>(colliders[k].shape, reach_));
+    frames_.emplace_back();
+    frames_.back().pivot = pivot_of(colliders[k].shape);
+    frames_.back().radius = radius_of(colliders[k].shape);
+    frames_.back().pose = rest_pose(colliders[k].shape);
   }
   trees_.build(rest_positions_, edges_, triangles_);
   nearest_.resize(rest_positions_.size());
   deepest_.resize(shapes_.size());
+}
+
+template <class Real>
+void SeedContact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
+  tick_seconds_ = tick_seconds;
+  colliders_ = colliders;
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const ColliderState& state = (*colliders)[k];
+    if (!(state.pose == frames_[k].pose)) frames_[k].place(state.pose);
+    frames_[k].tracked = state.is_active();
+    frames_[k].stand();
+  }
+}
+
+/// Objects move through what is in their way: the seed asks where things are now, and only that.
+template <class Real>
+void SeedContact<Real>::move_colliders(Real dt) {
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    ColliderFrame<Real>& frame = frames_[k];
+    if (!frame.tracked) continue;
+    ColliderState& state = (*colliders_)[k];
+    frame.plan(state, static_cast<double>(dt), tick_seconds_);
+    advance_collider(static_cast<double>(dt), tick_seconds_, state);
+    if (!(state.pose == frame.pose)) frame.place(state.pose);
+  }
+}
+
+/// The particles as an object sees them.
+template <class Real>
+const Vec3Array<Real>& SeedContact<Real>::in_frame_of(std::size_t object,
+                                                      const Vec3Array<Real>& x) {
+  const ColliderFrame<Real>& frame = frames_[object];
+  if (!frame.displaced) return x;
+  x_own_.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x_own_[i] = frame.own(x[i]);
+  return x_own_;
 }
 
 /// Keeps the nearest of all offers for a particle.
@@ -53,19 +93,24 @@ void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Pro
   std::fill(nearest_.begin(), nearest_.end(),
             Nearest{std::numeric_limits<Real>::infinity(), Vec3<Real>::Zero(), kNone});
   const BottomUpTree<Real>* particles = nullptr;
+  const Vec3Array<Real>* around = nullptr;  // what the tree is fitted to
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const SeedShape<Real>& shape = shapes_[k];
+    const ColliderFrame<Real>& frame = frames_[k];
+    const Vec3Array<Real>& x = in_frame_of(k, state.x);
     const auto object = static_cast<Index>(k);
     if (!shape.is_mesh) {
       const StageTimer timer(profile, Stage::narrow_phase, state.x.size());
       for (std::size_t i = 0; i < state.x.size(); ++i) {
-        const SurfacePoint<Real> point = distance_from(shape.simple, state.x[i]);
-        if (point.distance < reach_) offer(i, point.distance, point.normal, object);
+        const SurfacePoint<Real> point = distance_from(shape.simple, x[i]);
+        if (point.distance < reach_)
+          offer(i, point.distance, frame.world_direction(point.normal), object);
       }
       continue;
     }
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    if (!particles) particles = &trees_.particles(state.x, Real(0));
+    if (around != &x || frame.displaced) particles = &trees_.particles(x, Real(0));
+    around = &x;
     std::uint64_t tests = 0;
     particles->for_each_pair(shape.tree, [&](Index particle, Index triangle) {
       ++tests;
@@ -74,15 +119,17 @@ void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Pro
       const Vec3<Real>& x1 = shape.positions[static_cast<std::size_t>(t[0])];
       const Vec3<Real>& x2 = shape.positions[static_cast<std::size_t>(t[1])];
       const Vec3<Real>& x3 = shape.positions[static_cast<std::size_t>(t[2])];
-      const seed::Proximity<Real> p = seed::proximity<Real>(state.x[i], x1, x2, x3, reach_);
+      const seed::Proximity<Real> p = seed::proximity<Real>(x[i], x1, x2, x3, reach_);
       if (!p.near) return;
       // A surface without an inside belongs to the side from which the particle came.
-      const Vec3<Real> came_from = state.x[i] - state.v[i] * dt;
-      const bool flip = !shape.closed && (came_from - x3).dot(p.normal) < 0;
+      Vec3<Real> came_from = state.x[i] - state.v[i] * dt;
+      if (frame.moves) came_from += frame.velocity_at(state.x[i]) * dt;
+      const bool flip = !shape.closed && (frame.own(came_from) - x3).dot(p.normal) < 0;
+      const Vec3<Real> normal = frame.world_direction(p.normal);
       if (flip)
-        offer(i, -p.distance, -p.normal, object);
+        offer(i, -p.distance, -normal, object);
       else
-        offer(i, p.distance, p.normal, object);
+        offer(i, p.distance, normal, object);
     });
     profile[Stage::broad_phase].work += tests;
     profile[Stage::narrow_phase].work += tests;
@@ -106,11 +153,15 @@ void SeedContact<Real>::respond(ClothState<Real>& state) {
     if (!is_free(i)) continue;
     const Nearest& near = nearest_[i];
     const auto cloth = static_cast<std::size_t>(cloth_of_[i]);
-    const bool coming = state.v[i].dot(near.normal) < 0;
+    const ColliderFrame<Real>& frame = frames_[static_cast<std::size_t>(near.object)];
+    Vec3<Real> v = state.v[i];
+    if (frame.moves) v -= frame.velocity_at(state.x[i]);
+    const bool coming = v.dot(near.normal) < 0;
     const bool contact = near.distance < thickness_[cloth] && (coming || near.distance < 0);
-    if (contact && coming)
-      state.v[i] =
-          seed::after_contact<Real>(state.v[i], near.normal, friction_[cloth], dissipation_[cloth]);
+    if (contact && coming) {
+      state.v[i] = seed::after_contact<Real>(v, near.normal, friction_[cloth], dissipation_[cloth]);
+      if (frame.moves) state.v[i] += frame.velocity_at(state.x[i]);
+    }
     if (def_.correction == Correction::fold_map) {
       const Real phi_min = deepest_[static_cast<std::size_t>(near.object)];
       const Real tau = static_cast<Real>(def_.fold_depth);
@@ -129,29 +180,36 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
   std::uint64_t tests = 0;
   const BottomUpTree<Real>* cloth_edges = nullptr;
   const auto inside = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
-  for (const SeedShape<Real>& shape : shapes_) {
+  const Vec3Array<Real>* around = nullptr;
+  for (std::size_t o = 0; o < shapes_.size(); ++o) {
+    const SeedShape<Real>& shape = shapes_[o];
+    const ColliderFrame<Real>& frame = frames_[o];
     if (shape.sharp_edges.empty()) continue;
-    if (!cloth_edges) cloth_edges = &trees_.edges(state.x, edges_, Real(0));
+    const Vec3Array<Real>& x = in_frame_of(o, state.x);
+    if (around != &x || frame.displaced) cloth_edges = &trees_.edges(x, edges_, Real(0));
+    around = &x;
     cloth_edges->for_each_pair(shape.edge_tree, [&](Index edge, Index sharp) {
       ++tests;
       const auto& e = edges_[static_cast<std::size_t>(edge)];
       const auto& r = shape.sharp_edges[static_cast<std::size_t>(sharp)];
       const auto i = static_cast<std::size_t>(e[0]), j = static_cast<std::size_t>(e[1]);
       const auto cloth = static_cast<std::size_t>(cloth_of_[i]);
-      const SegmentPoints<Real> nearest = closest_of_segments<Real>(
-          state.x[i], state.x[j], shape.positions[static_cast<std::size_t>(r.a)],
-          shape.positions[static_cast<std::size_t>(r.b)]);
+      const SegmentPoints<Real> nearest =
+          closest_of_segments<Real>(x[i], x[j], shape.positions[static_cast<std::size_t>(r.a)],
+                                    shape.positions[static_cast<std::size_t>(r.b)]);
       if (!inside(nearest.s) || !inside(nearest.t)) return;
       const Vec3<Real> away = nearest.p - nearest.q;
       const bool outside = away.dot(r.normal) >= 0;
       const Real length = away.norm(), distance = outside ? length : -length;
       if (!(length < thickness_[cloth])) return;
-      const Vec3<Real> normal = length > 0 ? (away / distance).eval() : r.normal;
+      const Vec3<Real> normal =
+          frame.world_direction(length > 0 ? (away / distance).eval() : r.normal);
       const Real wi = (Real(1) - nearest.s) * state.inverse_mass[i];
       const Real wj = nearest.s * state.inverse_mass[j];
       const Real mobility = (Real(1) - nearest.s) * wi + nearest.s * wj;
       if (!(mobility > 0)) return;
-      const Vec3<Real> v = state.v[i] * (Real(1) - nearest.s) + state.v[j] * nearest.s;
+      Vec3<Real> v = state.v[i] * (Real(1) - nearest.s) + state.v[j] * nearest.s;
+      if (frame.moves) v -= frame.velocity_at(state.x[i]);
       const bool coming = v.dot(normal) < 0;
       if (!coming && outside) return;
       if (coming) {
@@ -172,6 +230,7 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
 template <class Real>
 void SeedContact<Real>::collide(ClothState<Real>& state, Real dt, Profile& profile) {
   if (shapes_.empty()) return;
+  move_colliders(dt);
   find_nearest(state, dt, profile);
   const StageTimer timer(profile, Stage::contact, state.x.size());
   respond(state);

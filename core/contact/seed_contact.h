@@ -6,7 +6,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collider.h"
+#include "core/contact/collider_frame.h"
 #include "core/contact/seed_equations.h"
 #include "core/contact/seed_shape.h"
 #include "core/geometry/cloth_trees.h"
@@ -74,6 +74,10 @@ class SeedContact {
   SeedContact(const SeedContactDef& def, const ClothModel<Real>& model,
               const std::vector<ColliderDef>& colliders);
 
+  /// @param tick_seconds  length of the tick [s]
+  /// @param colliders     as planned for the tick; moved on in each `collide` of it
+  void begin_tick(double tick_seconds, ColliderStates* colliders);
+
   /// Self-collision, before the particles move: takes the approach of near pairs out of the
   /// velocities, eqs. (11) and (12).
   void separate(ClothState<Real>& state, Profile& profile);
@@ -99,6 +103,8 @@ class SeedContact {
   std::uint64_t separate_edges(ClothState<Real>& state);
 
   // seed_contact.cpp
+  void move_colliders(Real dt);
+  const Vec3Array<Real>& in_frame_of(std::size_t object, const Vec3Array<Real>& x);
   void find_nearest(const ClothState<Real>& state, Real dt, Profile& profile);
   void offer(std::size_t i, Real distance, const Vec3<Real>& normal, Index object);
   void respond(ClothState<Real>& state);
@@ -115,6 +121,10 @@ class SeedContact {
   std::vector<Triangle> triangles_;
   ClothTrees<Real> trees_;
   std::vector<SeedShape<Real>> shapes_;
+  std::vector<ColliderFrame<Real>> frames_;  ///< of each shape
+  ColliderStates* colliders_ = nullptr;      ///< of the tick under way
+  double tick_seconds_ = 0;
+  Vec3Array<Real> x_own_;  ///< particles in the frame of one shape
   std::vector<Nearest> nearest_;
   std::vector<Real> deepest_;  ///< phi_min of each object [m]
 };

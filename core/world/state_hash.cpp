@@ -1,5 +1,7 @@
 #include "core/world/state_hash.h"
 
+#include <array>
+
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -11,10 +13,28 @@ void feed(XXH64_state_t& hash, const T* values, std::size_t count) {
   if (count > 0) XXH64_update(&hash, values, count * sizeof(T));
 }
 
+std::array<double, 9> numbers_of(const Pose& pose, double first, double second) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  return {first, second, p[0], p[1], p[2], q.x(), q.y(), q.z(), q.w()};
+}
+
+/// A collider that was never moved adds nothing.
+void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
+          const ColliderState& state) {
+  if (state.pose == rest_pose(def.shape) && !state.move && state.pace == 1) return;
+  const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace);
+  feed(hash, own.data(), own.size());
+  if (!state.move) return;
+  const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
+  feed(hash, wanted.data(), wanted.size());
+}
+
 }  // namespace
 
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
+                         const std::vector<ColliderDef>& defs, const ColliderStates& colliders,
                          std::uint64_t tick) {
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(Real), "positions are hashed as plain numbers");
   XXH64_state_t hash;
@@ -38,12 +58,15 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
     feed(hash, &shot.force, 1);
     feed(hash, &shot.ticks_left, 1);
   }
+  for (std::size_t k = 0; k < colliders.size(); ++k) feed(hash, k, defs[k], colliders[k]);
   return XXH64_digest(&hash);
 }
 
 template std::uint64_t state_hash(const ClothState<float>&, const Pins&, const Grabs<float>&,
+                                  const std::vector<ColliderDef>&, const ColliderStates&,
                                   std::uint64_t);
 template std::uint64_t state_hash(const ClothState<double>&, const Pins&, const Grabs<double>&,
+                                  const std::vector<ColliderDef>&, const ColliderStates&,
                                   std::uint64_t);
 
 }  // namespace weft

@@ -87,6 +87,7 @@ void World<Real>::reset() {
   pins_.next_id = next_pin;
   grabs_.list.clear();
   grabs_.shots.clear();
+  colliders_ = initial_states(def_.colliders);
   for (std::size_t k = 0; k < def_.pins.size(); ++k) {
     try {
       pin(def_.pins[k]);
@@ -109,6 +110,7 @@ void World<Real>::accept_state() {
   last_good_ = state_;
   account_.clear();
   contact_.reset();
+  contact_.place(colliders_);
   report_present_state();
 }
 
@@ -118,8 +120,10 @@ const TickReport& World<Real>::step() {
   report_.divergence.reset();
   const int substeps = choose_substeps();
   blow_wind();
-  contact_.begin_tick(tick_seconds());
+  plan_motion(def_.colliders, static_cast<double>(tick_) / def_.tick_rate, tick_seconds(),
+              colliders_);
   advance_or_recover(substeps);
+  finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_tick(grabs_);
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
@@ -216,11 +220,16 @@ Collision<Real> World<Real>::collision() {
 template <class Real>
 AdvanceResult World<Real>::advance(int substeps) {
   const double dt = tick_seconds() / substeps;
-  if (solver_of(def_) == SolverKind::verlet)
-    return advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
-                          state_, verlet_, report_.profile);
-  return advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
-                            collision(), state_, relaxation_, report_.profile);
+  contact_.begin_tick(tick_seconds(), &colliders_);
+  if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
+  AdvanceResult result =
+      solver_of(def_) == SolverKind::verlet
+          ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
+                           state_, verlet_, report_.profile)
+          : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
+                               collision(), state_, relaxation_, report_.profile);
+  result.work += contact_.work();
+  return result;
 }
 
 template <class Real>
@@ -254,7 +263,9 @@ template <class Real>
 void World<Real>::restore_last_good() {
   state_.x = last_good_.x;
   state_.v = last_good_.v;
+  take_back_motion(colliders_);
   contact_.reset();
+  contact_.place(colliders_);
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
   }

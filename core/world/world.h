@@ -6,6 +6,7 @@
 
 #include "core/attachments/grabs.h"
 #include "core/attachments/pins.h"
+#include "core/contact/collider_state.h"
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
 #include "core/solver/relaxation.h"
@@ -94,6 +95,14 @@ class World {
   /// @returns the impulse that it gives [N s]; nothing if there is no such sling
   std::optional<Vec3d> fire(GrabId id);
 
+  /// Sends a collider to a pose, at bounded speed, where it then stays; keyframes no longer move
+  /// it. Throws DefinitionError if a field is out of range. False if there is no such collider.
+  bool move_collider(std::size_t collider, const MoveDef& move);
+
+  /// Lets a collider follow its keyframes again, or stay where it is if it has none.
+  /// False if there is no such collider.
+  bool release_collider(std::size_t collider);
+
   /// Throws DefinitionError if a field is out of range; nothing changes then.
   void set_environment(const EnvironmentDef& environment);
 
@@ -102,7 +111,8 @@ class World {
   /// Throws DefinitionError if the ray is not finite or has no direction.
   std::optional<ClothHit> pick(const Vec3d& origin, const Vec3d& direction) const;
 
-  /// Hash of all that decides the future: positions, velocities, pins, grabs, tick.
+  /// Hash of all that decides the future: positions, velocities, pins, grabs, poses of colliders
+  /// that move, tick.
   std::uint64_t hash() const;
 
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
@@ -123,6 +133,7 @@ class World {
   void accept_state();
   const Pins& pins() const { return pins_; }
   const Grabs<Real>& grabs() const { return grabs_; }
+  const ColliderStates& colliders() const { return colliders_; }
   const TickReport& report() const { return report_; }
   const Contact<Real>& contact() const { return contact_; }
   std::uint64_t tick() const { return tick_; }
@@ -147,6 +158,7 @@ class World {
   ClothState<Real> last_good_;
   Pins pins_;
   Grabs<Real> grabs_;
+  ColliderStates colliders_;
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
   std::optional<SeedContact<Real>> seed_contact_;  ///< if it was chosen

@@ -49,6 +49,24 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
 }
 
 template <class Real>
+bool World<Real>::move_collider(std::size_t collider, const MoveDef& move) {
+  if (collider >= colliders_.size()) return false;
+  validate(move, "");
+  check_may_turn(def_.colliders[collider], move.target, "");
+  MoveDef wanted = move;
+  wanted.target.rotation.normalize();
+  colliders_[collider].move = wanted;
+  return true;
+}
+
+template <class Real>
+bool World<Real>::release_collider(std::size_t collider) {
+  if (collider >= colliders_.size()) return false;
+  colliders_[collider].move.reset();
+  return true;
+}
+
+template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
@@ -93,7 +111,7 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 
 template <class Real>
 std::uint64_t World<Real>::hash() const {
-  return state_hash(state_, pins_, grabs_, tick_);
+  return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, tick_);
 }
 
 template <class Real>
@@ -120,6 +138,8 @@ std::vector<std::string> World<Real>::debug_tree_names() {
   template bool World<Real>::move_grab(GrabId, const Vec3d&);                           \
   template bool World<Real>::release(GrabId);                                           \
   template std::optional<Vec3d> World<Real>::fire(GrabId);                              \
+  template bool World<Real>::move_collider(std::size_t, const MoveDef&);                \
+  template bool World<Real>::release_collider(std::size_t);                             \
   template void World<Real>::set_environment(const EnvironmentDef&);                    \
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \
