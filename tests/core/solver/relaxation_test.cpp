@@ -49,8 +49,7 @@ struct Chain {
     work.prepare(model);
     Grabs<double> grabs;
     Profile profile;
-    advance_relaxation<double>(model, surroundings, solver, dt, 1, grabs, {}, state, work,
-                               profile);
+    advance_relaxation<double>(model, surroundings, solver, dt, 1, grabs, {}, state, work, profile);
   }
   double place(std::size_t i) const { return state.x[i][0]; }
 };
