@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cloth/cloth_state.h"
+#include "core/contact/cloth_guard.h"
 #include "core/contact/contact.h"
 #include "core/contact/seed_contact.h"
 #include "core/world/profile.h"
@@ -8,25 +9,30 @@
 namespace weft {
 
 /// What keeps the cloth off objects and itself while a solver moves it: one of the two models of
-/// contact, the other is null; or none.
+/// contact, the other is null; or none. The guard of cloths against each other goes with `weft`.
 template <class Real>
 struct Collision {
   Contact<Real>* weft = nullptr;
   SeedContact<Real>* seed = nullptr;
+  ClothGuard<Real>* guard = nullptr;
 
-  bool empty() const { return !weft && !seed; }
+  bool empty() const { return !weft && !seed && !guard; }
 
   /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+    if (guard) guard->solve(state, dt, profile);
     if (weft) weft->resolve(state, dt, profile);
     if (seed) seed->separate(state, profile);
+    if (guard) guard->certify(state, dt, profile);
   }
   /// After the drift: puts back what got in.
   void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+    if (guard) guard->finish(state);
     if (seed) seed->collide(state, dt, profile);
   }
   /// At the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
+    if (guard) guard->settle(state, dt, profile);
     if (weft) weft->settle(state, dt, profile);
   }
 };

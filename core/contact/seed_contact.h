@@ -14,12 +14,13 @@
 
 namespace weft {
 
-/// Between what of the cloth and itself the seed looks for contact.
+/// Contact of cloths with themselves and each other.
 enum class SelfContact {
   none,
   particles,            ///< particle pairs, eq. (11)
   triangles,            ///< particle-triangle pairs, eq. (12)
   triangles_and_edges,  ///< edge-edge pairs as well, which the seed lacked
+  guard,                ///< not the seed's: safe regions (cloth_guard.h), nothing crosses
 };
 
 /// Between what of the cloth and an object.
@@ -46,12 +47,16 @@ struct SeedContactDef {
   int passes = 1;            ///< over all pairs of self-contact, a substep
 };
 
+/// The words of SelfContact.
+inline FieldInfo self_contact_info() {
+  return choice("self", "none|particles|triangles|triangles_and_edges|guard",
+                "contact of the cloth with itself");
+}
+
 /// Describes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_seed_contact(Def& c, Visitor&& visit) {
-  visit(choice("self", "none|particles|triangles|triangles_and_edges",
-               "pairs of the cloth with itself"),
-        c.self);
+  visit(self_contact_info(), c.self);
   visit(choice("objects", "particles|particles_and_edges", "pairs of the cloth with objects"),
         c.objects);
   visit(choice("correction", "projection|fold_map", "what is done about penetration"),

@@ -68,6 +68,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
       !def_.colliders.empty() || def_.contact.seed.self != SelfContact::none;
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
+  if (def_.contact.seed.self == SelfContact::guard) guard_.emplace(model_);
   if (solver_of(def_) == SolverKind::verlet)
     verlet_.prepare(model_);
   else
@@ -111,6 +112,7 @@ void World<Real>::accept_state() {
   account_.clear();
   contact_.reset();
   contact_.place(colliders_);
+  if (guard_) guard_->reset();
   report_present_state();
 }
 
@@ -211,9 +213,9 @@ void World<Real>::advance_or_recover(int substeps) {
 /// The contact that was chosen; none where there is nothing to meet.
 template <class Real>
 Collision<Real> World<Real>::collision() {
-  if (seed_contact_) return {nullptr, &*seed_contact_};
+  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr};
   const bool weft = contact_of(def_) == ContactModel::weft && !def_.colliders.empty();
-  return {weft ? &contact_ : nullptr, nullptr};
+  return {weft ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr};
 }
 
 /// One tick of the chosen solver.
@@ -266,6 +268,7 @@ void World<Real>::restore_last_good() {
   take_back_motion(colliders_);
   contact_.reset();
   contact_.place(colliders_);
+  if (guard_) guard_->reset();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
   }

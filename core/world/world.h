@@ -136,6 +136,8 @@ class World {
   const ColliderStates& colliders() const { return colliders_; }
   const TickReport& report() const { return report_; }
   const Contact<Real>& contact() const { return contact_; }
+  /// Contact of cloths with themselves and each other; null if there is none.
+  const ClothGuard<Real>* guard() const { return guard_ ? &*guard_ : nullptr; }
   std::uint64_t tick() const { return tick_; }
   double tick_seconds() const { return 1 / def_.tick_rate; }
 
@@ -162,6 +164,7 @@ class World {
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
   std::optional<SeedContact<Real>> seed_contact_;  ///< if it was chosen
+  std::optional<ClothGuard<Real>> guard_;          ///< if it was chosen
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   EnergyAccount account_;

@@ -14,6 +14,7 @@ namespace weft {
 template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
   contact_.invalidate_rows();
+  if (guard_) guard_->invalidate_rows();
   const PinId id = add_pin(model_, def, pins_, state_);
   report_present_state();  // what is pinned has lost its velocity
   return id;
@@ -22,6 +23,7 @@ PinId World<Real>::pin(const PinDef& def) {
 template <class Real>
 bool World<Real>::unpin(PinId id) {
   contact_.invalidate_rows();
+  if (guard_) guard_->invalidate_rows();
   return remove_pin(model_, id, pins_, state_);
 }
 

@@ -68,17 +68,23 @@ void validate(const WorldDef& def) {
   visit_fields(def, [](const std::string& path, const FieldInfo& info, const auto& value) {
     check_field(path, info, value);
   });
+  const SelfContact self = def.contact.seed.self;
+  const auto refuse_self = [&](const char* allowed, const char* hint) {
+    throw DefinitionError("contact.self", text_of(self_contact_info(), self), allowed, hint);
+  };
   if (contact_of(def) == ContactModel::seed) {
     const SeedContactDef& seed = def.contact.seed;
     if (seed.correction == Correction::fold_map && !(seed.lift < seed.fold_depth))
       throw DefinitionError("contact.lift", number_text(seed.lift),
                             "less than contact.fold_depth, " + number_text(seed.fold_depth) + " m",
                             "the map lifts the deepest particle to it");
-  } else if (def.contact.seed.self != SelfContact::none) {
-    throw DefinitionError("contact.self",
-                          text_of(choice("", "none|particles|triangles|triangles_and_edges", ""),
-                                  def.contact.seed.self),
-                          "none", "set contact.model to seed for contact of the cloth with itself");
+    if (self == SelfContact::guard)
+      refuse_self("none, particles, triangles or triangles_and_edges",
+                  "set contact.model to weft for the guard");
+  } else if (self != SelfContact::none && self != SelfContact::guard) {
+    refuse_self("none or guard",
+                "set contact.model to seed for the seed's contact of the cloth "
+                "with itself");
   }
   for (std::size_t k = 0; k < def.cloths.size(); ++k) {
     for (std::size_t j = 0; j < k; ++j) {

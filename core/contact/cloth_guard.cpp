@@ -1,0 +1,86 @@
+#include "core/contact/cloth_guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft {
+namespace {
+
+/// Radius of the balls around predicted paths, as a part of the thickness, and the most of it as a
+/// part of the edge length: beyond it all neighbours become pairs.
+constexpr double kReachPart = 0.75, kMostReach = 0.28;
+
+}  // namespace
+
+template <class Real>
+ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
+    : edges_(model.edges), triangles_(model.triangles), rest_positions_(model.rest_positions),
+      tree_(model) {
+  finest_ = std::numeric_limits<Real>::infinity();
+  for (const ClothPart<Real>& part : model.parts) {
+    first_particle_.push_back(part.particles.first);
+    thickness_.push_back(static_cast<Real>(part.fabric.thickness));
+    friction_.push_back(static_cast<Real>(part.fabric.friction));
+    thickest_ = std::max(thickest_, thickness_.back());
+    double sum = 0;
+    for (Index e = part.edges.first; e < part.edges.end(); ++e) {
+      const Edge& edge = edges_[static_cast<std::size_t>(e)];
+      sum += static_cast<double>((rest_positions_[static_cast<std::size_t>(edge[0])] -
+                                  rest_positions_[static_cast<std::size_t>(edge[1])])
+                                     .norm());
+    }
+    const double mean =
+        part.rows > 0 ? std::min(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v))
+                      : 0.8 * sum / std::max<Index>(part.edges.count, 1);
+    cell_.push_back(static_cast<Real>(mean));
+    finest_ = std::min(finest_, cell_.back());
+  }
+  reach_ = std::min(thickest_ * Real(kReachPart), finest_ * Real(kMostReach));
+  reach_ = std::max(reach_, finest_ * Real(0.1));
+  const std::size_t n = model.mass.size();
+  for (Vec3Array<Real>* array :
+       {&motion_.start, &motion_.end, &velocity_, &legal_, &step_, &anchor_, &x_rows_, &extra_})
+    array->assign(n, Vec3<Real>::Zero());
+  for (std::vector<Real>* array : {&room_, &moved_}) array->assign(n, Real(0));
+  fraction_.assign(n, Real(1));
+  wave_of_.assign(n, 0);
+  anchored_at_.assign(n, 0);
+  is_tight_.assign(n, 0);
+  vertex_boxes_.resize(n);
+  edge_boxes_.resize(edges_.size());
+  triangle_boxes_.resize(triangles_.size());
+  boxed_.assign(tree_.patch_count(), 0);
+}
+
+template <class Real>
+Index ClothGuard<Real>::part_of(Index particle) const {
+  std::size_t part = first_particle_.size() - 1;
+  while (part > 0 && particle < first_particle_[part]) --part;
+  return static_cast<Index>(part);
+}
+
+template <class Real>
+void ClothGuard<Real>::reset() {
+  collected_ = rows_built_ = false;
+  rows_.clear();
+  pairs_.clear();
+  active_.clear();
+  dirty_.clear();
+  for (const Index i : pushed_) extra_[static_cast<std::size_t>(i)].setZero();
+  pushed_.clear();
+  open_pairs_ = 0;
+  counts_ = {};
+}
+
+template <class Real>
+PairPoints<Real> ClothGuard<Real>::points(const GuardedPair<Real>& pair,
+                                          const Vec3Array<Real>& x) const {
+  PairPoints<Real> p;
+  for (std::size_t k = 0; k < 4; ++k) p[k] = x[static_cast<std::size_t>(pair.particle[k])];
+  return p;
+}
+
+template class ClothGuard<float>;
+template class ClothGuard<double>;
+
+}  // namespace weft

@@ -1,0 +1,214 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/cloth/cloth_state.h"
+#include "core/contact/feature_pair.h"
+#include "core/contact/patch_tree.h"
+#include "core/world/profile.h"
+
+namespace weft {
+
+/// Two features of cloths that could meet before pairs are collected again.
+template <class Real>
+struct GuardedPair {
+  PairKind kind = PairKind::vertex_triangle;
+  bool open = false;  ///< not apart when collected: nothing is promised about it
+  std::array<Index, 4> particle = {0, 0, 0, 0};
+  Index a = 0, b = 0;          ///< particle and triangle, or two edges, the lower one first
+  Real bound = 0;              ///< the features at their anchors are at least so far apart [m]
+  std::uint32_t measured = 0;  ///< wave in which the bound was measured last
+  std::uint32_t listed = 0;    ///< search for critical pairs that met it last
+};
+
+/// A contact of two features of cloths, frozen for a few substeps: gap = n . sum w x.
+template <class Real>
+struct GuardRow {
+  std::array<Index, 4> particle = {0, 0, 0, 0};
+  std::array<Real, 4> weight = {0, 0, 0, 0};
+  std::array<Real, 4> share = {0, 0, 0, 0};  ///< change of velocity by a unit impulse [1/kg]
+  Vec3<Real> normal = Vec3<Real>::Zero();    ///< from the second feature to the first
+  Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
+  Real radius = 0;                           ///< that the gap shall keep [m]
+  Real friction = 0;
+  Real least_speed = 0;                  ///< that the normal velocity must reach now [m/s]
+  Real push = 0;                         ///< impulse along the normal in a substep [N s]
+  Vec3<Real> drag = Vec3<Real>::Zero();  ///< friction's impulse in a substep [N s]
+  Vec3<Real> slip = Vec3<Real>::Zero();  ///< displacement since it sticks [m]
+  std::uint64_t key = 0;                 ///< names the pair
+};
+
+/// What the guard did since it was reset; sums of lengths of single particles' motions.
+struct GuardCounts {
+  double wanted = 0;     ///< motion that particles in pairs wanted [m]
+  double truncated = 0;  ///< part of it that was not allowed [m]
+  std::uint64_t collections = 0, anchored = 0, critical = 0;
+};
+
+/// Contact of cloths with themselves and each other, with the promise that no particle passes a
+/// triangle and no edge another one (PHYSICS.md section 4).
+///
+/// Two nested regions keep the work small. All particles stay in balls of `reach` around a
+/// predicted straight path: pairs of features whose balls never meet are not looked at. Of the
+/// others each pair has a certified gap between the places where its particles were anchored, which
+/// the two sides share out as the radii of balls around these anchors: while all stay in their
+/// balls, wherever there, nothing has crossed. A particle that is about to leave is anchored anew,
+/// and its pairs are measured again. Where there is no room left, the coming step itself is
+/// certified: a pair is apart throughout a step on straight lines if one plane has its sides apart
+/// at both ends of it. Only a pair for which that fails gets two planes in its gap, and its
+/// particles stop at them. A particle that does not move is always allowed.
+///
+/// A contact solver keeps gaps open, so that the regions seldom have to: rows of near pairs, frozen
+/// for some substeps, projected Gauss-Seidel on velocities with Coulomb friction that sticks to
+/// anchors (CONTACT.md).
+template <class Real>
+class ClothGuard {
+ public:
+  ClothGuard() = default;
+  explicit ClothGuard(const ClothModel<Real>& model);
+
+  /// Forgets everything about where the cloths are.
+  void reset();
+
+  /// Says that masses changed (a pin).
+  void invalidate_rows() { rows_built_ = false; }
+
+  /// Before all other contact: contact impulses, and a push for those that are too near, which
+  /// moves them in the coming drift without giving them velocity.
+  void solve(ClothState<Real>& state, Real dt, Profile& profile);
+
+  /// After all other contact and right before the drift of `dt` [s]: lets nobody leave his region.
+  /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.
+  void certify(ClothState<Real>& state, Real dt, Profile& profile);
+
+  /// After the drift: takes the push out of the velocities again.
+  void finish(ClothState<Real>& state);
+
+  /// At the end of a tick: makes the velocities admissible.
+  void settle(ClothState<Real>& state, Real dt, Profile& profile);
+
+  const GuardCounts& counts() const { return counts_; }
+  const std::vector<GuardedPair<Real>>& pairs() const { return pairs_; }
+  const std::vector<GuardRow<Real>>& rows() const { return rows_; }
+  /// Pairs that were not apart when they were collected.
+  std::size_t open_pairs() const { return open_pairs_; }
+
+ private:
+  /// A pair whose coming step is certified by itself.
+  struct Critical {
+    Index pair;
+    Vec3<Real> normal;
+    Real gap;
+    bool fixed;  ///< stopped at planes
+  };
+
+  // guard_pairs.cpp
+  void collect(Real dt, Profile& profile);
+  std::uint64_t test_patches(Index p, Index q);
+  void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
+  void box_patch(Index p);
+  void join_pairs();
+  void share_all_gaps();
+  PairPoints<Real> points(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) const;
+  template <class Visit>
+  void for_pairs_of(std::size_t particle, Visit&& visit) {
+    const auto end = static_cast<std::size_t>(pairs_begin_[particle + 1]);
+    for (auto k = static_cast<std::size_t>(pairs_begin_[particle]); k < end; ++k)
+      visit(pairs_[static_cast<std::size_t>(pairs_of_[k])]);
+  }
+
+  // guard_regions.cpp
+  struct Speeds {
+    Real first, second;
+  };
+  Speeds speeds(const GuardedPair<Real>& pair) const;
+  bool predicted();
+  void find_loose();
+  void anchor(const std::vector<Index>& list);
+  void anchor_wave(bool first);
+  void anchor_all();
+  void measure(GuardedPair<Real>& pair);
+  Real claim(Index particle, bool first);
+
+  // guard_critical.cpp
+  void stop_crossings();
+  bool find_critical();
+  bool is_critical(GuardedPair<Real>& pair);
+  bool holds(const Critical& c) const;
+  void fix(Critical& c);
+  bool truncate(ClothState<Real>& state, Real dt, bool halt);
+  void count_motion();
+
+  // guard_rows.cpp
+  bool rows_hold(const ClothState<Real>& state) const;
+  void build_rows(const ClothState<Real>& state, Profile& profile);
+  void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair);
+  Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
+  void remember(GuardRow<Real>& row) const;
+  void aim_rows(const ClothState<Real>& state, Real dt);
+  void sweep_rows(ClothState<Real>& state, Real dt);
+  void push_apart(ClothState<Real>& state);
+
+  Index part_of(Index particle) const;
+
+  std::vector<Edge> edges_;
+  std::vector<Triangle> triangles_;
+  Vec3Array<Real> rest_positions_;
+  std::vector<Index> first_particle_;              ///< of each cloth
+  std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]
+  Real thickest_ = 0, reach_ = 0, finest_ = 0;
+  PatchTree<Real> tree_;
+
+  // Collection.
+  bool collected_ = false;
+  PredictedMotion<Real> motion_;
+  Vec3Array<Real> velocity_;                  ///< along the predicted paths [m/s]
+  Vec3<Real> off_path_ = Vec3<Real>::Zero();  ///< mean way off the paths after the last step [m]
+  Vec3<Real> off_path_now_ = Vec3<Real>::Zero();  ///< with which this step was looked at [m]
+  Real horizon_ = 0, elapsed_ = 0;                ///< how long pairs hold, and how old they are [s]
+  Real smallest_gap_ = 0;  ///< that is left between features after every step [m]
+  std::vector<Aabb<Real>> vertex_boxes_, edge_boxes_, triangle_boxes_;
+  std::vector<std::uint32_t> boxed_;  ///< collection in which a patch's features were boxed
+  std::uint32_t collection_ = 0;
+  std::array<std::vector<Index>, 6> near_;  ///< features of two patches near the other
+  std::vector<GuardedPair<Real>> pairs_;
+  std::size_t open_pairs_ = 0;
+  std::vector<Index> pairs_begin_, pairs_of_;  ///< for each particle its pairs
+  std::vector<Index> active_;                  ///< particles in pairs
+
+  // Regions.
+  Vec3Array<Real> legal_, step_;  ///< certified positions before the drift, and the motion wanted
+  Vec3Array<Real> anchor_;
+  std::vector<Real> room_, moved_, fraction_;
+  std::vector<std::uint32_t> wave_of_;
+  std::vector<std::uint64_t> anchored_at_;  ///< step in which each was anchored last
+  std::uint32_t wave_ = 0;
+  std::uint64_t substep_ = 0;
+  std::vector<Index> loose_, next_, wave_list_, anchored_, dirty_, tight_;
+  double lost_ = 0;  ///< motion truncated in this step [m]
+  std::uint32_t listing_ = 0;
+  std::vector<Critical> critical_;
+  std::vector<char> is_tight_;
+
+  // Rows.
+  bool rows_built_ = false;
+  Vec3Array<Real> x_rows_;
+  Real rows_time_ = 0;  ///< since rows were built [s]
+  int rows_steps_ = 0;
+  Real warm_dt_ = 0;  ///< length of the step in which the rows' impulses were found [s]
+  std::vector<GuardRow<Real>> rows_, old_rows_;
+  std::vector<std::pair<std::uint64_t, Index>> old_keys_;
+  Vec3Array<Real> extra_;  ///< velocity of the push [m/s]
+  std::vector<Index> pushed_;
+  Vec3Array<Real> pushed_v_;  ///< their velocities with it
+
+  GuardCounts counts_;
+};
+
+extern template class ClothGuard<float>;
+extern template class ClothGuard<double>;
+
+}  // namespace weft

@@ -1,0 +1,184 @@
+// The regions of ClothGuard: balls around anchors in which particles are free.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact/cloth_guard.h"
+
+namespace weft {
+namespace {
+
+/// A bound of a gap is measured anew unless it leaves a particle room for so many of its steps.
+constexpr double kStepsOfRoom = 16;
+
+/// More waves of anchoring than ever seen; then all is measured anew.
+constexpr int kMostWaves = 48;
+
+/// Speed that both sides of a pair are given beside their own when they share a gap, as a part of
+/// the faster one's.
+constexpr double kLeastShare = 0.08;
+
+}  // namespace
+
+/// How far the sides of a pair want to move in the coming step, both a little.
+template <class Real>
+typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>& pair) const {
+  Real side[2] = {0, 0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    Real& most = side[k < first_side(pair.kind) ? 0 : 1];
+    most = std::max(most, step_[static_cast<std::size_t>(pair.particle[k])].squaredNorm());
+  }
+  const Real first = std::sqrt(side[0]), second = std::sqrt(side[1]);
+  const Real both = std::max(first, second) * Real(kLeastShare) + Real(1e-9);
+  return {first + both, second + both};
+}
+
+/// Whether all particles stay near their predicted paths through the coming step. What all leave
+/// them by in common changes nothing between them, and is told from the step before.
+template <class Real>
+bool ClothGuard<Real>::predicted() {
+  const Real limit = reach_ * reach_;
+  Vec3<Real> sum = Vec3<Real>::Zero();
+  bool near = true;
+  for (std::size_t i = 0; i < step_.size(); ++i) {
+    const Vec3<Real> off = legal_[i] + step_[i] - (motion_.start[i] + velocity_[i] * elapsed_);
+    sum += off;
+    near = near && (off - off_path_).squaredNorm() <= limit;
+  }
+  off_path_now_ = off_path_;
+  off_path_ = sum / static_cast<Real>(step_.size());
+  return near;
+}
+
+/// Particles that would leave the room around their anchors.
+template <class Real>
+void ClothGuard<Real>::find_loose() {
+  loose_.clear();
+  ++wave_;
+  for (const Index i : dirty_) wave_of_[static_cast<std::size_t>(i)] = wave_;
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    const Vec3<Real> off = legal_[i] + step_[i] - anchor_[i];
+    if (wave_of_[i] == wave_ || !(off.squaredNorm() <= room_[i] * room_[i])) loose_.push_back(k);
+  }
+  dirty_.clear();
+}
+
+template <class Real>
+void ClothGuard<Real>::measure(GuardedPair<Real>& pair) {
+  pair.bound = separate_pair(pair.kind, points(pair, anchor_)).gap;
+  pair.measured = wave_;
+}
+
+/// Anchors particles where they are, and gives them room anew. Who is in their way with more room
+/// than the gap now has is anchored anew as well.
+template <class Real>
+void ClothGuard<Real>::anchor(const std::vector<Index>& list) {
+  wave_list_ = list;
+  for (int wave = 0; !wave_list_.empty(); ++wave) {
+    if (wave == kMostWaves) {
+      anchor_all();
+      return;
+    }
+    next_.clear();
+    ++wave_;
+    anchor_wave(wave == 0);
+    std::sort(next_.begin(), next_.end());
+    next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
+    wave_list_.swap(next_);
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::anchor_wave(bool first) {
+  for (const Index k : wave_list_) {
+    const auto i = static_cast<std::size_t>(k);
+    wave_of_[i] = wave_;
+    room_[i] = 0;
+    if (anchored_at_[i] == substep_) continue;
+    anchored_at_[i] = substep_;
+    anchored_.push_back(k);
+    ++counts_.anchored;
+    // The bound of a gap falls by no more than what an anchor moves.
+    const Real moved = (legal_[i] - anchor_[i]).norm();
+    anchor_[i] = legal_[i];
+    if (moved == 0) continue;
+    for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
+  }
+  for (const Index k : wave_list_) room_[static_cast<std::size_t>(k)] = claim(k, first);
+}
+
+/// The room that all pairs leave a particle: its side's share of the gap, and no more than what the
+/// other side has not taken. Lists who has taken too much.
+template <class Real>
+Real ClothGuard<Real>::claim(Index k, bool first) {
+  const auto i = static_cast<std::size_t>(k);
+  const Real step = step_[i].norm();
+  Real room = std::numeric_limits<Real>::infinity();
+  for_pairs_of(i, [&](GuardedPair<Real>& pair) {
+    const std::size_t middle = first_side(pair.kind);
+    std::size_t at = 0;
+    while (pair.particle[at] != k) ++at;
+    const bool on_first = at < middle;
+    Real own = 0, other = 0;  // rooms of those who keep their anchors
+    for (std::size_t m = 0; m < 4; ++m) {
+      const auto j = static_cast<std::size_t>(pair.particle[m]);
+      if (wave_of_[j] == wave_) continue;
+      Real& most = (m < middle) == on_first ? own : other;
+      most = std::max(most, room_[j]);
+    }
+    const Real wanted = smallest_gap_ + std::max(own, other) + other;
+    if (pair.measured != wave_ && !(pair.bound > wanted + step * Real(2 * kStepsOfRoom)))
+      measure(pair);
+    const Real gap = std::max(Real(0), pair.bound - smallest_gap_);
+    const Speeds speed = speeds(pair);
+    const Real share =
+        gap * ((on_first ? speed.first : speed.second) / (speed.first + speed.second));
+    const Real left = gap - other;
+    room = std::min(room, std::max(Real(0), std::min(share, left)));
+    // The others' rooms alone are too much for the gap, or they leave less than the next steps
+    // need.
+    const bool too_much = own + other > gap;
+    const bool greedy = first && left < share && left < 2 * step;
+    if (!too_much && !greedy) return;
+    for (const Index j : pair.particle) {
+      if (wave_of_[static_cast<std::size_t>(j)] != wave_ &&
+          (room_[static_cast<std::size_t>(j)] > 0 || greedy))
+        next_.push_back(j);
+    }
+    next_.push_back(k);
+  });
+  return room;
+}
+
+/// Anchors and measures everything.
+template <class Real>
+void ClothGuard<Real>::anchor_all() {
+  ++wave_;
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    if (anchored_at_[i] != substep_) anchored_.push_back(k);
+    anchored_at_[i] = substep_;
+    anchor_[i] = legal_[i];
+  }
+  for (GuardedPair<Real>& pair : pairs_) {
+    if (!pair.open) measure(pair);
+  }
+  share_all_gaps();
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>&) \
+      const;                                                                                    \
+  template bool ClothGuard<Real>::predicted();                                                  \
+  template void ClothGuard<Real>::find_loose();                                                 \
+  template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
+  template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \
+  template void ClothGuard<Real>::anchor_wave(bool);                                            \
+  template Real ClothGuard<Real>::claim(Index, bool);                                           \
+  template void ClothGuard<Real>::anchor_all();
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

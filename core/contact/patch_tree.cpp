@@ -1,0 +1,303 @@
+#include "core/contact/patch_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace weft {
+namespace {
+
+/// A patch of a grid is at most so many cells wide; one of another mesh has at most so many
+/// triangles.
+constexpr int kPatchCells = 2;
+constexpr std::size_t kPatchTriangles = 8;
+
+/// Rounding of the cull's test, relative.
+constexpr double kCullSlack = 1e-3;
+
+template <class Real>
+Real least_eigenvalue(Real a, Real b, Real off) {
+  const Real half = (a - b) / 2;
+  return (a + b) / 2 - std::sqrt(half * half + off * off);
+}
+
+}  // namespace
+
+template <class Real>
+PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) {
+  const auto count = static_cast<Index>(parts_.size());
+  grids_.resize(parts_.size());
+  tangents_.resize(parts_.size());
+  end_tangents_.resize(parts_.size());
+  for (Index p = 0; p < count; ++p) {
+    if (parts_[static_cast<std::size_t>(p)].rows > 0) build_grid(model, p);
+  }
+  // Recursively: a node over all parts from `first`, `count` of them.
+  const auto build = [&](auto&& self, Index first, Index parts_left) -> Index {
+    if (parts_left > 1) {
+      const auto node = static_cast<Index>(nodes_.size());
+      nodes_.emplace_back();
+      const Index left = self(self, first, parts_left / 2);
+      const Index right = self(self, first + parts_left / 2, parts_left - parts_left / 2);
+      Node& made = nodes_[static_cast<std::size_t>(node)];
+      made.left = left;
+      made.right = right;
+      made.triangles = nodes_[static_cast<std::size_t>(left)].triangles +
+                       nodes_[static_cast<std::size_t>(right)].triangles;
+      return node;
+    }
+    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(first)];
+    if (part.rows > 0) return split_grid(model, first, {0, part.rows - 1, 0, part.columns - 1});
+    std::vector<Index> list;
+    for (Index t = part.triangles.first; t < part.triangles.end(); ++t) list.push_back(t);
+    return split_mesh(model, first, list, 0, list.size());
+  };
+  if (count > 0) build(build, 0, count);
+  give_features(model);
+}
+
+/// Finds the sides of the triangles of each cell, two a cell, cell by cell.
+template <class Real>
+void PatchTree<Real>::build_grid(const ClothModel<Real>& model, Index p) {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  auto& grid = grids_[static_cast<std::size_t>(p)];
+  const auto row = [&](Index i) { return (i - part.particles.first) / part.columns; };
+  for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
+    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    GridTriangle sides;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [i, j] = std::minmax(corners[k], corners[(k + 1) % 3]);
+      if (row(i) == row(j)) sides.along_u = {i, j};
+      if ((j - i) % part.columns == 0) sides.along_v = {i, j};
+    }
+    grid.push_back(sides);
+  }
+}
+
+template <class Real>
+Index PatchTree<Real>::split_grid(const ClothModel<Real>& model, Index p, const CellRange& cells) {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const int rows = cells.row_end - cells.row, columns = cells.column_end - cells.column;
+  if (rows <= kPatchCells && columns <= kPatchCells) {
+    std::vector<Index> triangles;
+    for (int r = cells.row; r < cells.row_end; ++r) {
+      for (int c = cells.column; c < cells.column_end; ++c) {
+        const Index t = part.triangles.first + 2 * (r * (part.columns - 1) + c);
+        triangles.insert(triangles.end(), {t, t + 1});
+      }
+    }
+    const Index node = add_patch(model, p, triangles);
+    nodes_[static_cast<std::size_t>(node)].cells = cells;
+    return node;
+  }
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.emplace_back();
+  CellRange first = cells, second = cells;
+  if (rows >= columns)
+    first.row_end = second.row = cells.row + rows / 2;
+  else
+    first.column_end = second.column = cells.column + columns / 2;
+  const Index left = split_grid(model, p, first), right = split_grid(model, p, second);
+  Node& made = nodes_[static_cast<std::size_t>(node)];
+  made.left = left;
+  made.right = right;
+  made.part = p;
+  made.cells = cells;
+  made.triangles = 2 * cells.cells();
+  return node;
+}
+
+/// Halves a list of triangles by place until patches are left.
+template <class Real>
+Index PatchTree<Real>::split_mesh(const ClothModel<Real>& model, Index p, std::vector<Index>& list,
+                                  std::size_t begin, std::size_t end) {
+  const auto from = list.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto to = list.begin() + static_cast<std::ptrdiff_t>(end);
+  if (end - begin <= kPatchTriangles) return add_patch(model, p, std::vector<Index>(from, to));
+  const auto sum_of = [&](Index t) -> Vec3<Real> {
+    Vec3<Real> sum = Vec3<Real>::Zero();
+    for (const Index i : model.triangles[static_cast<std::size_t>(t)])
+      sum += model.rest_positions[static_cast<std::size_t>(i)];
+    return sum;
+  };
+  Aabb<Real> box;
+  for (auto t = from; t != to; ++t) box.add(sum_of(*t));
+  int axis = 0;
+  const Vec3<Real> size = box.upper - box.lower;
+  size.maxCoeff(&axis);
+  std::sort(from, to, [&](Index s, Index t) {
+    const Real a = sum_of(s)[axis], b = sum_of(t)[axis];
+    return a < b || (a == b && s < t);
+  });
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.emplace_back();
+  const std::size_t middle = begin + (end - begin) / 2;
+  const Index left = split_mesh(model, p, list, begin, middle);
+  const Index right = split_mesh(model, p, list, middle, end);
+  Node& made = nodes_[static_cast<std::size_t>(node)];
+  made.left = left;
+  made.right = right;
+  made.part = p;
+  made.triangles = static_cast<Index>(end - begin);
+  return node;
+}
+
+template <class Real>
+Index PatchTree<Real>::add_patch(const ClothModel<Real>& model, Index part,
+                                 const std::vector<Index>& triangles) {
+  Patch patch;
+  patch.triangles = triangles;
+  for (const Index t : triangles) {
+    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    patch.particles.insert(patch.particles.end(), corners.begin(), corners.end());
+  }
+  std::sort(patch.particles.begin(), patch.particles.end());
+  patch.particles.erase(std::unique(patch.particles.begin(), patch.particles.end()),
+                        patch.particles.end());
+  Node node;
+  node.patch = static_cast<Index>(patches_.size());
+  node.part = part;
+  node.triangles = static_cast<Index>(triangles.size());
+  patches_.push_back(std::move(patch));
+  node_of_.push_back(static_cast<Index>(nodes_.size()));
+  nodes_.push_back(node);
+  return node_of_.back();
+}
+
+/// Each particle and edge to the first patch that has it.
+template <class Real>
+void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
+  std::vector<std::vector<Index>> edges_from(model.mass.size());
+  for (std::size_t e = 0; e < model.edges.size(); ++e)
+    edges_from[static_cast<std::size_t>(model.edges[e][0])].push_back(static_cast<Index>(e));
+  std::vector<char> given(model.mass.size(), 0), edge_given(model.edges.size(), 0);
+  for (Patch& patch : patches_) {
+    for (const Index i : patch.particles) {
+      if (!std::exchange(given[static_cast<std::size_t>(i)], 1)) patch.vertices.push_back(i);
+    }
+    for (const Index t : patch.triangles) {
+      const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [i, j] = std::minmax(corners[k], corners[(k + 1) % 3]);
+        for (const Index e : edges_from[static_cast<std::size_t>(i)]) {
+          const auto edge = static_cast<std::size_t>(e);
+          if (model.edges[edge][1] == j && !std::exchange(edge_given[edge], 1))
+            patch.edges.push_back(e);
+        }
+      }
+    }
+  }
+}
+
+template <class Real>
+void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    node.spread = {};
+    node.box = {};
+    if (node.patch == kNone) {
+      node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
+      node.box.add(nodes_[static_cast<std::size_t>(node.right)].box);
+      continue;
+    }
+    for (const Index i : patches_[static_cast<std::size_t>(node.patch)].particles) {
+      node.box.add(motion.start[static_cast<std::size_t>(i)]);
+      node.box.add(motion.end[static_cast<std::size_t>(i)]);
+    }
+    node.box = node.box.grown(motion.radius);
+  }
+  if (!cull || nodes_.empty()) return;
+  measure_tangents(motion.start, tangents_);
+  measure_tangents(motion.end, end_tangents_);
+  mark_spread(0, motion.radius);
+}
+
+/// Columns of the deformation gradient of each triangle of the grids.
+template <class Real>
+void PatchTree<Real>::measure_tangents(const Vec3Array<Real>& x,
+                                       std::vector<std::vector<Tangents>>& tangents) const {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Real per_u = Real(1) / parts_[p].cell_u, per_v = Real(1) / parts_[p].cell_v;
+    tangents[p].resize(grids_[p].size());
+    const auto side = [&](const std::array<Index, 2>& s) -> Vec3<Real> {
+      return x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])];
+    };
+    for (std::size_t t = 0; t < grids_[p].size(); ++t)
+      tangents[p][t] = {side(grids_[p][t].along_u) * per_u, side(grids_[p][t].along_v) * per_v};
+  }
+}
+
+/// Tries the rectangle of a node, grown by the width of a patch, and else those of its children.
+template <class Real>
+void PatchTree<Real>::mark_spread(Index n, Real radius) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  const bool grid = node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
+  if (grid) {
+    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+    const CellRange grown = {std::max(node.cells.row - kPatchCells, 0),
+                             std::min(node.cells.row_end + kPatchCells, part.rows - 1),
+                             std::max(node.cells.column - kPatchCells, 0),
+                             std::min(node.cells.column_end + kPatchCells, part.columns - 1)};
+    // Features that share no particle are at least the height of a triangle apart in the fabric.
+    const Real nearest = part.cell_u * part.cell_v /
+                         std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
+    const Real least = 2 * radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
+    if (least < 1 && is_spread(tangents_, grown, node.part, least) &&
+        is_spread(end_tangents_, grown, node.part, least)) {
+      give_spread(n, grown);
+      return;
+    }
+  }
+  if (node.patch != kNone) return;
+  mark_spread(node.left, radius);
+  mark_spread(node.right, radius);
+}
+
+template <class Real>
+void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  node.spread = cells;
+  if (node.patch != kNone) return;
+  give_spread(node.left, cells);
+  give_spread(node.right, cells);
+}
+
+/// Whether the least eigenvalue of the symmetric in-plane gradient is at least `least` all over a
+/// rectangle, in the plane of its mean tangents.
+template <class Real>
+bool PatchTree<Real>::is_spread(const std::vector<std::vector<Tangents>>& tangents,
+                                const CellRange& cells, Index p, Real least) const {
+  const auto& grid = tangents[static_cast<std::size_t>(p)];
+  const int columns = parts_[static_cast<std::size_t>(p)].columns - 1;
+  Vec3<Real> mean_u = Vec3<Real>::Zero(), mean_v = Vec3<Real>::Zero();
+  const auto row_begin = [&](int r) {
+    return static_cast<std::size_t>(2 * (r * columns + cells.column));
+  };
+  const auto width = static_cast<std::size_t>(2 * (cells.column_end - cells.column));
+  for (int r = cells.row; r < cells.row_end; ++r) {
+    for (std::size_t t = row_begin(r); t < row_begin(r) + width; ++t) {
+      mean_u += grid[t].u;
+      mean_v += grid[t].v;
+    }
+  }
+  // Two orthonormal directions that stand alike to both tangents.
+  const Vec3<Real> u = mean_u / mean_u.norm(), v = mean_v / mean_v.norm();
+  const Vec3<Real> sum = u + v, difference = u - v;
+  const Real sum_length = sum.norm(), difference_length = difference.norm();
+  if (!(sum_length > Real(0.1)) || !(difference_length > Real(0.1))) return false;
+  const Real half = std::sqrt(Real(0.5));
+  const Vec3<Real> s = sum * (half / sum_length), d = difference * (half / difference_length);
+  const Vec3<Real> e1 = s + d, e2 = s - d;
+  for (int r = cells.row; r < cells.row_end; ++r) {
+    for (std::size_t t = row_begin(r); t < row_begin(r) + width; ++t) {
+      const Real off = (e1.dot(grid[t].v) + e2.dot(grid[t].u)) / 2;
+      if (!(least_eigenvalue(e1.dot(grid[t].u), e2.dot(grid[t].v), off) > least)) return false;
+    }
+  }
+  return true;
+}
+
+template class PatchTree<float>;
+template class PatchTree<double>;
+
+}  // namespace weft

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/geometry/aabb.h"
+
+namespace weft {
+
+/// Linear motion of all particles over a stretch of time, each in a ball around its predicted path.
+template <class Real>
+struct PredictedMotion {
+  Vec3Array<Real> start, end;  ///< positions at both ends of the stretch [m]
+  Real radius = 0;             ///< of the balls [m]
+};
+
+/// Hierarchy of axis-aligned boxes over patches of cloths. Its shape is made once, from the mesh;
+/// boxes are refitted. Patches of a grid are rectangles of cells; those of other meshes are halved
+/// by place. Every particle and edge belongs to one patch, every triangle too.
+///
+/// Patch cull: where the in-plane part of the deformation gradient of all triangles of a rectangle
+/// of the fabric, in one common plane, has a symmetric part with no eigenvalue below lambda, two
+/// points of it are at least lambda times as far apart as in the fabric. So what is stretched out
+/// enough cannot touch itself, and no pair within it needs a test. The gradient is linear in time
+/// on linear paths and the least eigenvalue concave, so both ends of the stretch are enough.
+template <class Real>
+class PatchTree {
+ public:
+  PatchTree() = default;
+  explicit PatchTree(const ClothModel<Real>& model);
+
+  /// Fits boxes around the motion and finds the rectangles that cannot touch themselves.
+  /// @param cull  whether to look for these at all
+  void refit(const PredictedMotion<Real>& motion, bool cull);
+
+  /// What stands in a patch.
+  struct Patch {
+    std::vector<Index> vertices, edges, triangles;  ///< that belong to it
+    std::vector<Index> particles;                   ///< of its triangles
+  };
+  const Patch& patch(Index p) const { return patches_[static_cast<std::size_t>(p)]; }
+  std::size_t patch_count() const { return patches_.size(); }
+  const Aabb<Real>& box(Index p) const {
+    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].box;
+  }
+
+  /// Calls visit(p, q), p <= q, for all patches whose boxes overlap, and each patch with itself,
+  /// without those that cannot touch; in a fixed order.
+  template <class Visit>
+  void for_each_near_pair(Visit&& visit) const {
+    if (!nodes_.empty()) visit_inside(0, visit);
+  }
+
+ private:
+  /// Rectangle of cells of a grid.
+  struct CellRange {
+    int row = 0, row_end = 0, column = 0, column_end = 0;
+    int cells() const { return (row_end - row) * (column_end - column); }
+    bool holds(const CellRange& o) const {
+      return row <= o.row && o.row_end <= row_end && column <= o.column &&
+             o.column_end <= column_end;
+    }
+  };
+  struct Node {
+    Aabb<Real> box;
+    Index left = kNone, right = kNone;  ///< nodes, behind this one
+    Index patch = kNone;                ///< of a leaf
+    Index part = kNone;                 ///< cloth; none if there are several below
+    Index triangles = 0;                ///< below it
+    CellRange cells;                    ///< of a grid
+    CellRange spread;                   ///< what is stretched out around it; empty if it is not
+  };
+  /// In a grid each triangle has one side along the rows and one along the columns.
+  struct GridTriangle {
+    std::array<Index, 2> along_u = {kNone, kNone}, along_v = {kNone, kNone};
+  };
+  struct Tangents {
+    Vec3<Real> u, v;
+  };
+
+  void build_grid(const ClothModel<Real>& model, Index part);
+  Index split_grid(const ClothModel<Real>& model, Index part, const CellRange& cells);
+  Index split_mesh(const ClothModel<Real>& model, Index part, std::vector<Index>& list,
+                   std::size_t begin, std::size_t end);
+  Index add_patch(const ClothModel<Real>& model, Index part, const std::vector<Index>& triangles);
+  void give_features(const ClothModel<Real>& model);
+
+  void measure_tangents(const Vec3Array<Real>& x,
+                        std::vector<std::vector<Tangents>>& tangents) const;
+  void mark_spread(Index node, Real radius);
+  void give_spread(Index node, const CellRange& cells);
+  bool is_spread(const std::vector<std::vector<Tangents>>& tangents, const CellRange& cells,
+                 Index part, Real least) const;
+  bool is_apart(const Node& a, const Node& b) const {
+    if (a.part == kNone || a.part != b.part) return false;
+    return (a.spread.cells() > 0 && a.spread.holds(b.cells)) ||
+           (b.spread.cells() > 0 && b.spread.holds(a.cells));
+  }
+
+  template <class Visit>
+  void visit_inside(Index n, Visit&& visit) const {
+    const Node& node = nodes_[static_cast<std::size_t>(n)];
+    if (node.spread.cells() > 0) return;
+    if (node.patch != kNone) {
+      visit(node.patch, node.patch);
+      return;
+    }
+    visit_inside(node.left, visit);
+    visit_inside(node.right, visit);
+    visit_between(node.left, node.right, visit);
+  }
+  template <class Visit>
+  void visit_between(Index a, Index b, Visit&& visit) const {
+    const Node &p = nodes_[static_cast<std::size_t>(a)], &q = nodes_[static_cast<std::size_t>(b)];
+    if (!p.box.overlaps(q.box) || is_apart(p, q)) return;
+    if (p.patch != kNone && q.patch != kNone) {
+      visit(std::min(p.patch, q.patch), std::max(p.patch, q.patch));
+    } else if (q.patch != kNone || (p.patch == kNone && p.triangles >= q.triangles)) {
+      visit_between(p.left, b, visit);
+      visit_between(p.right, b, visit);
+    } else {
+      visit_between(a, q.left, visit);
+      visit_between(a, q.right, visit);
+    }
+  }
+
+  std::vector<Node> nodes_;  ///< parents before children; the first is the root
+  std::vector<Patch> patches_;
+  std::vector<Index> node_of_;  ///< each patch's
+  std::vector<ClothPart<Real>> parts_;
+  std::vector<std::vector<GridTriangle>> grids_;  ///< of each part, two a cell; none of a mesh
+  std::vector<std::vector<Tangents>> tangents_, end_tangents_;
+};
+
+extern template class PatchTree<float>;
+extern template class PatchTree<double>;
+
+}  // namespace weft
