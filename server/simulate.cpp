@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/diagnostics/crossings.h"
 #include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
@@ -41,6 +42,8 @@ struct Measurement {
   int checks = 0, divergences = 0;
   int least_substeps = 0, most_substeps = 0;
   double largest_strain = 0;  ///< over the whole run
+  std::size_t crossings = 0;  ///< of the cloths with themselves and each other, over all ticks
+  std::size_t crossed_ticks = 0;
 };
 
 void measure_tick(World<float>& world, Measurement& m) {
@@ -66,6 +69,10 @@ Measurement run(World<float>& world, int ticks) {
   m.ticks.reserve(static_cast<std::size_t>(ticks));
   for (int i = 1; i <= ticks; ++i) {
     measure_tick(world, m);
+    const Crossings found =
+        count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
+    m.crossings += found.proper + found.touching;
+    m.crossed_ticks += found.proper + found.touching > 0 ? 1 : 0;
     if (i % kTicksBetweenChecks != 0 && i != ticks) continue;
     m.deepest = std::max(m.deepest, world.deepest_penetration());
     ++m.checks;
@@ -76,6 +83,19 @@ Measurement run(World<float>& world, int ticks) {
 
 double percentile(const std::vector<double>& sorted, std::size_t percent) {
   return sorted[std::min(sorted.size() - 1, sorted.size() * percent / 100)];
+}
+
+/// What the guard did; null without one.
+Json guard_summary(const World<float>& world) {
+  if (!world.guard()) return nullptr;
+  const GuardCounts& counts = world.guard()->counts();
+  return {{"wanted_motion", counts.wanted},
+          {"truncated_motion", counts.truncated},
+          {"truncated_part", counts.wanted > 0 ? counts.truncated / counts.wanted : 0},
+          {"collections", counts.collections},
+          {"particles_anchored", counts.anchored},
+          {"steps_certified", counts.critical},
+          {"open_pairs", world.guard()->open_pairs()}};
 }
 
 Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {
@@ -112,6 +132,9 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
        {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
       {"deepest_penetration", m.deepest},
       {"penetration_checks", m.checks},
+      {"self_crossings", m.crossings},
+      {"ticks_with_self_crossings", m.crossed_ticks},
+      {"guard", guard_summary(world)},
       {"hash", proto::hash_text(world.hash())},
       {"solver", solver_name(world.def())},
       {"substeps", world.report().substeps},

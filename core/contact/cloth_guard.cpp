@@ -8,7 +8,7 @@ namespace {
 
 /// Radius of the balls around predicted paths, as a part of the thickness, and the most of it as a
 /// part of the edge length: beyond it all neighbours become pairs.
-constexpr double kReachPart = 0.75, kMostReach = 0.28;
+constexpr double kReachPart = 0.65, kMostReach = 0.28;
 
 }  // namespace
 

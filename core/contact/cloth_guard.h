@@ -34,6 +34,7 @@ struct GuardRow {
   Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
   Real radius = 0;                           ///< that the gap shall keep [m]
   Real friction = 0;
+  Real room = 0;                         ///< of the gap above the radius, now [m]
   Real least_speed = 0;                  ///< that the normal velocity must reach now [m/s]
   Real push = 0;                         ///< impulse along the normal in a substep [N s]
   Vec3<Real> drag = Vec3<Real>::Zero();  ///< friction's impulse in a substep [N s]
@@ -109,6 +110,7 @@ class ClothGuard {
   void collect(Real dt, Profile& profile);
   std::uint64_t test_patches(Index p, Index q);
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
+  Vec3<Real> steady(const Vec3<Real>& v, std::size_t particle) const;
   void box_patch(Index p);
   void join_pairs();
   void share_all_gaps();
@@ -148,7 +150,8 @@ class ClothGuard {
   void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair);
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   void remember(GuardRow<Real>& row) const;
-  void aim_rows(const ClothState<Real>& state, Real dt);
+  void aim(GuardRow<Real>& row, const ClothState<Real>& state, Real dt) const;
+  void solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const;
   void sweep_rows(ClothState<Real>& state, Real dt);
   void push_apart(ClothState<Real>& state);
 

@@ -46,9 +46,12 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
                         std::max(static_cast<Real>(kLongestHorizon), shortest));
   motion_.radius = reach_ + smallest_gap_;
   for (std::size_t i = 0; i < n; ++i) {
-    velocity_[i] = step_[i] / dt;
+    velocity_[i] = steady(step_[i] / dt, i);
+    // The path has to hold at least for the coming step.
+    if ((step_[i] - velocity_[i] * dt).squaredNorm() > reach_ * reach_ / 4)
+      velocity_[i] = step_[i] / dt;
     motion_.start[i] = legal_[i];
-    motion_.end[i] = legal_[i] + (step_[i] - common) * (horizon_ / dt);
+    motion_.end[i] = legal_[i] + (velocity_[i] - common / dt) * horizon_;
   }
   off_path_.setZero();
   off_path_now_.setZero();
@@ -69,6 +72,19 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   elapsed_ = dt;
   collected_ = true;
   rows_built_ = false;
+}
+
+/// What of a velocity is not jitter: the smaller of it and of the mean velocity since the last
+/// collection, by components, and nothing where they disagree.
+template <class Real>
+Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>& v, std::size_t i) const {
+  if (!collected_ || !(elapsed_ > 0)) return v;
+  const Vec3<Real> mean = (legal_[i] - motion_.start[i]) / elapsed_;
+  Vec3<Real> result = Vec3<Real>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (v[k] * mean[k] > 0) result[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
+  }
+  return result;
 }
 
 /// Boxes around the features of a patch, once a collection.
@@ -212,6 +228,7 @@ void ClothGuard<Real>::share_all_gaps() {
   template void ClothGuard<Real>::box_patch(Index);                                               \
   template std::uint64_t ClothGuard<Real>::test_patches(Index, Index);                            \
   template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&); \
+  template Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>&, std::size_t) const;             \
   template void ClothGuard<Real>::join_pairs();                                                   \
   template void ClothGuard<Real>::share_all_gaps();
 WEFT_INSTANTIATE(float)

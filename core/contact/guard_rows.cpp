@@ -9,14 +9,15 @@ namespace weft {
 namespace {
 
 /// Sweeps of projected Gauss-Seidel a step.
-constexpr int kSweeps = 2;
+constexpr int kSweeps = 1;
 
-/// Rows are made for pairs that lack so much of touching, as a part of the thickness.
-constexpr double kRowMargin = 0.35;
+/// Rows are made for pairs that lack no more of touching than this part of the thickness, or than
+/// they come nearer in twice the time that rows last.
+constexpr double kRowMargin = 0.1;
 
-/// Rows are made anew after this time [s], or when a particle moved half the margin, which is
-/// looked at every so many steps.
-constexpr double kLongestRows = 1.0 / 240;
+/// Rows are made anew after this time [s], or when a particle moved by this part of the thickness,
+/// which is looked at every so many steps.
+constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.2;
 constexpr int kStepsBetweenLooks = 4;
 
 /// Edges keep less than the thickness, so that particles and triangles respond first.
@@ -30,6 +31,9 @@ constexpr double kStickTime = 0.02;
 
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
+
+/// A lack of this part of the radius is let be.
+constexpr double kPushSlack = 0.01;
 
 template <class Real>
 Vec3<Real> weighted(const GuardRow<Real>& row, const Vec3Array<Real>& values) {
@@ -59,7 +63,6 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   if (!rows_built_ || !rows_hold(state)) build_rows(state, profile);
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
-  aim_rows(state, dt);
   sweep_rows(state, dt);
   push_apart(state);
 }
@@ -68,7 +71,7 @@ template <class Real>
 bool ClothGuard<Real>::rows_hold(const ClothState<Real>& state) const {
   if (rows_time_ > static_cast<Real>(kLongestRows)) return false;
   if (rows_steps_ % kStepsBetweenLooks != 0) return true;
-  const Real most = thickest_ * Real(kRowMargin) / 2;
+  const Real most = thickest_ * Real(kRowMotion);
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
     if (!((state.x[i] - x_rows_[i]).squaredNorm() <= most * most)) return false;
@@ -113,7 +116,7 @@ Real ClothGuard<Real>::radius_of(const GuardedPair<Real>& pair, Index p, Index q
 
 template <class Real>
 void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair) {
-  const Real reach = thickest_ * Real(1 + kRowMargin);
+  const Real reach = thickest_ * Real(1 + kRowMotion + kRowMargin);
   Real side[2] = {0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
@@ -126,7 +129,11 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
   const Index p = part_of(pair.particle[0]), q = part_of(pair.particle[2]);
   GuardRow<Real> row;
   row.radius = radius_of(pair, p, q);
-  if (s.gap > row.radius + thickest_ * Real(kRowMargin)) return;
+  Real approach = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    approach -= s.weight[k] * s.normal.dot(state.v[static_cast<std::size_t>(pair.particle[k])]);
+  const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
+  if (s.gap > row.radius + std::max(thickest_ * Real(kRowMargin), soon)) return;
   Real mobility = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     row.particle[k] = pair.particle[k];
@@ -160,54 +167,63 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
   row.slip = along(old.slip);
 }
 
-/// Normal velocity that each row must reach: no nearer than its radius within the step.
+/// Normal velocity that a row must reach: no nearer than its radius within the step.
 template <class Real>
-void ClothGuard<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
-  for (GuardRow<Real>& row : rows_) {
-    const Real room = row.normal.dot(weighted(row, state.x)) - row.radius;
-    row.least_speed = room > 0 ? -room / dt : Real(0);
-  }
+void ClothGuard<Real>::aim(GuardRow<Real>& row, const ClothState<Real>& state, Real dt) const {
+  row.room = row.normal.dot(weighted(row, state.x)) - row.radius;
+  row.least_speed = row.room > 0 ? -row.room / dt : Real(0);
 }
 
-/// Projected Gauss-Seidel that starts from the impulses of the last step. Friction brings what
-/// sticks back to its anchor, and lets it slide where that takes more than Coulomb's bound.
+/// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
+/// takes more than Coulomb's bound.
+template <class Real>
+void ClothGuard<Real>::solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const {
+  const Vec3<Real> v = weighted(row, velocities);
+  const Real speed = row.normal.dot(v);
+  if (row.push == 0 && speed >= row.least_speed) return;
+  const Real push = std::max(Real(0), row.push + (row.least_speed - speed) * row.inertia);
+  Vec3<Real> change = row.normal * (push - row.push);
+  row.push = push;
+  if (row.friction > 0) {
+    const Vec3<Real> slide = v - row.normal * speed;
+    const Vec3<Real> wanted = row.drag - (slide + row.slip / Real(kStickTime)) * row.inertia;
+    const Real most = row.friction * push, size2 = wanted.squaredNorm();
+    const bool slides = size2 > most * most;
+    const Vec3<Real> drag = slides ? Vec3<Real>(wanted * (most / std::sqrt(size2))) : wanted;
+    if (slides) row.slip.setZero();
+    change += drag - row.drag;
+    row.drag = drag;
+  }
+  share_out(row, change, velocities);
+}
+
+/// Projected Gauss-Seidel that starts from the impulses of the last step, and goes over the rows
+/// from either end in turn.
 template <class Real>
 void ClothGuard<Real>::sweep_rows(ClothState<Real>& state, Real dt) {
   const Real warm = warm_dt_ > 0 ? dt / warm_dt_ : Real(0);
   warm_dt_ = dt;
   for (GuardRow<Real>& row : rows_) {
+    aim(row, state, dt);
     if (row.push == 0) continue;
     row.push *= warm;
     row.drag *= warm;
     share_out<Real>(row, row.normal * row.push + row.drag, state.v);
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (GuardRow<Real>& row : rows_) {
-      const Vec3<Real> v = weighted(row, state.v);
-      const Real speed = row.normal.dot(v);
-      if (row.push == 0 && speed >= row.least_speed) continue;
-      const Real push = std::max(Real(0), row.push + (row.least_speed - speed) * row.inertia);
-      Vec3<Real> change = row.normal * (push - row.push);
-      row.push = push;
-      if (row.friction > 0) {
-        const Vec3<Real> slide = v - row.normal * speed;
-        const Vec3<Real> wanted = row.drag - (slide + row.slip / Real(kStickTime)) * row.inertia;
-        const Real most = row.friction * push, size = wanted.norm();
-        const Vec3<Real> drag = size > most ? Vec3<Real>(wanted * (most / size)) : wanted;
-        if (size > most) row.slip.setZero();
-        change += drag - row.drag;
-        row.drag = drag;
-      }
-      share_out(row, change, state.v);
+    if ((rows_steps_ + sweep) % 2 == 0) {
+      for (std::size_t k = 0; k < rows_.size(); ++k) solve_row(rows_[k], state.v);
+    } else {
+      for (std::size_t k = rows_.size(); k-- > 0;) solve_row(rows_[k], state.v);
     }
   }
   for (GuardRow<Real>& row : rows_) {
     if (row.push == 0) {
       row.slip.setZero();
-      continue;
+    } else if (row.friction > 0) {
+      const Vec3<Real> v = weighted(row, state.v);
+      row.slip += (v - row.normal * row.normal.dot(v)) * dt;
     }
-    const Vec3<Real> v = weighted(row, state.v);
-    row.slip += (v - row.normal * row.normal.dot(v)) * dt;
   }
 }
 
@@ -215,8 +231,8 @@ void ClothGuard<Real>::sweep_rows(ClothState<Real>& state, Real dt) {
 template <class Real>
 void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
   for (const GuardRow<Real>& row : rows_) {
-    const Real lack = row.radius - row.normal.dot(weighted(row, state.x));
-    if (!(lack > row.radius * Real(0.01))) continue;
+    const Real lack = -row.room;
+    if (!(lack > row.radius * Real(kPushSlack))) continue;
     const Real wanted = std::min(lack * Real(kPushRate), static_cast<Real>(kPushSpeed));
     const Real more = wanted - row.normal.dot(weighted(row, extra_));
     if (!(more > 0)) continue;
@@ -255,8 +271,8 @@ template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
-  aim_rows(state, dt);
-  for (const GuardRow<Real>& row : rows_) {
+  for (GuardRow<Real>& row : rows_) {
+    aim(row, state, dt);
     const Vec3<Real> v = weighted(row, state.v);
     const Real speed = row.normal.dot(v);
     const Real push = (row.least_speed - speed) * row.inertia;
@@ -278,7 +294,8 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&); \
   template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
   template void ClothGuard<Real>::remember(GuardRow<Real>&) const;                            \
-  template void ClothGuard<Real>::aim_rows(const ClothState<Real>&, Real);                    \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, const ClothState<Real>&, Real) const;  \
+  template void ClothGuard<Real>::solve_row(GuardRow<Real>&, Vec3Array<Real>&) const;         \
   template void ClothGuard<Real>::sweep_rows(ClothState<Real>&, Real);                        \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)

@@ -50,7 +50,7 @@ struct SeedContactDef {
 /// The words of SelfContact.
 inline FieldInfo self_contact_info() {
   return choice("self", "none|particles|triangles|triangles_and_edges|guard",
-                "contact of the cloth with itself");
+                "pairs of the cloth with itself");
 }
 
 /// Describes each field to `visit(info, value)`.

@@ -1,0 +1,244 @@
+#include <catch2/catch.hpp>
+
+#include "core/diagnostics/crossings.h"
+#include "core/error.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/cloths.h"
+#include "tests/support/random.h"
+#include "tests/support/worlds.h"
+
+// Cloths that meet themselves and each other: nothing crosses at any tick, and it is not by
+// freezing.
+
+using namespace weft;
+using namespace weft::test;
+
+namespace {
+
+template <class Real>
+std::size_t crossings(const World<Real>& world) {
+  const Crossings c =
+      count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
+  return c.proper + c.touching;
+}
+
+template <class Real>
+double lost_part(const World<Real>& world) {
+  const GuardCounts& counts = world.guard()->counts();
+  return counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
+}
+
+/// Steps and adds up the crossings seen after each tick.
+template <class Real>
+std::size_t crossings_over(World<Real>& world, int ticks) {
+  std::size_t sum = 0;
+  for (int k = 0; k < ticks; ++k) {
+    const TickReport& report = world.step();
+    if (report.divergence) FAIL(describe(*report.divergence));
+    sum += crossings(world);
+  }
+  return sum;
+}
+
+/// A sheet of `n` x `n` particles that falls upright on the ground and crumples there.
+WorldDef upright_drop(int n, double thickness_part) {
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = n;
+  cloth.width = cloth.height = 0.6;
+  cloth.origin = Vec3d(-0.3, 0.75, 0);
+  cloth.u = Vec3d::UnitX();
+  cloth.v = Vec3d(0, -1, -0.12).normalized();
+  cloth.fabric.thickness = thickness_part * cloth.width / (n - 1);
+  def.environment.drag = 0.2;
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+template <class Real>
+void jolt(World<Real>& world, double size, unsigned seed) {
+  Random random(seed);
+  for (Vec3<Real>& v : world.state().v) v += random.vector(size).template cast<Real>();
+  world.accept_state();
+}
+
+}  // namespace
+
+TEST_CASE("a sheet that crumples on the ground crosses itself at no tick, and moves freely") {
+  const double part = GENERATE(0.25, 0.5);
+  World<float> world(upright_drop(20, part));
+  jolt(world, 0.05, 1);
+  CHECK(crossings_over(world, 120) == 0);
+  INFO("thickness " << part << " of the edge, lost " << lost_part(world));
+  CHECK(world.guard()->counts().anchored > 100);  // it met itself
+  CHECK(lost_part(world) < 0.2);
+  CHECK(world.deepest_penetration() < 1e-5);
+}
+
+TEST_CASE("the same sheet without the guard crosses itself") {
+  WorldDef def = upright_drop(20, 0.25);
+  def.contact.seed.self = SelfContact::none;
+  World<float> world(def);
+  jolt(world, 0.05, 1);
+  CHECK(crossings_over(world, 120) > 50);
+}
+
+TEST_CASE("a crumpling sheet in double crosses nothing either") {
+  World<double> world(upright_drop(12, 0.25));
+  jolt(world, 0.05, 2);
+  CHECK(crossings_over(world, 90) == 0);
+  CHECK(lost_part(world) < 0.2);
+}
+
+TEST_CASE("where nothing touches, a run with the guard is that without it, bit for bit") {
+  WorldDef def;
+  def.cloths[0] = flat_cloth(25, 25);
+  def.cloths[0].v = -Vec3d::UnitY();
+  for (Index i = 0; i < 25; i += 4) def.pins.push_back({i, 0});
+  def.environment.wind = Vec3d(0.5, 0, 2);
+  def.colliders = {{"ground", PlaneDef{Vec3d(0, -3, 0), Vec3d::UnitY()}}};
+  World<float> without(def);
+  def.contact.seed.self = SelfContact::guard;
+  World<float> with(def);
+  for (int k = 0; k < 90; ++k) {
+    without.step();
+    with.step();
+    REQUIRE(with.hash() == without.hash());
+  }
+  CHECK(with.guard()->counts().collections > 0);
+  CHECK(with.report().profile[Stage::contact].work ==
+        without.report().profile[Stage::contact].work);
+}
+
+namespace {
+
+/// Two sheets, the second one turned a little, one thickness apart, that fly at each other.
+WorldDef two_sheets() {
+  WorldDef def = empty_world(flat_cloth(14, 14, 0.4, 0.4));
+  ClothDef second = flat_cloth(11, 17, 0.4, 0.4);
+  second.origin = Vec3d(0.03, 0.03, -0.02);
+  second.u = Vec3d(1, 0.02, 0.3).normalized();
+  second.v = Vec3d(-0.3, 0, 1).normalized();
+  second.u = (second.u - second.v * second.v.dot(second.u)).normalized();
+  second.name = "second";
+  def.cloths.push_back(second);
+  for (ClothDef& cloth : def.cloths) cloth.fabric.thickness = 0.006;
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+}  // namespace
+
+TEST_CASE("two sheets that fly at each other do not pass, keep momentum and lose energy") {
+  for (const double speed : {0.5, 5.0, 40.0}) {
+    World<double> world(two_sheets());
+    ClothState<double>& state = world.state();
+    const auto first = static_cast<std::size_t>(world.model().parts[1].particles.first);
+    for (std::size_t i = 0; i < state.v.size(); ++i)
+      state.v[i] = Vec3d(0, i < first ? speed : -speed, 0.1 * speed);
+    world.accept_state();
+    const auto momentum = [&] {
+      Vec3d sum = Vec3d::Zero();
+      for (std::size_t i = 0; i < state.v.size(); ++i) sum += state.v[i] * world.model().mass[i];
+      return sum;
+    };
+    const Vec3d before = momentum();
+    const double energy = world.report().energies.total();
+    INFO(speed << " m/s");
+    CHECK(crossings_over(world, 40) == 0);
+    CHECK((momentum() - before).norm() < 0.02 * speed);
+    CHECK(world.report().energies.total() < energy);
+  }
+}
+
+TEST_CASE("noise of 20 m/s on all particles makes no crossing") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    WorldDef def = empty_world(flat_cloth(14, 14, 0.4, 0.4));
+    def.cloths[0].fabric.thickness = 0.008;
+    def.contact.seed.self = SelfContact::guard;
+    World<float> world(def);
+    jolt(world, 20, seed);
+    std::size_t sum = 0;
+    for (int k = 0; k < 60; ++k) {
+      world.step();
+      sum += crossings(world);
+    }
+    INFO("seed " << seed);
+    CHECK(sum == 0);
+  }
+}
+
+TEST_CASE("hands at 5 m/s that pull a crumpled sheet about make no crossing") {
+  World<float> world(upright_drop(16, 0.25));
+  jolt(world, 0.05, 4);
+  CHECK(crossings_over(world, 60) == 0);
+  Random random(9);
+  const auto triangles = static_cast<Index>(world.model().triangles.size());
+  for (int drag = 0; drag < 8; ++drag) {
+    std::vector<GrabId> hands;
+    std::vector<Vec3d> at, speed;
+    for (int k = 0; k < 3; ++k) {
+      GrabDef grab;
+      grab.triangle = random.index(triangles);
+      grab.barycentric = {0.3, 0.3, 0.4};
+      grab.radius = 0.03;
+      const Triangle& t = world.model().triangles[static_cast<std::size_t>(grab.triangle)];
+      at.push_back(world.state().x[static_cast<std::size_t>(t[0])].cast<double>());
+      speed.push_back(random.vector(1).normalized() * 5);
+      grab.target = at.back();
+      hands.push_back(world.grab(grab));
+    }
+    for (int tick = 0; tick < 12; ++tick) {
+      for (std::size_t k = 0; k < hands.size(); ++k) {
+        at[k] += speed[k] / 60;
+        world.move_grab(hands[k], at[k]);
+      }
+      world.step();
+      REQUIRE(crossings(world) == 0);
+    }
+    for (const GrabId hand : hands) world.release(hand);
+  }
+}
+
+TEST_CASE("a sheet folded over itself comes to rest with its layers a thickness apart") {
+  WorldDef def = upright_drop(17, 0.25);
+  ClothDef& cloth = def.cloths[0];
+  cloth.v = Vec3d::UnitZ();
+  const double thickness = cloth.fabric.thickness;
+  cloth.origin = Vec3d(-0.3, 2 * thickness, -0.3);
+  World<float> world(def);
+  // Folded in the middle round a bend of two edge lengths, before it starts.
+  ClothState<float>& state = world.state();
+  for (Vec3f& x : state.x) {
+    const double bend = 0.03, s = static_cast<double>(x[2]), over = s / bend;
+    if (s <= 0) continue;
+    const Vec3d p = over < 3.14159 ? Vec3d(0, bend * (1 - std::cos(over)), bend * std::sin(over))
+                                   : Vec3d(0, 2 * bend, -(s - 3.14159 * bend));
+    x = Vec3f(x[0], static_cast<float>(2 * thickness + p[1]), static_cast<float>(p[2]));
+  }
+  world.accept_state();
+  REQUIRE(crossings(world) == 0);
+  CHECK(crossings_over(world, 180) == 0);
+  // The end of the upper layer lies on the lower one.
+  double lowest = 1;
+  for (Index c = 0; c < 17; ++c)
+    lowest =
+        std::min(lowest, static_cast<double>(state.x[static_cast<std::size_t>(16 * 17 + c)][1]));
+  CHECK(lowest > 1.7 * thickness);
+  CHECK(lowest < 2.6 * thickness);
+  CHECK(lost_part(world) < 0.01);
+}
+
+TEST_CASE("the guard is chosen by name and goes with the contact of weft alone") {
+  WorldDef def;
+  set_field(def, "contact.self", "guard");
+  CHECK_NOTHROW(validate(def));
+  CHECK(World<float>(def).guard() != nullptr);
+  set_field(def, "contact.model", "seed");
+  CHECK_THROWS_AS(validate(def), DefinitionError);
+  set_field(def, "contact.model", "weft");
+  set_field(def, "contact.self", "particles");
+  CHECK_THROWS_AS(validate(def), DefinitionError);
+}
