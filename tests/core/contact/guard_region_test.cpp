@@ -81,7 +81,9 @@ void check_balls(unsigned seed) {
     if (!(s.gap > Real(1e-6))) continue;
     ++certified;
     // Both sides anywhere in balls that share the gap, between them on straight lines.
-    const double share = random.uniform(0, 1), gap = static_cast<double>(s.gap) * (1 - 1e-5) - 1e-9;
+    // Less what is rounded when gaps are measured and corners are put there.
+    const double slack = 1e-9 + 2 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const double share = random.uniform(0, 1), gap = static_cast<double>(s.gap) - slack;
     PairPoints<Real> y[2];
     for (PairPoints<Real>& end : y) {
       for (std::size_t k = 0; k < 4; ++k) {
