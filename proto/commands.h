@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "proto/error.h"
 #include "proto/limits.h"
@@ -120,6 +121,17 @@ struct Speed {
   bool operator==(const Speed&) const = default;
 };
 
+/// A local wind; the meaning of its numbers is in README.md section 5.
+struct Fan {
+  Vec3 position{};       ///< [m]
+  Vec3 direction{};      ///< with a component of at least kLeastDirection
+  double speed = 5;      ///< [m/s]
+  double radius = 0.25;  ///< [m]
+  double spread = 0.2;   ///< a slope
+  double reach = 1.5;    ///< [m]
+  bool operator==(const Fan&) const = default;
+};
+
 /// At least one of them is set.
 struct Set {
   std::optional<Vec3> gravity;        ///< [m/s^2]
@@ -128,7 +140,8 @@ struct Set {
   std::optional<double> gust_length;  ///< [m]
   std::optional<double> air_density;  ///< [kg/m^3]
   std::optional<bool> still_air;
-  std::optional<double> drag;  ///< [1/s]
+  std::optional<double> drag;            ///< [1/s]
+  std::optional<std::vector<Fan>> fans;  ///< all of them, at most kMostFans
   bool operator==(const Set&) const = default;
 };
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/commands.h"
+#include "proto/event_json.h"
 #include "proto/json_output.h"
 #include "proto/words.h"
 
@@ -72,6 +73,7 @@ struct FieldWriter {
     put_if(out, "air_density", c.air_density);
     put_if(out, "still_air", c.still_air);
     put_if(out, "drag", c.drag);
+    if (c.fans) out["fans"] = json_of(*c.fans);
   }
   void operator()(const Advance& c) { out["n"] = c.n; }
   void operator()(const Query& c) {

@@ -101,6 +101,7 @@ struct State {
   double gust_speed = 0, gust_length = 0, air_density = 0;
   bool still_air = false;
   double drag = 0;
+  std::vector<Fan> fans;
   std::string fabric, solver;
   std::uint32_t substeps = 0;
   std::uint32_t particles = 0;

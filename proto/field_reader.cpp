@@ -126,6 +126,28 @@ bool FieldReader::read_object_text(const char* key, std::string& text) {
   return true;
 }
 
+void FieldReader::read_objects(const char* key, std::size_t most,
+                               const std::function<void(FieldReader&)>& read_one) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  if (!node->is_array()) return fail_type(key, *node, "an array");
+  if (node->size() > most) {
+    fail(ErrorCode::wrong_length, key,
+         std::string(key) + " must have at most " + std::to_string(most) + " entries");
+    return;
+  }
+  for (std::size_t k = 0; k < node->size() && ok(); ++k) {
+    const std::string path = std::string(key) + "[" + std::to_string(k) + "]";
+    if (!(*node)[k].is_object()) return fail_type(path, (*node)[k], "an object");
+    FieldReader inner((*node)[k]);
+    read_one(inner);
+    if (inner.ok()) continue;
+    Error error = *inner.error();
+    error.field = path + "." + error.field;
+    fail(std::move(error));
+  }
+}
+
 void FieldReader::read_id(const char* key, std::optional<Id>& value) {
   const json* node = find(key);
   if (node == nullptr) return;

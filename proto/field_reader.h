@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,6 +66,11 @@ class FieldReader {
     read(key, present, allowed...);
     if (ok()) value = std::move(present);
   }
+
+  /// An array of at most `most` objects; `read_one` gets a reader for each. An error in one of them
+  /// names its place, as in "fans[1].speed".
+  void read_objects(const char* key, std::size_t most,
+                    const std::function<void(FieldReader&)>& read_one);
 
   /// An integer from 0 to 2^53 or a string of 1 to kMostIdBytes bytes; may be absent.
   void read_id(const char* key, std::optional<Id>& value);

@@ -31,9 +31,14 @@ inline constexpr Range kFovRange{1, 179};         ///< [degrees]
 inline constexpr Range kStepRange{1, 600};        ///< [ticks]
 inline constexpr Range kAdvanceRange{1, 100000};  ///< [ticks]
 inline constexpr Range kSpeedRange{0.01, 10};
-inline constexpr Range kFrameRateRange{0, 240};      ///< [1/s]
-inline constexpr Range kGravityRange{-1000, 1000};   ///< each component [m/s^2]
-inline constexpr Range kWindRange{-100, 100};        ///< each component [m/s]
+inline constexpr Range kFrameRateRange{0, 240};     ///< [1/s]
+inline constexpr Range kGravityRange{-1000, 1000};  ///< each component [m/s^2]
+inline constexpr Range kWindRange{-100, 100};       ///< each component [m/s]
+inline constexpr std::size_t kMostFans = 4;
+inline constexpr Range kFanSpeedRange{0, 50};        ///< [m/s]
+inline constexpr Range kFanRadiusRange{0.01, 10};    ///< [m]
+inline constexpr Range kFanSpreadRange{0, 2};        ///< a slope
+inline constexpr Range kFanReachRange{0.01, 100};    ///< [m]
 inline constexpr Range kGustSpeedRange{0, 100};      ///< [m/s]
 inline constexpr Range kGustLengthRange{0.01, 100};  ///< [m]
 inline constexpr Range kAirDensityRange{0, 1000};    ///< [kg/m^3]

@@ -161,6 +161,23 @@ Command read_speed(FieldReader& in) {
   return speed;
 }
 
+Fan read_fan(FieldReader& in) {
+  Fan fan;
+  in.read("position", fan.position, kPositionRange);
+  read_direction(in, "direction", fan.direction);
+  in.read_if_there("speed", fan.speed, kFanSpeedRange);
+  in.read_if_there("radius", fan.radius, kFanRadiusRange);
+  in.read_if_there("spread", fan.spread, kFanSpreadRange);
+  in.read_if_there("reach", fan.reach, kFanReachRange);
+  return fan;
+}
+
+void read_fans(FieldReader& in, std::optional<std::vector<Fan>>& fans) {
+  if (!in.has("fans")) return;
+  fans.emplace();
+  in.read_objects("fans", kMostFans, [&fans](FieldReader& fan) { fans->push_back(read_fan(fan)); });
+}
+
 Command read_set(FieldReader& in) {
   Set set;
   in.read_if_there("gravity", set.gravity, kGravityRange);
@@ -170,13 +187,14 @@ Command read_set(FieldReader& in) {
   in.read_if_there("air_density", set.air_density, kAirDensityRange);
   in.read_if_there("still_air", set.still_air);
   in.read_if_there("drag", set.drag, kDragRange);
+  read_fans(in, set.fans);
   if (in.ok() && set == Set{}) {
     Error error = make_error(ErrorCode::missing_field, "set has nothing to set");
-    error.limit =
-        Limit{{},
-              {},
-              {},
-              {"gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag"}};
+    error.limit = Limit{{},
+                        {},
+                        {},
+                        {"gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air",
+                         "drag", "fans"}};
     in.fail(std::move(error));
   }
   return set;

@@ -168,6 +168,12 @@ EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set) 
   if (set.air_density) environment.air_density = *set.air_density;
   if (set.still_air) environment.still_air = *set.still_air;
   if (set.drag) environment.drag = *set.drag;
+  if (set.fans) {
+    environment.fans.clear();
+    for (const proto::Fan& f : *set.fans)
+      environment.fans.push_back(
+          {from_wire(f.position), from_wire(f.direction), f.speed, f.radius, f.spread, f.reach});
+  }
   return environment;
 }
 
@@ -201,6 +207,9 @@ proto::State state_of(const ServedWorld& world) {
   state.still_air = environment.still_air;
   state.drag = environment.drag;
   state.fabric = fabric_names(world.def().cloths);
+  for (const FanDef& f : environment.fans)
+    state.fans.push_back(
+        {to_wire(f.position), to_wire(f.direction), f.speed, f.radius, f.spread, f.reach});
   state.solver = solver_name(world.def());
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());

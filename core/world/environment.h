@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "core/definition.h"
+#include "core/world/fan.h"
 
 namespace weft {
 
@@ -13,11 +16,14 @@ struct EnvironmentDef {
   double air_density = 1.225;          ///< rho [kg/m^3]
   bool still_air = false;              ///< evaluate the air where no wind blows as well
   double drag = 0;                     ///< alpha, uniform velocity damping [1/s]
+  std::vector<FanDef> fans;            ///< local winds, at most kMostFans
 };
 
 /// True if the air forces must be evaluated: something blows, or still air was asked for.
 inline bool has_air(const EnvironmentDef& e) {
-  return e.air_density > 0 && (e.still_air || e.gust_speed > 0 || !e.wind.isZero(0));
+  bool blows = e.still_air || e.gust_speed > 0 || !e.wind.isZero(0);
+  for (const FanDef& fan : e.fans) blows = blows || fan.speed > 0;
+  return e.air_density > 0 && blows;
 }
 
 /// Describes each field to `visit(info, value)`.
@@ -32,7 +38,7 @@ void visit_fields_of_environment(Def& e, Visitor&& visit) {
   visit(FieldInfo{"drag", 0, 1000, "1/s", "uniform velocity damping"}, e.drag);
 }
 
-/// Throws DefinitionError if a field is out of range.
+/// Throws DefinitionError if a field is out of range or there are too many fans.
 void validate(const EnvironmentDef& def);
 
 }  // namespace weft

@@ -9,6 +9,7 @@ namespace weft {
 /// The stages of a step, in the order in which a substep meets them.
 enum class Stage : std::uint8_t {
   attachments,   ///< work: hand forces evaluated
+  fans,          ///< work: fans' jets evaluated at a particle (their time is part of air)
   air,           ///< work: triangles evaluated
   stretch,       ///< work: springs evaluated
   bending,       ///< work: hinges evaluated
@@ -19,10 +20,10 @@ enum class Stage : std::uint8_t {
   friction,      ///< work: friction evaluations (their time is part of contact)
   diagnostics,   ///< work: checks made
 };
-inline constexpr std::size_t kStageCount = 10;
+inline constexpr std::size_t kStageCount = 11;
 
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "attachments", "air",          "stretch", "bending",  "integration",
+    "attachments", "fans",         "air",     "stretch",  "bending",    "integration",
     "broad_phase", "narrow_phase", "contact", "friction", "diagnostics"};
 
 struct StageProfile {

@@ -157,6 +157,7 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part) const {
   if (!has_air(environment_)) return bound;
   // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
   double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
+  for (const FanDef& fan : environment_.fans) fastest += fan.speed;
   double speed2 = 0;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
     speed2 =
@@ -177,8 +178,9 @@ void World<Real>::blow_wind() {
   surroundings_.air = has_air(environment_);
   if (!surroundings_.air) return;
   const StageTimer timer(report_.profile, Stage::air, 0);
-  sample_wind(environment_, static_cast<double>(tick_) / def_.tick_rate, state_.x,
-              surroundings_.wind);
+  const double time = static_cast<double>(tick_) / def_.tick_rate;
+  report_.profile[Stage::fans].work +=
+      sample_wind(environment_, time, state_.x, surroundings_.wind);
 }
 
 template <class Real>

@@ -60,6 +60,17 @@ void validate(const EnvironmentDef& def) {
   visit_fields_of_environment(def, [](const FieldInfo& info, const auto& value) {
     check_field("environment.", info, value);
   });
+  check_field("environment.", {"fans", 0, kMostFans, "", "number of fans"},
+              static_cast<double>(def.fans.size()));
+  for (std::size_t k = 0; k < def.fans.size(); ++k) {
+    const std::string path = "environment.fans[" + std::to_string(k) + "].";
+    visit_fields_of_fan(def.fans[k], [&path](const FieldInfo& info, const auto& value) {
+      check_field(path, info, value);
+    });
+    if (!(def.fans[k].direction.norm() > 1e-9))
+      throw DefinitionError(path + "direction", "0,0,0", "a direction",
+                            "give a vector that is not zero");
+  }
 }
 
 void validate(const WorldDef& def) {
@@ -93,6 +104,7 @@ void validate(const WorldDef& def) {
                               "a name that no other cloth has", "pins name their cloth");
     }
   }
+  validate(def.environment);
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {

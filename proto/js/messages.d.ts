@@ -82,6 +82,16 @@ export interface Strain {
   p99: number;
 }
 
+/** A local wind. */
+export interface Fan {
+  position: Vec3;
+  direction: Vec3;
+  speed?: number;
+  radius?: number;
+  spread?: number;
+  reach?: number;
+}
+
 /** What `set` sets. */
 export interface Environment {
   gravity: Vec3;
@@ -91,6 +101,7 @@ export interface Environment {
   air_density: number;
   still_air: boolean;
   drag: number;
+  fans: Fan[];
 }
 
 export interface State extends Environment {

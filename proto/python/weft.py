@@ -522,7 +522,7 @@ class Client:
         return await self.request("speed", speed=speed)
 
     async def set(self, **values) -> dict:
-        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag."""
+        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans."""
         return await self.request("set", **values)
 
     async def advance(self, n: int) -> dict:

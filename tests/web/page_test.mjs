@@ -267,6 +267,57 @@ test('a sling waits for the hand to let go; what breaks the hold off does not th
   }),
 );
 
+test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by hand', bounded, () =>
+  with_page({}, async (page, script) => {
+    const fans = async () => (await script.query('state')).fans;
+    const fan_of = async (wanted = () => true) =>
+      until(async () => {
+        const [fan] = await fans();
+        return fan && wanted(fan) && fan;
+      }, `the server has the fan: ${wanted}`);
+    await camera_at_rest(page);
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    const made = await fan_of();
+    const other = await open_page(browser, server.url);
+    await until(async () => (await read(other, 'fans')).length === 1, 'others see it');
+    await other.context().close();
+    const speeds = async () => (await script.query('velocities')).map((v) => Math.hypot(...v));
+    await until(async () => Math.max(...(await speeds())) > 0.3, 'the cloth moves');
+    const work = await script.query('work');
+    assert.ok(work.find(({ stage }) => stage === 'fans').work > 0);
+
+    const camera = await camera_at_rest(page);
+    const drag = async (point, dx, dy) => {
+      const { x, y } = await pixel_of(page, point);
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await until(async () => (await read(page, 'input')) === 'holding');
+      await page.mouse.move(x + dx, y + dy, { steps: 3 });
+      await page.mouse.up();
+      return { x: x + dx, y: y + dy };
+    };
+    const near = (a, b) => Math.hypot(a.x - b.x, a.y - b.y) < 1;
+    const hub = await drag(made.position, -30, -40);
+    const moved = await fan_of(({ position }) => position[1] > made.position[1] + 0.05);
+    assert.deepEqual(moved.direction, made.direction);
+    await until(async () => near(hub, await pixel_of(page, (await fan_of()).position)));
+
+    const tip = ({ position, direction }) => position.map((v, axis) => v + direction[axis] * 0.6);
+    await drag(tip(moved), 0, -60);
+    const aimed = await fan_of(({ direction }) => direction[1] > moved.direction[1] + 0.1);
+    assert.deepEqual(aimed.position, (await fan_of()).position);
+    assert.ok(Math.abs(Math.hypot(...aimed.direction) - 1) < 1e-9);
+    assert.deepEqual(script.last.grabs, [], 'no hand is in the cloth');
+    assert.deepEqual(await camera_at_rest(page), camera);
+
+    await page.getByRole('slider', { name: 'Fan' }).fill('12');
+    await fan_of(({ speed }) => speed === 12);
+    await page.keyboard.press('w');
+    await until(async () => (await fans()).length === 0);
+    await until(() => page.getByRole('slider', { name: 'Fan' }).isHidden());
+  }),
+);
+
 test('two pages see each other’s hands, with names and colours', bounded, () =>
   with_page({ name: 'Ada' }, async (ada, script) => {
     const ben = await open_page(browser, server.url, { name: 'Ben' });
@@ -412,7 +463,7 @@ test('one finger takes the cloth or turns, two shift and zoom, a long press pins
   }),
 );
 
-test('on a narrow screen every control is within reach and has a name', bounded, () =>
+test('on screens wide and narrow every control is within reach and has a name', bounded, () =>
   with_page({ width: 400, height: 720 }, async (page, script) => {
     const controls = ['button', 'slider'];
     const names = [
@@ -420,17 +471,26 @@ test('on a narrow screen every control is within reach and has a name', bounded,
       ['button', 'One step'],
       ['button', 'Reset'],
       ['button', 'Sling'],
+      ['button', 'Fan'],
       ['button', 'Frame the cloth'],
       ['button', 'Help'],
       ['button', 'Scenes'],
       ['slider', 'Wind'],
       ['slider', 'Gravity'],
     ];
-    for (const [role, name] of names) {
-      const box = await page.getByRole(role, { name, exact: true }).boundingBox();
-      assert.ok(box.x >= 0 && box.x + box.width <= 400, `${name} across`);
-      assert.ok(box.y >= 0 && box.y + box.height <= 720, `${name} down`);
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    await until(() => page.getByRole('slider', { name: 'Fan' }).isVisible());
+    for (const [width, height] of [[1100, 700], [900, 500], [700, 500], [360, 640], [400, 720]]) {
+      await page.setViewportSize({ width, height });
+      await until(async () => (await read(page, 'size')).width === width);
+      for (const [role, name] of [...names, ['slider', 'Fan']]) {
+        const box = await page.getByRole(role, { name, exact: true }).boundingBox();
+        const at = `${name} in ${width} x ${height}`;
+        assert.ok(box.x >= 0 && box.x + box.width <= width, `${at} across`);
+        assert.ok(box.y >= 0 && box.y + box.height <= height, `${at} down`);
+      }
     }
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
     for (const role of controls) {
       for (const control of await page.getByRole(role).all()) {
         assert.ok(await control.evaluate((element) => element.matches('[aria-label], label *')));

@@ -6,6 +6,7 @@ export interface KeyActions {
   toggle_pause(): void;
   step(): void;
   reset(): void;
+  toggle_fan(): void;
   toggle_sling(): void;
   frame(): void;
   scenes(): void;
@@ -20,6 +21,7 @@ export function listen_to_keys(actions: KeyActions): void {
     m: () => actions.toggle_pin(),
     '.': () => actions.step(),
     r: () => actions.reset(),
+    w: () => actions.toggle_fan(),
     s: () => actions.toggle_sling(),
     f: () => actions.frame(),
     l: () => actions.scenes(),

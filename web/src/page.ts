@@ -3,6 +3,9 @@ import type { WeftClient } from '../../proto/js/index.js';
 import type { Frame, Grab, State, Viewer } from '../../proto/js/messages.js';
 import { OrbitCamera } from './camera.js';
 import { connect_client, tell_refusal } from './connection.js';
+import { FanHold } from './fan_hold.js';
+import { fan_of_view, Fans } from './fans.js';
+import type { FanHit } from './fans.js';
 import { Hands } from './hands.js';
 import type { Hand } from './hands.js';
 import { Hold } from './hold.js';
@@ -31,6 +34,7 @@ export class Page {
   readonly orbit = new OrbitCamera();
   readonly hands = new Hands(element('labels'));
   readonly pins = new Pins();
+  readonly fans = new Fans();
   readonly client: WeftClient;
   readonly input: Input;
   world: WorldView | null = null;
@@ -43,6 +47,7 @@ export class Page {
   private toolbar: Toolbar;
   private reticle = new Reticle();
   private hold: Hold | null = null;
+  private fan_hold: FanHold | null = null;
   private grabs: Grab[] = [];
   private viewers: Viewer[] = [];
   private last_time = performance.now() / 1000;
@@ -56,13 +61,16 @@ export class Page {
   private pending_latency: { came_at: number; latency: number } | null = null;
 
   constructor() {
-    this.stage.scene.add(this.hands.group, this.pins.group, this.reticle.group);
+    this.stage.scene.add(this.hands.group, this.pins.group, this.fans.group, this.reticle.group);
     this.client = connect_client();
-    this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), () => this.frame());
+    this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), {
+      frame: () => this.frame(),
+      fan: () => fan_of_view(this.orbit),
+    });
     this.input = new Input(this.canvas, {
       take: (point) => this.take(point),
-      follow: (point) => this.hold?.follow(point),
-      push: (factor) => this.hold?.push(factor),
+      follow: (point) => (this.fan_hold ?? this.hold)?.follow(point),
+      push: (factor) => (this.fan_hold ?? this.hold)?.push(factor),
       let_go: (meant) => this.let_go(meant),
       toggle_pin: (point) => this.toggle_pin(point),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
@@ -75,6 +83,7 @@ export class Page {
       toggle_pause: () => this.toolbar.toggle_pause(),
       step: () => this.toolbar.one_step(),
       reset: () => this.toolbar.reset(),
+      toggle_fan: () => this.toolbar.toggle_fan(),
       toggle_sling: () => this.toolbar.toggle_sling(),
       frame: () => this.frame(),
       scenes: () => this.toolbar.show_scenes(),
@@ -107,6 +116,7 @@ export class Page {
     client.on('state', (state) => {
       this.state = state;
       this.toolbar.state(state);
+      if (!this.fan_hold && this.fans.show(state.fans)) this.dirty = true;
       panels.state(state);
     });
     client.on('roster', (roster) => {
@@ -167,13 +177,34 @@ export class Page {
 
   private take(point: Vector2): boolean {
     const hit = this.pick(point);
+    if (this.take_fan(point, hit)) return true;
     if (!hit) return false;
     const { hand_mode } = this.toolbar;
     this.hold = new Hold(this.client, hit, this.orbit, hand_mode, (reason) => this.lost(reason));
     return true;
   }
 
+  /** Takes the handle of a fan, unless the cloth is before it. */
+  private take_fan(point: Vector2, cloth: ClothHit | null): boolean {
+    const hit = this.fan_at(point, cloth);
+    if (!hit) return false;
+    this.fan_hold = new FanHold(hit, point, this.fans, this.orbit, (fans) =>
+      tell_refusal(this.client.set({ fans }), (text) => this.panels.tell(text)),
+    );
+    return true;
+  }
+
+  private fan_at(point: Vector2 | null, cloth: ClothHit | null): FanHit | null {
+    if (!point || !this.client.connected) return null;
+    const { width, height } = this.size();
+    const hit = this.fans.at(point, this.orbit, width, height);
+    if (!hit || !cloth) return hit;
+    return this.orbit.depth(hit.position) < this.orbit.depth(cloth.position) ? hit : null;
+  }
+
   private let_go(meant: boolean): void {
+    this.fan_hold?.end();
+    this.fan_hold = null;
     this.hold?.end(meant);
     this.hold = null;
     this.pending_latency = null;
@@ -259,6 +290,7 @@ export class Page {
     if (!this.dirty) return;
     this.dirty = false;
     this.point_at_cloth();
+    this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
     this.hands.update(this.hands_to_show(), this.orbit.camera, width, height);
     this.stage.renderer.render(this.stage.scene, this.orbit.camera);
@@ -269,12 +301,14 @@ export class Page {
   private point_at_cloth(): void {
     const idle = this.input.state === 'idle';
     this.hovered = idle ? this.pick(this.input.point) : null;
-    if (this.hold && this.input.point) this.hold.follow(this.input.point);
+    const fan = idle ? this.fan_at(this.input.point, this.hovered) : null;
+    if (fan) this.hovered = null;
+    if (this.input.point) (this.fan_hold ?? this.hold)?.follow(this.input.point);
     this.reticle.update(this.hovered, this.world, this.orbit.camera, this.size().height);
     const holding = this.input.state === 'holding';
     this.canvas.dataset.cursor = holding
       ? 'grabbing'
-      : this.hovered
+      : this.hovered || fan
         ? 'grab'
         : this.input.state === 'camera'
           ? 'move'

@@ -47,6 +47,9 @@ export function expose_probe(page: Page): void {
     get pins() {
       return structuredClone(page.pins.list);
     },
+    get fans() {
+      return structuredClone(page.fans.list);
+    },
     /** Pictures drawn so far; it stands still where nothing changes. */
     get pictures() {
       return page.pictures;

@@ -1,39 +1,58 @@
 import type { WeftClient } from '../../proto/js/index.js';
-import type { State, Vec3 } from '../../proto/js/messages.js';
+import type { Fan, State, Vec3 } from '../../proto/js/messages.js';
 import { tell_refusal } from './connection.js';
 import type { HandMode } from './hold.js';
 import { element } from './panels.js';
 import { SceneList } from './scene_list.js';
+import { Slider } from './slider.js';
 
-const SEND_INTERVAL = 60; // between values of a slider that moves [ms]
-const QUIET_TIME = 600; // in which a slider just moved is not set by the state [ms]
+function scaled(direction: Vec3, length: number): Vec3 {
+  return direction.map((part) => part * length) as Vec3;
+}
+
+function direction_of(vector: Vec3): Vec3 | null {
+  const length = Math.hypot(...vector);
+  return length > 1e-9 ? scaled(vector, 1 / length) : null;
+}
 
 /** Buttons, the list of scenes, and the sliders of the air and of gravity. */
 export class Toolbar {
   private pause = element<HTMLButtonElement>('pause');
   private step = element<HTMLButtonElement>('step');
   private scenes: SceneList;
+  private fan = element<HTMLButtonElement>('fan');
   private sling = element<HTMLButtonElement>('sling');
   private help = element<HTMLDialogElement>('help');
-  private wind: VectorSlider;
-  private gravity: VectorSlider;
+  private wind: Slider;
+  private gravity: Slider;
+  private fan_speed: Slider;
+  // Where the wind and gravity point to when a slider makes them longer than nothing.
+  private wind_direction: Vec3 = [0, 0, -1];
+  private gravity_direction: Vec3 = [0, -1, 0];
+  private fans: Fan[] = [];
   private paused = false;
 
   /** @param tell shows a sentence to the user */
   constructor(
     private client: WeftClient,
     private tell: (message: string) => void,
-    frame: () => void,
+    private view: { frame(): void; fan(): Fan },
   ) {
-    this.wind = new VectorSlider('wind', 'm/s', [0, 0, -1], (wind) => this.run(client.set({ wind })));
-    this.gravity = new VectorSlider('gravity', 'm/s²', [0, -1, 0], (gravity) =>
-      this.run(client.set({ gravity })),
+    this.wind = new Slider('wind', 'm/s', (length) =>
+      this.run(client.set({ wind: scaled(this.wind_direction, length) })),
+    );
+    this.gravity = new Slider('gravity', 'm/s²', (length) =>
+      this.run(client.set({ gravity: scaled(this.gravity_direction, length) })),
+    );
+    this.fan_speed = new Slider('fan-speed', 'm/s', (speed) =>
+      this.run(client.set({ fans: this.fans.map((fan) => ({ ...fan, speed })) })),
     );
     this.pause.addEventListener('click', () => this.toggle_pause());
     this.step.addEventListener('click', () => this.one_step());
     element('reset').addEventListener('click', () => this.reset());
+    this.fan.addEventListener('click', () => this.toggle_fan());
     this.sling.addEventListener('click', () => this.toggle_sling());
-    element('frame').addEventListener('click', frame);
+    element('frame').addEventListener('click', () => view.frame());
     element('help-button').addEventListener('click', () => this.show_help());
     this.help.addEventListener('click', (event) => event.target === this.help && this.help.close());
     this.scenes = new SceneList((scene) => this.run(client.load(scene)));
@@ -42,7 +61,7 @@ export class Toolbar {
 
   /** Without a connection nothing can be asked for. */
   enable(connected: boolean): void {
-    for (const id of ['pause', 'step', 'reset', 'scene', 'wind', 'gravity']) {
+    for (const id of ['pause', 'step', 'reset', 'fan', 'scene', 'wind', 'gravity', 'fan-speed']) {
       element<HTMLButtonElement>(id).disabled = !connected;
     }
     if (connected) void this.scenes.fetch();
@@ -54,9 +73,12 @@ export class Toolbar {
     const action = state.paused ? 'Resume' : 'Pause';
     this.pause.setAttribute('aria-label', action);
     this.pause.title = `${action} (Space)`;
-    this.wind.show(state.wind);
-    this.gravity.show(state.gravity);
+    this.wind_direction = direction_of(state.wind) ?? this.wind_direction;
+    this.gravity_direction = direction_of(state.gravity) ?? this.gravity_direction;
+    this.wind.show(Math.hypot(...state.wind));
+    this.gravity.show(Math.hypot(...state.gravity));
     this.scenes.choose(state.scene);
+    this.show_fans(state.fans);
   }
 
   toggle_pause(): void {
@@ -71,6 +93,18 @@ export class Toolbar {
 
   reset(): void {
     this.run(this.client.reset());
+  }
+
+  /** Puts a fan beside the line of sight, or takes all fans away. */
+  toggle_fan(): void {
+    this.run(this.client.set({ fans: this.fans.length ? [] : [this.view.fan()] }));
+  }
+
+  private show_fans(fans: Fan[]): void {
+    this.fans = fans;
+    this.fan.setAttribute('aria-pressed', String(fans.length > 0));
+    element('fan-field').hidden = fans.length === 0;
+    if (fans.length) this.fan_speed.show(Math.max(...fans.map(({ speed = 0 }) => speed)));
   }
 
   /** How the hand takes hold. */
@@ -92,50 +126,5 @@ export class Toolbar {
 
   private run(answer: Promise<unknown>): void {
     tell_refusal(answer, this.tell);
-  }
-}
-
-/** A slider for the length of a vector, whose direction stays. */
-class VectorSlider {
-  private input: HTMLInputElement;
-  private output: HTMLElement;
-  private timer = 0;
-  private moved_at = -Infinity;
-
-  constructor(
-    id: string,
-    private unit: string,
-    private direction: Vec3,
-    private send: (value: Vec3) => void,
-  ) {
-    this.input = element<HTMLInputElement>(id);
-    this.output = element(`${id}-value`);
-    this.input.addEventListener('input', () => this.moved());
-  }
-
-  /** What the server has now. */
-  show(value: Vec3): void {
-    const length = Math.hypot(...value);
-    if (length > 1e-9) this.direction = value.map((part) => part / length) as Vec3;
-    if (performance.now() - this.moved_at < QUIET_TIME) return;
-    this.input.value = String(length);
-    this.write(length);
-  }
-
-  private moved(): void {
-    this.moved_at = performance.now();
-    this.write(this.input.valueAsNumber);
-    if (this.timer) return;
-    this.timer = window.setTimeout(() => {
-      this.timer = 0;
-      const length = this.input.valueAsNumber;
-      this.send(this.direction.map((part) => part * length) as Vec3);
-    }, SEND_INTERVAL);
-  }
-
-  private write(length: number): void {
-    const text = `${length.toFixed(1)} ${this.unit}`;
-    if (this.output.textContent !== text) this.output.textContent = text;
-    this.input.setAttribute('aria-valuetext', text);
   }
 }

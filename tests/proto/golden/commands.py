@@ -85,6 +85,17 @@ ACCEPTED = [
         op="set", gravity=[0, -9.81, 0], wind=[0, 0, 0], gust_speed=100, gust_length=0.01,
         air_density=1.2, still_air=False, drag=1000,
     ),
+    accepted('{"op":"set","fans":[]}', op="set", fans=[]),
+    accepted(
+        '{"op":"set","fans":[{"position":[0,1,2],"direction":[0,0,-3]},{"position":[1,0,0],'
+        '"direction":[1,0,0],"speed":50,"radius":0.01,"spread":0,"reach":100}]}',
+        op="set", fans=[
+            dict(position=[0, 1, 2], direction=[0, 0, -3], speed=5, radius=0.25, spread=0.2,
+                 reach=1.5),
+            dict(position=[1, 0, 0], direction=[1, 0, 0], speed=50, radius=0.01, spread=0,
+                 reach=100),
+        ],
+    ),
     accepted('{"op":"advance","n":100000}', op="advance", n=100000),
     accepted('{"op":"query","what":"energies"}', op="query", what="energies", format="json"),
     accepted(
@@ -230,8 +241,18 @@ def refused_fields():
     yield refuse('{"op":"speed","speed":0}', "out_of_range", field="speed", limit=limits(0.01, 10))
     yield refuse('{"op":"speed","speed":"fast"}', "wrong_type", field="speed", value="fast")
     yield refuse('{"op":"set"}', "missing_field", command="set", limit={"allowed": [
-        "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag"]})
+        "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag", "fans"]})
     yield refuse('{"op":"set","winds":[1,0,0]}', "missing_field")
+    yield refuse('{"op":"set","fans":{}}', "wrong_type", field="fans", value={})
+    yield refuse('{"op":"set","fans":[3]}', "wrong_type", field="fans[0]", value=3)
+    yield refuse('{"op":"set","fans":[{},{},{},{},{}]}', "wrong_length", field="fans")
+    yield refuse('{"op":"set","fans":[{"direction":[0,0,1]}]}', "missing_field",
+                 field="fans[0].position")
+    yield refuse('{"op":"set","wind":[1,0,0],"fans":[{"position":[0,0,0],"direction":[0,0,1]},'
+                 '{"position":[0,0,0],"direction":[0,0,1],"speed":51}]}', "out_of_range",
+                 field="fans[1].speed", value=51, limit=limits(0, 50))
+    yield refuse('{"op":"set","fans":[{"position":[0,0,0],"direction":[0,0,0]}]}', "out_of_range",
+                 field="fans[0].direction")
     yield refuse('{"op":"set","wind":[1,0,0],"gravity":[0,-1001,0]}', "out_of_range",
                  field="gravity[1]", limit=limits(-1000, 1000))
     yield refuse('{"op":"set","wind":[0,0,100.5]}', "out_of_range", field="wind[2]")
