@@ -160,15 +160,20 @@ enum class QueryWhat : std::uint8_t {
   camera,
   roster,
   state,
-  work
+  work,
+  trees,
+  boxes
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 
-/// A binary format comes with positions and velocities alone, a viewer with camera alone.
+/// A binary format comes with positions, velocities and boxes alone, a viewer with camera alone, a
+/// tree and a level with boxes alone, which need a tree.
 struct Query {
   QueryWhat what = QueryWhat::positions;
   QueryFormat format = QueryFormat::json;
   std::optional<ViewerId> viewer;
+  std::optional<std::string> tree;     ///< 1 to kMostTreeBytes bytes
+  std::optional<std::uint32_t> level;  ///< 0, if absent, is the root
   bool operator==(const Query&) const = default;
 };
 

@@ -80,6 +80,8 @@ struct FieldWriter {
     out["what"] = name_of(c.what);
     out["format"] = name_of(c.format);
     put_if(out, "viewer", c.viewer);
+    put_if(out, "tree", c.tree);
+    put_if(out, "level", c.level);
   }
   void operator()(const Ping& c) { out["t"] = c.t; }
   void operator()(const Load& c) {

@@ -35,10 +35,12 @@ inline constexpr Range kFrameRateRange{0, 240};     ///< [1/s]
 inline constexpr Range kGravityRange{-1000, 1000};  ///< each component [m/s^2]
 inline constexpr Range kWindRange{-100, 100};       ///< each component [m/s]
 inline constexpr std::size_t kMostFans = 4;
-inline constexpr Range kFanSpeedRange{0, 50};        ///< [m/s]
-inline constexpr Range kFanRadiusRange{0.01, 10};    ///< [m]
-inline constexpr Range kFanSpreadRange{0, 2};        ///< a slope
-inline constexpr Range kFanReachRange{0.01, 100};    ///< [m]
+inline constexpr Range kFanSpeedRange{0, 50};      ///< [m/s]
+inline constexpr Range kFanRadiusRange{0.01, 10};  ///< [m]
+inline constexpr Range kFanSpreadRange{0, 2};      ///< a slope
+inline constexpr Range kFanReachRange{0.01, 100};  ///< [m]
+inline constexpr Range kLevelRange{0, 255};
+inline constexpr std::size_t kMostTreeBytes = 80;    ///< of the name of a tree
 inline constexpr Range kGustSpeedRange{0, 100};      ///< [m/s]
 inline constexpr Range kGustLengthRange{0.01, 100};  ///< [m]
 inline constexpr Range kAirDensityRange{0, 1000};    ///< [kg/m^3]

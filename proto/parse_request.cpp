@@ -206,18 +206,33 @@ Command read_advance(FieldReader& in) {
   return advance;
 }
 
+void read_tree(FieldReader& in, Query& query) {
+  query.tree.emplace();
+  in.read("tree", *query.tree);
+  in.read_if_there("level", query.level, kLevelRange);
+  if (in.ok() && (query.tree->empty() || query.tree->size() > kMostTreeBytes))
+    in.fail(ErrorCode::wrong_length, "tree", "tree must have 1 to 80 bytes");
+}
+
 Command read_query(FieldReader& in) {
   Query query;
   in.read("what", query.what, kQueryWhatWords);
   in.read_if_there("format", query.format, kQueryFormatWords);
   in.read_if_there("viewer", query.viewer, kIdRange);
-  const bool vectors = query.what == QueryWhat::positions || query.what == QueryWhat::velocities;
-  if (query.format != QueryFormat::json && !vectors) {
+  const bool boxes = query.what == QueryWhat::boxes;
+  const bool numbers =
+      query.what == QueryWhat::positions || query.what == QueryWhat::velocities || boxes;
+  if (query.format != QueryFormat::json && !numbers) {
     in.fail(ErrorCode::conflicting_fields, "format",
-            "a binary format is for positions and velocities alone");
+            "a binary format is for positions, velocities and boxes alone");
   }
   if (query.viewer && query.what != QueryWhat::camera)
     in.fail(ErrorCode::conflicting_fields, "viewer", "viewer goes with camera alone");
+  if (boxes) read_tree(in, query);
+  for (const char* key : {"tree", "level"}) {
+    if (!boxes && in.has(key))
+      in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " goes with boxes alone");
+  }
   return query;
 }
 

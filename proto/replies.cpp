@@ -24,6 +24,10 @@ Json json_of(const StageWork& stage) {
   return {{"stage", stage.stage}, {"milliseconds", stage.milliseconds}, {"work", stage.work}};
 }
 
+Json json_of(const TreeInfo& tree) {
+  return {{"tree", tree.tree}, {"levels", tree.levels}};
+}
+
 namespace {
 
 struct DataName {
@@ -35,6 +39,7 @@ struct DataName {
   QueryWhat operator()(const std::vector<ViewerInfo>&) const { return QueryWhat::roster; }
   QueryWhat operator()(const State&) const { return QueryWhat::state; }
   QueryWhat operator()(const std::vector<StageWork>&) const { return QueryWhat::work; }
+  QueryWhat operator()(const std::vector<TreeInfo>&) const { return QueryWhat::trees; }
 };
 
 struct ReplyWriter {
@@ -139,12 +144,12 @@ struct ReplyWriter {
 // Written by hand because a tree of a hundred thousand nodes costs megabytes, and because a float
 // is half as long when it is written as a float.
 template <class Real>
-void append_vectors(std::span<const Real> values, std::string& out) {
+void append_rows(std::span<const Real> values, std::size_t components, std::string& out) {
   std::array<char, 32> buffer;
   out += '[';
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+  for (std::size_t i = 0; i + components <= values.size(); i += components) {
     if (i > 0) out += ',';
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < components; ++k) {
       out += k == 0 ? '[' : ',';
       if (!std::isfinite(values[i + k])) {
         out += "null";  // as the library does: JSON has no word for it
@@ -177,7 +182,8 @@ std::string encode_reply(const Id& id, const Reply& reply) {
   if (const auto* vectors = std::get_if<VectorsReply>(&reply)) {
     text.back() = ',';
     text += "\"data\":";
-    std::visit([&text](auto values) { append_vectors(values, text); }, vectors->values);
+    std::visit([&](auto values) { append_rows(values, vectors->components, text); },
+               vectors->values);
     text += '}';
   }
   return text;

@@ -97,11 +97,13 @@ struct ViewReply {
   Codec codec = Codec::f32;
 };
 
-/// Positions or velocities as JSON, three values a vertex. The data is read by encode_reply alone.
+/// Positions, velocities or boxes as JSON, `components` values a row. The data is read by
+/// encode_reply alone.
 struct VectorsReply {
   std::uint64_t tick = 0;
   QueryWhat what = QueryWhat::positions;
   std::variant<std::span<const float>, std::span<const double>> values;
+  std::size_t components = 3;
 };
 
 /// Announces the binary data message (data.h) that follows.
@@ -123,11 +125,18 @@ struct StageWork {
   std::uint64_t work = 0;
 };
 
+/// A hierarchy of boxes.
+struct TreeInfo {
+  std::string tree;
+  std::uint32_t levels = 0;
+};
+
 /// All other queries; the alternative decides `what`.
 struct QueryReply {
   std::uint64_t tick = 0;
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
-               std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>>
+               std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
+               std::vector<TreeInfo>>
       data;
 };
 

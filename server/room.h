@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -152,7 +153,9 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Load& command);
   Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
   Outcome apply(proto::ViewerId viewer, const proto::View& command);
-  Outcome query_vectors(const proto::Query& command);
+  Outcome query_numbers(const proto::Query& command, std::span<const float> values,
+                        std::uint32_t components);
+  Outcome query_boxes(const proto::Query& command);
   std::optional<proto::Error> check_new_hand(proto::ViewerId viewer, std::uint32_t drag) const;
   std::optional<proto::Error> check_free(proto::ViewerId viewer, Index particle) const;
   Outcome release_pins(const std::vector<std::uint32_t>& ids);
@@ -195,6 +198,7 @@ class Room {
   std::uint32_t sequence_ = 0;
   std::uint64_t frames_encoded_ = 0;
   std::uint32_t transfers_ = 0;
+  std::vector<float> box_values_;     // of the present answer, lowest and highest corners
   std::optional<Message> follow_up_;  // binary message that belongs behind the present answer
   std::vector<proto::GrabSample> grab_samples_;
   std::vector<proto::AppliedCommand> applied_;

@@ -278,68 +278,6 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   return proto::Reply(proto::AdvanceReply{});
 }
 
-Room::Outcome Room::query_vectors(const proto::Query& command) {
-  const Vec3Array<float>& vectors =
-      command.what == proto::QueryWhat::positions ? world_->state().x : world_->state().v;
-  if (command.format == proto::QueryFormat::json)
-    return proto::Reply(proto::VectorsReply{world_->tick(), command.what, floats_of(vectors)});
-  proto::BinaryReply reply;
-  reply.tick = world_->tick();
-  reply.what = command.what;
-  reply.format = command.format;
-  reply.transfer = ++transfers_;
-  reply.count = static_cast<std::uint32_t>(vectors.size());
-  const proto::DataHeader header{reply.tick, reply.transfer, 3};
-  follow_up_ = binary_message(command.format == proto::QueryFormat::f64
-                                  ? proto::encode_data(header, doubles_of(vectors))
-                                  : proto::encode_data(header, floats_of(vectors)));
-  return proto::Reply(reply);
-}
-
-Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
-  proto::QueryReply reply;
-  reply.tick = world_->tick();
-  switch (command.what) {
-    case proto::QueryWhat::positions:
-    case proto::QueryWhat::velocities:
-      return query_vectors(command);
-    case proto::QueryWhat::energies:
-      reply.data = state().energy;
-      break;
-    case proto::QueryWhat::strain:
-      reply.data = state().strain;
-      break;
-    case proto::QueryWhat::pins:
-      reply.data = pins();
-      break;
-    case proto::QueryWhat::grabs:
-      reply.data = grabs(true);
-      break;
-    case proto::QueryWhat::roster:
-      reply.data = roster();
-      break;
-    case proto::QueryWhat::state:
-      reply.data = state();
-      break;
-    case proto::QueryWhat::work:
-      reply.data = work_of(*world_);
-      break;
-    case proto::QueryWhat::camera: {
-      if (command.viewer && !viewers_.contains(*command.viewer))
-        return field_error(ErrorCode::unknown_viewer, "nobody has this number", "viewer",
-                           *command.viewer, "the message roster lists who is here");
-      std::vector<proto::ViewerCamera> cameras;
-      for (const auto& [id, viewer] : viewers_) {
-        if (viewer.info.camera && (!command.viewer || *command.viewer == id))
-          cameras.push_back({id, *viewer.info.camera});
-      }
-      reply.data = std::move(cameras);
-      break;
-    }
-  }
-  return proto::Reply(std::move(reply));
-}
-
 Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
   return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
 }

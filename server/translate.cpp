@@ -105,11 +105,6 @@ std::span<const float> floats_of(const Vec3Array<float>& vectors) {
   return {vectors.empty() ? nullptr : vectors.front().data(), vectors.size() * 3};
 }
 
-std::vector<double> doubles_of(const Vec3Array<float>& vectors) {
-  const std::span<const float> values = floats_of(vectors);
-  return {values.begin(), values.end()};
-}
-
 proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const proto::Hold& hold) {
   const ClothModel<float>& model = world.model();
   if (const auto* point = std::get_if<proto::SurfacePoint>(&hold)) {
@@ -218,6 +213,13 @@ proto::State state_of(const ServedWorld& world) {
   state.strain = {strain.largest, strain.p99};
   state.energy = to_wire(world.report().energies);
   return state;
+}
+
+std::vector<proto::TreeInfo> trees_of(ServedWorld& world) {
+  std::vector<proto::TreeInfo> trees;
+  for (const std::string& name : world.debug_tree_names())
+    trees.push_back({name, static_cast<std::uint32_t>(world.debug_tree_levels(name))});
+  return trees;
 }
 
 std::vector<proto::StageWork> work_of(const ServedWorld& world) {

@@ -28,7 +28,6 @@ Vec3d from_wire(const proto::Vec3& v);
 
 /// Three numbers a vertex, without copying.
 std::span<const float> floats_of(const Vec3Array<float>& vectors);
-std::vector<double> doubles_of(const Vec3Array<float>& vectors);
 
 /// Checks that the index exists and gives the triangle with weights (for a particle: one of its
 /// triangles with all weight on it).
@@ -48,6 +47,7 @@ std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
 proto::Energy to_wire(const Energies& energies);
 proto::State state_of(const ServedWorld& world);  ///< without what only the room knows
 std::vector<proto::StageWork> work_of(const ServedWorld& world);
+std::vector<proto::TreeInfo> trees_of(ServedWorld& world);
 
 proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner);
 proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,

@@ -52,6 +52,11 @@ class ClothTrees {
     return triangles_;
   }
 
+  /// Levels of the tree of particles, edges, triangles.
+  int particle_levels() const { return particles_.level_count(); }
+  int edge_levels() const { return edges_.level_count(); }
+  int triangle_levels() const { return triangles_.level_count(); }
+
  private:
   void fit_particles(const Vec3Array<Real>& x, Real margin) {
     boxes_.clear();

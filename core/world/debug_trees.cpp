@@ -34,21 +34,33 @@ std::vector<std::string> DebugTrees<Real>::names() const {
 }
 
 template <class Real>
+const BottomUpTree<Real>* DebugTrees<Real>::object(const std::string& tree) const {
+  for (const auto& [name, found] : objects_)
+    if (name == tree) return &found;
+  return nullptr;
+}
+
+template <class Real>
+int DebugTrees<Real>::level_count(const std::string& tree) const {
+  if (tree == "particles") return cloth_.particle_levels();
+  if (tree == "edges") return cloth_.edge_levels();
+  if (tree == "triangles") return cloth_.triangle_levels();
+  if (const BottomUpTree<Real>* found = object(tree)) return found->level_count();
+  std::string all;
+  for (const std::string& name : names()) all += (all.empty() ? "" : ", ") + name;
+  throw DefinitionError("tree", tree, "one of " + all);
+}
+
+template <class Real>
 std::vector<Aabb<float>> DebugTrees<Real>::boxes(const std::string& tree, int level,
                                                  const Vec3Array<Real>& x) {
   if (level < 0)
     throw DefinitionError("level", std::to_string(level), "0 or more", "0 is the root");
-  const auto of = [level](const BottomUpTree<Real>& chosen) {
-    return boxes_of_level(chosen, std::min(level, chosen.level_count() - 1));
-  };
-  if (tree == "particles") return of(cloth_.particles(x, Real(0)));
-  if (tree == "edges") return of(cloth_.edges(x, edges_, Real(0)));
-  if (tree == "triangles") return of(cloth_.triangles(x, triangles_, Real(0)));
-  for (const auto& object : objects_)
-    if (object.first == tree) return of(object.second);
-  std::string all;
-  for (const std::string& name : names()) all += (all.empty() ? "" : ", ") + name;
-  throw DefinitionError("tree", tree, "one of " + all);
+  const int shown = std::min(level, level_count(tree) - 1);
+  if (tree == "particles") return boxes_of_level(cloth_.particles(x, Real(0)), shown);
+  if (tree == "edges") return boxes_of_level(cloth_.edges(x, edges_, Real(0)), shown);
+  if (tree == "triangles") return boxes_of_level(cloth_.triangles(x, triangles_, Real(0)), shown);
+  return boxes_of_level(*object(tree), shown);
 }
 
 template class DebugTrees<float>;

@@ -27,7 +27,12 @@ class DebugTrees {
   /// such tree, and if the level is below 0.
   std::vector<Aabb<float>> boxes(const std::string& tree, int level, const Vec3Array<Real>& x);
 
+  /// Levels of a tree, at least 1. Throws as `boxes` does.
+  int level_count(const std::string& tree) const;
+
  private:
+  const BottomUpTree<Real>* object(const std::string& tree) const;
+
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
   ClothTrees<Real> cloth_;

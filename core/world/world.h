@@ -122,6 +122,7 @@ class World {
   /// Throws DefinitionError if there is no such tree or level.
   std::vector<Aabb<float>> debug_boxes(const std::string& tree, int level);
   std::vector<std::string> debug_tree_names();
+  int debug_tree_levels(const std::string& tree);
 
   const WorldDef& def() const { return def_; }
   const EnvironmentDef& environment() const { return environment_; }

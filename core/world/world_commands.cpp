@@ -133,6 +133,12 @@ std::vector<std::string> World<Real>::debug_tree_names() {
   return debug_trees_->names();
 }
 
+template <class Real>
+int World<Real>::debug_tree_levels(const std::string& tree) {
+  if (!debug_trees_) debug_trees_.emplace(model_, def_.colliders);
+  return debug_trees_->level_count(tree);
+}
+
 #define WEFT_INSTANTIATE(Real)                                                          \
   template PinId World<Real>::pin(const PinDef&);                                       \
   template bool World<Real>::unpin(PinId);                                              \
@@ -147,7 +153,8 @@ std::vector<std::string> World<Real>::debug_tree_names() {
   template std::uint64_t World<Real>::hash() const;                                     \
   template double World<Real>::deepest_penetration() const;                             \
   template std::vector<Aabb<float>> World<Real>::debug_boxes(const std::string&, int);  \
-  template std::vector<std::string> World<Real>::debug_tree_names();
+  template std::vector<std::string> World<Real>::debug_tree_names();                    \
+  template int World<Real>::debug_tree_levels(const std::string&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -141,7 +141,8 @@ export class WeftClient extends Session {
   /**
    * The data of a query; with a binary format `{tick, components, values}`.
    * @param {import('./messages.js').QueryWhat} what
-   * @param {{format?: 'json' | 'f32' | 'f64', viewer?: number}} [options]
+   * @param {{format?: 'json' | 'f32' | 'f64', viewer?: number,
+   *   tree?: string, level?: number}} [options]
    * @returns {Promise<any>}
    */
   async query(what, options = {}) {

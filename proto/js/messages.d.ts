@@ -11,7 +11,15 @@ export type QueryWhat =
   | 'camera'
   | 'roster'
   | 'state'
-  | 'work';
+  | 'work'
+  | 'trees'
+  | 'boxes';
+
+/** A hierarchy of boxes. */
+export interface Tree {
+  tree: string;
+  levels: number;
+}
 
 export interface Welcome {
   op: 'welcome';

@@ -529,9 +529,17 @@ class Client:
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash."""
         return await self.request("advance", n=n)
 
-    async def query(self, what: str, *, format: str | None = None, viewer: int | None = None):
+    async def query(
+        self,
+        what: str,
+        *,
+        format: str | None = None,
+        viewer: int | None = None,
+        tree: str | None = None,
+        level: int | None = None,
+    ):
         """The data of a query; a `Data` if the format is "f32" or "f64"."""
-        options = _without_none({"format": format, "viewer": viewer})
+        options = _without_none({"format": format, "viewer": viewer, "tree": tree, "level": level})
         return (await self.request("query", what=what, **options))["data"]
 
     async def hash(self) -> str:

@@ -212,9 +212,43 @@ class LockStep(SocketTest):
     async def test_every_query_answers(self):
         a = await self.viewer()
         await a.ask("advance", n=5)
-        for what in ("energies", "strain", "pins", "grabs", "camera", "roster", "state", "work"):
+        for what in ("energies", "strain", "pins", "grabs", "camera", "roster", "state", "work",
+                     "trees"):
             answer = await a.ask("query", what=what)
             self.assertEqual((answer["op"], answer["what"], answer["tick"]), ("result", what, 5))
+
+    async def test_boxes_of_each_level_hold_the_cloth_and_halve_in_number(self):
+        a = await self.viewer()
+        await a.ask("advance", n=30)
+        trees = (await a.ask("query", what="trees"))["data"]
+        self.assertEqual([t["tree"] for t in trees], ["particles", "edges", "triangles", "object:form"])
+        positions = await a.positions()
+        around = [f(p[k] for p in positions) for f in (min, max) for k in range(3)]
+        self.assertEqual((await self.boxes(a, "particles", 0)), [around])
+        for tree in trees:
+            levels = [await self.boxes(a, tree["tree"], k) for k in range(tree["levels"])]
+            for upper, lower in zip(levels, levels[1:]):
+                self.assertLess(len(upper), len(lower))
+                self.assertLessEqual(len(lower), 2 * len(upper))
+                for box in lower:
+                    self.assertTrue(any(self.within(box, b) for b in upper))
+            self.assertEqual(await self.boxes(a, tree["tree"], 255), levels[-1])
+        self.assertEqual(len(levels[-1]), 1418)
+        last = await self.boxes(a, "particles", 255)
+        self.assertEqual(sorted(last), sorted(p + p for p in positions))
+
+    async def boxes(self, viewer, tree, level):
+        return (await viewer.ask("query", what="boxes", tree=tree, level=level))["data"]
+
+    @staticmethod
+    def within(box, other):
+        return all(other[k] <= box[k] and box[k + 3] <= other[k + 3] for k in range(3))
+
+    async def test_an_unknown_tree_is_refused_with_the_names_of_those_there_are(self):
+        a = await self.viewer()
+        error = await a.ask("query", what="boxes", tree="object:nobody")
+        self.assertEqual((error["op"], error["code"], error["field"]), ("error", "out_of_range", "tree"))
+        self.assertIn("object:form", error["message"])
 
     async def test_a_pick_hits_the_cloth_where_the_positions_say(self):
         a = await self.viewer()

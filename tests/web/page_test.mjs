@@ -318,6 +318,68 @@ test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by h
   }),
 );
 
+/** Lowest and highest corner of what twelve lines surround, checked to be the edges of a box. */
+function box_of_lines(lines) {
+  const points = Array.from({ length: lines.length / 3 }, (_, i) => lines.slice(i * 3, i * 3 + 3));
+  const low = [0, 1, 2].map((axis) => Math.min(...points.map((point) => point[axis])));
+  const high = [0, 1, 2].map((axis) => Math.max(...points.map((point) => point[axis])));
+  assert.equal(points.length, 24);
+  const seen = new Set();
+  for (let i = 0; i < points.length; i += 2) {
+    const [a, b] = [points[i], points[i + 1]];
+    const along = [0, 1, 2].filter((axis) => a[axis] !== b[axis]);
+    assert.ok(along.length <= 1, 'a line runs along one axis');
+    for (const point of [a, b]) {
+      point.forEach((value, axis) => assert.ok(value === low[axis] || value === high[axis]));
+    }
+    seen.add(`${a} ${b}`);
+  }
+  if (low.every((value, axis) => value < high[axis])) assert.equal(seen.size, 12);
+  return [...low, ...high];
+}
+
+test('the lines of the boxes are the server’s, for each tree and level that is chosen', bounded, () =>
+  with_page({}, async (page, script) => {
+    await script.pause();
+    const trees = await script.query('trees');
+    await page.keyboard.press('b');
+    const panel = page.getByRole('region', { name: 'Boxes' });
+    await until(async () => (await panel.getByRole('option').count()) === trees.length);
+    const shown = async (tree, level) => {
+      const boxes = await script.query('boxes', { tree, level });
+      const text = `${boxes.length} ${boxes.length === 1 ? 'box' : 'boxes'}`;
+      await until(async () => (await panel.locator('#box-count').textContent()) === text, text);
+      const { lines } = await until(async () => {
+        const found = await read(page, 'boxes');
+        return found.lines.length === boxes.length * 72 && found;
+      });
+      const drawn = boxes.map((_, k) => box_of_lines(lines.slice(k * 72, k * 72 + 72)));
+      assert.deepEqual(drawn, boxes.map((box) => box.map(Math.fround)));
+    };
+    for (const { tree, levels } of trees) {
+      await panel.getByRole('combobox').selectOption(tree);
+      for (const level of [0, 3, levels - 1]) {
+        await panel.getByRole('slider', { name: 'Level' }).fill(String(level));
+        await shown(tree, level);
+      }
+    }
+    await panel.getByRole('combobox').selectOption('particles');
+    await panel.getByRole('slider', { name: 'Level' }).fill('2');
+    await script.advance(30);
+    const { tick } = await script.query('state');
+    await until(async () => (await read(page, 'boxes')).tick === tick, 'the boxes follow the cloth');
+    await shown('particles', 2);
+    await script.load('curtain');
+    await until(async () => (await panel.getByRole('option').count()) === 3, 'it has no model');
+    await until(async () => (await read(page, 'boxes')).lines.length > 0);
+    await page.locator('#view').focus();
+    await page.keyboard.press('b');
+    await until(async () => (await read(page, 'boxes')).lines.length === 0);
+    await script.load('default');
+    await until(async () => (await read(page, 'scene')) === 'default');
+  }),
+);
+
 test('two pages see each other’s hands, with names and colours', bounded, () =>
   with_page({ name: 'Ada' }, async (ada, script) => {
     const ben = await open_page(browser, server.url, { name: 'Ben' });
@@ -472,6 +534,7 @@ test('on screens wide and narrow every control is within reach and has a name', 
       ['button', 'Reset'],
       ['button', 'Sling'],
       ['button', 'Fan'],
+      ['button', 'Boxes'],
       ['button', 'Frame the cloth'],
       ['button', 'Help'],
       ['button', 'Scenes'],

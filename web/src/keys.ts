@@ -7,6 +7,7 @@ export interface KeyActions {
   step(): void;
   reset(): void;
   toggle_fan(): void;
+  toggle_boxes(): void;
   toggle_sling(): void;
   frame(): void;
   scenes(): void;
@@ -22,6 +23,7 @@ export function listen_to_keys(actions: KeyActions): void {
     '.': () => actions.step(),
     r: () => actions.reset(),
     w: () => actions.toggle_fan(),
+    b: () => actions.toggle_boxes(),
     s: () => actions.toggle_sling(),
     f: () => actions.frame(),
     l: () => actions.scenes(),
@@ -39,8 +41,8 @@ export function listen_to_keys(actions: KeyActions): void {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const element = event.target instanceof Element ? event.target : null;
-    // A dialog is read and closed.
-    if (element?.closest('dialog')) return;
+    // A dialog is read and closed; a list takes letters itself.
+    if (element?.closest('dialog, select')) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const free = !element?.closest('button, input');
     const action = anywhere[key] ?? (free ? outside_controls[key] : undefined);

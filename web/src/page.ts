@@ -1,6 +1,7 @@
 import type { Vector2 } from 'three';
 import type { WeftClient } from '../../proto/js/index.js';
 import type { Frame, Grab, State, Viewer } from '../../proto/js/messages.js';
+import { BoxView } from './box_view.js';
 import { OrbitCamera } from './camera.js';
 import { connect_client, tell_refusal } from './connection.js';
 import { FanHold } from './fan_hold.js';
@@ -36,6 +37,7 @@ export class Page {
   readonly pins = new Pins();
   readonly fans = new Fans();
   readonly client: WeftClient;
+  readonly box_view: BoxView;
   readonly input: Input;
   world: WorldView | null = null;
   state: State | null = null;
@@ -67,6 +69,9 @@ export class Page {
       frame: () => this.frame(),
       fan: () => fan_of_view(this.orbit),
     });
+    const tell = (text: string) => this.panels.tell(text);
+    this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
+    this.stage.scene.add(this.box_view.boxes.lines);
     this.input = new Input(this.canvas, {
       take: (point) => this.take(point),
       follow: (point) => (this.fan_hold ?? this.hold)?.follow(point),
@@ -84,6 +89,7 @@ export class Page {
       step: () => this.toolbar.one_step(),
       reset: () => this.toolbar.reset(),
       toggle_fan: () => this.toolbar.toggle_fan(),
+      toggle_boxes: () => this.box_view.toggle(),
       toggle_sling: () => this.toolbar.toggle_sling(),
       frame: () => this.frame(),
       scenes: () => this.toolbar.show_scenes(),
@@ -106,6 +112,7 @@ export class Page {
       this.world?.dispose();
       this.world = new WorldView(announcement, data, this.stage);
       this.grabs = [];
+      this.box_view.renew();
       if (!same) {
         this.frame(true);
         this.unframed = true;
@@ -281,6 +288,7 @@ export class Page {
       this.unframed = false;
     }
     this.tell_camera(now);
+    this.box_view.follow(this.world?.playback.tick ?? -1);
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;
     if (this.dirty) this.changed_at = now;

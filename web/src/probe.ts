@@ -50,6 +50,11 @@ export function expose_probe(page: Page): void {
     get fans() {
       return structuredClone(page.fans.list);
     },
+    /** Lines of the boxes, six numbers each, and the tick that they are of. */
+    get boxes() {
+      const { boxes, tick } = page.box_view;
+      return { lines: boxes.drawn(), tick };
+    },
     /** Pictures drawn so far; it stands still where nothing changes. */
     get pictures() {
       return page.pictures;

@@ -61,7 +61,7 @@ export class Toolbar {
 
   /** Without a connection nothing can be asked for. */
   enable(connected: boolean): void {
-    for (const id of ['pause', 'step', 'reset', 'fan', 'scene', 'wind', 'gravity', 'fan-speed']) {
+    for (const id of ['pause', 'step', 'reset', 'fan', 'boxes', 'scene', 'wind', 'gravity', 'fan-speed']) {
       element<HTMLButtonElement>(id).disabled = !connected;
     }
     if (connected) void this.scenes.fetch();

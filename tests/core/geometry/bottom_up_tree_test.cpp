@@ -223,6 +223,10 @@ TEST_CASE("a world shows the boxes of its trees by level, around the cloth as it
     }
   }
   // 600 particles; what is deeper than the last level is the last.
+  CHECK(world.debug_tree_levels("object:form") > 1);
+  CHECK_THROWS_AS(world.debug_tree_levels("object:nobody"), DefinitionError);
+  CHECK(world.debug_boxes("particles", world.debug_tree_levels("particles") - 1).size() == 600);
+  CHECK(world.debug_boxes("particles", world.debug_tree_levels("particles") - 2).size() < 600);
   CHECK(world.debug_boxes("particles", 99).size() == 600);
   CHECK(world.debug_boxes("object:form", 99).size() == 1418);
   CHECK_THROWS_AS(world.debug_boxes("object:nobody", 0), DefinitionError);

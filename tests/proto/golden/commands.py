@@ -106,6 +106,15 @@ ACCEPTED = [
         '{"op":"query","what":"camera","viewer":4}',
         op="query", what="camera", format="json", viewer=4,
     ),
+    accepted('{"op":"query","what":"trees"}', op="query", what="trees", format="json"),
+    accepted(
+        '{"op":"query","what":"boxes","tree":"object:form"}',
+        op="query", what="boxes", format="json", tree="object:form",
+    ),
+    accepted(
+        '{"op":"query","what":"boxes","tree":"triangles","level":255,"format":"f32"}',
+        op="query", what="boxes", format="f32", tree="triangles", level=255,
+    ),
     accepted('{"op":"ping","t":-1.5}', op="ping", t=-1.5),
     accepted('{"op":"load","scene":"drape-sphere_2.v"}', op="load", scene="drape-sphere_2.v"),
     accepted(
@@ -268,6 +277,16 @@ def refused_fields():
     yield refuse('{"op":"query","what":"positions","format":"f16"}', "unknown_value",
                  field="format", limit={"allowed": ["json", "f32", "f64"]})
     yield refuse('{"op":"query","what":"pins","viewer":1}', "conflicting_fields", field="viewer")
+    yield refuse('{"op":"query","what":"pins","tree":"triangles"}', "conflicting_fields", field="tree")
+    yield refuse('{"op":"query","what":"trees","level":1}', "conflicting_fields", field="level")
+    yield refuse('{"op":"query","what":"boxes"}', "missing_field", field="tree")
+    yield refuse('{"op":"query","what":"boxes","tree":7}', "wrong_type", field="tree", value=7)
+    yield refuse('{"op":"query","what":"boxes","tree":"' + "t" * 81 + '"}', "wrong_length",
+                 field="tree")
+    yield refuse('{"op":"query","what":"boxes","tree":"triangles","level":256}', "out_of_range",
+                 field="level", value=256, limit=limits(0, 255))
+    yield refuse('{"op":"query","what":"boxes","tree":"triangles","level":0.5}', "not_integer",
+                 field="level", value=0.5)
     yield refuse('{"op":"ping"}', "missing_field", field="t")
     for scene in ("../secret", "/etc/passwd", ".hidden", "a b", "a/b", "c:d", "ä"):
         yield refuse(f'{{"op":"load","scene":"{scene}"}}', "unknown_value", field="scene", value=scene)
@@ -315,6 +334,8 @@ CLIENT_CALLS = [
          sends={"op": "set", "wind": [3, 0, 0], "still_air": True}),
     call("advance", 600, sends={"op": "advance", "n": 600}),
     call("query", "camera", viewer=4, sends={"op": "query", "what": "camera", "viewer": 4}),
+    call("query", "boxes", tree="edges", level=3, sends={
+        "op": "query", "what": "boxes", "tree": "edges", "level": 3}),
     call("query", "energies", sends={"op": "query", "what": "energies"}),
     call("hash", sends={"op": "hash"}),
     call("load", "flag", sends={"op": "load", "scene": "flag"}),
