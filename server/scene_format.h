@@ -23,7 +23,7 @@
 //                                        called last, as everything before is common to all
 //   mesh(placement, take)                take(MeshFile) with the mesh that the placement names
 //
-// Still missing here, with their places kept free: `colliders[].motion`, `fan`.
+// Still missing here, with its place kept free: `colliders[].motion`.
 
 namespace weft::server {
 
@@ -156,6 +156,13 @@ void describe_pin(Io& io, PinDef& pin) {
 }
 
 template <class Io>
+void describe_fans(Io& io, std::vector<FanDef>& fans) {
+  io.list(ListInfo{"fans", 0, kMostFans, "local winds"}, fans, [](Io& in, FanDef& fan) {
+    in.fields([&](auto&& visit) { visit_fields_of_fan(fan, visit); });
+  });
+}
+
+template <class Io>
 void describe_scene(Io& io, WorldDef& def) {
   io.text({"name", 1, 64, true, false, "plain name of the scene"}, def.name);
   io.text({"description", 0, 500, false, false, "one sentence on what to look at"},
@@ -165,11 +172,14 @@ void describe_scene(Io& io, WorldDef& def) {
     if (groups.empty() || groups.back() != path) groups.push_back(path);
   });
   for (const std::string& group : groups) {
-    if (group.empty())
+    if (group.empty()) {
       describe_group(io, def, group);
-    else
-      io.object(group.substr(0, group.size() - 1).c_str(), "see the fields",
-                [&](Io& in) { describe_group(in, def, group); });
+      continue;
+    }
+    io.object(group.substr(0, group.size() - 1).c_str(), "see the fields", [&](Io& in) {
+      describe_group(in, def, group);
+      if (group == "environment.") describe_fans(in, def.environment.fans);
+    });
   }
   io.list(ListInfo{"cloths", 1, kMostCloths, "what is simulated"}, def.cloths,
           [](Io& in, ClothDef& cloth) { describe_cloth(in, cloth); });

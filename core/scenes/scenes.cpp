@@ -174,6 +174,17 @@ void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
   def.environment.drag = 0.5;
 }
 
+void build_fan(WorldDef& def, const std::string&) {
+  def.cloths[0] = hanging_cloth(37, 31, 1.2, 1.5, 1.9, 0);
+  def.cloths[0].fabric = make_fabric("silk");
+  pin_along_top(def, 7, 0.02);
+  def.colliders = {kGround};
+  FanDef fan;
+  fan.position = Vec3d(-0.55, 0.75, 0.9);
+  fan.direction = Vec3d(0.45, 0.05, -0.9);
+  def.environment.fans = {fan};
+}
+
 struct Entry {
   SceneInfo info;
   void (*build)(WorldDef&, const std::string& mesh_directory);
@@ -210,7 +221,11 @@ const std::vector<Entry>& entries() {
       {{"drop-on-bunny",
         "A silk sheet falls over a rabbit: ears and back show through as the folds settle.",
         "bunny"},
-       build_drop_on_bunny}};
+       build_drop_on_bunny},
+      {{"fan",
+        "A fan blows at one side of a silk curtain in calm air: drag it by its hub, aim it by its "
+        "arrow, and see where the jet ends."},
+       build_fan}};
   return list;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 #include <string>
@@ -134,6 +135,9 @@ std::vector<std::string> events() {
   };
 }
 
+constexpr std::array<float, 12> kBoxes = {-0.5F, 0.4F, -0.2F, 0,    1.6F, 0.3F,
+                                          0,     0.4F, -0.2F, 0.5F, 1.6F, 0.3F};
+
 std::vector<std::string> replies() {
   const ClothHit hit{{411, {0.2, 0.5, 0.3}}, {0, 1, 0.12}, 222, 2.88};
   return {
@@ -154,6 +158,7 @@ std::vector<std::string> replies() {
       encode_reply(19, AdvanceReply{600, kHash}),
       encode_reply(20, QueryReply{600, kEnergy}),
       encode_reply(21, BinaryReply{600, QueryWhat::positions, QueryFormat::f64, 1, 600, 3}),
+      encode_reply(23, VectorsReply{600, QueryWhat::boxes, std::span<const float>(kBoxes), 6}),
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),

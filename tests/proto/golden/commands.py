@@ -285,7 +285,7 @@ def refused_fields():
                  field="tree")
     yield refuse('{"op":"query","what":"boxes","tree":"triangles","level":256}', "out_of_range",
                  field="level", value=256, limit=limits(0, 255))
-    yield refuse('{"op":"query","what":"boxes","tree":"triangles","level":0.5}', "not_integer",
+    yield refuse('{"op":"query","what":"boxes","tree":"triangles","level":0.5}', "wrong_type",
                  field="level", value=0.5)
     yield refuse('{"op":"ping"}', "missing_field", field="t")
     for scene in ("../secret", "/etc/passwd", ".hidden", "a b", "a/b", "c:d", "ä"):
