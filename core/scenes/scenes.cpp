@@ -179,9 +179,10 @@ void build_fan(WorldDef& def, const std::string&) {
   def.cloths[0].fabric = make_fabric("silk");
   pin_along_top(def, 7, 0.02);
   def.colliders = {kGround};
-  FanDef fan;
-  fan.position = Vec3d(-0.55, 0.75, 0.9);
-  fan.direction = Vec3d(0.45, 0.05, -0.9);
+  FanDef fan;  // at the right, so that the view from the left shows where it points
+  fan.position = Vec3d(0.95, 0.8, 0.6);
+  fan.direction = Vec3d(-0.8, 0.05, -0.6);
+  fan.speed = 4;
   def.environment.fans = {fan};
 }
 

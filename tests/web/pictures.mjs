@@ -1,5 +1,6 @@
 // Draws scenes in the real page and writes the pictures, with a gallery page of them.
 // usage: WEFT_PROGRAM=build/weft node tests/web/pictures.mjs OUTPUT_FOLDER [SCENE[@TICK]]...
+import { execFileSync } from 'node:child_process';
 import { mkdir, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
@@ -8,19 +9,26 @@ import { start_server } from './support/server.mjs';
 const USUAL_TICK = 240;
 /** Where a scene shows what it is about at another time. */
 const TICKS = { default: 600, 'drape-sphere': 150 };
-const VIEWS = {
-  desktop: { width: 1280, height: 800 },
-  phone: { width: 390, height: 780, touch: true },
+const DESKTOP = { width: 1280, height: 800 };
+const PHONE = { width: 390, height: 780, touch: true };
+/** Pictures of a scene beside that of the scene by itself: what they show, and what is done for it. */
+const EXTRA = {
+  default: [
+    { view: 'phone', title: 'on a phone', options: PHONE },
+    { view: 'boxes', title: 'boxes of the triangles, by level', options: DESKTOP, act: show_boxes },
+  ],
 };
+/** Figures of the paper that are compared with each other stand in one row. */
+const COMPARED_WITH = { 12: 11 };
 
 const [folder, ...asked] = process.argv.slice(2);
 if (!folder) throw new Error('usage: pictures.mjs OUTPUT_FOLDER [SCENE[@TICK]]...');
 await mkdir(folder, { recursive: true });
 
-const server = await start_server(['--paused']);
+const listed = execFileSync(process.env.WEFT_PROGRAM, ['scenes', '--json'], { encoding: 'utf8' });
+const { scenes } = JSON.parse(listed);
 const browser = await launch_browser();
 try {
-  const { scenes } = await (await fetch(new URL('api/v1/scenes', server.url))).json();
   const chosen = asked.length
     ? asked.map((text) => {
         const [name, tick] = text.split('@');
@@ -35,56 +43,91 @@ try {
   console.log(`${pictures.length} pictures: ${join(folder, 'index.html')}`);
 } finally {
   await browser.close();
-  await server.stop();
 }
 
-/** Brings a scene to its tick and takes it as each kind of viewer sees it. */
+/** Brings a scene to its tick and takes it as viewers see it. */
 async function draw(scene) {
+  const server = await start_server(['--paused', '--scene', scene.name]);
   const script = await server.script();
-  await script.load(scene.name);
-  await script.pause();
   if (scene.tick > 0) await script.advance(scene.tick);
   script.close(); // or its name would be in the pictures
   const pictures = [];
-  for (const [view, options] of Object.entries(VIEWS)) {
+  const views = [{ view: 'desktop', title: '', options: DESKTOP }, ...(EXTRA[scene.name] ?? [])];
+  for (const { view, title, options, act } of views) {
     const page = await open_page(browser, server.url, { ...options, name: 'Ada' });
     await until(async () => (await read(page, 'tick')) === scene.tick, 'the tick is shown');
+    await act?.(page);
     await camera_at_rest(page);
     await until(() => read(page, 'fine'), 'the picture is a fine one');
     const file = `${scene.name}-${scene.tick}-${view}.png`;
     await page.screenshot({ path: join(folder, file) });
     if (page.complaints.length) throw new Error(`${file}: ${page.complaints.join('; ')}`);
     await page.context().close();
-    pictures.push({ ...scene, view, file, ...options });
+    pictures.push({ ...scene, view, title, file, ...options });
+    console.log(file);
   }
+  await server.stop();
   return pictures;
 }
 
+async function show_boxes(page) {
+  await page.keyboard.press('b');
+  const panel = page.getByRole('region', { name: 'Boxes' });
+  await until(async () => (await read(page, 'boxes')).lines.length > 0, 'boxes are shown');
+  await panel.getByRole('slider', { name: 'Level' }).fill('6');
+  const shown = panel.locator('#level-value');
+  await until(async () => (await shown.textContent()).startsWith('6 of'), 'those of the level');
+}
+
+/** Number of the paper's figure that a scene shows; null if it shows none. */
+function figure_of(name) {
+  const number = /^seed-fig(\d+)-/.exec(name)?.[1];
+  return number ? (COMPARED_WITH[number] ?? Number(number)) : null;
+}
+
 function gallery(pictures) {
-  const escape = (text) =>
-    text.replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
-  const figures = pictures.map(
-    ({ name, tick, view, file, description, width, height }) => `
-    <figure class="${view}">
-      <a href="${file}"><img src="${file}" width="${width}" height="${height}" loading="lazy"
-        alt="${escape(`${name} at tick ${tick}, ${view}`)}"></a>
-      <figcaption><b>${escape(name)}</b>, tick ${tick}, ${view}. ${escape(description)}</figcaption>
-    </figure>`,
-  );
+  const rows = new Map();
+  for (const picture of pictures) {
+    const key = figure_of(picture.name) ?? (picture.name.startsWith('seed-') ? 'seed' : 'scenes');
+    rows.set(key, [...(rows.get(key) ?? []), picture]);
+  }
+  const of_seed = [...rows].filter(([key]) => key !== 'scenes');
+  const section = (title, parts) =>
+    parts.length ? `\n  <h2>${title}</h2>${parts.map(([, row]) => row_of(row)).join('')}` : '';
   return `<!doctype html>
 <html lang="en">
   <meta charset="utf-8">
+  <meta name="viewport" content="width=device-width, initial-scale=1">
   <title>Weft: pictures of the scenes</title>
   <style>
-    body { font: 15px/1.4 system-ui, sans-serif; margin: 2rem; background: #f4f2ee; color: #26282c; }
-    main { display: flex; flex-wrap: wrap; gap: 1.5rem; align-items: flex-start; }
-    figure { margin: 0; width: 640px; max-width: 100%; }
-    figure.phone { width: 200px; }
+    body { font: 15px/1.4 system-ui, sans-serif; margin: 2rem auto; padding: 0 1.5rem; max-width: 1400px;
+      background: #f4f2ee; color: #26282c; }
+    .row { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(480px, 100%), 1fr));
+      gap: 1.5rem; align-items: start; margin-bottom: 2rem; }
+    figure { margin: 0; }
     img { width: 100%; height: auto; border-radius: 6px; }
+    .phone img { max-width: 260px; }
   </style>
   <h1>Weft: pictures of the scenes</h1>
-  <main>${figures.join('')}
-  </main>
+  <p>Each is the page itself at the named tick of 1/60 s.</p>${section(
+    'Scenes',
+    [...rows].filter(([key]) => key === 'scenes'),
+  )}${section('The seed’s figures and experiments', of_seed)}
 </html>
 `;
+}
+
+function row_of(pictures) {
+  const escape = (text) =>
+    text.replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c]);
+  const figures = pictures.map(({ name, tick, view, title, file, description, width, height }) => {
+    const head = [name, title, `tick ${tick}`].filter(Boolean).join(', ');
+    return `
+    <figure class="${view}">
+      <a href="${file}"><img src="${file}" width="${width}" height="${height}" loading="lazy"
+        alt="${escape(head)}"></a>
+      <figcaption><b>${escape(head)}.</b> ${escape(description)}</figcaption>
+    </figure>`;
+  });
+  return `\n  <div class="row">${figures.join('')}\n  </div>`;
 }
