@@ -166,6 +166,10 @@ test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () 
     await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
     const [hand] = await read(page, 'hands');
     assert.equal(hand.own, true);
+    for (const name of ['Ticks', 'Real time', 'Step', 'Latency']) {
+      const value = page.locator('#measurements div', { hasText: name }).locator('output');
+      await until(async () => /^\d+(\.\d+)?$/.test(await value.textContent()), `${name} is told`);
+    }
     const pins = script.last.pins.length;
     await page.keyboard.press('m');
     await until(() => script.last.pins.length === pins + 1);
@@ -309,6 +313,24 @@ test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by h
     assert.ok(Math.abs(Math.hypot(...aimed.direction) - 1) < 1e-9);
     assert.deepEqual(script.last.grabs, [], 'no hand is in the cloth');
     assert.deepEqual(await camera_at_rest(page), camera);
+
+    await script.pause();
+    const { values } = await script.query('positions', { format: 'f64' });
+    const behind = [...values.slice(3 * 134, 3 * 135)];
+    const before = behind.map((value, axis) => value + 0.3 * (camera.position[axis] - value));
+    await script.set({ fans: [{ position: before, direction: [1, 0, 0] }] });
+    const over = await pixel_of(page, before);
+    await page.mouse.move(over.x, over.y);
+    await until(async () => (await read(page, 'fans'))[0].position[0] === before[0]);
+    await page.keyboard.press('m');
+    await page.mouse.move(over.x + 60, over.y);
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length > 6, 'the cloth beside it is pinned');
+    const [pinned] = script.last.pins.slice(6); // the first, if what is behind the fan was too
+    const at = await pixel_of(page, pinned.position);
+    assert.ok(Math.abs(at.x - over.x) > 40, 'and not what is behind the fan');
+    await script.release({ pin: pinned.id });
+    await script.resume();
 
     await page.getByRole('slider', { name: 'Fan' }).fill('12');
     await fan_of(({ speed }) => speed === 12);

@@ -227,6 +227,8 @@ export class Page {
     if (!this.client.connected || !this.world) return;
     const held = this.hold;
     const hit = held ? null : this.pick(point);
+    // A fan is no cloth, and hides what is behind it.
+    if (this.fan_hold || (!held && this.fan_at(point, hit))) return;
     const at = held ?? hit;
     const particle = at && this.nearest_corner(at);
     const { width, height } = this.size();
