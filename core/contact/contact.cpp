@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -18,10 +19,9 @@ bool is_thinner(const ContactDef& a, const ContactDef& b) {
 
 template <class Real>
 Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
-                       const std::vector<ColliderDef>& colliders, const std::vector<Edge>& edges,
-                       const std::vector<Triangle>& triangles, double longest_edge,
-                       Executor* executor)
-    : cloths_(cloths), executor_(executor), edges_(edges), triangles_(triangles) {
+                       const std::vector<ColliderDef>& colliders, ClothPatches patches,
+                       double longest_edge, Executor* executor)
+    : cloths_(cloths), executor_(executor), patches_(std::move(patches)) {
   const auto [thinnest, thickest] = std::minmax_element(cloths.begin(), cloths.end(), is_thinner);
   thickness_ = static_cast<Real>(thickest->thickness);
   hidden_ = {kHiddenRise * thinnest->thickness, longest_edge};
@@ -43,6 +43,7 @@ Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
   particle_pairs_.resize(meshes_.size());
   edge_pairs_.resize(meshes_.size());
   triangle_pairs_.resize(meshes_.size());
+  neighbourhoods_.assign(meshes_.size(), std::vector<Neighbourhood>(patches_.list.size()));
 }
 
 template <class Real>
@@ -114,11 +115,15 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) 
   bool holds;
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    holds = rows_hold(state, dt);
+    holds = rows_hold(state, dt) || renew_clear(state, dt, profile);
   }
-  if (!holds) rebuild_rows(state, dt, profile);
+  if (!holds) {
+    rebuild_rows(state, dt, profile);
+    measure_way(state, dt);
+  }
   if (!rows_.empty()) {
     const StageTimer timer(profile, Stage::contact, rows_.size());
+    find_busy_rows();
     push_out(state, dt);
     aim_rows(state, dt);
     solve_rows(state, profile);
@@ -131,6 +136,8 @@ template <class Real>
 void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
+  measure_way(state, dt);
+  find_busy_rows();
   aim_rows(state, dt);
   solve_rows(state, profile);
 }
@@ -156,7 +163,7 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
     }
   };
   for (const Vec3<Real>& p : x) probe(p);
-  for (const Edge& edge : edges_) {
+  for (const Edge& edge : patches_.edges) {
     const Vec3<Real>& a = x[static_cast<std::size_t>(edge[0])];
     const Vec3<Real>& b = x[static_cast<std::size_t>(edge[1])];
     for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) probe(a + (b - a) * t);

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
+#include "core/contact/cloth_patches.h"
 #include "core/contact/collider_frame.h"
+#include "core/contact/feature_distance.h"
 #include "core/contact/mesh_shape.h"
 #include "core/executor.h"
 #include "core/world/profile.h"
@@ -39,6 +41,8 @@ struct ContactRow {
   int count = 0;
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
   Real offset = 0;                         ///< [m]
+  Real distance = 0;                       ///< when the row was built [m]
+  Real least_height = 0;                   ///< of a particle over the plane, then [m]
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
   Real thickness = 0;                      ///< that the cloth keeps [m]
   Index cloth = 0;                         ///< whose friction and restitution it has
@@ -74,14 +78,13 @@ class Contact {
  public:
   Contact() = default;
 
-  /// @param cloths           settings of each cloth, in the order of their particles; at least one
-  /// @param edges,triangles  of all cloths
-  /// @param longest_edge     of all cloths at rest [m]
-  /// @param executor         runs the collection in chunks; may be null
+  /// @param cloths        settings of each cloth, in the order of their particles; at least one
+  /// @param patches       the features of all cloths
+  /// @param longest_edge  of all cloths at rest [m]
+  /// @param executor      runs the collection in chunks; may be null
   /// Throws DefinitionError if a collider is out of range.
   Contact(const std::vector<ContactDef>& cloths, const std::vector<ColliderDef>& colliders,
-          const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
-          double longest_edge, Executor* executor);
+          ClothPatches patches, double longest_edge, Executor* executor);
 
   /// Forgets everything about where the cloth is.
   void reset();
@@ -132,10 +135,42 @@ class Contact {
     bool smooth;
     std::size_t collider;
   };
-  /// What a chunk of the collection finds.
+  using Pairs = std::vector<ContactCandidate<Real>>;
+  using Measure = void (*)(const FeatureTable<Real>&);
+  /// Features of a cloth's patch, or of a mesh near it, as rows or columns of a FeatureTable.
+  struct Features {
+    std::vector<Index> number;
+    std::vector<Real> values;
+    std::vector<Real> reach2;       ///< of the cloth's: how near the other of a pair is [m^2]
+    std::vector<Aabb<Real>> boxes;  ///< of the cloth's
+    Aabb<Real> around;              ///< the reach of all
+
+    void clear();
+    void add(Index feature, Real reach, const Aabb<Real>& box,
+             std::initializer_list<Vec3<Real>> vectors);
+  };
+  /// What a mesh has about a patch of the cloth; serves until the patch leaves the box.
+  struct Neighbourhood {
+    Aabb<Real> box;
+    Features triangles, edges, vertices;
+  };
+  /// What a chunk of the collection finds, and room to work.
   struct Found {
-    std::vector<ContactCandidate<Real>> pairs;
+    Pairs particle_pairs, edge_pairs, triangle_pairs;
     std::uint64_t tests = 0;
+    Features particles, edges, triangles;
+    std::vector<Real> distance2;
+  };
+  /// How far the particles of a row may go without its mattering.
+  struct RowRoom {
+    std::array<Index, 3> particle;
+    Real touch2;  ///< squared, until it responds [m^2]
+    Real cross2;  ///< squared, until somebody could cross its plane [m^2]
+  };
+  /// Near features of a patch, as ranges of their lists.
+  struct NearPatch {
+    std::size_t patch = 0;
+    IndexRange particles, edges, triangles;
   };
   static constexpr int kChunks = 8;
 
@@ -149,18 +184,32 @@ class Contact {
   void collect(const ClothState<Real>& state, Real dt, Profile& profile);
   void measure_clearance(const ClothState<Real>& state, Real dt, Profile& profile);
   void mark_near(const ClothState<Real>& state);
-  void collect_particle_pairs(const ClothState<Real>& state, Profile& profile);
-  void mark_paired();
-  void collect_feature_pairs(const ClothState<Real>& state, Profile& profile);
+  bool renew_clear(const ClothState<Real>& state, Real dt, Profile& profile);
+  bool renew_clearance(const ClothState<Real>& state, std::size_t i, Real dt);
+  Real wanted_skin(const ClothState<Real>& state, std::size_t i, Real dt) const;
   Real analytic_clearance(const Vec3<Real>& p, Real reach) const;
   Real clearance(const Vec3<Real>& p, Real reach) const;
   Real least_clearance(const Vec3<Real>& p, Real reach) const;
-  template <class Visit>
-  void collect_kind(std::size_t count, std::vector<ContactCandidate<Real>>& into, Profile& profile,
-                    Visit&& visit);
+
+  // contact_pairs.cpp
+  void collect_pairs(const ClothState<Real>& state, Profile& profile);
+  void mark_paired();
+  void join_found(std::size_t mesh, Profile& profile);
+  void load_particles(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
+  void load_edges(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
+  void load_triangles(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
+  void load_mesh(const MeshShape<Real>& mesh, Neighbourhood& about) const;
+  void pair_patch(std::size_t m, const NearPatch& near, const Vec3Array<Real>& x, Found& found);
+  FeatureTable<Real> measure_all(const Features& cloth, const Features& mesh, const Aabb<Real>& box,
+                                 Measure measure, Found& found, std::vector<Real>& room) const;
+  void pair_all(const Features& cloth, const Features& mesh, const Aabb<Real>& box, Measure measure,
+                Found& found, Pairs& pairs, std::vector<Real>& room);
+  void pair_particles(const MeshShape<Real>& mesh, const Vec3Array<Real>& x,
+                      const Neighbourhood& about, Found& found);
+  void extend_skins();
 
   // contact_rows.cpp
-  bool rows_hold(const ClothState<Real>& state, Real dt) const;
+  bool rows_hold(const ClothState<Real>& state, Real dt);
   void rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void add_particle_rows(const ClothState<Real>& state, Profile& profile);
   void add_edge_rows(const ClothState<Real>& state, Profile& profile);
@@ -171,6 +220,16 @@ class Contact {
                std::size_t collider, bool responds = true);
 
   // contact_solve.cpp
+  bool measure_way(const ClothState<Real>& state, Real dt);
+  /// Whether no object moves or has moved since the lists were made.
+  bool stands_still() const {
+    return !any_tracked_ && moving_rows_.empty() && way_rows_ == 0 && way_step_ == 0 && gone_ == 0;
+  }
+  bool measure_pushed_way(const ClothState<Real>& state, Real dt);
+  void measure_rooms();
+  Real farthest2(const RowRoom& room) const;
+  void find_busy_rows();
+  void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
   void aim_rows(const ClothState<Real>& state, Real dt);
   void solve_rows(ClothState<Real>& state, Profile& profile);
@@ -200,8 +259,7 @@ class Contact {
   std::vector<ContactDef> cloths_;
   Real thickness_ = 0;  ///< the largest of all cloths, for reaches [m]
   Executor* executor_ = nullptr;
-  std::vector<Edge> edges_;
-  std::vector<Triangle> triangles_;
+  ClothPatches patches_;
   HiddenRidges hidden_;
   std::vector<Plane> planes_;
   std::vector<Ball> balls_;
@@ -218,20 +276,29 @@ class Contact {
   std::vector<Real> fresh_clearance_;  ///< the same, while pairs are collected
   std::vector<char> has_pairs_;
   std::size_t collections_ = 0;
+  /// How far each of the near features may go before it can touch what it has no pair with [m].
+  std::vector<Real> particle_room_, edge_room_, triangle_room_;
   std::vector<Real> skin_;       ///< how far each may move before the next collection
+  std::vector<Real> moved_;      ///< of each since the collection, when the rows are built [m]
   std::vector<Real> row_reach_;  ///< how far each may move before the next rows
   std::vector<Real>
       span_;  ///< farthest that a point of an edge or triangle is from its nearest corner
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
   std::vector<char> paired_;         ///< in a candidate pair, or near an analytic shape
   std::vector<Index> active_particles_, near_edges_, near_triangles_;
-  std::vector<std::vector<ContactCandidate<Real>>> particle_pairs_, edge_pairs_, triangle_pairs_;
+  std::vector<NearPatch> near_patches_;                     ///< ranges of those three lists
+  std::vector<std::vector<Neighbourhood>> neighbourhoods_;  ///< of each mesh, for each patch
+  std::vector<Pairs> particle_pairs_, edge_pairs_, triangle_pairs_;
   std::array<Found, kChunks> found_;
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
   std::vector<MeshDistance<Real>>
       nearby_;                ///< triangles near one particle, while its rows are built
   std::vector<char> inside_;  ///< particles inside a closed mesh
   std::vector<ContactRow<Real>> rows_;
+  std::vector<Real> travel2_;             ///< see measure_way [m^2]
+  std::vector<RowRoom> rooms_;            ///< of the rows
+  std::vector<std::size_t> busy_rows_;    ///< rows that can respond in this step
+  std::vector<std::size_t> pushed_rows_;  ///< those that have, some more than once
 
   std::vector<Plane> own_planes_;  ///< as defined
   std::vector<Ball> own_balls_;

@@ -11,7 +11,7 @@ namespace weft {
 namespace {
 
 /// Substeps of a particle's present motion for which rows shall hold.
-constexpr double kRowSubsteps = 9;
+constexpr double kRowSubsteps = 14;
 
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
@@ -36,8 +36,9 @@ Separation<Real> separate(const Vec3<Real>& p, const Vec3<Real>& q, const Vec3<R
 
 /// Whether all lists stay valid through the coming drift.
 template <class Real>
-bool Contact<Real>::rows_hold(const ClothState<Real>& state, Real dt) const {
+bool Contact<Real>::rows_hold(const ClothState<Real>& state, Real dt) {
   if (!collected_ || !rows_built_) return false;
+  if (stands_still()) return measure_way(state, dt);
   const Real less = way_rows_ + way_step_;  // what objects have taken of the reach, and will
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec3<Real> next = state.x[i] + state.v[i] * dt;
@@ -52,10 +53,11 @@ template <class Real>
 void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile) {
   const std::size_t n = state.x.size();
   row_reach_.resize(n);
+  moved_.resize(n);
   const auto allow = [&] {
     for (std::size_t i = 0; i < n; ++i) {
-      const Real moved = (state.x[i] - x_collected_[i]).norm() + gone_;
-      const Real left = skin_[i] - moved;
+      moved_[i] = (state.x[i] - x_collected_[i]).norm();
+      const Real left = skin_[i] - moved_[i] - gone_;
       const Real step = state.v[i].norm() * dt;
       // An object and what it carries along both go its way.
       if (!(left >= step * Real(1.5) + way_step_ * Real(3))) return false;
@@ -75,9 +77,11 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   take_to_own(state.x);
   rows_.clear();
   moving_rows_.clear();
+  travel2_.resize(n);
   add_particle_rows(state, profile);
   add_edge_rows(state, profile);
   add_triangle_rows(state, profile);
+  measure_rooms();
   rows_built_ = true;
 }
 
@@ -100,6 +104,11 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
   for (std::size_t k = 0; k < static_cast<std::size_t>(row.count) && !held; ++k)
     row.share[k] =
         row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
+  row.least_height = std::numeric_limits<Real>::infinity();
+  for (const Index i : particles)
+    row.least_height = std::min(
+        row.least_height, normal.dot(state.x[static_cast<std::size_t>(i)]) - (height - distance));
+  row.distance = distance;
   row.responds = responds && !held;
   row.cloth = cloth_of(row.particle[0]);
   row.thickness = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].thickness);
@@ -123,7 +132,7 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
   const ColliderFrame<Real>& frame = frames_[collider];
   const Vec3<Real>& x = in_frame_of(m, state.x)[p];
   const Real reach = thickness_ + row_reach_[p];
-  const Real moved = (state.x[p] - x_collected_[p]).norm() + frame.way_collected;
+  const Real moved = moved_[p] + frame.way_collected;
   // Whoever is inside looks for the way out, however far it is.
   const bool outside = clearance_[p] >= 0;
   const auto& pairs = particle_pairs_[m];  // in the order of the active particles
@@ -197,7 +206,7 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
             responds);
   };
   for (const Index k : near_edges_) {
-    const Edge& e = edges_[static_cast<std::size_t>(k)];
+    const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
     for (const Ball& ball : balls_) {
       if (ball.smooth) continue;
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
@@ -217,11 +226,11 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
     const ColliderFrame<Real>& frame = frames_[mesh_collider_[m]];
     const Vec3Array<Real>& own = in_frame_of(m, state.x);
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
-      const Edge& e = edges_[static_cast<std::size_t>(pair.cloth)];
+      const Edge& e = patches_.edges[static_cast<std::size_t>(pair.cloth)];
       if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])])
         continue;
-      const Real moved = std::max((x(e[0]) - x_collected_[static_cast<std::size_t>(e[0])]).norm(),
-                                  (x(e[1]) - x_collected_[static_cast<std::size_t>(e[1])]).norm());
+      const Real moved =
+          std::max(moved_[static_cast<std::size_t>(e[0])], moved_[static_cast<std::size_t>(e[1])]);
       if (pair.distance - moved - frame.way_collected > reach_of(e)) continue;
       const MeshEdge& other = mesh.edges[static_cast<std::size_t>(pair.feature)];
       const auto c = closest_of_segments<Real>(own[static_cast<std::size_t>(e[0])],
@@ -257,7 +266,7 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
             c.feature == 0);
   };
   for (const Index k : near_triangles_) {
-    const Triangle& t = triangles_[static_cast<std::size_t>(k)];
+    const Triangle& t = patches_.triangles[static_cast<std::size_t>(k)];
     for (const Ball& ball : balls_) {
       if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
     }
@@ -271,14 +280,12 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
     const MeshShape<Real>& mesh = meshes_[m];
     const ColliderFrame<Real>& frame = frames_[mesh_collider_[m]];
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
-      const Triangle& t = triangles_[static_cast<std::size_t>(pair.cloth)];
+      const Triangle& t = patches_.triangles[static_cast<std::size_t>(pair.cloth)];
       if (std::any_of(t.begin(), t.end(),
                       [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; }))
         continue;
-      Real moved = 0;
-      for (const Index i : t)
-        moved = std::max(moved, (x(i) - x_collected_[static_cast<std::size_t>(i)]).norm());
-      if (pair.distance - moved - frame.way_collected > thickness_ + over(t, row_reach_)) continue;
+      const Real moved = over(t, moved_) + frame.way_collected;
+      if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
       const auto v = static_cast<std::size_t>(pair.feature);
       add(t, frame.world(mesh.positions[v]), Real(0), frame.world_direction(mesh.vertex_normals[v]),
           mesh_collider_[m]);
@@ -288,7 +295,7 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                \
-  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real) const;                \
+  template bool Contact<Real>::rows_hold(const ClothState<Real>&, Real);                      \
   template void Contact<Real>::rebuild_rows(const ClothState<Real>&, Real, Profile&);         \
   template void Contact<Real>::add_particle_rows(const ClothState<Real>&, Profile&);          \
   template void Contact<Real>::add_edge_rows(const ClothState<Real>&, Profile&);              \

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/contact.h"
+#include "core/contact/travel.h"
 
 namespace weft {
 namespace {
@@ -28,13 +30,16 @@ constexpr int kCertifyRounds = 3;
 /// What must be left between a particle and an object after every step [m].
 constexpr double kSmallestGap = 1e-5;
 
-/// sum w values: a position or velocity of the row's point of the cloth.
+/// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
+/// particle, of weight 1.
 template <class Real>
 Vec3<Real> weighted(const ContactRow<Real>& row, const Vec3Array<Real>& values) {
-  Vec3<Real> sum = values[static_cast<std::size_t>(row.particle[0])] * row.weight[0];
-  for (std::size_t k = 1; k < static_cast<std::size_t>(row.count); ++k)
-    sum += values[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
-  return sum;
+  const auto at = [&](std::size_t k) -> const Vec3<Real>& {
+    return values[static_cast<std::size_t>(row.particle[k])];
+  };
+  if (row.count == 1) return at(0);
+  const Vec3<Real> two = at(0) * row.weight[0] + at(1) * row.weight[1];
+  return row.count == 2 ? two : (two + at(2) * row.weight[2]).eval();
 }
 
 /// Moves the row's point by `change`, shared by mass.
@@ -46,16 +51,88 @@ void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<
 
 }  // namespace
 
+/// Measures how far everybody is from where the rows were built, now or after the coming drift.
+/// @return whether all stay within their reach
+template <class Real>
+bool Contact<Real>::measure_way(const ClothState<Real>& state, Real dt) {
+  TravelPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.from = x_rows_.data()->data();
+  pass.reach = row_reach_.data();
+  pass.travel2 = travel2_.data();
+  return measure_travel(pass);
+}
+
+/// The same for those alone whom the rows have moved or pushed since everybody was measured.
+template <class Real>
+bool Contact<Real>::measure_pushed_way(const ClothState<Real>& state, Real dt) {
+  bool within = true;
+  for (const std::size_t r : pushed_rows_) {
+    const ContactRow<Real>& row = rows_[r];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      const auto i = static_cast<std::size_t>(row.particle[k]);
+      const Vec3<Real> way = state.x[i] - x_rows_[i];
+      const Real end2 = (way + state.v[i] * dt).squaredNorm();
+      travel2_[i] = std::max(way.squaredNorm(), end2);
+      within &= end2 <= row_reach_[i] * row_reach_[i];
+    }
+  }
+  return within;
+}
+
+/// What of the rows tells whether they matter, close together.
+template <class Real>
+void Contact<Real>::measure_rooms() {
+  // With some room for what the response of other rows changes.
+  constexpr Real kRoom = Real(0.7);
+  const auto square = [](Real room) { return room > 0 ? room * room : Real(-1); };
+  rooms_.clear();
+  for (const ContactRow<Real>& row : rows_) {
+    RowRoom room;
+    for (std::size_t k = 0; k < 3; ++k)
+      room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
+    room.touch2 = row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * kRoom)
+                               : std::numeric_limits<Real>::infinity();
+    room.cross2 = square(row.least_height - Real(kSmallestGap));
+    rooms_.push_back(room);
+  }
+}
+
+/// Squared way of the particle of a row that goes farthest.
+template <class Real>
+Real Contact<Real>::farthest2(const RowRoom& room) const {
+  return std::max({travel2_[static_cast<std::size_t>(room.particle[0])],
+                   travel2_[static_cast<std::size_t>(room.particle[1])],
+                   travel2_[static_cast<std::size_t>(room.particle[2])]});
+}
+
+/// Lists the rows that can respond in this step: the others are farther from touching than their
+/// particles go. Where objects move, all may.
+template <class Real>
+void Contact<Real>::find_busy_rows() {
+  busy_rows_.clear();
+  pushed_rows_.clear();
+  const bool all = !stands_still();
+  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+    if (all ? rows_[r].responds : !(farthest2(rooms_[r]) < rooms_[r].touch2))
+      busy_rows_.push_back(r);
+  }
+}
+
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   const bool pinched = !moving_rows_.empty();
   if (pinched) x_unpushed_ = state.x;
-  for (const ContactRow<Real>& row : rows_) {
-    if (!row.responds) continue;
+  for (const std::size_t r : busy_rows_) {
+    const ContactRow<Real>& row = rows_[r];
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
     share_out<Real>(row, row.normal * step, state.x);
+    pushed_rows_.push_back(r);
   }
   if (pinched) take_back_pushes(state);
 }
@@ -64,8 +141,8 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
 /// none when touching, and a bounce after an impact.
 template <class Real>
 void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
-  for (ContactRow<Real>& row : rows_) {
-    if (!row.responds) continue;
+  for (const std::size_t r : busy_rows_) {
+    ContactRow<Real>& row = rows_[r];
     const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
     const Real room = std::max(Real(0), gap - row.thickness - Real(kTouchSlack));
@@ -89,8 +166,8 @@ template <class Real>
 void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const ContactRow<Real>& row : rows_) {
-      if (!row.responds) continue;
+    for (const std::size_t r : busy_rows_) {
+      const ContactRow<Real>& row = rows_[r];
       Vec3<Real> v = weighted(row, state.v);
       if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
       const Real vn = row.normal.dot(v);
@@ -106,6 +183,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
         change -= speed > most ? (slip * (most / speed)).eval() : slip;
       }
       share_out(row, change, state.v);
+      pushed_rows_.push_back(r);
       if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
     }
   }
@@ -135,19 +213,10 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
   return kept;
 }
 
-/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach within
-/// which the planes are all that matters. Not moving is always allowed.
+/// Holds whoever would go beyond the reach within which the planes are all that matters. Not moving
+/// is always allowed.
 template <class Real>
-void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
-  if (!moving_rows_.empty()) return certify_with_movers(state, dt);
-  bool kept = true;
-  for (int round = 0; round < kCertifyRounds && kept; ++round) {
-    kept = false;
-    for (const ContactRow<Real>& row : rows_) kept |= keep_off(row, false, state, dt);
-  }
-  if (kept) {
-    for (const ContactRow<Real>& row : rows_) keep_off(row, true, state, dt);
-  }
+void Contact<Real>::hold_within_reach(ClothState<Real>& state, Real dt) {
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3<Real> end = state.x[i] + state.v[i] * dt;
@@ -156,7 +225,38 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   }
 }
 
+/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach.
+template <class Real>
+void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
+  if (!moving_rows_.empty()) return certify_with_movers(state, dt);
+  const bool still = stands_still();
+  if (!still || !measure_pushed_way(state, dt)) {
+    hold_within_reach(state, dt);
+    measure_way(state, dt);
+  }
+  bool kept = false;
+  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+    if (!still || !(farthest2(rooms_[r]) < rooms_[r].cross2))
+      kept |= keep_off(rows_[r], false, state, dt);
+  }
+  if (!kept) return;
+  for (int round = 1; round < kCertifyRounds && kept; ++round) {
+    kept = false;
+    for (const ContactRow<Real>& row : rows_) kept |= keep_off(row, false, state, dt);
+  }
+  if (kept) {
+    for (const ContactRow<Real>& row : rows_) keep_off(row, true, state, dt);
+  }
+  hold_within_reach(state, dt);
+}
+
 #define WEFT_INSTANTIATE(Real)                                                                  \
+  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);                      \
+  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real);               \
+  template void Contact<Real>::measure_rooms();                                                 \
+  template Real Contact<Real>::farthest2(const RowRoom&) const;                                 \
+  template void Contact<Real>::find_busy_rows();                                                \
+  template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                      \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                               \
   template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                         \
   template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);                         \

@@ -38,10 +38,28 @@ bool is_hidden(const TriangleMesh& mesh, const MeshEdge& edge, const HiddenRidge
   return turn * length / 4 <= hidden.rise && turn * length * length / (8 * width) <= hidden.rise;
 }
 
+/// Sorts features by the triangle that each is with; kNone for those left out.
+OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t triangles) {
+  OwnedFeatures owned;
+  owned.first.assign(triangles + 1, 0);
+  for (const Index t : triangle_of) {
+    if (t != kNone) ++owned.first[static_cast<std::size_t>(t) + 1];
+  }
+  for (std::size_t t = 0; t < triangles; ++t) owned.first[t + 1] += owned.first[t];
+  owned.list.resize(static_cast<std::size_t>(owned.first[triangles]));
+  std::vector<Index> next = owned.first;
+  for (std::size_t f = 0; f < triangle_of.size(); ++f) {
+    if (triangle_of[f] == kNone) continue;
+    Index& place = next[static_cast<std::size_t>(triangle_of[f])];
+    owned.list[static_cast<std::size_t>(place++)] = static_cast<Index>(f);
+  }
+  return owned;
+}
+
 template <class Real>
 void find_sharp_features(const TriangleMesh& mesh, const HiddenRidges& hidden,
                          MeshShape<Real>& shape) {
-  std::vector<char> sharp_vertex(mesh.positions.size(), 0);
+  std::vector<Index> of_edge(shape.edges.size(), kNone), of_vertex(mesh.positions.size(), kNone);
   for (std::size_t e = 0; e < shape.edges.size(); ++e) {
     const MeshEdge& edge = shape.edges[e];
     const bool rim = edge.triangle[1] == kNone;
@@ -51,37 +69,22 @@ void find_sharp_features(const TriangleMesh& mesh, const HiddenRidges& hidden,
     shape.edge_normals.push_back(
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
     if (shape.closed && !rim && is_hidden(mesh, edge, hidden)) continue;
-    shape.sharp_edges.push_back(static_cast<Index>(e));
-    sharp_vertex[static_cast<std::size_t>(edge.a)] = 1;
-    sharp_vertex[static_cast<std::size_t>(edge.b)] = 1;
+    of_edge[e] = edge.triangle[0];
+    of_vertex[static_cast<std::size_t>(edge.a)] = edge.triangle[0];
+    of_vertex[static_cast<std::size_t>(edge.b)] = edge.triangle[0];
   }
-  for (std::size_t v = 0; v < sharp_vertex.size(); ++v) {
-    if (sharp_vertex[v]) shape.sharp_vertices.push_back(static_cast<Index>(v));
-  }
+  shape.sharp_edges = with_triangles(of_edge, mesh.triangles.size());
+  shape.sharp_vertices = with_triangles(of_vertex, mesh.triangles.size());
 }
 
 template <class Real>
-void build_trees(MeshShape<Real>& shape) {
+void build_tree(MeshShape<Real>& shape) {
   std::vector<Aabb<Real>> boxes;
-  const auto at = [&](Index i) { return shape.positions[static_cast<std::size_t>(i)]; };
   for (const Triangle& t : shape.triangles) {
     boxes.emplace_back();
-    for (const Index i : t) boxes.back().add(at(i));
+    for (const Index i : t) boxes.back().add(shape.positions[static_cast<std::size_t>(i)]);
   }
   shape.triangle_tree.build(boxes);
-  boxes.clear();
-  for (const Index e : shape.sharp_edges) {
-    boxes.emplace_back();
-    boxes.back().add(at(shape.edges[static_cast<std::size_t>(e)].a));
-    boxes.back().add(at(shape.edges[static_cast<std::size_t>(e)].b));
-  }
-  shape.edge_tree.build(boxes);
-  boxes.clear();
-  for (const Index v : shape.sharp_vertices) {
-    boxes.emplace_back();
-    boxes.back().add(at(v));
-  }
-  shape.vertex_tree.build(boxes);
 }
 
 /// Normal of the feature of triangle t that is nearest: face, corner, or edge.
@@ -118,7 +121,7 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidde
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
   find_sharp_features(mesh, hidden, shape);
-  build_trees(shape);
+  build_tree(shape);
   return shape;
 }
 

@@ -8,9 +8,15 @@
 
 namespace weft {
 
-/// A triangle mesh prepared for contact: positions in Real, normals of every feature, and three
-/// hierarchies. Edges and vertices that cannot touch a cloth before their triangles do (flat or
-/// concave ones of a closed mesh) are left out of theirs.
+/// For each triangle of a mesh some of its edges or vertices, each of which is with one triangle.
+struct OwnedFeatures {
+  std::vector<Index> first;  ///< those of triangle t are list[first[t]] to list[first[t + 1] - 1]
+  std::vector<Index> list;
+};
+
+/// A triangle mesh prepared for contact: positions in Real, normals of every feature, and a
+/// hierarchy of the triangles. Edges and vertices that cannot touch a cloth before their triangles
+/// do (flat or concave ones of a closed mesh) are not sharp.
 template <class Real>
 struct MeshShape {
   bool closed = false;
@@ -20,10 +26,9 @@ struct MeshShape {
   Vec3Array<Real> face_normals;
   Vec3Array<Real> vertex_normals;  ///< angle-weighted
   std::vector<MeshEdge> edges;
-  Vec3Array<Real> edge_normals;       ///< mean of the two faces, unit
-  std::vector<Index> sharp_edges;     ///< edges in `edge_tree`
-  std::vector<Index> sharp_vertices;  ///< vertices in `vertex_tree`
-  Bvh<Real> triangle_tree, edge_tree, vertex_tree;
+  Vec3Array<Real> edge_normals;               ///< mean of the two faces, unit
+  OwnedFeatures sharp_edges, sharp_vertices;  ///< each with one of its triangles
+  Bvh<Real> triangle_tree;
 };
 
 /// What lets ridges of a smooth solid go without pairs of their own.

@@ -1,13 +1,10 @@
 #include "core/diagnostics/energies.h"
 
-#include "core/forces/force_pass.h"
-
 namespace weft {
 
 template <class Real>
 EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
-                            const Vec3<Real>& gravity) {
-  const ElasticEnergy elastic = elastic_energy(model, state.x);
+                            const Vec3<Real>& gravity, const ElasticEnergy& elastic) {
   Energies e;
   e.stretch = elastic.stretch;
   e.bending = elastic.bending;
@@ -20,6 +17,16 @@ EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real
   return {e, elastic.largest_strain};
 }
 
+template <class Real>
+EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
+                            const Vec3<Real>& gravity) {
+  return read_energies(model, state, gravity, elastic_energy(model, state.x));
+}
+
+template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
+                                     const Vec3<float>&, const ElasticEnergy&);
+template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,
+                                     const Vec3<double>&, const ElasticEnergy&);
 template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
                                      const Vec3<float>&);
 template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,

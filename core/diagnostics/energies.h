@@ -2,6 +2,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/forces/force_pass.h"
 #include "core/types.h"
 
 namespace weft {
@@ -27,9 +28,18 @@ template <class Real>
 EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
                             const Vec3<Real>& gravity);
 
+/// The same where the elastic part is known already.
+template <class Real>
+EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
+                            const Vec3<Real>& gravity, const ElasticEnergy& elastic);
+
 extern template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
                                             const Vec3<float>&);
 extern template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,
                                             const Vec3<double>&);
+extern template EnergyReading read_energies(const ClothModel<float>&, const ClothState<float>&,
+                                            const Vec3<float>&, const ElasticEnergy&);
+extern template EnergyReading read_energies(const ClothModel<double>&, const ClothState<double>&,
+                                            const Vec3<double>&, const ElasticEnergy&);
 
 }  // namespace weft

@@ -309,6 +309,35 @@ HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_fri
   }
 }
 
+/// Takes the numbers of each row apart into the three components.
+template <class Real>
+HWY_INLINE void take_apart(const GridView<Real>& g, const Real* from, Real* const (&to)[3]) {
+  const hn::CappedTag<Real, kGridMargin> d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
+    const Real* particles = from + 3 * r * g.columns;
+    std::ptrdiff_t c = 0;
+    for (; c + lanes <= g.columns; c += lanes) {
+      hn::Vec<decltype(d)> x, y, z;
+      hn::LoadInterleaved3(d, particles + 3 * c, x, y, z);
+      hn::StoreU(x, d, to[0] + r * g.stride + c);
+      hn::StoreU(y, d, to[1] + r * g.stride + c);
+      hn::StoreU(z, d, to[2] + r * g.stride + c);
+    }
+    for (; c < g.columns; ++c) {
+      for (int k = 0; k < 3; ++k) to[k][r * g.stride + c] = particles[3 * c + k];
+    }
+  }
+}
+
+HWY_ATTR void take_apart_f32(const GridView<float>& grid, const float* from,
+                             float* const (&to)[3]) {
+  take_apart(grid, from, to);
+}
+HWY_ATTR void take_apart_f64(const GridView<double>& grid, const double* from,
+                             double* const (&to)[3]) {
+  take_apart(grid, from, to);
+}
 HWY_ATTR void internal_forces_f32(const GridView<float>& grid, float* force) {
   internal_forces(grid, force);
 }

@@ -11,10 +11,20 @@
 #if HWY_ONCE
 namespace weft {
 
+HWY_EXPORT(take_apart_f32);
+HWY_EXPORT(take_apart_f64);
 HWY_EXPORT(internal_forces_f32);
 HWY_EXPORT(internal_forces_f64);
 HWY_EXPORT(air_forces_f32);
 HWY_EXPORT(air_forces_f64);
+
+void grid_take_apart(const GridView<float>& grid, const float* from, float* const (&to)[3]) {
+  HWY_DYNAMIC_DISPATCH(take_apart_f32)(grid, from, to);
+}
+
+void grid_take_apart(const GridView<double>& grid, const double* from, double* const (&to)[3]) {
+  HWY_DYNAMIC_DISPATCH(take_apart_f64)(grid, from, to);
+}
 
 void grid_internal_forces(const GridView<float>& grid, float* force) {
   HWY_DYNAMIC_DISPATCH(internal_forces_f32)(grid, force);

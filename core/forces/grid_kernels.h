@@ -7,6 +7,11 @@ namespace weft {
 // The vector code behind GridPass, chosen for the processor when the program runs.
 // `force` takes three numbers a particle and is overwritten.
 
+/// Takes three numbers a particle apart into arrays of components in the layout of the view.
+/// @param to  at (row 0, column 0)
+void grid_take_apart(const GridView<float>& grid, const float* from, float* const (&to)[3]);
+void grid_take_apart(const GridView<double>& grid, const double* from, double* const (&to)[3]);
+
 void grid_internal_forces(const GridView<float>& grid, float* force);
 void grid_internal_forces(const GridView<double>& grid, double* force);
 

@@ -53,18 +53,10 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
 
 template <class Real>
 void GridPass<Real>::scatter(const Vec3Array<Real>& values, Components& components) const {
-  for (int r = 0; r < view_.rows; ++r) {
-    const Vec3<Real>* from =
-        values.data() + first_ + static_cast<std::ptrdiff_t>(r) * view_.columns;
-    const std::ptrdiff_t row = (r + 2) * view_.stride + kGridMargin;
-    Real *x = components[0].data() + row, *y = components[1].data() + row,
-         *z = components[2].data() + row;
-    for (int c = 0; c < view_.columns; ++c) {
-      x[c] = from[c][0];
-      y[c] = from[c][1];
-      z[c] = from[c][2];
-    }
-  }
+  const std::ptrdiff_t origin = 2 * view_.stride + kGridMargin;
+  grid_take_apart(view_, (values.data() + first_)->data(),
+                  {components[0].data() + origin, components[1].data() + origin,
+                   components[2].data() + origin});
 }
 
 template <class Real>

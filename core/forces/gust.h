@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -34,27 +35,45 @@ inline Real fade(Real t) {
 }  // namespace gust_detail
 
 /// Smooth noise in space, each component within [-1, 1] and of mean 0, with features of size one.
-/// The same point gives the same value on any machine.
-/// @param p  position in units of the eddy size; every finite value is fine
+/// The same point gives the same value on any machine. The corners of the last cell are kept, as
+/// neighbouring particles mostly ask for the same.
 template <class Real>
-inline Vec3<Real> smooth_noise(const Vec3d& p) {
-  using gust_detail::fade;
-  using gust_detail::lattice_value;
-  const double fx = std::floor(p[0]), fy = std::floor(p[1]), fz = std::floor(p[2]);
-  const auto ix = static_cast<std::int64_t>(fx), iy = static_cast<std::int64_t>(fy),
-             iz = static_cast<std::int64_t>(fz);
-  const Real tx = fade(static_cast<Real>(p[0] - fx)), ty = fade(static_cast<Real>(p[1] - fy)),
-             tz = fade(static_cast<Real>(p[2] - fz));
-  Vec3<Real> layer[2];
-  for (int k = 0; k < 2; ++k) {
-    const Vec3<Real> a = lattice_value<Real>(ix, iy, iz + k),
-                     b = lattice_value<Real>(ix + 1, iy, iz + k);
-    const Vec3<Real> c = lattice_value<Real>(ix, iy + 1, iz + k),
-                     d = lattice_value<Real>(ix + 1, iy + 1, iz + k);
-    const Vec3<Real> low = a + (b - a) * tx, high = c + (d - c) * tx;
-    layer[k] = low + (high - low) * ty;
+class SmoothNoise {
+ public:
+  SmoothNoise() { enter({0, 0, 0}); }
+
+  /// @param p  position in units of the eddy size; every finite value is fine
+  Vec3<Real> at(const Vec3d& p) {
+    using gust_detail::fade;
+    const std::array<double, 3> low = {std::floor(p[0]), std::floor(p[1]), std::floor(p[2])};
+    if (low != low_) enter(low);
+    const Real tx = fade(static_cast<Real>(p[0] - low[0])),
+               ty = fade(static_cast<Real>(p[1] - low[1])),
+               tz = fade(static_cast<Real>(p[2] - low[2]));
+    std::array<Vec3<Real>, 2> layer;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto& [a, b, c, d] = corners_[k];
+      const Vec3<Real> below = a + (b - a) * tx, above = c + (d - c) * tx;
+      layer[k] = below + (above - below) * ty;
+    }
+    return layer[0] + (layer[1] - layer[0]) * tz;
   }
-  return layer[0] + (layer[1] - layer[0]) * tz;
-}
+
+ private:
+  void enter(const std::array<double, 3>& low) {
+    using gust_detail::lattice_value;
+    const auto x = static_cast<std::int64_t>(low[0]), y = static_cast<std::int64_t>(low[1]),
+               z = static_cast<std::int64_t>(low[2]);
+    for (std::int64_t k = 0; k < 2; ++k) {
+      corners_[static_cast<std::size_t>(k)] = {
+          lattice_value<Real>(x, y, z + k), lattice_value<Real>(x + 1, y, z + k),
+          lattice_value<Real>(x, y + 1, z + k), lattice_value<Real>(x + 1, y + 1, z + k)};
+    }
+    low_ = low;
+  }
+
+  std::array<double, 3> low_ = {};
+  std::array<std::array<Vec3<Real>, 4>, 2> corners_;  ///< by z; x fastest, then y
+};
 
 }  // namespace weft

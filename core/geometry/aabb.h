@@ -31,6 +31,10 @@ struct Aabb {
     return lower[0] <= o.upper[0] && o.lower[0] <= upper[0] && lower[1] <= o.upper[1] &&
            o.lower[1] <= upper[1] && lower[2] <= o.upper[2] && o.lower[2] <= upper[2];
   }
+  /// Whether all of the other box is inside; an empty one is inside of everything.
+  bool contains(const Aabb& o) const {
+    return (lower.array() <= o.lower.array()).all() && (upper.array() >= o.upper.array()).all();
+  }
   Vec3<Real> centre() const { return (lower + upper) * Real(0.5); }
   /// Squared distance of a point from the box, 0 inside [m^2].
   Real squared_distance(const Vec3<Real>& p) const {

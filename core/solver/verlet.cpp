@@ -1,8 +1,9 @@
 #include "core/solver/verlet.h"
 
 #include <algorithm>
+#include <array>
 
-#include "core/forces/force_pass.h"
+#include "core/solver/vector_passes.h"
 
 namespace weft {
 namespace {
@@ -123,18 +124,31 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
   }
 }
 
+/// Spreads masses and gravity over the numbers of the cloth; pins change both.
+template <class Real>
+void spread_constants(Tick<Real>& tick) {
+  const std::vector<Real>& inverse_mass = tick.state.inverse_mass;
+  for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+    tick.work.inverse_mass[i].setConstant(inverse_mass[i]);
+    tick.work.gravity[i] = inverse_mass[i] == 0 ? Vec3<Real>::Zero() : tick.surroundings.gravity;
+  }
+}
+
 template <class Real>
 void kick(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from, Vec3Array<Real>& to) {
   const StageTimer timer(tick.profile, Stage::integration, from.size());
-  if (tick.pulled()) {
-    for (std::size_t i = 0; i < from.size(); ++i) tick.work.internal[i] += tick.work.external[i];
-  }
-  const Vec3<Real> fall = tick.surroundings.gravity * k.push;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const Real w = tick.state.inverse_mass[i];
-    if (w == 0) continue;
-    to[i] = from[i] * k.keep + (tick.work.internal[i] * (w * k.push) + fall);
-  }
+  const VerletWorkspace<Real>& work = tick.work;
+  KickPass<Real> pass;
+  pass.count = 3 * from.size();
+  pass.from = from.data()->data();
+  pass.to = to.data()->data();
+  pass.internal = work.internal.data()->data();
+  pass.external = tick.pulled() ? work.external.data()->data() : nullptr;
+  pass.inverse_mass = work.inverse_mass.data()->data();
+  pass.gravity = work.gravity.data()->data();
+  pass.keep = k.keep;
+  pass.push = k.push;
+  run_kick(pass);
 }
 
 /// Kicks with the dashpots' velocity found by fixed-point sweeps.
@@ -162,31 +176,39 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress
 template <class Real>
 void drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
-  for (std::size_t i = 0; i < tick.state.x.size(); ++i)
-    tick.state.x[i] += tick.state.v[i] * tick.dt;
+  run_drift(3 * tick.state.x.size(), tick.state.v.data()->data(), tick.dt,
+            tick.state.x.data()->data());
 }
 
 /// Work of the external forces over the coming drift [J].
 template <class Real>
 double external_work(const Tick<Real>& tick) {
   if (!tick.pulled()) return 0;
-  double power = 0;
-  for (std::size_t i = 0; i < tick.state.v.size(); ++i)
-    power += static_cast<double>(tick.work.external[i].dot(tick.state.v[i]));
+  // Four sums, so that the compiler may keep them in one vector.
+  std::array<double, 4> sums{};
+  const Real *force = tick.work.external.data()->data(), *v = tick.state.v.data()->data();
+  const std::size_t numbers = 3 * tick.state.v.size(), whole = numbers / 4 * 4;
+  for (std::size_t n = 0; n < whole; n += 4) {
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += static_cast<double>(force[n + k] * v[n + k]);
+  }
+  for (std::size_t n = whole; n < numbers; ++n) sums[0] += static_cast<double>(force[n] * v[n]);
+  const double power = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   return power * static_cast<double>(tick.dt);
 }
 
 template <class Real>
 EnergyReading timed_energies(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
-  return read_energies(tick.model, tick.state, tick.surroundings.gravity);
+  std::optional<ElasticEnergy>& elastic = tick.work.elastic;
+  if (!elastic) elastic = elastic_energy(tick.model, tick.state.x);
+  return read_energies(tick.model, tick.state, tick.surroundings.gravity, *elastic);
 }
 
 }  // namespace
 
 template <class Real>
 void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model) {
-  for (Vec3Array<Real>* array : {&internal, &external, &velocity})
+  for (Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   grids.assign(model.parts.size(), {});
   for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
@@ -206,6 +228,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
     }
   }
   AdvanceResult result;
+  spread_constants(tick);
   result.before = timed_energies(tick).energies;
   evaluate_forces(tick, Real(0), state.v);
   kick(tick, kicks.opening, state.v, state.v);
@@ -219,6 +242,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
     swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
   }
   collision.settle(state, tick.dt, profile);
+  work.elastic.reset();
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;
   result.largest_strain = end.largest_strain;

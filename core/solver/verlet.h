@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
+
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/collision.h"
 #include "core/definition.h"
 #include "core/diagnostics/energies.h"
+#include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/world/profile.h"
 
@@ -56,10 +59,14 @@ struct AdvanceResult {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct VerletWorkspace {
-  Vec3Array<Real> internal;           ///< forces of springs and bending [N]
-  Vec3Array<Real> external;           ///< forces of hands and air [N]
-  Vec3Array<Real> velocity;           ///< estimate of the velocity that the dashpots see [m/s]
-  std::vector<GridPass<Real>> grids;  ///< for each part the row-wise form of its forces
+  Vec3Array<Real> internal;              ///< forces of springs and bending [N]
+  Vec3Array<Real> external;              ///< forces of hands and air [N]
+  Vec3Array<Real> velocity;              ///< estimate of the velocity that the dashpots see [m/s]
+  Vec3Array<Real> inverse_mass;          ///< the same number three times [1/kg]
+  Vec3Array<Real> gravity;               ///< of each particle, 0 if it is fixed [m/s^2]
+  std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
+                                         ///< somebody else moves the cloth
+  std::vector<GridPass<Real>> grids;     ///< for each part the row-wise form of its forces
 
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);

@@ -21,9 +21,10 @@ void sample_weather(const EnvironmentDef& environment, double time, const Vec3Ar
   }
   const auto speed = static_cast<Real>(environment.gust_speed);
   const Vec3d carried = (environment.wind + kDriftOfStillAir) * time;
+  SmoothNoise<Real> noise;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3d eddy = (x[i].template cast<double>() - carried) / environment.gust_length;
-    wind[i] = mean + smooth_noise<Real>(eddy) * speed;
+    wind[i] = mean + noise.at(eddy) * speed;
   }
 }
 

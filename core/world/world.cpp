@@ -30,8 +30,9 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                       part.particles.first});
     longest_edge = std::max(longest_edge, part.longest_edge);
   }
-  return Contact<Real>(cloths, def.colliders, model.edges, model.triangles, longest_edge,
-                       runtime.executor);
+  return Contact<Real>(cloths, def.colliders,
+                       make_patches(model.rest_positions, model.edges, model.triangles),
+                       longest_edge, runtime.executor);
 }
 
 /// The definition itself, once it is known to be valid; nothing is built from a wrong one.
@@ -109,6 +110,7 @@ void World<Real>::reset() {
 template <class Real>
 void World<Real>::accept_state() {
   last_good_ = state_;
+  verlet_.elastic.reset();
   account_.clear();
   contact_.reset();
   contact_.place(colliders_);
@@ -267,6 +269,7 @@ template <class Real>
 void World<Real>::restore_last_good() {
   state_.x = last_good_.x;
   state_.v = last_good_.v;
+  verlet_.elastic.reset();
   take_back_motion(colliders_);
   contact_.reset();
   contact_.place(colliders_);

@@ -66,7 +66,8 @@ struct Particles {
   }
   Contact<Real> meet(const ContactDef& def, const std::vector<ColliderDef>& colliders,
                      Executor* executor = nullptr) const {
-    return Contact<Real>({def}, colliders, edges, triangles, longest_edge(), executor);
+    return Contact<Real>({def}, colliders, make_patches(state.x, edges, triangles), longest_edge(),
+                         executor);
   }
 
   void kick() {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Neighbouring features of a cloth that are looked up together; each feature is in one patch. The
+/// ranges count in the lists of ClothPatches.
+struct ClothPatch {
+  IndexRange particles, edges, triangles;
+};
+
+/// The features of all cloths in the order of their patches.
+struct ClothPatches {
+  std::vector<Index> particles;
+  std::vector<Edge> edges;
+  std::vector<Triangle> triangles;
+  std::vector<ClothPatch> list;
+  /// Those joined to particle i by an edge are joined[first_joined[i]] to
+  /// joined[first_joined[i + 1] - 1].
+  std::vector<Index> first_joined, joined;
+};
+
+/// Groups triangles that are near each other by splitting at the median of the longest side, as
+/// patches of up to eight. Particles go with the first triangle that they belong to, and edges with
+/// their first end.
+/// @param positions  of all particles, to tell who is near; any will do [m]
+/// @param edges,triangles  of all cloths; ends and corners are numbers of particles. Those of no
+///                         triangle get patches of their own.
+template <class Real>
+ClothPatches make_patches(const Vec3Array<Real>& positions, const std::vector<Edge>& edges,
+                          const std::vector<Triangle>& triangles);
+
+}  // namespace weft

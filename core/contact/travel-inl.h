@@ -1,0 +1,59 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_TRAVEL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_TRAVEL_INL_H
+#undef WEFT_TRAVEL_INL_H
+#else
+#define WEFT_TRAVEL_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "core/contact/travel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Squared lengths of the way now and after the drift, of the particles from number n on.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE bool travel_of(D d, const TravelPass<Real>& p, std::size_t n) {
+  hn::Vec<D> x[3], v[3], from[3];
+  hn::LoadInterleaved3(d, p.x + 3 * n, x[0], x[1], x[2]);
+  hn::LoadInterleaved3(d, p.v + 3 * n, v[0], v[1], v[2]);
+  hn::LoadInterleaved3(d, p.from + 3 * n, from[0], from[1], from[2]);
+  const auto dt = hn::Set(d, p.dt);
+  auto now2 = hn::Zero(d), end2 = hn::Zero(d);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto way = hn::Sub(x[k], from[k]), end = hn::Add(way, hn::Mul(v[k], dt));
+    now2 = hn::Add(now2, hn::Mul(way, way));
+    end2 = hn::Add(end2, hn::Mul(end, end));
+  }
+  hn::StoreU(hn::Max(now2, end2), d, p.travel2 + n);
+  const auto reach = hn::LoadU(d, p.reach + n);
+  return hn::AllTrue(d, hn::Le(end2, hn::Mul(reach, reach)));
+}
+
+template <class Real>
+HWY_INLINE bool travel(const TravelPass<Real>& p) {
+  const hn::ScalableTag<Real> wide;
+  const hn::CappedTag<Real, 1> single;
+  bool within = true;
+  std::size_t n = 0;
+  for (; n + hn::Lanes(wide) <= p.particles; n += hn::Lanes(wide)) within &= travel_of(wide, p, n);
+  for (; n < p.particles; ++n) within &= travel_of(single, p, n);
+  return within;
+}
+
+HWY_ATTR bool travel_f32(const TravelPass<float>& pass) {
+  return travel(pass);
+}
+HWY_ATTR bool travel_f64(const TravelPass<double>& pass) {
+  return travel(pass);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif

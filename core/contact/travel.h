@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+
+namespace weft {
+
+// Vector code of the contact over all particles, chosen for the processor when the program runs.
+// Each particle is computed by itself, so the choice does not change a bit.
+
+/// Where particles are, were, and may go; three numbers a particle unless said otherwise.
+template <class Real>
+struct TravelPass {
+  std::size_t particles = 0;
+  const Real* x = nullptr;      ///< [m]
+  const Real* v = nullptr;      ///< [m/s]
+  Real dt = 0;                  ///< of the coming drift [s]
+  const Real* from = nullptr;   ///< where the way begins [m]
+  const Real* reach = nullptr;  ///< how far each may go, one number a particle [m]
+  Real* travel2 = nullptr;      ///< squared way, now or after the drift, whichever is longer [m^2]
+};
+
+/// Measures the way of every particle.
+/// @return whether all end within their reach; false if something is not a number
+bool measure_travel(const TravelPass<float>& pass);
+bool measure_travel(const TravelPass<double>& pass);
+
+}  // namespace weft

@@ -1,0 +1,68 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_VECTOR_PASSES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_VECTOR_PASSES_INL_H
+#undef WEFT_VECTOR_PASSES_INL_H
+#else
+#define WEFT_VECTOR_PASSES_INL_H
+#endif
+
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "core/solver/vector_passes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Calls body(d, n) for whole vectors and then, with one lane, for the numbers that are left.
+template <class Real, class Body>
+HWY_INLINE void for_each_number(std::size_t count, Body&& body) {
+  const hn::ScalableTag<Real> wide;
+  const hn::CappedTag<Real, 1> single;
+  std::size_t n = 0;
+  for (; n + hn::Lanes(wide) <= count; n += hn::Lanes(wide)) body(wide, n);
+  for (; n < count; ++n) body(single, n);
+}
+
+template <class Real>
+HWY_INLINE void kick(const KickPass<Real>& p) {
+  for_each_number<Real>(p.count, [&](auto d, std::size_t n) HWY_ATTR {
+    auto force = hn::LoadU(d, p.internal + n);
+    if (p.external != nullptr) force = hn::Add(force, hn::LoadU(d, p.external + n));
+    const auto push = hn::Set(d, p.push);
+    const auto by_force = hn::Mul(force, hn::Mul(hn::LoadU(d, p.inverse_mass + n), push));
+    const auto change = hn::Add(by_force, hn::Mul(hn::LoadU(d, p.gravity + n), push));
+    const auto kept = hn::Mul(hn::LoadU(d, p.from + n), hn::Set(d, p.keep));
+    hn::StoreU(hn::Add(kept, change), d, p.to + n);
+  });
+}
+
+template <class Real>
+HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x) {
+  for_each_number<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
+    const auto way = hn::Mul(hn::LoadU(d, v + n), hn::Set(d, dt));
+    hn::StoreU(hn::Add(hn::LoadU(d, x + n), way), d, x + n);
+  });
+}
+
+HWY_ATTR void kick_f32(const KickPass<float>& pass) {
+  kick(pass);
+}
+HWY_ATTR void kick_f64(const KickPass<double>& pass) {
+  kick(pass);
+}
+HWY_ATTR void drift_f32(std::size_t count, const float* v, float dt, float* x) {
+  drift(count, v, dt, x);
+}
+HWY_ATTR void drift_f64(std::size_t count, const double* v, double dt, double* x) {
+  drift(count, v, dt, x);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif
