@@ -237,7 +237,33 @@ bool Contact<Real>::renew_clearance(const ClothState<Real>& state, std::size_t i
   return true;
 }
 
+/// Only those that are in a pair need planes that follow them closely.
+template <class Real>
+void Contact<Real>::mark_paired() {
+  paired_.assign(active_.size(), 0);
+  const auto mark = [&](Index i) { paired_[static_cast<std::size_t>(i)] = 1; };
+  for (const Index i : active_particles_) {
+    const auto p = static_cast<std::size_t>(i);
+    if (clearance_[p] <= thickness_ + skin_[p]) mark(i);
+  }
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    for (const auto& pair : particle_pairs_[m]) mark(pair.cloth);
+    for (const auto& pair : edge_pairs_[m]) {
+      for (const Index i : patches_.edges[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+    for (const auto& pair : triangle_pairs_[m]) {
+      for (const Index i : patches_.triangles[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+  }
+  if (balls_.empty() && rods_.empty()) return;
+  // Edges and triangles meet round shapes without pairs, so all near ones may.
+  for (const Index e : near_edges_) {
+    for (const Index i : patches_.edges[static_cast<std::size_t>(e)]) mark(i);
+  }
+}
+
 #define WEFT_INSTANTIATE(Real)                                                                \
+  template void Contact<Real>::mark_paired();                                                 \
   template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;             \
   template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                      \
   template Real Contact<Real>::least_clearance(const Vec3<Real>&, Real) const;                \

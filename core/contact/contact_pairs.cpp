@@ -347,31 +347,6 @@ void Contact<Real>::extend_skins() {
   }
 }
 
-/// Only those that are in a pair need planes that follow them closely.
-template <class Real>
-void Contact<Real>::mark_paired() {
-  paired_.assign(active_.size(), 0);
-  const auto mark = [&](Index i) { paired_[static_cast<std::size_t>(i)] = 1; };
-  for (const Index i : active_particles_) {
-    const auto p = static_cast<std::size_t>(i);
-    if (clearance_[p] <= thickness_ + skin_[p]) mark(i);
-  }
-  for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    for (const auto& pair : particle_pairs_[m]) mark(pair.cloth);
-    for (const auto& pair : edge_pairs_[m]) {
-      for (const Index i : patches_.edges[static_cast<std::size_t>(pair.cloth)]) mark(i);
-    }
-    for (const auto& pair : triangle_pairs_[m]) {
-      for (const Index i : patches_.triangles[static_cast<std::size_t>(pair.cloth)]) mark(i);
-    }
-  }
-  if (balls_.empty() && rods_.empty()) return;
-  // Edges and triangles meet round shapes without pairs, so all near ones may.
-  for (const Index e : near_edges_) {
-    for (const Index i : patches_.edges[static_cast<std::size_t>(e)]) mark(i);
-  }
-}
-
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template void Contact<Real>::collect_pairs(const ClothState<Real>&, Profile&);                 \
   template void Contact<Real>::join_found(std::size_t, Profile&);                                \
@@ -393,8 +368,7 @@ void Contact<Real>::mark_paired() {
                                         Measure, Found&, Pairs&, std::vector<Real>&);            \
   template void Contact<Real>::pair_particles(const MeshShape<Real>&, const Vec3Array<Real>&,    \
                                               const Neighbourhood&, Found&);                     \
-  template void Contact<Real>::extend_skins();                                                   \
-  template void Contact<Real>::mark_paired();
+  template void Contact<Real>::extend_skins();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE
