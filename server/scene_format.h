@@ -155,6 +155,15 @@ void describe_pin(Io& io, PinDef& pin) {
             });
 }
 
+/// What an object of fields is about, by its path.
+inline const char* meaning_of_group(const std::string& path) {
+  if (path == "environment.") return "gravity and air";
+  if (path == "solver.") return "how the cloths are moved from tick to tick";
+  if (path == "contact.") return "what keeps the cloths off objects and themselves";
+  if (path == "relaxation.") return "settings of the solver relaxation";
+  return "see the fields";
+}
+
 template <class Io>
 void describe_fans(Io& io, std::vector<FanDef>& fans) {
   io.list(ListInfo{"fans", 0, kMostFans, "local winds"}, fans, [](Io& in, FanDef& fan) {
@@ -176,7 +185,7 @@ void describe_scene(Io& io, WorldDef& def) {
       describe_group(io, def, group);
       continue;
     }
-    io.object(group.substr(0, group.size() - 1).c_str(), "see the fields", [&](Io& in) {
+    io.object(group.substr(0, group.size() - 1).c_str(), meaning_of_group(group), [&](Io& in) {
       describe_group(in, def, group);
       if (group == "environment.") describe_fans(in, def.environment.fans);
     });

@@ -141,10 +141,14 @@ void build_hammock(WorldDef& def, const std::string&) {
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("wool");
   def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}, {EdgeStrip{Side::right, 0}, 0, {}}};
-  const double post = kLength / 2 + 0.06;
-  def.colliders = {kGround,
-                   {"left-post", CapsuleDef{Vec3d(-post, 0, 0), Vec3d(-post, 1.4, 0), 0.04}},
-                   {"right-post", CapsuleDef{Vec3d(post, 0, 0), Vec3d(post, 1.4, 0), 0.04}}};
+  // Each end hangs a centimetre before a bar across its post.
+  const double bar = kLength / 2 + 0.03, post = kLength / 2 + 0.06, half = kWidth / 2 + 0.04;
+  def.colliders = {
+      kGround,
+      {"left-post", CapsuleDef{Vec3d(-post, 0, 0), Vec3d(-post, 1.4, 0), 0.04}},
+      {"right-post", CapsuleDef{Vec3d(post, 0, 0), Vec3d(post, 1.4, 0), 0.04}},
+      {"left-bar", CapsuleDef{Vec3d(-bar, kHeight, -half), Vec3d(-bar, kHeight, half), 0.02}},
+      {"right-bar", CapsuleDef{Vec3d(bar, kHeight, -half), Vec3d(bar, kHeight, half), 0.02}}};
   def.environment.drag = 0.5;
 }
 

@@ -9,9 +9,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import jsonschema
+
 ROOT = Path(os.environ["WEFT_SOURCE_DIR"])
 PROGRAM = os.environ["WEFT_PROGRAM"]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+SCHEMA = (ROOT / "server" / "scene.schema.json").read_text(encoding="utf-8")
 USAGE = subprocess.run([ROOT / "dev", "help"], capture_output=True, text=True, check=True).stdout
 
 
@@ -27,6 +30,8 @@ class Readme(unittest.TestCase):
                     if line.startswith("build/weft ")]
         self.assertGreaterEqual(len(commands), 4)
         with tempfile.TemporaryDirectory() as folder:
+            (scene,) = blocks("json")
+            Path(folder, "my.json").write_text(scene, encoding="utf-8")
             for command in commands:
                 with self.subTest(command=command):
                     text, _, target = command.partition(" > ")
@@ -44,6 +49,18 @@ class Readme(unittest.TestCase):
                     if "--out" in arguments:
                         out = Path(folder, arguments[arguments.index("--out") + 1])
                         self.assertGreater(out.stat().st_size, 1000)
+
+    def test_the_scene_is_valid_and_wrong_values_are_refused_as_it_says(self):
+        (scene,) = blocks("json")
+        jsonschema.validate(json.loads(scene), json.loads(SCHEMA))
+        (refusal,) = blocks("text")
+        good = '"friction": 0.5'
+        self.assertEqual(scene.count(good), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "my.json").write_text(scene.replace(good, '"friction": -0.5'))
+            result = subprocess.run([PROGRAM, "simulate", "--scene", "my.json"], cwd=folder,
+                                    timeout=120, capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stderr), (2, refusal))
 
     def test_the_script_works(self):
         (script,) = blocks("python")

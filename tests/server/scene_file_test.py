@@ -75,6 +75,9 @@ def is_number(value):
 
 NUMBERS = "numbers of a vector"
 TAGS = {"shape", "place", "form"}
+WORDS = {"bending_model", "mass_lumping", "corner", "side", "kind", "model", "preset", "self", "objects",
+         "correction"}
+WHOLE = {"rows", "columns", "min_substeps", "sweeps", "substeps", "passes"}
 
 
 class Mutator:
@@ -127,12 +130,11 @@ class Mutator:
 
     def fraction(self, document):
         return self.change(
-            document, lambda path, value: path[-1] in ("rows", "columns", "min_substeps", "sweeps"), 7.5)
+            document, lambda path, value: path[-1] in WHOLE, 7.5)
 
     def wrong_word(self, document):
         return self.change(
-            document, lambda path, value: path[-1] in TAGS | {"bending_model", "mass_lumping", "corner",
-                                                              "side", "kind", "model", "preset"}, "velvet")
+            document, lambda path, value: path[-1] in TAGS | WORDS, "velvet")
 
     def vector(self, document):
         return self.one_of(document, lambda path, value: isinstance(value, list) and value
@@ -183,10 +185,10 @@ class SceneFiles(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def simulate(self, document, *more):
+    def simulate(self, document, *more, ticks=1):
         path = Path(self.folder.name) / "scene.json"
         path.write_text(document if isinstance(document, str) else json.dumps(document))
-        return run("simulate", "--scene", path, "--ticks", "1", "--json", *more)
+        return run("simulate", "--scene", path, "--ticks", ticks, "--json", *more)
 
     def test_the_committed_schema_is_what_the_program_prints(self):
         committed = (SOURCE / "server" / "scene.schema.json").read_text()
@@ -225,6 +227,9 @@ class SceneFiles(unittest.TestCase):
         table = [
             ({"cloths": [{**cloth, "fabric": {"shear": 1e5}}]}, "cloths[0].fabric.shear"),
             ({"cloths": [{**cloth, "u": [0, 0, 0]}]}, "cloths[0].u"),
+            ({"cloths": [cloth], "contact": {"self": "triangles"}}, "contact.self"),
+            ({"cloths": [cloth], "contact": {"model": "seed", "correction": "fold_map", "lift": 0.03}},
+             "contact.lift"),
             ({"cloths": [cloth, cloth]}, "cloths[1].name"),
             ({"cloths": [cloth, {**cloth, "name": "b", "v": [1, 0, 0]}]}, "cloths[1].v"),
             ({"cloths": [cloth], "pins": [{"place": "particle", "particle": 25}]}, "pins[0].particle"),
@@ -254,6 +259,32 @@ class SceneFiles(unittest.TestCase):
         missing = run("simulate", "--scene", "no/such.json", "--ticks", "1")
         self.assertEqual(missing.returncode, 2)
         self.assertIn("--scene = no/such.json", missing.stderr)
+
+    def test_the_seed_s_parts_and_their_settings_are_the_same_in_a_file_and_on_the_command_line(self):
+        base = {"cloths": [{"rows": 9, "columns": 9, "v": [0, 0, 1], "origin": [-0.5, 0.6, -0.5]}],
+                "colliders": [{"shape": "sphere", "center": [0, 0.3, 0], "radius": 0.25}]}
+        parts = {"model": "seed",
+                 "solver": {"kind": "relaxation"},
+                 "relaxation": {"sweeps": 7, "substeps": 3, "damping": 0.02, "compliance": 0.5},
+                 "contact": {"model": "seed", "self": "triangles_and_edges",
+                             "objects": "particles_and_edges", "correction": "fold_map", "lift": 0.002,
+                             "fold_depth": 0.03, "passes": 2}}
+        changes = []
+        for name, value in parts.items():
+            fields = {f"{name}.{key}": v for key, v in value.items()} if isinstance(value, dict) else \
+                {name: value}
+            for key, given in fields.items():
+                changes += ["--set", f"{key}={given}"]
+        def outcome(document, *more):
+            result = self.simulate(document, *more, ticks=40)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return json.loads(result.stdout)
+        whole = outcome({**base, **parts})
+        self.assertEqual(whole["solver"], "relaxation")
+        self.assertEqual(outcome(base, *changes)["hash"], whole["hash"])
+        for name in ("relaxation", "contact"):  # are heeded
+            rest = {key: value for key, value in parts.items() if key != name}
+            self.assertNotEqual(outcome({**base, **rest})["hash"], whole["hash"])
 
     def test_settings_go_on_top_of_a_file(self):
         result = self.simulate({"cloths": [{"rows": 5, "columns": 5}]}, "--set", "cloth.rows=9")
