@@ -132,6 +132,22 @@ struct Fan {
   bool operator==(const Fan&) const = default;
 };
 
+/// Sends a collider to a pose; what is not told of it stays as it is.
+struct Move {
+  std::string collider;          ///< its name, 1 to 64 bytes
+  std::optional<Vec3> position;  ///< where its pivot goes [m]
+  std::optional<Quat> rotation;  ///< from how the mesh message tells it
+  double speed = 0.5;            ///< at most [m/s]
+  double turn_speed = 2;         ///< at most [rad/s]
+  bool operator==(const Move&) const = default;
+};
+
+/// Gives a collider back to its keyframes; one without stays where it is.
+struct MoveEnd {
+  std::string collider;
+  bool operator==(const MoveEnd&) const = default;
+};
+
 /// At least one of them is set.
 struct Set {
   std::optional<Vec3> gravity;        ///< [m/s^2]
@@ -162,7 +178,8 @@ enum class QueryWhat : std::uint8_t {
   state,
   work,
   trees,
-  boxes
+  boxes,
+  colliders
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 
@@ -202,7 +219,7 @@ struct View {
 
 using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin,
                              ReleaseParticle, ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed,
-                             Set, Advance, Query, Hash, Ping, Load, View>;
+                             Move, MoveEnd, Set, Advance, Query, Hash, Ping, Load, View>;
 
 /// The word in `op`, e.g. "drag".
 const char* name_of(const Command& command);

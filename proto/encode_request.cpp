@@ -65,6 +65,17 @@ struct FieldWriter {
   void operator()(const Camera& c) { put_camera(out, c); }
   void operator()(const Step& c) { out["n"] = c.n; }
   void operator()(const Speed& c) { out["speed"] = c.speed; }
+  void operator()(const Move& c) {
+    out["collider"] = c.collider;
+    put_if(out, "position", c.position);
+    put_if(out, "rotation", c.rotation);
+    out["speed"] = c.speed;
+    out["turn_speed"] = c.turn_speed;
+  }
+  void operator()(const MoveEnd& c) {
+    out["collider"] = c.collider;
+    out["release"] = true;
+  }
   void operator()(const Set& c) {
     put_if(out, "gravity", c.gravity);
     put_if(out, "wind", c.wind);
@@ -114,6 +125,8 @@ struct Name {
   const char* operator()(const Step&) const { return "step"; }
   const char* operator()(const Reset&) const { return "reset"; }
   const char* operator()(const Speed&) const { return "speed"; }
+  const char* operator()(const Move&) const { return "move"; }
+  const char* operator()(const MoveEnd&) const { return "move"; }
   const char* operator()(const Set&) const { return "set"; }
   const char* operator()(const Advance&) const { return "advance"; }
   const char* operator()(const Query&) const { return "query"; }

@@ -33,6 +33,7 @@ enum class ErrorCode : std::uint8_t {
   unknown_drag,
   unknown_pin,
   unknown_viewer,
+  unknown_collider,
   drag_exists,
   held,
   not_paused,

@@ -75,6 +75,7 @@ struct ShapeWriter {
 Json json_of_collider(const ColliderInfo& collider) {
   Json out = {{"name", collider.name}};
   std::visit(ShapeWriter{out}, collider.shape);
+  out["pivot"] = collider.pivot;
   return out;
 }
 

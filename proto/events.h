@@ -69,6 +69,7 @@ struct MeshInfo {
 struct ColliderInfo {
   std::string name;
   std::variant<PlaneInfo, SphereInfo, CapsuleInfo, BoxInfo, MeshInfo> shape;
+  Vec3 pivot{};  ///< what a pose places and turns it about [m]
 };
 
 /// The text message `mesh`; SceneMesh of mesh.h is the binary one that follows it.

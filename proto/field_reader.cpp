@@ -97,19 +97,29 @@ void FieldReader::read(const char* key, std::uint32_t& value, Range range) {
   value = static_cast<std::uint32_t>(number);
 }
 
-void FieldReader::read(const char* key, Vec3& value, Range range) {
+template <std::size_t N>
+void FieldReader::read_numbers(const char* key, std::array<double, N>& value, Range range) {
   const json* node = require(key);
   if (node == nullptr) return;
-  if (!node->is_array()) return fail_type(key, *node, "an array of 3 numbers");
-  if (node->size() != 3) {
-    fail(ErrorCode::wrong_length, key, std::string(key) + " must have 3 numbers");
-    if (error_->field == key && !error_->limit) error_->limit = Limit{{}, {}, 3, {}};
+  const std::string wanted = std::to_string(N) + " numbers";
+  if (!node->is_array()) return fail_type(key, *node, ("an array of " + wanted).c_str());
+  if (node->size() != N) {
+    fail(ErrorCode::wrong_length, key, std::string(key) + " must have " + wanted);
+    if (error_->field == key && !error_->limit) error_->limit = Limit{{}, {}, N, {}};
     return;
   }
-  Vec3 read{};
-  for (std::size_t i = 0; i < 3 && ok(); ++i)
+  std::array<double, N> read{};
+  for (std::size_t i = 0; i < N && ok(); ++i)
     read_number(std::string(key) + "[" + std::to_string(i) + "]", (*node)[i], read[i], range);
   if (ok()) value = read;
+}
+
+void FieldReader::read(const char* key, Vec3& value, Range range) {
+  read_numbers(key, value, range);
+}
+
+void FieldReader::read(const char* key, Quat& value, Range range) {
+  read_numbers(key, value, range);
 }
 
 void FieldReader::read(const char* key, std::string& value) {

@@ -34,6 +34,7 @@ class FieldReader {
   void read(const char* key, double& value, Range range);
   void read(const char* key, std::uint32_t& value, Range range);
   void read(const char* key, Vec3& value, Range range);
+  void read(const char* key, Quat& value, Range range);
   void read(const char* key, std::string& value);
 
   /// The JSON text of a field that is an object; false, with `text` untouched, if it is none.
@@ -83,6 +84,8 @@ class FieldReader {
  private:
   const nlohmann::json* find(const char* key) const;
   const nlohmann::json* require(const char* key);
+  template <std::size_t N>
+  void read_numbers(const char* key, std::array<double, N>& value, Range range);
   void read_number(const std::string& path, const nlohmann::json& node, double& value, Range range);
   void fail_type(std::string path, const nlohmann::json& node, const char* wanted);
 

@@ -28,6 +28,10 @@ bool is_finite(const GrabSample& grab) {
   return all_finite(grab.held) && all_finite(grab.target) && std::isfinite(grab.force);
 }
 
+bool is_finite(const PoseSample& pose) {
+  return all_finite(pose.position) && all_finite(pose.rotation);
+}
+
 bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) {
   const std::size_t size = section.payload.size();
   switch (section.kind) {
@@ -38,10 +42,16 @@ bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) 
     case kGrabs:
       frame.grabs = read_array<GrabSample>(section.payload);
       return size % sizeof(GrabSample) == 0 &&
-             std::all_of(frame.grabs.begin(), frame.grabs.end(), is_finite);
+             std::all_of(frame.grabs.begin(), frame.grabs.end(),
+                         [](const GrabSample& grab) { return is_finite(grab); });
     case kApplied:
       frame.applied = read_array<AppliedCommand>(section.payload);
       return size % sizeof(AppliedCommand) == 0;
+    case kPoses:
+      frame.poses = read_array<PoseSample>(section.payload);
+      return size % sizeof(PoseSample) == 0 &&
+             std::all_of(frame.poses.begin(), frame.poses.end(),
+                         [](const PoseSample& pose) { return is_finite(pose); });
     default:
       return true;
   }
@@ -52,13 +62,14 @@ bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) 
 void encode_frame(const FrameView& frame, Bytes& out) {
   const FrameHeader& h = frame.header;
   BinaryWriter writer(out, BinaryType::frame, 0, h.flags);
-  const std::uint32_t sections =
-      1U + (frame.grabs.empty() ? 0 : 1) + (frame.applied.empty() ? 0 : 1);
+  const std::uint32_t sections = 1U + (frame.grabs.empty() ? 0 : 1) +
+                                 (frame.applied.empty() ? 0 : 1) + (frame.poses.empty() ? 0 : 1);
   writer.put(FrameFields{h.tick, h.time, h.server_time, h.sequence, h.reference, h.epoch,
                          static_cast<std::uint32_t>(frame.positions.size() / 3), 0, sections});
   writer.put_section(kPositions, 0, frame.positions);
   if (!frame.grabs.empty()) writer.put_section(kGrabs, 0, frame.grabs);
   if (!frame.applied.empty()) writer.put_section(kApplied, 0, frame.applied);
+  if (!frame.poses.empty()) writer.put_section(kPoses, 0, frame.poses);
   writer.finish();
 }
 

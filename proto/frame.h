@@ -47,12 +47,22 @@ struct AppliedCommand {
 };
 static_assert(sizeof(AppliedCommand) == 8);
 
+/// A collider that is not as the mesh message tells it.
+struct PoseSample {
+  std::uint32_t collider = 0;  ///< its place in the list of the text message
+  Vec3f position{};            ///< of its pivot [m]
+  Quatf rotation{};            ///< about it, from how it was told
+  bool operator==(const PoseSample&) const = default;
+};
+static_assert(sizeof(PoseSample) == 32);
+
 /// What is encoded; the arrays stay the caller's.
 struct FrameView {
   FrameHeader header;
   std::span<const float> positions;  ///< three a vertex [m], finite
   std::span<const GrabSample> grabs;
   std::span<const AppliedCommand> applied;
+  std::span<const PoseSample> poses;
 };
 
 /// Writes codec f32. `out` keeps its capacity from frame to frame, so a steady stream allocates
@@ -65,6 +75,7 @@ struct Frame {
   std::vector<float> positions;  ///< three a vertex [m]
   std::vector<GrabSample> grabs;
   std::vector<AppliedCommand> applied;
+  std::vector<PoseSample> poses;
 };
 
 /// Accepts exactly what README.md allows, with finite positions. Never reads outside `message`.

@@ -22,6 +22,11 @@ inline constexpr Range kIndexRange{0, 2147483647};           ///< particles, tri
 inline constexpr Range kIdRange{0, 4294967295};              ///< viewers, pins
 inline constexpr Range kPositionRange{-1e4, 1e4};            ///< each component [m]
 inline constexpr double kLeastDirection = 1e-9;              ///< of its largest component
+inline constexpr Range kPivotRange{-1000, 1000};             ///< of a collider, each component [m]
+inline constexpr Range kUnitRange{-1, 1};                    ///< components of a unit quaternion
+inline constexpr double kUnitTolerance = 1e-3;               ///< of its norm
+inline constexpr Range kMoveSpeedRange{1e-3, 20};            ///< of a collider [m/s]
+inline constexpr Range kTurnSpeedRange{1e-3, 60};            ///< of a collider [rad/s]
 inline constexpr Range kWeightRange{0, 1};                   ///< barycentric weights
 inline constexpr double kWeightSumTolerance = 1e-3;
 inline constexpr Range kRadiusRange{0, 100};      ///< [m]

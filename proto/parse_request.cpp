@@ -178,6 +178,35 @@ void read_fans(FieldReader& in, std::optional<std::vector<Fan>>& fans) {
   in.read_objects("fans", kMostFans, [&fans](FieldReader& fan) { fans->push_back(read_fan(fan)); });
 }
 
+Command read_move(FieldReader& in) {
+  Move move;
+  in.read("collider", move.collider);
+  if (in.ok() && (move.collider.empty() || move.collider.size() > kMostSceneBytes))
+    in.fail(ErrorCode::wrong_length, "collider", "collider must have 1 to 64 bytes");
+  bool release = false;
+  in.read_if_there("release", release);
+  if (release) {
+    for (const char* key : {"position", "rotation", "speed", "turn_speed"})
+      if (in.ok() && in.has(key))
+        in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " does not go with release");
+    return MoveEnd{move.collider};
+  }
+  in.read_if_there("position", move.position, kPivotRange);
+  in.read_if_there("rotation", move.rotation, kUnitRange);
+  if (in.ok() && move.rotation) {
+    double norm2 = 0;
+    for (const double q : *move.rotation) norm2 += q * q;
+    if (!(std::abs(std::sqrt(norm2) - 1) <= kUnitTolerance))
+      in.fail(ErrorCode::out_of_range, "rotation", "rotation must have the norm 1",
+              "a unit quaternion [x, y, z, w]");
+  }
+  in.read_if_there("speed", move.speed, kMoveSpeedRange);
+  in.read_if_there("turn_speed", move.turn_speed, kTurnSpeedRange);
+  if (in.ok() && !move.position && !move.rotation)
+    in.fail(ErrorCode::missing_field, "position", "move needs position, rotation or release");
+  return move;
+}
+
 Command read_set(FieldReader& in) {
   Set set;
   in.read_if_there("gravity", set.gravity, kGravityRange);
@@ -286,6 +315,7 @@ constexpr std::array kOperations = {
     Operation{"advance", read_advance},    Operation{"query", read_query},
     Operation{"hash", read_plain<Hash>},   Operation{"ping", read_ping},
     Operation{"load", read_load},          Operation{"view", read_view},
+    Operation{"move", read_move},
 };
 
 const Operation* find_operation(const std::string& name) {

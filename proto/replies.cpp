@@ -28,6 +28,14 @@ Json json_of(const TreeInfo& tree) {
   return {{"tree", tree.tree}, {"levels", tree.levels}};
 }
 
+Json json_of(const ColliderPose& collider) {
+  return {{"name", collider.name},
+          {"position", collider.position},
+          {"rotation", collider.rotation},
+          {"force", collider.force},
+          {"blocked", collider.blocked}};
+}
+
 namespace {
 
 struct DataName {
@@ -40,6 +48,7 @@ struct DataName {
   QueryWhat operator()(const State&) const { return QueryWhat::state; }
   QueryWhat operator()(const std::vector<StageWork>&) const { return QueryWhat::work; }
   QueryWhat operator()(const std::vector<TreeInfo>&) const { return QueryWhat::trees; }
+  QueryWhat operator()(const std::vector<ColliderPose>&) const { return QueryWhat::colliders; }
 };
 
 struct ReplyWriter {
@@ -96,6 +105,10 @@ struct ReplyWriter {
   void operator()(const SpeedReply& r) {
     start("speed", r.tick);
     out["speed"] = r.speed;
+  }
+  void operator()(const MoveReply& r) {
+    start("move", r.tick);
+    out["collider"] = r.collider;
   }
   void operator()(const AdvanceReply& r) {
     start("advance", r.tick);

@@ -72,6 +72,11 @@ struct SpeedReply {
   double speed = 1;
 };
 
+struct MoveReply {
+  std::uint64_t tick = 0;
+  std::string collider;
+};
+
 struct AdvanceReply {
   std::uint64_t tick = 0, hash = 0;
 };
@@ -131,18 +136,27 @@ struct TreeInfo {
   std::uint32_t levels = 0;
 };
 
+/// A collider as it is now.
+struct ColliderPose {
+  std::string name;
+  Vec3 position{};       ///< of the pivot [m]
+  Quat rotation{};       ///< from how the mesh message tells it
+  Vec3 force{};          ///< of the cloth on it while it moves, mean of the last tick [N]
+  bool blocked = false;  ///< held back in the last tick by cloth that cannot give way
+};
+
 /// All other queries; the alternative decides `what`.
 struct QueryReply {
   std::uint64_t tick = 0;
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
-               std::vector<TreeInfo>>
+               std::vector<TreeInfo>, std::vector<ColliderPose>>
       data;
 };
 
 using Reply = std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply,
-                           PauseReply, StepReply, SpeedReply, AdvanceReply, HashReply, PingReply,
-                           LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+                           PauseReply, StepReply, SpeedReply, MoveReply, AdvanceReply, HashReply,
+                           PingReply, LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
 
 /// The `result` for a command with this id.
 std::string encode_reply(const Id& id, const Reply& reply);

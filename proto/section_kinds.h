@@ -9,6 +9,7 @@ enum SectionKind : std::uint16_t {
   kPositions = 1,
   kGrabs = 2,
   kApplied = 3,
+  kPoses = 4,
   kRestPositions = 16,
   kTriangles = 17,
   kUv = 18,

@@ -8,6 +8,9 @@
 namespace weft::proto {
 
 using Vec3 = std::array<double, 3>;
+/// A rotation as unit quaternion x y z w.
+using Quat = std::array<double, 4>;
+using Quatf = std::array<float, 4>;
 using Vec3f = std::array<float, 3>;
 
 /// A command's id as its sender chose it: an integer from 0 to 2^53 or 1 to 64 bytes of UTF-8.

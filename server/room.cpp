@@ -115,7 +115,8 @@ void Room::join(proto::ViewerId id, const Join& join) {
   welcome.tick_rate = world_->def().tick_rate;
   welcome.clock = clock_();
   welcome.limits = options_.limits;
-  welcome.capabilities = {"pick", "drag", "pin", "camera", "step", "advance", "query", "load"};
+  welcome.capabilities = {"pick",    "drag",  "pin",  "camera", "step",
+                          "advance", "query", "move", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
   output_.send(id, text_message(proto::encode_state(state())));
@@ -269,6 +270,8 @@ void Room::publish() {
   view.positions = floats_of(world_->state().x);
   view.grabs = grab_samples_;
   view.applied = applied_;
+  pose_samples(*world_, pose_samples_);
+  view.poses = pose_samples_;
   proto::Bytes bytes;
   proto::encode_frame(view, bytes);
   output_.offer_frame({SharedBytes(std::move(bytes)), sequence_});

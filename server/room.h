@@ -146,6 +146,8 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Step& command);
   Outcome apply(proto::ViewerId viewer, const proto::Reset& command);
   Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Move& command);
+  Outcome apply(proto::ViewerId viewer, const proto::MoveEnd& command);
   Outcome apply(proto::ViewerId viewer, const proto::Set& command);
   Outcome apply(proto::ViewerId viewer, const proto::Advance& command);
   Outcome apply(proto::ViewerId viewer, const proto::Query& command);
@@ -201,6 +203,7 @@ class Room {
   std::vector<float> box_values_;     // of the present answer, lowest and highest corners
   std::optional<Message> follow_up_;  // binary message that belongs behind the present answer
   std::vector<proto::GrabSample> grab_samples_;
+  std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
 };
 

@@ -264,6 +264,20 @@ Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
   return proto::Reply(proto::SpeedReply{world_->tick(), speed_});
 }
 
+Room::Outcome Room::apply(ViewerId, const proto::Move& command) {
+  const auto collider = find_collider(*world_, command.collider);
+  if (!collider) return collider.error();
+  world_->move_collider(*collider, move_def(*world_, *collider, command));
+  return proto::Reply(proto::MoveReply{world_->tick(), command.collider});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::MoveEnd& command) {
+  const auto collider = find_collider(*world_, command.collider);
+  if (!collider) return collider.error();
+  world_->release_collider(*collider);
+  return proto::Reply(proto::MoveReply{world_->tick(), command.collider});
+}
+
 Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   world_->set_environment(with_settings(world_->environment(), command));
   state_changed_ = frame_wanted_ = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,6 @@
 //   tagged(TagInfo, index, describe)     a word that decides what else is there: describe(Io&, i);
 //                                        called last, as everything before is common to all
 //   mesh(placement, take)                take(MeshFile) with the mesh that the placement names
-//
-// Still missing here, with its place kept free: `colliders[].motion`.
 
 namespace weft::server {
 
@@ -126,8 +125,25 @@ void describe_shape(Io& io, Shape& shape) {
 }
 
 template <class Io>
+void describe_motion(Io& io, MotionDef& motion) {
+  io.fields([&](auto&& visit) { visit_fields_of_motion(motion, visit); });
+  io.list(ListInfo{"keyframes", 1, kMostKeyframes, "where it is when, in the order of their times"},
+          motion.keyframes, [](Io& in, Keyframe& keyframe) {
+            in.fields([&](auto&& visit) { visit_fields_of_keyframe(keyframe, visit); });
+            in.orientation("rotation", "turn about the pivot from how it is defined",
+                           keyframe.rotation);
+          });
+}
+
+template <class Io>
 void describe_collider(Io& io, ColliderDef& collider) {
-  io.text({"name", 1, 64, true, false, "for people"}, collider.name);
+  io.text({"name", 1, 64, true, false, "commands and people call it so"}, collider.name);
+  io.fields([&](auto&& visit) { visit_fields_of_collider(collider, visit); });
+  std::optional<MotionDef> motion;
+  if (!collider.motion.keyframes.empty()) motion = collider.motion;
+  io.optional("motion", "how it moves by itself", motion,
+              [](Io& in, MotionDef& keyframed) { describe_motion(in, keyframed); });
+  collider.motion = motion.value_or(MotionDef{});
   io.tagged({choice("shape", "plane|sphere|capsule|box|mesh", "what it is"), true},
             static_cast<int>(collider.shape.index()), [&](Io& in, int shape) {
               choose_alternative(collider.shape, shape);

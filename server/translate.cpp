@@ -264,6 +264,55 @@ proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
           to_wire_float(grab.target), grab.force.norm()};
 }
 
+void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samples) {
+  samples.clear();
+  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
+    const Pose& pose = world.colliders()[k].pose;
+    if (pose == rest_pose(world.def().colliders[k].shape)) continue;
+    const Eigen::Quaternionf q = pose.rotation.cast<float>();
+    samples.push_back({static_cast<std::uint32_t>(k),
+                       to_wire_float(pose.position.cast<float>()),
+                       {q.x(), q.y(), q.z(), q.w()}});
+  }
+}
+
+std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world) {
+  std::vector<proto::ColliderPose> poses;
+  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
+    const ColliderState& state = world.colliders()[k];
+    const Eigen::Quaterniond& q = state.pose.rotation;
+    poses.push_back({world.def().colliders[k].name,
+                     to_wire(state.pose.position),
+                     {q.x(), q.y(), q.z(), q.w()},
+                     to_wire(state.force),
+                     state.blocked});
+  }
+  return poses;
+}
+
+proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::string& name) {
+  const std::vector<ColliderDef>& colliders = world.def().colliders;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < colliders.size(); ++k) {
+    if (colliders[k].name == name) return k;
+    if (std::find(names.begin(), names.end(), colliders[k].name) == names.end())
+      names.push_back(colliders[k].name);
+  }
+  proto::Error error = proto::word_error("collider", name, std::move(names));
+  error.code = proto::ErrorCode::unknown_collider;
+  return error;
+}
+
+MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move) {
+  MoveDef def{world.colliders()[collider].pose, move.speed, move.turn_speed};
+  if (move.position) def.target.position = from_wire(*move.position);
+  if (move.rotation) {
+    const proto::Quat& q = *move.rotation;
+    def.target.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
+  }
+  return def;
+}
+
 proto::SceneMesh scene_mesh(const ServedWorld& world) {
   proto::SceneMesh mesh;
   const ClothModel<float>& model = world.model();
@@ -293,7 +342,8 @@ proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
                                    count(part.triangles.count), count(part.rows),
                                    count(part.columns), part.fabric.thickness});
   for (const ColliderDef& collider : world.def().colliders)
-    announcement.colliders.push_back({collider.name, std::visit(ShapeWriter{}, collider.shape)});
+    announcement.colliders.push_back({collider.name, std::visit(ShapeWriter{}, collider.shape),
+                                      to_wire(pivot_of(collider.shape))});
   return announcement;
 }
 

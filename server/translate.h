@@ -55,6 +55,16 @@ proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, pro
 proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
                               proto::ViewerId owner);
 
+/// Colliders that are not as they were told; replaces what is in `samples`.
+void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samples);
+std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world);
+
+/// The first collider of this name.
+proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::string& name);
+
+/// The command in full: what it does not tell stays as it is.
+MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move);
+
 proto::SceneMesh scene_mesh(const ServedWorld& world);
 /// Without epoch, hash and bytes.
 proto::MeshAnnouncement mesh_announcement(const ServedWorld& world);

@@ -190,6 +190,39 @@ void build_fan(WorldDef& def, const std::string&) {
   def.environment.fans = {fan};
 }
 
+/// A board that turns once in five seconds, with a sheet over it.
+void build_turntable(WorldDef& def, const std::string&) {
+  constexpr double kTop = 0.6, kPeriod = 5;
+  def.cloths[0] = lying_cloth(41, 1.1, kTop + 0.02);
+  def.cloths[0].fabric = make_fabric("cotton");
+  ColliderDef board{"board", upright_box(Vec3d(0, kTop - 0.02, 0), Vec3d(0.32, 0.02, 0.32))};
+  board.motion.loop = true;
+  constexpr double kHalfRoot = 0.70710678118654752;
+  // Quarter turns; a turn of a half would not tell which way round.
+  const Eigen::Quaterniond turns[] = {{1, 0, 0, 0},
+                                      {kHalfRoot, 0, kHalfRoot, 0},
+                                      {0, 0, 1, 0},
+                                      {-kHalfRoot, 0, kHalfRoot, 0},
+                                      {-1, 0, 0, 0}};
+  for (int k = 0; k < 5; ++k)
+    board.motion.keyframes.push_back({kPeriod / 4 * k, Vec3d::Zero(), turns[k]});
+  def.colliders = {kGround, board};
+  def.environment.drag = 0.1;
+}
+
+/// A ball under a sheet that goes up at 1 m/s at most, waits, and comes down.
+void build_lift_sphere(WorldDef& def, const std::string&) {
+  def.cloths[0] = lying_cloth(41, 1.2, 0.43);
+  def.cloths[0].fabric = make_fabric("silk");
+  ColliderDef ball{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.2}};
+  ball.motion.interpolation = Interpolation::smooth;
+  ball.motion.loop = true;
+  const Vec3d lifted(0, 0.8, 0);
+  ball.motion.keyframes = {{}, {1.5}, {2.7, lifted}, {4.5, lifted}, {6, Vec3d::Zero()}};
+  def.colliders = {kGround, ball};
+  def.environment.drag = 0.3;
+}
+
 struct Entry {
   SceneInfo info;
   void (*build)(WorldDef&, const std::string& mesh_directory);
@@ -230,7 +263,14 @@ const std::vector<Entry>& entries() {
       {{"fan",
         "A fan blows at one side of a silk curtain in calm air: drag it by its hub, aim it by its "
         "arrow, and see where the jet ends."},
-       build_fan}};
+       build_fan},
+      {{"turntable",
+        "A cotton sheet rides on a turning board: friction carries it, and its corners swing out."},
+       build_turntable},
+      {{"lift-sphere",
+        "A ball rises under a silk sheet, holds it up and sinks: the sheet slides and never lets "
+        "it through."},
+       build_lift_sphere}};
   return list;
 }
 

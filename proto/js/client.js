@@ -113,6 +113,16 @@ export class WeftClient extends Session {
     return this.request('speed', { speed });
   }
 
+  /**
+   * Sends a collider to a pose at bounded speed, or gives it back to its keyframes.
+   * @param {string} collider  its name
+   * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number}
+   *   | {release: true}} where
+   */
+  move(collider, where) {
+    return this.request('move', { collider, ...where });
+  }
+
   /** @param {Partial<import('./messages.js').Environment>} values */
   set(values) {
     return this.request('set', values);

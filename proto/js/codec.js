@@ -24,6 +24,7 @@ const MESH_BYTES = 32;
 const DATA_BYTES = 40;
 const GRAB_BYTES = 36;
 const APPLIED_BYTES = 8;
+const POSE_BYTES = 32;
 const MOST_COMPONENTS = 16;
 const FLAG_KEY = 1;
 const FLAG_JUMP = 2;
@@ -33,6 +34,7 @@ const KIND = {
   positions: 1,
   grabs: 2,
   applied: 3,
+  poses: 4,
   restPositions: 16,
   triangles: 17,
   uv: 18,
@@ -97,6 +99,22 @@ function readApplied(view, section) {
 }
 
 /**
+ * @param {DataView} view
+ * @param {Section} section
+ */
+function readPoses(view, section) {
+  demand(section.length % POSE_BYTES === 0, 'a section does not fit');
+  const poses = [];
+  for (let at = section.offset; at < section.offset + section.length; at += POSE_BYTES) {
+    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 4, 7);
+    demandFinite(numbers);
+    const [x, y, z, ...rotation] = numbers;
+    poses.push({ collider: view.getUint32(at, true), position: [x, y, z], rotation });
+  }
+  return poses;
+}
+
+/**
  * @param {Message} message
  * @returns {Frame}
  */
@@ -116,6 +134,7 @@ function readFrame({ codec, flags, view }) {
   const find = (kind) => sections.find((s) => s.kind === kind && s.index === 0);
   const grabs = find(KIND.grabs);
   const applied = find(KIND.applied);
+  const poses = find(KIND.poses);
   return {
     type: 'frame',
     flags,
@@ -130,6 +149,7 @@ function readFrame({ codec, flags, view }) {
     positions: readFloats(view, find(KIND.positions), vertices * 3),
     grabs: grabs ? readGrabs(view, grabs) : [],
     applied: applied ? readApplied(view, applied) : [],
+    poses: poses ? readPoses(view, poses) : [],
   };
 }
 

@@ -13,7 +13,8 @@ export type QueryWhat =
   | 'state'
   | 'work'
   | 'trees'
-  | 'boxes';
+  | 'boxes'
+  | 'colliders';
 
 /** A hierarchy of boxes. */
 export interface Tree {
@@ -51,7 +52,8 @@ export interface Cloth {
   thickness: number;
 }
 
-export type Collider = { name: string } & (
+/** `pivot` is what a pose places and turns it about [m]. */
+export type Collider = { name: string; pivot: Vec3 } & (
   | { kind: 'plane'; point: Vec3; normal: Vec3 }
   | { kind: 'sphere'; center: Vec3; radius: number }
   | { kind: 'capsule'; a: Vec3; b: Vec3; radius: number }
@@ -277,6 +279,18 @@ export interface Frame {
   positions: Float32Array;
   grabs: GrabSample[];
   applied: { viewer: number; number: number }[];
+  /** Colliders that are not as the message `mesh` tells them. */
+  poses: PoseSample[];
+}
+
+/** A point p of the collider is at `position` + `rotation` (p - pivot). */
+export interface PoseSample {
+  /** Place in `MeshAnnouncement.colliders`. */
+  collider: number;
+  /** Of its pivot [m]. */
+  position: number[];
+  /** Unit quaternion x, y, z, w. */
+  rotation: number[];
 }
 
 export interface ColliderMesh {

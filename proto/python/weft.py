@@ -89,7 +89,7 @@ class CommandError(WeftError):
 _FRAME, _MESH, _DATA, _ACK = 1, 2, 3, 4
 _VERSION = 1
 _KEY, _JUMP, _PAUSED = 1, 2, 4
-_POSITIONS, _GRABS, _APPLIED = 1, 2, 3
+_POSITIONS, _GRABS, _APPLIED, _POSES = 1, 2, 3, 4
 _REST, _TRIANGLES, _UV, _COLLIDER_POSITIONS, _COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
 _COMMON = struct.Struct("<BBBBIII")
 _FRAME_FIELDS = struct.Struct("<QddIIIIfI")
@@ -98,6 +98,7 @@ _DATA_FIELDS = struct.Struct("<QIIII")
 _SECTION = struct.Struct("<HHI")
 _GRAB = struct.Struct("<II7f")
 _APPLIED_ENTRY = struct.Struct("<II")
+_POSE = struct.Struct("<I7f")
 _ACK_FIELDS = struct.Struct("<BBHI")
 _TICK_END = 2**53
 
@@ -130,6 +131,14 @@ class GrabSample:
 
 
 @dataclass(frozen=True)
+class Pose:
+    """A collider that is not as `mesh` tells it: p is at position + rotation (p - pivot)."""
+
+    position: tuple[float, float, float]  # of its pivot [m]
+    rotation: tuple[float, float, float, float]  # unit quaternion x, y, z, w
+
+
+@dataclass(frozen=True)
 class Frame:
     """Where the vertices are at a tick."""
 
@@ -143,6 +152,7 @@ class Frame:
     positions: Any  # one row of 3 a vertex [m]
     grabs: tuple[GrabSample, ...]
     applied: dict[int, int]  # viewer to the number of its last message that is included
+    poses: dict[int, Pose]  # by the collider's place in the list of the `mesh` message
 
     @property
     def jump(self) -> bool:
@@ -276,6 +286,12 @@ def _grab(entry: tuple) -> GrabSample:
     return GrabSample(id_, viewer, tuple(numbers[0:3]), tuple(numbers[3:6]), numbers[6])
 
 
+def _pose(entry: tuple) -> tuple[int, Pose]:
+    collider, *numbers = entry
+    _demand(all(map(math.isfinite, numbers)), "a number is not finite")
+    return collider, Pose(tuple(numbers[0:3]), tuple(numbers[3:7]))
+
+
 def decode_frame(message: bytes) -> Frame:
     start = _COMMON.size + _FRAME_FIELDS.size
     _, flags = _read_common(message, _FRAME, start, 0)
@@ -297,6 +313,7 @@ def decode_frame(message: bytes) -> Frame:
         positions=_rows(sections.get((_POSITIONS, 0)), "f", vertices, 3),
         grabs=tuple(map(_grab, _entries(sections.get((_GRABS, 0)), _GRAB))),
         applied=dict(_entries(sections.get((_APPLIED, 0)), _APPLIED_ENTRY)),
+        poses=dict(map(_pose, _entries(sections.get((_POSES, 0)), _POSE))),
     )
 
 
@@ -520,6 +537,16 @@ class Client:
 
     async def speed(self, speed: float) -> dict:
         return await self.request("speed", speed=speed)
+
+    async def move(
+        self, collider: str, position=None, rotation=None, *, speed=None, turn_speed=None,
+        release=None,
+    ) -> dict:  # fmt: skip
+        """Sends a collider to a pose at bounded speed, or back to its keyframes (release=True)."""
+        fields = {"speed": speed, "turn_speed": turn_speed, "release": release}
+        fields["position"] = None if position is None else list(position)
+        fields["rotation"] = None if rotation is None else list(rotation)
+        return await self.request("move", collider=collider, **_without_none(fields))
 
     async def set(self, **values) -> dict:
         """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans."""
@@ -969,7 +996,7 @@ def _blocking(method):
 
 
 for _name in (
-    "request post hello pick pin release camera pause resume step reset speed set advance query "
+    "request post hello pick pin release camera pause resume step reset speed move set advance query "
     "hash load view ping next_frame frame_at"
 ).split():
     setattr(SyncClient, _name, _blocking(getattr(Client, _name)))

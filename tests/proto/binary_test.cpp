@@ -43,6 +43,15 @@ std::vector<AppliedCommand> applied_of(const json& content) {
   return applied;
 }
 
+std::vector<PoseSample> poses_of(const json& content) {
+  std::vector<PoseSample> poses;
+  for (const json& p : content["poses"]) {
+    const json& q = p["rotation"];
+    poses.push_back({p["collider"], vec3_of(p["position"]), {q[0], q[1], q[2], q[3]}});
+  }
+  return poses;
+}
+
 SceneMesh mesh_of(const json& content) {
   SceneMesh mesh;
   mesh.rest_positions = content["rest_positions"].get<std::vector<float>>();
@@ -88,9 +97,11 @@ TEST_CASE("Golden frames are read bit for bit and written byte for byte") {
     CHECK(std::memcmp(frame->positions.data(), positions.data(), positions.size() * 4) == 0);
     CHECK(frame->grabs == grabs_of(content));
     CHECK(frame->applied == applied_of(content));
+    CHECK(frame->poses == poses_of(content));
     if (!content["encoder_writes_it"]) return;
     Bytes written(3);  // what is in the buffer before does not matter
-    encode_frame({frame->header, frame->positions, frame->grabs, frame->applied}, written);
+    encode_frame({frame->header, frame->positions, frame->grabs, frame->applied, frame->poses},
+                 written);
     CHECK(written == message);
   });
 }
@@ -207,9 +218,9 @@ TEST_CASE("Bytes cut or changed behind a right checksum are survived") {
 TEST_CASE("A frame is written into the buffer that the last one used") {
   const std::vector<float> positions(300, 1.5F);
   Bytes buffer;
-  encode_frame({FrameHeader{}, positions, {}, {}}, buffer);
+  encode_frame({FrameHeader{}, positions, {}, {}, {}}, buffer);
   const std::byte* storage = buffer.data();
-  encode_frame({FrameHeader{}, positions, {}, {}}, buffer);
+  encode_frame({FrameHeader{}, positions, {}, {}, {}}, buffer);
   CHECK(buffer.data() == storage);
 }
 

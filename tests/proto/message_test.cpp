@@ -38,7 +38,7 @@ Welcome welcome() {
   w.role = "operator";
   w.scene = "default";
   w.clock = 86.500125;
-  w.capabilities = {"pick", "drag", "pin", "camera", "step", "advance", "query", "load"};
+  w.capabilities = {"pick", "drag", "pin", "camera", "step", "advance", "query", "move", "load"};
   return w;
 }
 
@@ -63,11 +63,11 @@ MeshAnnouncement mesh() {
   m.vertices = 600;
   m.triangles = 1102;
   m.cloths = {{"cloth", 0, 600, 0, 1102, 20, 30, 0.004}};
-  m.colliders = {{"ground", PlaneInfo{{0, 0, 0}, {0, 1, 0}}},
-                 {"ball", SphereInfo{{0, 0.5, 0}, 0.3}},
-                 {"post", CapsuleInfo{{0, 0, 0}, {0, 1, 0}, 0.05}},
-                 {"block", BoxInfo{{0, 0.2, 0}, {0.2, 0.1, 0.2}, {0, 0, 0, 1}}},
-                 {"form", MeshInfo{711, 1418}}};
+  m.colliders = {{"ground", PlaneInfo{{0, 0, 0}, {0, 1, 0}}, {0, 0, 0}},
+                 {"ball", SphereInfo{{0, 0.5, 0}, 0.3}, {0, 0.5, 0}},
+                 {"post", CapsuleInfo{{0, 0, 0}, {0, 1, 0}, 0.05}, {0, 0.5, 0}},
+                 {"block", BoxInfo{{0, 0.2, 0}, {0.2, 0.1, 0.2}, {0, 0, 0, 1}}, {0, 0.2, 0}},
+                 {"form", MeshInfo{711, 1418}, {0, 1.2, 0}}};
   return m;
 }
 
@@ -154,6 +154,7 @@ std::vector<std::string> replies() {
       encode_reply(15, StepReply{5160, 5161}),
       encode_reply(16, DoneReply{"reset", 0}),
       encode_reply(17, SpeedReply{8, 0.25}),
+      encode_reply(27, MoveReply{30, "ball"}),
       encode_reply(18, DoneReply{"set", 30}),
       encode_reply(19, AdvanceReply{600, kHash}),
       encode_reply(20, QueryReply{600, kEnergy}),
@@ -214,7 +215,7 @@ TEST_CASE("Each example of a command in the specification is a command") {
     REQUIRE(request.has_value());
     operations.insert(name_of(request->command));
   }
-  CHECK(operations.size() == 18);  // one at least for each
+  CHECK(operations.size() == 19);  // one at least for each
 }
 
 TEST_CASE("Each example of a server's message in the specification is what the server writes") {

@@ -107,6 +107,8 @@ inline WorldDef small_scene(const std::string& name) {
   def.cloths[0].width = def.cloths[0].height = 0.5;
   def.cloths[0].origin = Vec3d(-0.25, 1, 0);
   def.pins = {{0, 0}, {6, 0}};
+  def.colliders = {{"floor", PlaneDef{Vec3d(0, -2, 0), Vec3d::UnitY()}},
+                   {"ball", SphereDef{Vec3d(0, -1, 0), 0.1}}};
   return def;
 }
 

@@ -210,6 +210,7 @@ TEST_CASE("no command changes a position by itself; only ticks do") {
       R"({"op":"release","all":true})",
       R"({"op":"set","gravity":[0,1000,0],"wind":[100,0,0]})",
       R"({"op":"speed","speed":10})",
+      R"({"op":"move","collider":"ball","position":[0,0.9,0],"speed":20})",
       R"({"op":"camera","position":[0,0,1],"target":[0,0,0]})",
       R"({"op":"drag","phase":"end","drag":1})"};
   for (const std::string& command : commands) t.say(1, command);

@@ -224,6 +224,11 @@ class SceneFiles(unittest.TestCase):
 
     def test_what_no_schema_can_tell_is_refused_with_its_path(self):
         cloth = {"rows": 5, "columns": 5}
+
+        def moving(keyframes, loop=False):
+            motion = {"keyframes": keyframes, "loop": loop}
+            return {"cloths": [cloth], "colliders": [{"shape": "sphere", "motion": motion}]}
+
         table = [
             ({"cloths": [{**cloth, "fabric": {"shear": 1e5}}]}, "cloths[0].fabric.shear"),
             ({"cloths": [{**cloth, "u": [0, 0, 0]}]}, "cloths[0].u"),
@@ -238,6 +243,11 @@ class SceneFiles(unittest.TestCase):
              "colliders[0].normal"),
             ({"cloths": [cloth], "colliders": [{"shape": "box", "orientation": [1, 1, 0, 0]}]},
              "colliders[0].orientation"),
+            (moving([{"time": 1}, {"time": 1}]), "colliders[0].motion.keyframes[1].time"),
+            (moving([{}, {"time": 0.01, "offset": [1, 0, 0]}]),
+             "colliders[0].motion.keyframes[1].offset"),
+            (moving([{"rotation": [0, 1, 0, 1]}]), "colliders[0].motion.keyframes[0].rotation"),
+            (moving([{}, {"time": 1, "offset": [1, 0, 0]}], loop=True), "colliders[0].motion.loop"),
             ({"cloths": [cloth], "colliders": [{"shape": "mesh", "source": "none.obj"}]},
              "colliders[0].source"),
             ({"cloths": [{"form": "mesh", "mesh": {"source": "cat"}}]}, "cloths[0].mesh.source"),

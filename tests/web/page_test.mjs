@@ -660,3 +660,44 @@ test('a cloth lies in the light, whichever of its sides is turned to it', bounde
   const ratio = brightness[0] / brightness[1];
   assert.ok(ratio > 0.8 && ratio < 1.25, `${brightness}`);
 });
+
+test('an object is drawn where it is, and goes where Ctrl, Shift and the mouse take it', bounded, async () => {
+  const moving = await start_server(['--scene', 'lift-sphere', '--paused']);
+  const page = await open_page(browser, moving.url);
+  const script = await moving.script();
+  const round = ({ name }) => name === 'ball' || name === 'sphere';
+  const ball = async () => (await read(page, 'objects')).find(round);
+  const asked = async () => (await script.query('colliders')).find(round);
+  try {
+    await script.advance(130); // on its way up
+    await until(async () => (await read(page, 'tick')) === 130);
+    const { position } = await asked();
+    assert.ok(position[1] > 0.4 && position[1] < 0.9, `${position}`);
+    await until(async () => Math.abs((await ball()).position[1] - position[1]) < 1e-5);
+
+    // Here the cloth does not hide it.
+    await script.load('drape-sphere');
+    await until(async () => (await read(page, 'scene')) === 'drape-sphere');
+    await camera_at_rest(page);
+    const { x, y } = await pixel_of(page, [0, 0.7, 0]);
+    await page.keyboard.down('Control');
+    await page.keyboard.down('Shift');
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await until(async () => (await read(page, 'input')) === 'holding');
+    await page.mouse.move(x + 120, y, { steps: 4 });
+    await page.mouse.up();
+    await page.keyboard.up('Shift');
+    await page.keyboard.up('Control');
+    await script.resume();
+    await until(async () => Math.hypot(...(await asked()).position.filter((_, k) => k !== 1)) > 0.1);
+    await script.pause();
+    const goal = (await asked()).position;
+    await until(async () => Math.hypot(...(await ball()).position.map((v, k) => v - goal[k])) < 1e-5);
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    script.close();
+    await page.context().close();
+    await moving.stop();
+  }
+});

@@ -11,6 +11,8 @@ const LINE_HEIGHT = 16; // of wheels that count lines [pixels]
 export interface Actions {
   /** Takes the cloth if it is at the point. */
   take(point: Vector2): boolean;
+  /** Takes the object at the point, to move it. */
+  take_object(point: Vector2): boolean;
   follow(point: Vector2): void;
   push(factor: number): void;
   /** @param meant the pointer went up, in place of the hold being broken off */
@@ -81,8 +83,11 @@ export class Input {
       this.enter('camera');
       return;
     }
-    this.panning = !touch && (event.button !== 0 || event.shiftKey);
-    const holds = !this.panning && this.actions.take(this.point);
+    const object = event.shiftKey && event.ctrlKey;
+    this.panning = !touch && !object && (event.button !== 0 || event.shiftKey);
+    const take = () =>
+      object ? this.actions.take_object(this.point!) : this.actions.take(this.point!);
+    const holds = !this.panning && take();
     this.enter(holds ? 'holding' : 'camera');
     if (holds && touch) this.await_long_press(event);
   }

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from 'three';
 import { inner_offset } from './normals.js';
-import type { Collider, MeshData, Vec3 } from '../../proto/js/messages.js';
+import type { Collider, MeshData, PoseSample, Vec3 } from '../../proto/js/messages.js';
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
 
@@ -23,6 +23,8 @@ export class Objects {
   readonly ground: number | null = null;
   private material = new MeshStandardMaterial({ color: '#c9bda9', roughness: 0.8 });
   private caster = new Raycaster();
+  private nodes: Node[] = [];
+  private ground_place = -1;
 
   /**
    * @param inset by which meshes are drawn thinner [m]. Contact keeps particles and edges outside,
@@ -32,16 +34,54 @@ export class Objects {
     for (const [place, collider] of colliders.entries()) {
       if (collider.kind === 'plane') {
         // A floor is drawn for level ground alone.
-        if (collider.normal[1] > 0.99) this.ground = collider.point[1];
+        if (collider.normal[1] > 0.99) {
+          this.ground = collider.point[1];
+          this.ground_place = place;
+        }
         continue;
       }
       const mesh = new Mesh(geometry_of(collider, place, data, inset), this.material);
       mesh.name = collider.name;
       mesh.castShadow = mesh.receiveShadow = true;
       place_object(mesh, collider);
-      this.group.add(mesh);
+      const pivot = new Vector3(...collider.pivot);
+      mesh.position.sub(pivot);
+      const holder = new Group().add(mesh);
+      holder.position.copy(pivot);
+      this.nodes.push({ place, pivot, holder });
+      this.group.add(holder);
     }
     this.group.updateMatrixWorld(true);
+  }
+
+  /** Puts objects where they are; those that are not named are as defined. */
+  place(poses: PoseSample[]): void {
+    for (const { place, pivot, holder } of this.nodes) {
+      const pose = poses.find(({ collider }) => collider === place);
+      if (pose) {
+        holder.position.fromArray(pose.position);
+        holder.quaternion.fromArray(pose.rotation);
+      } else {
+        holder.position.copy(pivot);
+        holder.quaternion.identity();
+      }
+    }
+    this.group.updateMatrixWorld(true);
+  }
+
+  /** Objects as they are drawn. */
+  poses(): { name: string; position: number[]; rotation: number[] }[] {
+    return this.nodes.map(({ holder }) => ({
+      name: holder.children[0].name,
+      position: holder.position.toArray(),
+      rotation: holder.quaternion.toArray(),
+    }));
+  }
+
+  /** Height of the ground among these poses. */
+  ground_at(poses: PoseSample[]): number | null {
+    const pose = poses.find(({ collider }) => collider === this.ground_place);
+    return pose ? pose.position[1] : this.ground;
   }
 
   /** Bounds of all objects [m]. */
@@ -51,15 +91,43 @@ export class Objects {
 
   /** Distance to the first object along a ray [m]; Infinity if it meets none. */
   distance(origin: Vec3, direction: Vec3): number {
+    return this.hit(origin, direction)?.distance ?? Infinity;
+  }
+
+  /** The first object along a ray, as it stands in the picture. */
+  hit(origin: Vec3, direction: Vec3): ObjectHit | null {
     this.caster.set(new Vector3(...origin), new Vector3(...direction));
-    return this.caster.intersectObjects(this.group.children, false)[0]?.distance ?? Infinity;
+    const met = this.caster.intersectObjects(this.group.children, true)[0];
+    if (!met) return null;
+    return {
+      name: met.object.name,
+      distance: met.distance,
+      position: met.point.toArray(),
+      pivot: met.object.parent!.position.toArray(),
+    };
   }
 
   dispose(): void {
     this.group.removeFromParent();
-    for (const child of this.group.children as Mesh[]) child.geometry.dispose();
+    this.group.traverse((child) => child instanceof Mesh && child.geometry.dispose());
     this.material.dispose();
   }
+}
+
+export interface ObjectHit {
+  name: string;
+  /** From the ray's origin [m]. */
+  distance: number;
+  position: Vec3;
+  /** Where the object's pivot is now [m]. */
+  pivot: Vec3;
+}
+
+/** An object with its place in the list of colliders; the holder is at its pivot. */
+interface Node {
+  place: number;
+  pivot: Vector3;
+  holder: Group;
 }
 
 function geometry_of(

@@ -10,6 +10,7 @@ import type { FanHit } from './fans.js';
 import { Hands } from './hands.js';
 import type { Hand } from './hands.js';
 import { Hold } from './hold.js';
+import { ObjectHold } from './object_hold.js';
 import { Input } from './input.js';
 import { listen_to_keys } from './keys.js';
 import { element, Panels } from './panels.js';
@@ -50,6 +51,7 @@ export class Page {
   private reticle = new Reticle();
   private hold: Hold | null = null;
   private fan_hold: FanHold | null = null;
+  private object_hold: ObjectHold | null = null;
   private grabs: Grab[] = [];
   private viewers: Viewer[] = [];
   private last_time = performance.now() / 1000;
@@ -74,8 +76,9 @@ export class Page {
     this.stage.scene.add(this.box_view.boxes.lines);
     this.input = new Input(this.canvas, {
       take: (point) => this.take(point),
-      follow: (point) => (this.fan_hold ?? this.hold)?.follow(point),
-      push: (factor) => (this.fan_hold ?? this.hold)?.push(factor),
+      take_object: (point) => this.take_object(point),
+      follow: (point) => (this.fan_hold ?? this.object_hold ?? this.hold)?.follow(point),
+      push: (factor) => (this.fan_hold ?? this.object_hold ?? this.hold)?.push(factor),
       let_go: (meant) => this.let_go(meant),
       toggle_pin: (point) => this.toggle_pin(point),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
@@ -201,6 +204,16 @@ export class Page {
     return true;
   }
 
+  private take_object(point: Vector2): boolean {
+    if (!this.client.connected) return false;
+    const hit = this.world?.hit_object(this.orbit.ray(point));
+    if (!hit) return false;
+    this.object_hold = new ObjectHold(hit, point, this.orbit, (move) =>
+      tell_refusal(this.client.move(hit.name, move), (text) => this.panels.tell(text)),
+    );
+    return true;
+  }
+
   private fan_at(point: Vector2 | null, cloth: ClothHit | null): FanHit | null {
     if (!point || !this.client.connected) return null;
     const { width, height } = this.size();
@@ -212,6 +225,8 @@ export class Page {
   private let_go(meant: boolean): void {
     this.fan_hold?.end();
     this.fan_hold = null;
+    this.object_hold?.end();
+    this.object_hold = null;
     this.hold?.end(meant);
     this.hold = null;
     this.pending_latency = null;
@@ -313,7 +328,7 @@ export class Page {
     this.hovered = idle ? this.pick(this.input.point) : null;
     const fan = idle ? this.fan_at(this.input.point, this.hovered) : null;
     if (fan) this.hovered = null;
-    if (this.input.point) (this.fan_hold ?? this.hold)?.follow(this.input.point);
+    if (this.input.point) (this.fan_hold ?? this.object_hold ?? this.hold)?.follow(this.input.point);
     this.reticle.update(this.hovered, this.world, this.orbit.camera, this.size().height);
     const holding = this.input.state === 'holding';
     this.canvas.dataset.cursor = holding

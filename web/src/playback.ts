@@ -1,4 +1,4 @@
-import type { Frame, GrabSample } from '../../proto/js/messages.js';
+import type { Frame, GrabSample, PoseSample } from '../../proto/js/messages.js';
 
 const LONGEST_DELAY = 0.25; // [s]
 const KEPT_FRAMES = 24;
@@ -13,6 +13,8 @@ export class Playback {
   /** Three values a vertex [m]. */
   positions: Float32Array;
   grabs: GrabSample[] = [];
+  /** Objects that are not as the mesh tells them. */
+  poses: PoseSample[] = [];
   tick = -1;
   private frames: Frame[] = [];
   private shown_time = -Infinity; // on the server's clock [s]
@@ -89,6 +91,7 @@ export class Playback {
     if (!to || this.shown_time <= from.serverTime) {
       this.positions.set(from.positions);
       this.grabs = from.grabs;
+      this.poses = from.poses;
       return;
     }
     const part = (this.shown_time - from.serverTime) / (to.serverTime - from.serverTime);
@@ -96,7 +99,24 @@ export class Playback {
     const b = to.positions;
     for (let i = 0; i < a.length; i++) this.positions[i] = a[i] + (b[i] - a[i]) * part;
     this.grabs = from.grabs.map((grab) => between(grab, to.grabs, part));
+    this.poses = from.poses.map((pose) => pose_between(pose, to.poses, part));
   }
+}
+
+/** The rotation is the shorter way round, near enough to even for so small a turn. */
+function pose_between(pose: PoseSample, later: PoseSample[], part: number): PoseSample {
+  const next = later.find(({ collider }) => collider === pose.collider);
+  if (!next) return pose;
+  const mix = (a: number[], b: number[], sign: number) =>
+    a.map((value, i) => value * (1 - part) + sign * b[i] * part);
+  const along = pose.rotation.reduce((sum, value, i) => sum + value * next.rotation[i], 0);
+  const rotation = mix(pose.rotation, next.rotation, along < 0 ? -1 : 1);
+  const norm = Math.hypot(...rotation);
+  return {
+    collider: pose.collider,
+    position: mix(pose.position, next.position, 1),
+    rotation: rotation.map((value) => value / norm),
+  };
 }
 
 function between(grab: GrabSample, later: GrabSample[], part: number): GrabSample {

@@ -44,6 +44,10 @@ export function expose_probe(page: Page): void {
     get hands() {
       return structuredClone(page.hands.shown);
     },
+    /** Objects as they are drawn, with the place of their pivot [m] and their turn [x, y, z, w]. */
+    get objects() {
+      return page.world?.object_poses() ?? [];
+    },
     get pins() {
       return structuredClone(page.pins.list);
     },

@@ -61,6 +61,12 @@ export class Stage {
     if (height !== null) this.scene.add(floor(height));
   }
 
+  /** Raises or lowers the floor, if there is one. */
+  raise_floor(height: number): void {
+    const floor = this.scene.getObjectByName('floor');
+    if (floor) floor.position.y = height;
+  }
+
   /** Aims the light's shadow at what can move; the finer the smaller the box [m]. */
   light(box: Box3): void {
     const center = box.getCenter(new Vector3());

@@ -2,6 +2,7 @@ import { Box3, Vector3 } from 'three';
 import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../proto/js/messages.js';
 import { ClothMesh } from './cloth_mesh.js';
 import { Objects } from './objects.js';
+import type { ObjectHit } from './objects.js';
 import { Playback } from './playback.js';
 import { cast_ray } from './ray.js';
 import type { ClothHit } from './ray.js';
@@ -39,7 +40,12 @@ export class WorldView {
   /** Brings the picture to a time [s, own clock]; tells whether it changed. */
   show(now: number, live: boolean): boolean {
     const changed = this.playback.sample(now, live);
-    if (changed) this.cloth.update(this.playback.positions);
+    if (changed) {
+      this.cloth.update(this.playback.positions);
+      this.objects.place(this.playback.poses);
+      const ground = this.objects.ground_at(this.playback.poses);
+      if (ground !== null) this.stage.raise_floor(ground);
+    }
     return changed;
   }
 
@@ -49,6 +55,18 @@ export class WorldView {
     const hit = cast_ray(origin, direction, this.playback.positions, this.triangles);
     if (!hit || this.objects.distance(origin, direction) < hit.distance) return null;
     return hit;
+  }
+
+  object_poses(): { name: string; position: number[]; rotation: number[] }[] {
+    return this.objects.poses();
+  }
+
+  /** The object that a ray meets, unless the cloth hides it. */
+  hit_object(ray: { origin: Vec3; direction: Vec3 }): ObjectHit | null {
+    const { origin, direction } = ray;
+    const hit = this.objects.hit(origin, direction);
+    const cloth = hit && cast_ray(origin, direction, this.playback.positions, this.triangles);
+    return cloth && cloth.distance < hit.distance ? null : hit;
   }
 
   /** Bounds of the cloth and of the objects, with the ground below [m]. */

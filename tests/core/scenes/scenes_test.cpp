@@ -158,3 +158,34 @@ TEST_CASE("the sheet comes to lie over the bunny, touches ears and ground, and e
   CHECK(highest == Approx(0.772).margin(0.02));
   CHECK(lowest < 0.15);
 }
+
+TEST_CASE("the turning board carries the sheet with it, and enters nothing") {
+  World<float> world(make_scene("turntable", ""));
+  const std::size_t off_centre = 20 * 41 + 24;  // 0.11 m from the axis
+  const auto direction = [&] {
+    const Vec3f& p = world.state().x[off_centre];
+    return std::atan2(-static_cast<double>(p[2]), static_cast<double>(p[0]));
+  };
+  double turned = 0, last = direction();
+  for (int tick = 0; tick < 300; ++tick) {
+    CHECK_FALSE(world.step().divergence);
+    REQUIRE(world.deepest_penetration() == 0);
+    turned += std::remainder(direction() - last, 2 * 3.14159265358979);
+    last = direction();
+  }
+  // Once round in five seconds, less the moment until friction holds it.
+  CHECK(turned > 5.6);
+  CHECK(turned < 6.4);
+}
+
+TEST_CASE("the ball lifts the sheet, is never let through, and sinks again") {
+  World<float> world(make_scene("lift-sphere", ""));
+  for (int tick = 1; tick <= 360; ++tick) {
+    CHECK_FALSE(world.step().divergence);
+    REQUIRE(world.deepest_penetration() == 0);
+    if (tick != 240) continue;
+    CHECK(world.colliders()[1].pose.position[1] == Approx(1.0));
+    CHECK(world.state().x[20 * 41 + 20][1] > 1.19f);
+  }
+  CHECK(world.colliders()[1].pose.position[1] == Approx(0.2));
+}

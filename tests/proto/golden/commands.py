@@ -78,6 +78,18 @@ ACCEPTED = [
     accepted('{"op":"step"}', op="step", n=1),
     accepted('{"op":"step","n":600}', op="step", n=600),
     accepted('{"op":"speed","speed":0.01}', op="speed", speed=0.01),
+    accepted(
+        '{"op":"move","collider":"ball","position":[1000,-1000,0]}',
+        op="move", collider="ball", position=[1000, -1000, 0], speed=0.5, turn_speed=2,
+    ),
+    accepted(
+        '{"op":"move","collider":"b","rotation":[0,0.6,0,0.8],"speed":20,"turn_speed":0.001,'
+        '"release":false}',
+        op="move", collider="b", rotation=[0, 0.6, 0, 0.8], speed=20, turn_speed=0.001,
+    ),
+    accepted('{"op":"move","collider":"ball","release":true}', op="move", collider="ball",
+             release=True),
+    accepted('{"op":"query","what":"colliders"}', op="query", what="colliders", format="json"),
     accepted('{"op":"set","wind":[100,-100,0]}', op="set", wind=[100, -100, 0]),
     accepted(
         '{"op":"set","gravity":[0,-9.81,0],"wind":[0,0,0],"gust_speed":100,"gust_length":0.01,'
@@ -249,6 +261,21 @@ def refused_fields():
     yield refuse('{"op":"speed"}', "missing_field", field="speed")
     yield refuse('{"op":"speed","speed":0}', "out_of_range", field="speed", limit=limits(0.01, 10))
     yield refuse('{"op":"speed","speed":"fast"}', "wrong_type", field="speed", value="fast")
+    yield refuse('{"op":"move","position":[0,1,0]}', "missing_field", field="collider")
+    yield refuse('{"op":"move","collider":"","position":[0,1,0]}', "wrong_length", field="collider")
+    yield refuse('{"op":"move","collider":"ball"}', "missing_field", field="position")
+    yield refuse('{"op":"move","collider":"ball","position":[0,1000.5,0]}', "out_of_range",
+                 field="position[1]", limit=limits(-1000, 1000))
+    yield refuse('{"op":"move","collider":"ball","rotation":[0,0,1]}', "wrong_length",
+                 field="rotation", limit={"length": 4})
+    yield refuse('{"op":"move","collider":"ball","rotation":[0,0,0.5,0.5]}', "out_of_range",
+                 field="rotation")
+    yield refuse('{"op":"move","collider":"ball","position":[0,1,0],"speed":20.5}', "out_of_range",
+                 field="speed", limit=limits(0.001, 20))
+    yield refuse('{"op":"move","collider":"ball","position":[0,1,0],"turn_speed":0}',
+                 "out_of_range", field="turn_speed", limit=limits(0.001, 60))
+    yield refuse('{"op":"move","collider":"ball","position":[0,1,0],"release":true}',
+                 "conflicting_fields", field="position")
     yield refuse('{"op":"set"}', "missing_field", command="set", limit={"allowed": [
         "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag", "fans"]})
     yield refuse('{"op":"set","winds":[1,0,0]}', "missing_field")
@@ -330,6 +357,10 @@ CLIENT_CALLS = [
     call("step", 5, sends={"op": "step", "n": 5}),
     call("reset", sends={"op": "reset"}),
     call("speed", 0.25, sends={"op": "speed", "speed": 0.25}),
+    call("move", "ball", position=[0, 1, 0], speed=2,
+         sends={"op": "move", "collider": "ball", "position": [0, 1, 0], "speed": 2}),
+    call("move", "ball", release=True,
+         sends={"op": "move", "collider": "ball", "release": True}),
     call("set", wind=[3, 0, 0], still_air=True,
          sends={"op": "set", "wind": [3, 0, 0], "still_air": True}),
     call("advance", 600, sends={"op": "advance", "n": 600}),

@@ -14,7 +14,7 @@ from pathlib import Path
 import commands
 
 FRAME, MESH, DATA, ACK = 1, 2, 3, 4
-POSITIONS, GRABS, APPLIED = 1, 2, 3
+POSITIONS, GRABS, APPLIED, POSES = 1, 2, 3, 4
 REST, TRIANGLES, UV, COLLIDER_POSITIONS, COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
 KEY, JUMP, PAUSED = 1, 2, 4
 FLOAT32_MAX, FLOAT32_LEAST = 2.0**127 * (2 - 2.0**-23), 2.0**-149
@@ -69,6 +69,12 @@ def applied_bytes(applied):
     return b"".join(struct.pack("<II", a["viewer"], a["number"]) for a in applied)
 
 
+def pose_bytes(poses):
+    return b"".join(
+        struct.pack("<I7f", p["collider"], *p["position"], *p["rotation"]) for p in poses
+    )
+
+
 def frame_body(header, vertices, sections, step=0.0):
     fixed = struct.pack(
         "<QddIIIIfI",
@@ -85,13 +91,15 @@ def frame_body(header, vertices, sections, step=0.0):
     return fixed + b"".join(sections)
 
 
-def frame(name, header, positions, grabs=(), applied=(), extra_before=(), extra_after=()):
+def frame(name, header, positions, grabs=(), applied=(), poses=(), extra_before=(), extra_after=()):
     """A frame, and what must be read from it. Unknown sections may stand anywhere."""
     sections = list(extra_before) + [section(POSITIONS, 0, floats(positions))]
     if grabs:
         sections.append(section(GRABS, 0, grab_bytes(grabs)))
     if applied:
         sections.append(section(APPLIED, 0, applied_bytes(applied)))
+    if poses:
+        sections.append(section(POSES, 0, pose_bytes(poses)))
     sections += extra_after
     body = frame_body(header, len(positions) // 3, sections)
     content = {
@@ -109,6 +117,10 @@ def frame(name, header, positions, grabs=(), applied=(), extra_before=(), extra_
             for g in grabs
         ],
         "applied": list(applied),
+        "poses": [
+            dict(p, position=round_float(p["position"]), rotation=round_float(p["rotation"]))
+            for p in poses
+        ],
     }
     return name, message(FRAME, body, flags=header["flags"]), content
 
@@ -187,6 +199,10 @@ HANDS = [
     dict(id=17, viewer=3, held=[0.1, 0.9, 0.2], target=[0.2, 1.1, 0.4], force=12.5),
     dict(id=4294967295, viewer=4, held=[0.0, 0.0, 0.0], target=[-1e4, 1e4, 0.0], force=50.0),
 ]
+MOVED = [
+    dict(collider=0, position=[0.1, -0.2, 0.3], rotation=[0.0, 0.6, 0.0, 0.8]),
+    dict(collider=65535, position=[-1000.0, 1000.0, 0.0], rotation=[0.5, -0.5, 0.5, -0.5]),
+]
 APPLIED_NUMBERS = [dict(viewer=3, number=41), dict(viewer=4, number=1), dict(viewer=9, number=7)]
 
 
@@ -202,6 +218,7 @@ def accepted():
         HANDS,
         APPLIED_NUMBERS,
     )
+    yield frame("frame_poses", frame_header(tick=7), GRID[0], HANDS[:1], (), MOVED)
     extremes = [FLOAT32_MAX, -FLOAT32_MAX, FLOAT32_LEAST, -0.0, 1.0 / 3.0, -1e-20]
     yield frame("frame_jump", frame_header(flags=KEY | JUMP, epoch=7, tick=2**53 - 1), extremes)
     yield frame(
@@ -273,6 +290,9 @@ def refused_frames(good):
     yield "a hand cut off", built(positions, section(GRABS, 0, grab_bytes(HANDS)[:-4]))
     bad_hand = dict(HANDS[0], held=[NAN, 0.0, 0.0])
     yield "a hand is NaN", built(positions, section(GRABS, 0, grab_bytes([bad_hand])))
+    yield "a pose cut off", built(positions, section(POSES, 0, pose_bytes(MOVED)[:-4]))
+    bad_pose = dict(MOVED[0], rotation=[0.0, 0.0, INFINITY, 1.0])
+    yield "a pose is infinite", built(positions, section(POSES, 0, pose_bytes([bad_pose])))
     yield "applied cut off", built(positions, section(APPLIED, 0, b"\0" * 12))
 
 

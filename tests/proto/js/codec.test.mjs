@@ -40,6 +40,7 @@ test('golden frames are read bit for bit', () => {
     sameFloats(frame.positions, content.positions);
     assert.deepEqual(frame.grabs, content.grabs);
     assert.deepEqual(frame.applied, content.applied);
+    assert.deepEqual(frame.poses, content.poses);
   }
 });
 

@@ -67,6 +67,10 @@ class WithoutNumpy(unittest.TestCase):
                 self.assertEqual(grab.force, expected["force"])
             applied = {a["viewer"]: a["number"] for a in content["applied"]}
             self.assertEqual(frame.applied, applied)
+            for told in content["poses"]:
+                pose = frame.poses[told["collider"]]
+                self.assertEqual(pose, weft.Pose(tuple(told["position"]), tuple(told["rotation"])))
+            self.assertEqual(len(frame.poses), len(content["poses"]))
 
     def test_golden_meshes_are_read(self):
         for content, message in self.each("mesh"):

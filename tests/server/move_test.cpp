@@ -1,0 +1,65 @@
+#include <span>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "proto/frame.h"
+#include "tests/server/fakes.h"
+
+// Objects that a viewer moves.
+
+namespace weft::server {
+namespace {
+
+using nlohmann::json;
+
+std::string hash_of(const Room& room) {
+  return proto::hash_text(room.world().hash());
+}
+
+TEST_CASE("a collider is moved by name, seen in frames and queries, and told wrong names") {
+  TestRoom t;
+  t.join(1);
+  const std::string at_start = hash_of(*t.room);
+  const json unknown =
+      t.say(1, R"({"op":"move","id":1,"collider":"bal","position":[0,1,0],"speed":1})");
+  CHECK(unknown["code"] == "unknown_collider");
+  CHECK(unknown["field"] == "collider");
+  CHECK(unknown["limit"]["allowed"] == json{"floor", "ball"});
+  const json turned =
+      t.say(1, R"({"op":"move","id":2,"collider":"floor","rotation":[0,0.6,0,0.8]})");
+  CHECK(turned["code"] == "out_of_range");
+  CHECK(turned["field"] == "rotation");
+  CHECK(hash_of(*t.room) == at_start);
+
+  const auto poses = [&t] {
+    t.clock.now += 0.1;
+    t.room->finish_turn();
+    const std::string& bytes = t.output.frames.back();
+    return proto::decode_frame(std::as_bytes(std::span(bytes)))->poses;
+  };
+  t.tick(1);
+  CHECK(poses().empty());
+  const json moved =
+      t.say(1, R"({"op":"move","id":3,"collider":"ball","position":[0.5,-1,0],"speed":0.5})");
+  CHECK(moved["collider"] == "ball");
+  t.say(1, R"({"op":"advance","n":30})");
+  REQUIRE(poses().size() == 1);
+  CHECK(poses()[0].collider == 1);
+  CHECK(poses()[0].position[0] == Approx(0.25));
+  CHECK(poses()[0].rotation == proto::Quatf{0, 0, 0, 1});
+  const json asked = t.say(1, R"({"op":"query","id":4,"what":"colliders"})")["data"];
+  CHECK(asked[0]["name"] == "floor");
+  CHECK(asked[1]["position"][0].get<double>() == Approx(0.25));
+  CHECK(asked[1]["blocked"] == false);
+
+  t.say(1, R"({"op":"move","collider":"ball","release":true})");
+  t.say(1, R"({"op":"advance","n":30})");
+  CHECK(poses()[0].position[0] == Approx(0.25));
+  t.say(1, R"({"op":"reset"})");
+  CHECK(poses().empty());
+  CHECK(hash_of(*t.room) == at_start);
+}
+
+}  // namespace
+}  // namespace weft::server
