@@ -12,7 +12,8 @@ const PERIOD = 1 / 60;
 function frame_at(tick, changes = {}) {
   const serverTime = 100 + tick * PERIOD;
   const positions = Float32Array.of(serverTime - 100, 0, 0);
-  return { tick, serverTime, positions, grabs: [], jump: false, paused: false, ...changes };
+  const state = { grabs: [], poses: [], jump: false, paused: false };
+  return { tick, serverTime, positions, ...state, ...changes };
 }
 
 /** Numbers in [0, 1) that are the same each time (Park and Miller). */
@@ -94,6 +95,28 @@ test('a jump is not interpolated to', () => {
   playback.sample(9 * PERIOD, false);
   assert.deepEqual([...playback.positions], [-5, 0, 0]);
   assert.equal(playback.tick, 0);
+});
+
+test('an object goes with the cloth and turns the shorter way, whichever sign its turns have', () => {
+  const playback = new Playback(1);
+  const turned = (angle, sign) => [0, sign * Math.sin(angle / 2), 0, sign * Math.cos(angle / 2)];
+  for (let tick = 0; tick < 40; tick++) {
+    const frame = frame_at(tick);
+    const position = [0, frame.serverTime - 100, 0];
+    const rotation = turned(2 * (frame.serverTime - 100), tick % 2 ? -1 : 1);
+    playback.push({ ...frame, poses: [{ collider: 3, position, rotation }] }, tick * PERIOD);
+    for (const later of [0, 0.005, 0.011]) {
+      playback.sample(tick * PERIOD + later, false);
+      const [pose] = playback.poses;
+      const time = playback.positions[0];
+      assert.equal(pose.collider, 3);
+      assert.ok(Math.abs(pose.position[1] - time) < 1e-5);
+      const along = turned(2 * time, 1).reduce((sum, v, i) => sum + v * pose.rotation[i], 0);
+      assert.ok(Math.abs(Math.abs(along) - 1) < 1e-6, `${pose.rotation} at ${time}`);
+      assert.ok(Math.abs(Math.hypot(...pose.rotation) - 1) < 1e-6);
+    }
+  }
+  assert.ok(playback.positions[0] % PERIOD > 1e-4); // between frames
 });
 
 test('a ray through a point of a triangle meets it there, from both sides', () => {
