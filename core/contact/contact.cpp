@@ -142,33 +142,48 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   solve_rows(state, profile);
 }
 
+/// Signed distance of a point from the nearest object; of meshes, only closed ones have an inside.
+template <class Real>
+Real Contact<Real>::signed_distance(const Vec3<Real>& p) const {
+  constexpr Real kFar = Real(1000);
+  Real nearest = analytic_clearance(p, kFar);
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const MeshShape<Real>& mesh = meshes_[m];
+    if (!mesh.closed) continue;
+    const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
+    const Real outside = std::sqrt(mesh.triangle_tree.bounds().squared_distance(own));
+    nearest = std::min(nearest, outside > 0 ? outside : distance_to_mesh(mesh, own, kFar).distance);
+  }
+  return nearest;
+}
+
 template <class Real>
 double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
-  double deepest = 0;
-  const auto probe = [&](const Vec3<Real>& p) {
-    for (const Plane& plane : planes_)
-      deepest = std::max(deepest, static_cast<double>(plane.offset - plane.normal.dot(p)));
-    for (const Ball& ball : balls_)
-      deepest = std::max(deepest, static_cast<double>(ball.radius - (p - ball.centre).norm()));
-    for (const Rod& rod : rods_) {
-      const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
-      deepest = std::max(deepest, static_cast<double>(rod.radius - (p - q).norm()));
+  Real least = 0;
+  std::vector<Real> distance;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    // Nobody in the ball about a neighbour that reaches to the nearest surface needs measuring.
+    Real known = 0, edge = 0;
+    for (Index k = patches_.first_joined[i]; k < patches_.first_joined[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(patches_.joined[static_cast<std::size_t>(k)]);
+      if (j >= i) continue;
+      edge = std::max(edge, (x[i] - x[j]).norm());
+      known = std::max(known, distance[j] - (x[i] - x[j]).norm());
     }
-    for (std::size_t m = 0; m < meshes_.size(); ++m) {
-      const MeshShape<Real>& mesh = meshes_[m];
-      const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
-      if (!mesh.closed || mesh.triangle_tree.bounds().squared_distance(own) > 0) continue;
-      const MeshDistance<Real> d = distance_to_mesh(mesh, own, Real(1000));
-      deepest = std::max(deepest, static_cast<double>(-d.distance));
-    }
-  };
-  for (const Vec3<Real>& p : x) probe(p);
-  for (const Edge& edge : patches_.edges) {
-    const Vec3<Real>& a = x[static_cast<std::size_t>(edge[0])];
-    const Vec3<Real>& b = x[static_cast<std::size_t>(edge[1])];
-    for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) probe(a + (b - a) * t);
+    distance.push_back(known > edge * 2 ? known : signed_distance(x[i]));
+    least = std::min(least, distance.back());
   }
-  return deepest;
+  for (const Edge& edge : patches_.edges) {
+    const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
+    const Vec3<Real> way = x[j] - x[i];
+    const Real length = way.norm();
+    for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) {
+      // The ball about an end that reaches to the nearest surface holds no point of an object.
+      if (length * t < distance[i] || length * (1 - t) < distance[j]) continue;
+      least = std::min(least, signed_distance(x[i] + way * t));
+    }
+  }
+  return static_cast<double>(-least);
 }
 
 template class Contact<float>;

@@ -190,6 +190,7 @@ class Contact {
   Real analytic_clearance(const Vec3<Real>& p, Real reach) const;
   Real clearance(const Vec3<Real>& p, Real reach) const;
   Real least_clearance(const Vec3<Real>& p, Real reach) const;
+  Real signed_distance(const Vec3<Real>& p) const;
 
   // contact_pairs.cpp
   void collect_pairs(const ClothState<Real>& state, Profile& profile);

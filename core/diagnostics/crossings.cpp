@@ -1,6 +1,5 @@
 #include "core/diagnostics/crossings.h"
 
-#include "core/geometry/bvh.h"
 #include "core/math/exact_sign.h"
 
 namespace weft {
@@ -28,16 +27,17 @@ bool share_vertex(const Edge& edge, const Triangle& t) {
 
 /// Adds all pairs of an edge over x and a triangle over y.
 /// @param one_cloth  both belong to the same particles, so pairs that share one are left out
+/// @param tree       empty, or over the same triangles
 void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
-                   const std::vector<Triangle>& triangles, bool one_cloth, Crossings& sum) {
+                   const std::vector<Triangle>& triangles, bool one_cloth, Bvh<double>& tree,
+                   Crossings& sum) {
   std::vector<Aabb<double>> boxes;
   for (const Triangle& t : triangles) {
     Aabb<double> box;
     for (const Index v : t) box.add(at(y, v));
     boxes.push_back(box);
   }
-  Bvh<double> tree;
-  tree.build(boxes);
+  tree.empty() ? tree.build(boxes) : tree.refit(boxes);
   for (const Edge& edge : edges) {
     const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
     Aabb<double> box;
@@ -71,10 +71,10 @@ Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3
 
 template <class Real>
 Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
-                               const std::vector<Triangle>& triangles) {
+                               const std::vector<Triangle>& triangles, Bvh<double>& tree) {
   Crossings sum;
   const Positions positions = in_double(x);
-  add_crossings(positions, edges, positions, triangles, true, sum);
+  add_crossings(positions, edges, positions, triangles, true, tree, sum);
   return sum;
 }
 
@@ -83,16 +83,17 @@ Crossings count_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edg
                           const std::vector<Triangle>& triangles, const TriangleMesh& mesh) {
   Crossings sum;
   const Positions positions = in_double(x);
-  add_crossings(positions, edges, mesh.positions, mesh.triangles, false, sum);
+  Bvh<double> mesh_tree, cloth_tree;
+  add_crossings(positions, edges, mesh.positions, mesh.triangles, false, mesh_tree, sum);
   std::vector<Edge> mesh_edges;
   for (const MeshEdge& e : edges_of(mesh)) mesh_edges.push_back({e.a, e.b});
-  add_crossings(mesh.positions, mesh_edges, positions, triangles, false, sum);
+  add_crossings(mesh.positions, mesh_edges, positions, triangles, false, cloth_tree, sum);
   return sum;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                              \
   template Crossings count_self_crossings(const Vec3Array<Real>&, const std::vector<Edge>&, \
-                                          const std::vector<Triangle>&);                    \
+                                          const std::vector<Triangle>&, Bvh<double>&);      \
   template Crossings count_crossings(const Vec3Array<Real>&, const std::vector<Edge>&,      \
                                      const std::vector<Triangle>&, const TriangleMesh&);
 WEFT_INSTANTIATE(float)

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/geometry/bvh.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/types.h"
 
@@ -22,10 +23,18 @@ Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3
                       const Vec3d& c);
 
 /// Edges of cloths through triangles of cloths that share no particle with them.
-/// @param x  positions of all particles [m], finite
+/// @param x     positions of all particles [m], finite
+/// @param tree  over the same triangles, from an earlier count; built if it is empty. Who counts
+///              often keeps one.
 template <class Real>
 Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
-                               const std::vector<Triangle>& triangles);
+                               const std::vector<Triangle>& triangles, Bvh<double>& tree);
+template <class Real>
+Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
+                               const std::vector<Triangle>& triangles) {
+  Bvh<double> tree;
+  return count_self_crossings(x, edges, triangles, tree);
+}
 
 /// Edges of cloths through triangles of the mesh, and edges of the mesh through triangles of
 /// cloths.
