@@ -175,6 +175,32 @@ TEST_CASE("a pinned particle never moves, whether outside, in contact or inside"
   }
 }
 
+TEST_CASE("the deepest penetration is that of the deepest of all particles and points of edges") {
+  Random random(7);
+  const std::vector<ColliderDef> solids = {{"form", MeshDef{make_dress_form()}},
+                                           {"ball", SphereDef{Vec3d(0.4, 1.1, 0), 0.1}}};
+  int inside = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Particles<float> cloth = make_square<float>(24, 0.04, 0);
+    const double height = random.uniform(0.2, 2.2), wave = random.uniform(0, 0.2);
+    const Vec3d away(random.uniform(-0.7, 0.7), height, random.uniform(-0.7, 0.7));
+    for (Vec3f& x : cloth.state.x)
+      x = (x.cast<double>() + away + Vec3d(0, wave * std::sin(9.0 * x[0] + 7.0 * x[2]), 0))
+              .cast<float>();
+    Particles<float> probes;
+    probes.state = cloth.state;
+    for (const Edge& e : cloth.edges) {
+      for (const double t : {0.25, 0.5, 0.75})
+        probes.add(cloth.position(e[0]) + (cloth.position(e[1]) - cloth.position(e[0])) * t);
+    }
+    const double all = probes.meet({}, solids).deepest_penetration(probes.state.x);
+    inside += all > 0 ? 1 : 0;
+    CHECK(cloth.meet({}, solids).deepest_penetration(cloth.state.x) == Approx(all).margin(1e-6));
+  }
+  CHECK(inside > 10);
+  CHECK(inside < 40);
+}
+
 TEST_CASE(
     "a particle that starts inside a solid is pushed out gently, and is reported until then") {
   const TriangleMesh box = box_mesh(Vec3d(0.1, 0.1, 0.1));
