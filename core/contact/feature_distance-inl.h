@@ -11,39 +11,12 @@
 #include <hwy/highway.h>
 
 #include "core/contact/feature_distance.h"
+#include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Three numbers of several features side by side.
-template <class V>
-struct Three {
-  V x, y, z;
-};
-
-template <class V>
-HWY_INLINE Three<V> minus(const Three<V>& a, const Three<V>& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-
-template <class V>
-HWY_INLINE Three<V> times(const Three<V>& a, V s) {
-  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-
-template <class V>
-HWY_INLINE V dot(const Three<V>& a, const Three<V>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-template <class V>
-HWY_INLINE Three<V> cross(const Three<V>& a, const Three<V>& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
 
 /// 1 / value, and 0 for what has no size.
 template <class D, class V = hn::Vec<D>>
@@ -58,36 +31,36 @@ HWY_INLINE V clamp_to_unit(D d, V value) {
 }
 
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE Three<hn::Vec<D>> spread(D d, const Real* numbers) {
+HWY_INLINE Triple<hn::Vec<D>> spread(D d, const Real* numbers) {
   return {hn::Set(d, numbers[0]), hn::Set(d, numbers[1]), hn::Set(d, numbers[2])};
 }
 
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE Three<hn::Vec<D>> load(D d, const FeatureTable<Real>& table, std::size_t number,
-                                  std::size_t n) {
+HWY_INLINE Triple<hn::Vec<D>> load(D d, const FeatureTable<Real>& table, std::size_t number,
+                                   std::size_t n) {
   const Real* at = table.mesh + number * table.stride + n;
   return {hn::LoadU(d, at), hn::LoadU(d, at + table.stride), hn::LoadU(d, at + 2 * table.stride)};
 }
 
 /// Squared distance of point p - a = ap from the segment a to a + way.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V from_segment(D d, const Three<V>& ap, const Three<V>& way, V inverse_length2) {
+HWY_INLINE V from_segment(D d, const Triple<V>& ap, const Triple<V>& way, V inverse_length2) {
   const V t = clamp_to_unit(d, hn::Mul(dot(ap, way), inverse_length2));
-  const Three<V> apart = minus(ap, times(way, t));
+  const Triple<V> apart = ap - way * t;
   return dot(apart, apart);
 }
 
 /// What the distance from a triangle needs of the triangle alone.
 template <class V>
 struct PreparedTriangle {
-  Three<V> ab, ac, bc, normal;
+  Triple<V> ab, ac, bc, normal;
   V inverse_ab2, inverse_ac2, inverse_bc2, normal2, inverse_normal2;
 };
 
 /// @param ab,ac  ways from a corner to the other two
 template <class D, class V = hn::Vec<D>, class Real = hn::TFromD<D>>
-HWY_INLINE PreparedTriangle<V> prepare(D d, const Three<V>& ab, const Three<V>& ac) {
-  const Three<V> bc = minus(ac, ab), normal = cross(ab, ac);
+HWY_INLINE PreparedTriangle<V> prepare(D d, const Triple<V>& ab, const Triple<V>& ac) {
+  const Triple<V> bc = ac - ab, normal = cross(ab, ac);
   const V ab2 = dot(ab, ab), ac2 = dot(ac, ac), doubled_area2 = dot(normal, normal);
   // Thinner ones lose the sign of their weights to rounding; their sides are as near.
   constexpr Real kRounding = 16 * std::numeric_limits<Real>::epsilon();
@@ -108,10 +81,10 @@ HWY_INLINE PreparedTriangle<V> prepare(D d, const Three<V>& ab, const Three<V>& 
 /// else from the nearest of its sides. One without area has sides alone.
 /// @param ap  way from the corner to the point
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V from_triangle(D d, const Three<V>& ap, const PreparedTriangle<V>& t) {
+HWY_INLINE V from_triangle(D d, const Triple<V>& ap, const PreparedTriangle<V>& t) {
   const V sides = hn::Min(
       hn::Min(from_segment(d, ap, t.ab, t.inverse_ab2), from_segment(d, ap, t.ac, t.inverse_ac2)),
-      from_segment(d, minus(ap, t.ab), t.bc, t.inverse_bc2));
+      from_segment(d, ap - t.ab, t.bc, t.inverse_bc2));
   const V weight_b = dot(cross(ap, t.ac), t.normal), weight_c = dot(cross(t.ab, ap), t.normal);
   const V weight_a = hn::Sub(hn::Sub(t.normal2, weight_b), weight_c);
   const V height = dot(ap, t.normal), zero = hn::Zero(d);
@@ -123,8 +96,8 @@ HWY_INLINE V from_triangle(D d, const Three<V>& ap, const PreparedTriangle<V>& t
 /// Squared distance of segments a + s u and c + t v, from r = a - c: the best s of the lines, the
 /// best t for it, and the best s for that (Ericson 2005, section 5.1.9).
 template <class D, class V = hn::Vec<D>, class Real = hn::TFromD<D>>
-HWY_INLINE V of_segments(D d, const Three<V>& r, const Three<V>& u, V uu, V inverse_uu,
-                         const Three<V>& v) {
+HWY_INLINE V of_segments(D d, const Triple<V>& r, const Triple<V>& u, V uu, V inverse_uu,
+                         const Triple<V>& v) {
   const V vv = dot(v, v), uv = dot(u, v), ur = dot(u, r), vr = dot(v, r);
   const V uuvv = hn::Mul(uu, vv), determinant = hn::Sub(uuvv, hn::Mul(uv, uv));
   const auto apart = hn::Gt(determinant, hn::Mul(uuvv, hn::Set(d, Real(1e-10))));
@@ -132,7 +105,7 @@ HWY_INLINE V of_segments(D d, const Three<V>& r, const Three<V>& u, V uu, V inve
   const V first = hn::IfThenElseZero(apart, clamp_to_unit(d, free));
   const V t = clamp_to_unit(d, hn::Mul(hn::Add(vr, hn::Mul(uv, first)), inverse_or_zero(d, vv)));
   const V s = clamp_to_unit(d, hn::Mul(hn::Sub(hn::Mul(uv, t), ur), inverse_uu));
-  const Three<V> way = minus(r, minus(times(v, t), times(u, s)));
+  const Triple<V> way = r - (v * t - u * s);
   return dot(way, way);
 }
 
@@ -160,8 +133,7 @@ HWY_INLINE void segments(const FeatureTable<Real>& table) {
     const auto a = spread(d, table.cloth + 6 * f), u = spread(d, table.cloth + 6 * f + 3);
     const auto uu = dot(u, u), inverse_uu = inverse_or_zero(d, uu);
     fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return of_segments(d, minus(a, load(d, table, 0, n)), u, uu, inverse_uu,
-                         load(d, table, 3, n));
+      return of_segments(d, a - load(d, table, 0, n), u, uu, inverse_uu, load(d, table, 3, n));
     });
   }
 }
@@ -188,7 +160,7 @@ HWY_INLINE PreparedTriangle<hn::Vec<D>> load_triangle(D d, const FeatureTable<Re
   const auto ab = load(d, table, 3, n), ac = load(d, table, 6, n);
   const auto column = [&](std::size_t k)
                           HWY_ATTR { return hn::LoadU(d, table.mesh + k * table.stride + n); };
-  return {ab,         ac,         minus(ac, ab), load(d, table, 9, n), column(12), column(13),
+  return {ab,         ac,         ac - ab,   load(d, table, 9, n), column(12), column(13),
           column(14), column(15), column(16)};
 }
 
@@ -198,7 +170,7 @@ HWY_INLINE void points_from_triangles(const FeatureTable<Real>& table) {
   for (std::size_t f = 0; f < table.count; ++f) {
     const auto p = spread(d, table.cloth + 3 * f);
     fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return from_triangle(d, minus(p, load(d, table, 0, n)), load_triangle(d, table, n));
+      return from_triangle(d, p - load(d, table, 0, n), load_triangle(d, table, n));
     });
   }
 }
@@ -211,7 +183,7 @@ HWY_INLINE void triangles_from_points(const FeatureTable<Real>& table) {
     const auto a = spread(d, numbers);
     const auto triangle = prepare(d, spread(d, numbers + 3), spread(d, numbers + 6));
     fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return from_triangle(d, minus(load(d, table, 0, n), a), triangle);
+      return from_triangle(d, load(d, table, 0, n) - a, triangle);
     });
   }
 }

@@ -1,0 +1,65 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_TRIPLE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_TRIPLE_INL_H
+#undef WEFT_TRIPLE_INL_H
+#else
+#define WEFT_TRIPLE_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Three components in vector registers, one particle, spring, edge or triangle a lane.
+template <class V>
+struct Triple {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE Triple<V> operator-(const Triple<V>& a, const Triple<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+template <class V>
+HWY_INLINE Triple<V> operator+(const Triple<V>& a, const Triple<V>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
+template <class V>
+HWY_INLINE Triple<V> operator*(const Triple<V>& a, V s) {
+  return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+
+template <class V>
+HWY_INLINE V dot(const Triple<V>& a, const Triple<V>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+template <class V>
+HWY_INLINE Triple<V> cross(const Triple<V>& a, const Triple<V>& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+template <class M, class V>
+HWY_INLINE Triple<V> select(M mask, const Triple<V>& yes, const Triple<V>& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
+          hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+template <class M, class V>
+HWY_INLINE Triple<V> keep_if(M mask, const Triple<V>& a) {
+  return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
+          hn::IfThenElseZero(mask, a.z)};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif
