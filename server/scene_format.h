@@ -60,7 +60,7 @@ void describe_group(Io& io, WorldDef& def, const std::string& group) {
 
 template <class Io>
 void describe_placement(Io& io, MeshPlacement& placement) {
-  io.text({"source", 1, 200, false, true, "name of a mesh: dress-form, bunny, or a file"},
+  io.text({"source", 1, 200, false, true, "name of a mesh: dress-form, gable, bunny, or a file"},
           placement.source);
   io.fields([&](auto&& visit) { visit_fields_of_placement(placement, visit); });
   io.orientation("orientation", "how it is turned", placement.orientation);

@@ -7,14 +7,26 @@
 #include "core/scenes/dress_form.h"
 
 namespace weft {
+namespace {
+
+/// A prism that stands on y = 0, with a sharp ridge along z: half a metre high, 36 cm wide, 60 cm
+/// long.
+TriangleMesh make_gable() {
+  constexpr double kHeight = 0.5, w = 0.18, l = 0.3;
+  return {{{0, kHeight, -l}, {0, kHeight, l}, {-w, 0, -l}, {-w, 0, l}, {w, 0, -l}, {w, 0, l}},
+          {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 4, 5}, {2, 5, 3}, {0, 4, 2}, {1, 3, 5}}};
+}
+
+}  // namespace
 
 const std::vector<std::string>& built_in_mesh_names() {
-  static const std::vector<std::string> names = {"dress-form", "bunny"};
+  static const std::vector<std::string> names = {"dress-form", "gable", "bunny"};
   return names;
 }
 
 MeshFile built_in_mesh(const std::string& name, const std::string& directory) {
   if (name == "dress-form") return {make_dress_form(), {}};
+  if (name == "gable") return {make_gable(), {}};
   if (name != "bunny") {
     std::string names;
     for (const std::string& each : built_in_mesh_names())

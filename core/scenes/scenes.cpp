@@ -4,31 +4,11 @@
 
 #include "core/cloth/fabric_presets.h"
 #include "core/error.h"
-#include "core/scenes/built_in_meshes.h"
+#include "core/scenes/scene_parts.h"
+#include "core/scenes/seed_scenes.h"
 
 namespace weft {
 namespace {
-
-const ColliderDef kGround{"ground", PlaneDef{}};
-
-/// A cloth that hangs in the plane z = `depth`, its upper edge centred at height `top`.
-ClothDef hanging_cloth(int rows, int columns, double width, double height, double top,
-                       double depth) {
-  ClothDef cloth;
-  cloth.rows = rows;
-  cloth.columns = columns;
-  cloth.width = width;
-  cloth.height = height;
-  cloth.origin = Vec3d(-width / 2, top, depth);
-  return cloth;
-}
-
-/// A built-in mesh in its place.
-MeshDef mesh_object(const std::string& name, const std::string& mesh_directory,
-                    MeshPlacement placement) {
-  placement.source = name;
-  return {placed(built_in_mesh(name, mesh_directory).mesh, placement), placement};
-}
 
 /// Pins discs along the edge v = 0, evenly from corner to corner.
 void pin_along_top(WorldDef& def, int count, double radius) {
@@ -52,7 +32,7 @@ void build_default(WorldDef& def, const std::string&) {
   def.cloths[0].fabric.shear = 25;
   for (const int row : {0, 1, 2, 17, 18, 19})
     def.pins.push_back({MaterialPoint{0, row / 19.0}, 0, {}});
-  def.colliders = {kGround, {"form", mesh_object("dress-form", {}, {})}};
+  def.colliders = {ground(), {"form", mesh_object("dress-form", {}, {})}};
   def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
   def.environment.drag = 0.1;
@@ -61,7 +41,7 @@ void build_default(WorldDef& def, const std::string&) {
 void build_curtain(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
   pin_along_top(def, 9, 0.02);
-  def.colliders = {kGround};
+  def.colliders = {ground()};
   def.environment.wind = Vec3d(0.2, 0, 0.9);
   def.environment.gust_speed = 1.0;
   def.environment.drag = 0.1;
@@ -74,7 +54,7 @@ void build_flag(WorldDef& def, const std::string&) {
   def.pins = {{Corner::top_left, 0.05, {}},
               {MaterialPoint{0, 0.5}, 0.05, {}},
               {Corner::bottom_left, 0.05, {}}};
-  def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
+  def.colliders = {ground(), {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
   def.environment.wind = Vec3d(5, 0, 0.6);
   def.environment.gust_speed = 1.5;
 }
@@ -84,7 +64,7 @@ void build_drape_sphere(WorldDef& def, const std::string&) {
   def.cloths[0].width = def.cloths[0].height = 1.3;
   def.cloths[0].origin = Vec3d(-0.65, 1.15, -0.65);
   def.cloths[0].v = Vec3d::UnitZ();
-  def.colliders = {kGround, {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
+  def.colliders = {ground(), {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
   def.environment.drag = 0.5;
 }
 
@@ -92,23 +72,13 @@ void build_wall(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
   pin_along_top(def, 7, 0.02);
   def.colliders = {
-      kGround,
+      ground(),
       {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1), Eigen::Quaterniond::Identity()}}};
   def.environment.drag = 0.3;
 }
 
 BoxDef upright_box(const Vec3d& centre, const Vec3d& half_extents) {
   return {centre, half_extents, Eigen::Quaterniond::Identity()};
-}
-
-/// A square sheet that lies at `height`, centred over the origin.
-ClothDef lying_cloth(int particles, double side, double height) {
-  ClothDef cloth;
-  cloth.rows = cloth.columns = particles;
-  cloth.width = cloth.height = side;
-  cloth.origin = Vec3d(-side / 2, height, -side / 2);
-  cloth.v = Vec3d::UnitZ();
-  return cloth;
 }
 
 void build_table(WorldDef& def, const std::string&) {
@@ -119,7 +89,7 @@ void build_table(WorldDef& def, const std::string&) {
   def.cloths[0].rows = 41;
   def.cloths[0].origin[2] = -0.6;
   def.cloths[0].fabric = make_fabric("cotton");
-  def.colliders = {kGround, {"top", upright_box(Vec3d(0, kTop - kHalfTop, 0), half_top)}};
+  def.colliders = {ground(), {"top", upright_box(Vec3d(0, kTop - kHalfTop, 0), half_top)}};
   const double half_leg = (kTop - 2 * kHalfTop) / 2;
   for (const double x : {-1.0, 1.0}) {
     for (const double z : {-1.0, 1.0})
@@ -144,7 +114,7 @@ void build_hammock(WorldDef& def, const std::string&) {
   // Each end hangs a centimetre before a bar across its post.
   const double bar = kLength / 2 + 0.03, post = kLength / 2 + 0.06, half = kWidth / 2 + 0.04;
   def.colliders = {
-      kGround,
+      ground(),
       {"left-post", CapsuleDef{Vec3d(-post, 0, 0), Vec3d(-post, 1.4, 0), 0.04}},
       {"right-post", CapsuleDef{Vec3d(post, 0, 0), Vec3d(post, 1.4, 0), 0.04}},
       {"left-bar", CapsuleDef{Vec3d(-bar, kHeight, -half), Vec3d(-bar, kHeight, half), 0.02}},
@@ -164,7 +134,7 @@ void build_two_flags(WorldDef& def, const std::string&) {
     for (const Corner corner : {Corner::top_left, Corner::bottom_left})
       def.pins.push_back({corner, 0.05, name});
   }
-  def.colliders = {kGround, {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.55, 0), 0.02}}};
+  def.colliders = {ground(), {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.55, 0), 0.02}}};
   def.environment.wind = Vec3d(1.8, 0, 0.3);
   def.environment.gust_speed = 0.4;
 }
@@ -174,7 +144,7 @@ void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
   def.cloths[0].fabric = make_fabric("silk");
   MeshPlacement placement;
   placement.scale = 0.08;  // ten units high: 0.77 m
-  def.colliders = {kGround, {"bunny", mesh_object("bunny", mesh_directory, placement)}};
+  def.colliders = {ground(), {"bunny", mesh_object("bunny", mesh_directory, placement)}};
   def.environment.drag = 0.5;
 }
 
@@ -182,7 +152,7 @@ void build_fan(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(37, 31, 1.2, 1.5, 1.9, 0);
   def.cloths[0].fabric = make_fabric("silk");
   pin_along_top(def, 7, 0.02);
-  def.colliders = {kGround};
+  def.colliders = {ground()};
   FanDef fan;  // at the right, so that the view from the left shows where it points
   fan.position = Vec3d(0.95, 0.8, 0.6);
   fan.direction = Vec3d(-0.8, 0.05, -0.6);
@@ -206,7 +176,7 @@ void build_turntable(WorldDef& def, const std::string&) {
                                       {-1, 0, 0, 0}};
   for (int k = 0; k < 5; ++k)
     board.motion.keyframes.push_back({kPeriod / 4 * k, Vec3d::Zero(), turns[k]});
-  def.colliders = {kGround, board};
+  def.colliders = {ground(), board};
   def.environment.drag = 0.1;
 }
 
@@ -219,17 +189,12 @@ void build_lift_sphere(WorldDef& def, const std::string&) {
   ball.motion.loop = true;
   const Vec3d lifted(0, 0.8, 0);
   ball.motion.keyframes = {{}, {1.5}, {2.7, lifted}, {4.5, lifted}, {6, Vec3d::Zero()}};
-  def.colliders = {kGround, ball};
+  def.colliders = {ground(), ball};
   def.environment.drag = 0.3;
 }
 
-struct Entry {
-  SceneInfo info;
-  void (*build)(WorldDef&, const std::string& mesh_directory);
-};
-
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> list = {
+std::vector<SceneEntry> own_scenes() {
+  return {
       {{"default",
         "A cloth hung by six particles is blown from behind against a dressmaker's form: watch it "
         "wrap the back and reach round the hips."},
@@ -271,6 +236,14 @@ const std::vector<Entry>& entries() {
         "A ball rises under a silk sheet, holds it up and sinks: the sheet slides and never lets "
         "it through."},
        build_lift_sphere}};
+}
+
+const std::vector<SceneEntry>& entries() {
+  static const std::vector<SceneEntry> list = [] {
+    std::vector<SceneEntry> all = own_scenes();
+    for (const SceneEntry& entry : seed_scenes()) all.push_back(entry);
+    return all;
+  }();
   return list;
 }
 
@@ -279,7 +252,7 @@ const std::vector<Entry>& entries() {
 const std::vector<SceneInfo>& scenes() {
   static const std::vector<SceneInfo> list = [] {
     std::vector<SceneInfo> infos;
-    for (const Entry& entry : entries()) infos.push_back(entry.info);
+    for (const SceneEntry& entry : entries()) infos.push_back(entry.info);
     return infos;
   }();
   return list;
@@ -287,7 +260,7 @@ const std::vector<SceneInfo>& scenes() {
 
 WorldDef make_scene(const std::string& name, const std::string& mesh_directory) {
   std::string names;
-  for (const Entry& entry : entries()) {
+  for (const SceneEntry& entry : entries()) {
     names += (names.empty() ? "" : ", ") + entry.info.name;
     if (entry.info.name != name) continue;
     WorldDef def;
