@@ -6,13 +6,6 @@
 #include "core/geometry/distance.h"
 
 namespace weft {
-namespace {
-
-/// Pairs of edges that are closest nearer to an end than this belong to a particle or a vertex.
-constexpr double kEdgeEnd = 0.01;
-
-}  // namespace
-
 template <class Real>
 SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>& model,
                                const std::vector<ColliderDef>& colliders)
@@ -40,6 +33,7 @@ SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>
   trees_.build(rest_positions_, edges_, triangles_);
   nearest_.resize(rest_positions_.size());
   deepest_.resize(shapes_.size());
+  prepare_self_contact();
 }
 
 template <class Real>
@@ -109,7 +103,7 @@ void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Pro
       continue;
     }
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    if (around != &x || frame.displaced) particles = &trees_.particles(x, Real(0));
+    if (around != &x || frame.displaced) particles = &trees_.particles(x, reach_ / 2);
     around = &x;
     std::uint64_t tests = 0;
     particles->for_each_pair(shape.tree, [&](Index particle, Index triangle) {
@@ -179,14 +173,13 @@ template <class Real>
 std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
   std::uint64_t tests = 0;
   const BottomUpTree<Real>* cloth_edges = nullptr;
-  const auto inside = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
   const Vec3Array<Real>* around = nullptr;
   for (std::size_t o = 0; o < shapes_.size(); ++o) {
     const SeedShape<Real>& shape = shapes_[o];
     const ColliderFrame<Real>& frame = frames_[o];
     if (shape.sharp_edges.empty()) continue;
     const Vec3Array<Real>& x = in_frame_of(o, state.x);
-    if (around != &x || frame.displaced) cloth_edges = &trees_.edges(x, edges_, Real(0));
+    if (around != &x || frame.displaced) cloth_edges = &trees_.edges(x, edges_, reach_ / 2);
     around = &x;
     cloth_edges->for_each_pair(shape.edge_tree, [&](Index edge, Index sharp) {
       ++tests;
@@ -197,7 +190,7 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
       const SegmentPoints<Real> nearest =
           closest_of_segments<Real>(x[i], x[j], shape.positions[static_cast<std::size_t>(r.a)],
                                     shape.positions[static_cast<std::size_t>(r.b)]);
-      if (!inside(nearest.s) || !inside(nearest.t)) return;
+      if (!is_within_edge(nearest.s) || !is_within_edge(nearest.t)) return;
       const Vec3<Real> away = nearest.p - nearest.q;
       const bool outside = away.dot(r.normal) >= 0;
       const Real length = away.norm(), distance = outside ? length : -length;

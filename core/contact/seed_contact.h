@@ -98,14 +98,22 @@ class SeedContact {
     Index object;
   };
 
-  bool are_neighbours(Index i, Index j) const;
-  void take_approach(ClothState<Real>& state, const std::array<Index, 4>& particle,
-                     const std::array<Real, 4>& weight, const Vec3<Real>& normal) const;
+  /// Two sides of the cloth that are near each other: a particle and another, or a triangle, or
+  /// two edges. Found once a substep, since impulses move nothing.
+  struct SelfPair {
+    std::array<Index, 4> particle;
+    std::array<Real, 4> weight;  ///< positive on the side to which the normal points; sum 0
+    Vec3<Real> normal;           ///< unit
+  };
 
   // seed_self.cpp
-  std::uint64_t separate_particles(ClothState<Real>& state);
-  std::uint64_t separate_triangles(ClothState<Real>& state);
-  std::uint64_t separate_edges(ClothState<Real>& state);
+  bool are_neighbours(Index i, Index j) const;
+  Real thickness_between(Index i, Index j) const;
+  void prepare_self_contact();
+  std::uint64_t find_particle_pairs(const Vec3Array<Real>& x);
+  std::uint64_t find_triangle_pairs(const Vec3Array<Real>& x);
+  std::uint64_t find_edge_pairs(const Vec3Array<Real>& x);
+  static void take_approach(const SelfPair& pair, ClothState<Real>& state);
 
   // seed_contact.cpp
   void move_colliders(Real dt);
@@ -132,6 +140,7 @@ class SeedContact {
   Vec3Array<Real> x_own_;  ///< particles in the frame of one shape
   std::vector<Nearest> nearest_;
   std::vector<Real> deepest_;  ///< phi_min of each object [m]
+  std::vector<SelfPair> pairs_;
 };
 
 extern template class SeedContact<float>;

@@ -74,18 +74,11 @@ Vec3<Real> after_contact(const Vec3<Real>& v, const Vec3<Real>& n, Real friction
   return back;
 }
 
-/// (11): impulse [N s] that takes the approach v_n of two particles; m v_n / 2 for equal masses.
-/// 0 if both are pinned.
-template <class Real>
-Real pair_impulse(Real v_n, Real w1, Real w2) {
-  const Real mobility = w1 + w2;
-  return mobility > 0 ? v_n / mobility : Real(0);
-}
-
-/// (12) with any number of weights: impulse that takes the approach v_n of two weighted points;
-/// m v_n / (1 + w1^2 + w2^2 + w3^2) = 2 I / (1 + ...) for a particle and a triangle of equal
-/// masses. Each particle then changes its velocity by (its signed weight) (its inverse mass)
-/// (impulse) n.
+/// (11) and (12) with any number of weights: impulse [N s] that takes the approach v_n of two
+/// weighted points; 0 if all are pinned. For two particles of mass m (weights 1 and -1) it is
+/// m v_n / 2, for a particle and a triangle (1, -w1, -w2, -w3) it is
+/// m v_n / (1 + w1^2 + w2^2 + w3^2). Each particle then changes its velocity by (its signed weight)
+/// (its inverse mass) (impulse) n.
 template <class Real, std::size_t n>
 Real weighted_impulse(Real v_n, const std::array<Real, n>& weight,
                       const std::array<Real, n>& inverse_mass) {

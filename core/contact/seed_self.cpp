@@ -12,8 +12,8 @@ namespace {
 /// contact between them would keep the cloth from being one.
 constexpr double kNeighbourhood = 1.5;
 
-/// Pairs of edges that are closest nearer to an end than this belong to a particle and a triangle.
-constexpr double kEdgeEnd = 0.01;
+/// Room for pairs from the start, as a multiple of the particles; more is taken when it is needed.
+constexpr std::size_t kPairsPerParticle = 8;
 
 }  // namespace
 
@@ -25,54 +25,41 @@ bool SeedContact<Real>::are_neighbours(Index i, Index j) const {
   return i == j || (rest_positions_[a] - rest_positions_[b]).squaredNorm() < reach * reach;
 }
 
-/// Takes out of the velocities what brings two weighted points nearer along the normal.
-/// @param weight  positive on the side to which the normal points, negative on the other
+/// The larger of the thicknesses of two particles' cloths.
 template <class Real>
-void SeedContact<Real>::take_approach(ClothState<Real>& state, const std::array<Index, 4>& particle,
-                                      const std::array<Real, 4>& weight,
-                                      const Vec3<Real>& normal) const {
-  Real speed = 0;
-  std::array<Real, 4> inverse_mass;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = static_cast<std::size_t>(particle[k]);
-    speed += weight[k] * normal.dot(state.v[i]);
-    inverse_mass[k] = state.inverse_mass[i];
-  }
-  if (!(speed < 0)) return;
-  const Real impulse = seed::weighted_impulse(-speed, weight, inverse_mass);
-  for (std::size_t k = 0; k < 4; ++k)
-    state.v[static_cast<std::size_t>(particle[k])] +=
-        normal * (weight[k] * inverse_mass[k] * impulse);
+Real SeedContact<Real>::thickness_between(Index i, Index j) const {
+  const auto of = [&](Index k) {
+    return thickness_[static_cast<std::size_t>(cloth_of_[static_cast<std::size_t>(k)])];
+  };
+  return std::max(of(i), of(j));
 }
 
 template <class Real>
-std::uint64_t SeedContact<Real>::separate_particles(ClothState<Real>& state) {
+void SeedContact<Real>::prepare_self_contact() {
+  if (def_.self != SelfContact::none) pairs_.reserve(kPairsPerParticle * rest_positions_.size());
+}
+
+/// Particle pairs, eq. (11).
+template <class Real>
+std::uint64_t SeedContact<Real>::find_particle_pairs(const Vec3Array<Real>& x) {
   std::uint64_t tests = 0;
-  trees_.particles(state.x, thickest_ / 2).for_each_own_pair([&](Index a, Index b) {
+  trees_.particles(x, thickest_ / 2).for_each_own_pair([&](Index i, Index j) {
     ++tests;
-    if (are_neighbours(a, b)) return;
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-    const Real h = std::max(thickness_[static_cast<std::size_t>(cloth_of_[i])],
-                            thickness_[static_cast<std::size_t>(cloth_of_[j])]);
-    const Vec3<Real> away = state.x[i] - state.x[j];
+    if (are_neighbours(i, j)) return;
+    const Vec3<Real> away = x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)];
     const Real distance = away.norm();
-    if (!(distance < h) || !(distance > 0)) return;
-    const Vec3<Real> normal = away / distance;
-    const Real approach = normal.dot(state.v[j] - state.v[i]);
-    if (!(approach > 0)) return;
-    const Real impulse = seed::pair_impulse(approach, state.inverse_mass[i], state.inverse_mass[j]);
-    state.v[i] += normal * (impulse * state.inverse_mass[i]);
-    state.v[j] -= normal * (impulse * state.inverse_mass[j]);
+    if (!(distance < thickness_between(i, j)) || !(distance > 0)) return;
+    pairs_.push_back({{i, j, i, i}, {Real(1), Real(-1), Real(0), Real(0)}, away / distance});
   });
   return tests;
 }
 
+/// Particle-triangle pairs, eq. (12).
 template <class Real>
-std::uint64_t SeedContact<Real>::separate_triangles(ClothState<Real>& state) {
+std::uint64_t SeedContact<Real>::find_triangle_pairs(const Vec3Array<Real>& x) {
   std::uint64_t tests = 0;
-  const Vec3Array<Real>& x = state.x;
   const auto at = [&](Index i) -> const Vec3<Real>& { return x[static_cast<std::size_t>(i)]; };
-  const BottomUpTree<Real>& particles = trees_.particles(x, Real(0));
+  const BottomUpTree<Real>& particles = trees_.particles(x, thickest_ / 2);
   const BottomUpTree<Real>& triangles = trees_.triangles_in(triangles_, [&](const Triangle& t) {
     return proximity_box<Real>(at(t[0]), at(t[1]), at(t[2]), thickest_);
   });
@@ -81,24 +68,21 @@ std::uint64_t SeedContact<Real>::separate_triangles(ClothState<Real>& state) {
     const Triangle& t = triangles_[static_cast<std::size_t>(triangle)];
     for (const Index corner : t)
       if (are_neighbours(i, corner)) return;
-    const Real h =
-        std::max(thickness_[static_cast<std::size_t>(cloth_of_[static_cast<std::size_t>(i)])],
-                 thickness_[static_cast<std::size_t>(cloth_of_[static_cast<std::size_t>(t[0])])]);
-    const seed::Proximity<Real> p = seed::proximity<Real>(at(i), at(t[0]), at(t[1]), at(t[2]), h);
+    const seed::Proximity<Real> p =
+        seed::proximity<Real>(at(i), at(t[0]), at(t[1]), at(t[2]), thickness_between(i, t[0]));
     if (!p.near) return;
-    const Vec3<Real> normal = p.distance < 0 ? (-p.normal).eval() : p.normal;
-    take_approach(state, {i, t[0], t[1], t[2]}, {Real(1), -p.weight[0], -p.weight[1], -p.weight[2]},
-                  normal);
+    pairs_.push_back({{i, t[0], t[1], t[2]},
+                      {Real(1), -p.weight[0], -p.weight[1], -p.weight[2]},
+                      p.distance < 0 ? (-p.normal).eval() : p.normal});
   });
   return tests;
 }
 
+/// Edge-edge pairs.
 template <class Real>
-std::uint64_t SeedContact<Real>::separate_edges(ClothState<Real>& state) {
+std::uint64_t SeedContact<Real>::find_edge_pairs(const Vec3Array<Real>& x) {
   std::uint64_t tests = 0;
-  const Vec3Array<Real>& x = state.x;
   const auto at = [&](Index i) -> const Vec3<Real>& { return x[static_cast<std::size_t>(i)]; };
-  const auto inside = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
   trees_.edges(x, edges_, thickest_ / 2).for_each_own_pair([&](Index first, Index second) {
     ++tests;
     const Edge& a = edges_[static_cast<std::size_t>(first)];
@@ -107,47 +91,65 @@ std::uint64_t SeedContact<Real>::separate_edges(ClothState<Real>& state) {
       for (const Index j : b)
         if (are_neighbours(i, j)) return;
     }
-    const Real h =
-        std::max(thickness_[static_cast<std::size_t>(cloth_of_[static_cast<std::size_t>(a[0])])],
-                 thickness_[static_cast<std::size_t>(cloth_of_[static_cast<std::size_t>(b[0])])]);
     const SegmentPoints<Real> nearest =
         closest_of_segments<Real>(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
-    if (!inside(nearest.s) || !inside(nearest.t)) return;
+    if (!is_within_edge(nearest.s) || !is_within_edge(nearest.t)) return;
     const Vec3<Real> away = nearest.p - nearest.q;
     const Real distance = away.norm();
-    if (!(distance < h) || !(distance > 0)) return;
-    take_approach(state, {a[0], a[1], b[0], b[1]},
-                  {Real(1) - nearest.s, nearest.s, nearest.t - Real(1), -nearest.t},
-                  away / distance);
+    if (!(distance < thickness_between(a[0], b[0])) || !(distance > 0)) return;
+    pairs_.push_back({{a[0], a[1], b[0], b[1]},
+                      {Real(1) - nearest.s, nearest.s, nearest.t - Real(1), -nearest.t},
+                      away / distance});
   });
   return tests;
+}
+
+/// Takes out of the velocities what brings the two sides of a pair nearer along its normal.
+template <class Real>
+void SeedContact<Real>::take_approach(const SelfPair& pair, ClothState<Real>& state) {
+  Real speed = 0;
+  std::array<Real, 4> inverse_mass;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    speed += pair.weight[k] * pair.normal.dot(state.v[i]);
+    inverse_mass[k] = state.inverse_mass[i];
+  }
+  if (!(speed < 0)) return;
+  const Real impulse = seed::weighted_impulse(-speed, pair.weight, inverse_mass);
+  for (std::size_t k = 0; k < 4; ++k)
+    state.v[static_cast<std::size_t>(pair.particle[k])] +=
+        pair.normal * (pair.weight[k] * inverse_mass[k] * impulse);
 }
 
 template <class Real>
 void SeedContact<Real>::separate(ClothState<Real>& state, Profile& profile) {
   if (def_.self == SelfContact::none) return;
-  const StageTimer timer(profile, Stage::contact, 0);
-  std::uint64_t tests = 0;
-  for (int pass = 0; pass < def_.passes; ++pass) {
-    if (def_.self == SelfContact::particles) {
-      tests += separate_particles(state);
-      continue;
-    }
-    tests += separate_triangles(state);
-    if (def_.self == SelfContact::triangles_and_edges) tests += separate_edges(state);
+  pairs_.clear();
+  {
+    const StageTimer timer(profile, Stage::broad_phase, 0);
+    std::uint64_t tests = 0;
+    if (def_.self == SelfContact::particles)
+      tests += find_particle_pairs(state.x);
+    else
+      tests += find_triangle_pairs(state.x);
+    if (def_.self == SelfContact::triangles_and_edges) tests += find_edge_pairs(state.x);
+    profile[Stage::broad_phase].work += tests;
+    profile[Stage::narrow_phase].work += tests;
   }
-  profile[Stage::broad_phase].work += tests;
-  profile[Stage::narrow_phase].work += tests;
+  const StageTimer timer(profile, Stage::self_contact,
+                         pairs_.size() * static_cast<std::size_t>(def_.passes));
+  for (int pass = 0; pass < def_.passes; ++pass)
+    for (const SelfPair& pair : pairs_) take_approach(pair, state);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template bool SeedContact<Real>::are_neighbours(Index, Index) const;                           \
-  template void SeedContact<Real>::take_approach(ClothState<Real>&, const std::array<Index, 4>&, \
-                                                 const std::array<Real, 4>&, const Vec3<Real>&)  \
-      const;                                                                                     \
-  template std::uint64_t SeedContact<Real>::separate_particles(ClothState<Real>&);               \
-  template std::uint64_t SeedContact<Real>::separate_triangles(ClothState<Real>&);               \
-  template std::uint64_t SeedContact<Real>::separate_edges(ClothState<Real>&);                   \
+#define WEFT_INSTANTIATE(Real)                                                           \
+  template bool SeedContact<Real>::are_neighbours(Index, Index) const;                   \
+  template Real SeedContact<Real>::thickness_between(Index, Index) const;                \
+  template void SeedContact<Real>::prepare_self_contact();                               \
+  template std::uint64_t SeedContact<Real>::find_particle_pairs(const Vec3Array<Real>&); \
+  template std::uint64_t SeedContact<Real>::find_triangle_pairs(const Vec3Array<Real>&); \
+  template std::uint64_t SeedContact<Real>::find_edge_pairs(const Vec3Array<Real>&);     \
+  template void SeedContact<Real>::take_approach(const SelfPair&, ClothState<Real>&);    \
   template void SeedContact<Real>::separate(ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

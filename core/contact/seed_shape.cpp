@@ -58,7 +58,7 @@ void add_sharp_edges(const TriangleMesh& mesh, Real reach, SeedShape<Real>& shap
     shape.sharp_edges.push_back({e.a, e.b, normal.normalized().template cast<Real>()});
     Aabb<Real> box;
     for (const Index v : {e.a, e.b}) box.add(shape.positions[static_cast<std::size_t>(v)]);
-    boxes.push_back(box.grown(reach));
+    boxes.push_back(box.grown(reach / 2));
     ends.push_back({e.a, e.b});
   }
   shape.edge_tree.build(boxes, pairs_that_touch(ends));
@@ -74,7 +74,7 @@ Aabb<Real> proximity_box(const Vec3<Real>& x1, const Vec3<Real>& x2, const Vec3<
   const Vec3<Real> sum = x1 + x2 + x3;
   Aabb<Real> box;
   for (const Vec3<Real>* x : {&x1, &x2, &x3}) box.add((*x + (*x * Real(3) - sum) * delta).eval());
-  return box.grown(h);
+  return box.grown(h / 2);
 }
 
 template <class Real>

@@ -35,6 +35,15 @@ struct SeedShape {
   BottomUpTree<Real> edge_tree;  ///< over the sharp edges
 };
 
+/// Whether edges that are closest here are a pair of their own; nearer to an end the particle or
+/// vertex there stands for them.
+/// @param s  part of the edge's length, 0 to 1
+template <class Real>
+bool is_within_edge(Real s) {
+  constexpr double kEnd = 0.01;
+  return s > Real(kEnd) && s < Real(1 - kEnd);
+}
+
 /// Prepares a collider.
 /// @param reach  at which triangles shall be found [m]
 template <class Real>
@@ -45,7 +54,9 @@ SeedShape<Real> make_seed_shape(const ShapeDef& shape, Real reach);
 template <class Real>
 SurfacePoint<Real> distance_from(const ShapeDef& simple, const Vec3<Real>& p);
 
-/// Box around all points that eqs. (7) and (8) call near to a triangle.
+/// Box of a triangle that overlaps, with boxes that reach h/2 around particles, those of all points
+/// that eqs. (7) and (8) call near to it. (Boxes of flat cloth need some volume, or the search
+/// would go down the wrong tree first.)
 /// @param h  thickness [m]
 template <class Real>
 Aabb<Real> proximity_box(const Vec3<Real>& x1, const Vec3<Real>& x2, const Vec3<Real>& x3, Real h);

@@ -90,6 +90,7 @@ void build_fig10(WorldDef& def, ObjectContact objects) {
   def.cloths[0] = lying_cloth(25, 1.1, 0.75);
   use_seed(def);
   def.contact.seed.objects = objects;
+  def.contact.seed.self = SelfContact::triangles;
   def.colliders = {ground(), {"gable", mesh_object("gable", {}, {})}};
 }
 

@@ -101,7 +101,7 @@ template <class Real>
 void relax(Tick<Real>& tick) {
   const std::size_t count = tick.model.springs.size();
   const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
-  const StageTimer timer(tick.profile, Stage::stretch, count * sweeps);
+  const StageTimer timer(tick.profile, Stage::relaxation, count * sweeps);
   if (count == 0) return;
   std::fill(tick.work.multiplier.begin(), tick.work.multiplier.end(), Real(0));
   for (std::size_t s = 0; s < sweeps; ++s) {

@@ -6,7 +6,8 @@
 
 namespace weft {
 
-/// The stages of a step, in the order in which a substep meets them.
+/// The stages of a step, in the order in which a substep meets them; then those that only the
+/// seed's parts have.
 enum class Stage : std::uint8_t {
   attachments,   ///< work: hand forces evaluated
   fans,          ///< work: fans' jets evaluated at a particle (their time is part of air)
@@ -19,12 +20,15 @@ enum class Stage : std::uint8_t {
   contact,       ///< work: contact rows solved
   friction,      ///< work: friction evaluations (their time is part of contact)
   diagnostics,   ///< work: checks made
+  relaxation,    ///< work: springs relaxed, over all sweeps (solver relaxation)
+  self_contact,  ///< work: pairs of the cloth with itself answered, over all passes (model seed)
 };
-inline constexpr std::size_t kStageCount = 11;
+inline constexpr std::size_t kStageCount = 13;
 
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "attachments", "fans",         "air",     "stretch",  "bending",    "integration",
-    "broad_phase", "narrow_phase", "contact", "friction", "diagnostics"};
+    "attachments", "fans",        "air",          "stretch", "bending",
+    "integration", "broad_phase", "narrow_phase", "contact", "friction",
+    "diagnostics", "relaxation",  "self_contact"};
 
 struct StageProfile {
   double seconds = 0;      ///< by the given clock; 0 without one

@@ -64,11 +64,13 @@ TEST_CASE("(10): friction takes k_f |v_N| off the tangential speed, dissipation 
 
 TEST_CASE("(11): two equal masses exchange m v_N / 2 and end with the same normal velocity") {
   // m = 0.5, v_N = 3: I = 0.75; each changes by I/m = 1.5. One came with -3: both end with -1.5.
-  const double impulse = pair_impulse(3.0, 2.0, 2.0);
+  using Two = std::array<double, 2>;
+  const Two weight = {1, -1};
+  const double impulse = weighted_impulse(3.0, weight, Two{2, 2});
   CHECK(impulse == Approx(0.5 * 3 / 2));
   CHECK(-3 + impulse * 2 == Approx(0 - impulse * 2));
-  CHECK(pair_impulse(3.0, 2.0, 0.0) == Approx(1.5));  // against a pinned one: all of it
-  CHECK(pair_impulse(3.0, 0.0, 0.0) == 0);
+  CHECK(weighted_impulse(3.0, weight, Two{2, 0}) == Approx(1.5));  // a pinned one: all of it
+  CHECK(weighted_impulse(3.0, weight, Two{0, 0}) == 0);
 }
 
 TEST_CASE("(12): a particle on the middle of a triangle") {
