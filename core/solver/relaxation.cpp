@@ -21,7 +21,7 @@ struct Tick {
   RelaxationWorkspace<Real>& work;
   Profile& profile;
 
-  bool pulled() const { return surroundings.air || !grabs.list.empty(); }
+  bool pulled() const { return surroundings.air || !idle(grabs); }
 };
 
 /// Everything that is a force and no constraint, gravity excepted.
@@ -44,8 +44,9 @@ void evaluate_forces(Tick<Real>& tick, Real progress) {
     add_air_forces(model, tick.surroundings.wind, tick.surroundings.air_density, tick.state.x,
                    tick.state.v, work.external);
   }
-  if (!tick.grabs.list.empty()) {
-    const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
+  if (!idle(tick.grabs)) {
+    const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
+    const StageTimer timer(tick.profile, Stage::attachments, hands);
     add_grab_forces(progress, tick.state, tick.grabs, work.external);
   }
   for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.external[i];

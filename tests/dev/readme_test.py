@@ -107,6 +107,23 @@ class Readme(unittest.TestCase):
                 found += 1
         self.assertGreater(found, 40)
 
+    def test_the_table_of_the_seed_names_scenes_that_exist_and_all_of_its_scenes(self):
+        section = README.split("## The seed and Weft\n")[1].split("\n## ")[0]
+        rows = [[cell.strip() for cell in line.strip("|").split(" | ")]
+                for line in section.splitlines() if line.startswith("| ")][1:]
+        self.assertGreater(len(rows), 10)
+        listed = subprocess.run([PROGRAM, "scenes", "--json"], capture_output=True, text=True,
+                                check=True).stdout
+        scenes = {scene["name"] for scene in json.loads(listed)["scenes"]}
+        shown = set()
+        for feature, places, examples in rows:
+            with self.subTest(feature=feature):
+                self.assertTrue(re.findall(r"`(?:core|server|web)/[\w./]+`", places))
+                names = re.findall(r"`([a-z][\w-]*)`", examples)
+                self.assertLessEqual(set(names), scenes)
+                shown.update(names)
+        self.assertEqual({name for name in scenes if name.startswith("seed-")}, shown)
+
 
 if __name__ == "__main__":
     unittest.main()

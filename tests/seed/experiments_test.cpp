@@ -51,7 +51,7 @@ TEST_CASE("Fig. 9: the seed's default scene holds its cloth by six particles bef
     if (world.state().inverse_mass[static_cast<std::size_t>(i)] == 0) fixed.push_back(i);
   }
   REQUIRE(fixed.size() == 6);
-  step(world, 240);
+  step(world, 120);
   for (const Index i : fixed)
     CHECK(at(world, i) == world.model().rest_positions[static_cast<std::size_t>(i)].cast<double>());
   CHECK(world.report().largest_strain < 0.15);
@@ -61,7 +61,7 @@ TEST_CASE("Fig. 9: the seed's default scene holds its cloth by six particles bef
 TEST_CASE("Figs. 13, 14, V.B.4: fixed particles stay where they are, to the bit, others hang") {
   World<float> world(make_scene("seed-fig14-fixing"));
   const Vec3Array<float> start = world.state().x;
-  step(world, 200);
+  step(world, 120);
   std::size_t fixed = 0;
   for (std::size_t i = 0; i < start.size(); ++i) {
     if (world.state().inverse_mass[i] > 0) continue;
@@ -83,14 +83,14 @@ TEST_CASE("Fig. 15, V.B.5: corners are freed one by one, and the sheet hangs by 
   const std::vector<Index> corners = {0, 24, 24 * 25, 25 * 25 - 1};
   const auto pins = world.pins().list;
   REQUIRE(pins.size() == 4);
-  step(world, 100);
+  step(world, 60);
   const double sag = 1.5 - lowest(world);
   CHECK(sag > 0.02);
   CHECK(sag < 0.35);
   // Free a corner: it falls. The farthest it may hang is the sheet's diagonal below the other
   // corners.
   REQUIRE(world.unpin(pins[3].id));
-  step(world, 150);
+  step(world, 100);
   CHECK(at(world, corners[3])[1] < 1.5 - 0.4);
   REQUIRE(world.unpin(pins[2].id));
   step(world, 150);
@@ -104,7 +104,7 @@ TEST_CASE("Fig. 15, V.B.5: corners are freed one by one, and the sheet hangs by 
   step(world, 60);
   CHECK((at(world, corners[3]) - target).norm() < 0.1);
   world.release(hand);
-  step(world, 240);
+  step(world, 150);
   CHECK(at(world, corners[3])[1] == Approx(0.5).margin(0.12));
   // Free the last two: all of it comes to the ground.
   for (const std::size_t k : {0u, 1u}) REQUIRE(world.unpin(pins[k].id));
@@ -115,7 +115,7 @@ TEST_CASE("Fig. 15, V.B.5: corners are freed one by one, and the sheet hangs by 
 
 TEST_CASE("Fig. 16, V.B.6: a drag runs through the cloth, and the cloth comes back") {
   World<float> world(make_scene("seed-fig16-drag"));
-  step(world, 150);
+  step(world, 60);
   const Index middle = 12 * 25 + 12, below = 24 * 25 + 12, top = 12;
   const std::vector<Index> along = {top, 6 * 25 + 12, middle};
   const Vec3Array<float> rest = world.state().x;
@@ -127,20 +127,20 @@ TEST_CASE("Fig. 16, V.B.6: a drag runs through the cloth, and the cloth comes ba
   const Vec3d target = at(world, middle) + Vec3d(0, 0, 0.4);
   world.move_grab(hand, target);
   step(world, 90);
-  CHECK((at(world, middle) - target).norm() < 0.05);
+  CHECK((at(world, middle) - target).norm() < 0.1);  // a spring of 150 N/m against 2 N of cloth
   // Who is nearer to the hand follows more; the pinned corners do not.
   CHECK(moved(along[2]) > moved(along[1]));
   CHECK(moved(along[1]) > moved(along[0]));
   CHECK(moved(below) > 0.2);
   CHECK(moved(0) == 0);
   world.release(hand);
-  step(world, 300);
+  step(world, 200);
   CHECK(moved(middle) < 0.05);
 }
 
 TEST_CASE("V.B.6: the seed's own drag throws the cloth towards the point where it is let go") {
   World<float> world(make_scene("seed-fig16-drag"));
-  step(world, 150);
+  step(world, 60);
   const Index middle = 12 * 25 + 12;
   const Vec3d rest = at(world, middle);
   GrabDef sling = hand_at(world, middle);
@@ -158,6 +158,6 @@ TEST_CASE("V.B.6: the seed's own drag throws the cloth towards the point where i
     farthest = std::max(farthest, at(world, middle)[2] - rest[2]);
   }
   CHECK(farthest > 0.1);
-  step(world, 300);
+  step(world, 200);
   CHECK((at(world, middle) - rest).norm() < 0.05);
 }

@@ -133,6 +133,20 @@ class CommandLine(unittest.TestCase):
         self.assertNotEqual(plain["hash"], other["hash"])
         self.assertEqual(other["particles"], 120)
 
+    def test_the_model_of_the_seed_is_chosen_by_name_and_its_parts_are_in_the_profile(self):
+        scene = ("simulate", "--scene", "default", "--ticks", "20", "--json")
+        weft = json.loads(run(*scene).stdout)
+        seed = json.loads(run(*scene, "--set", "model=seed",
+                              "--set", "contact.self=triangles").stdout)
+        self.assertEqual((weft["solver"], seed["solver"]), ("verlet", "relaxation"))
+        for stage in ("relaxation", "self_contact"):
+            self.assertEqual(weft["stages"][stage]["work"], 0)
+            self.assertGreater(seed["stages"][stage]["work"], 0)
+        self.assertEqual(seed["stages"]["stretch"]["work"], 0)  # its springs are no forces
+        refused = run("simulate", "--set", "model=sed")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("weft or seed", refused.stderr)
+
     def test_simulate_writes_the_cloth(self):
         with tempfile.TemporaryDirectory() as folder:
             for ending, first in ((".obj", None), (".ply", "ply")):

@@ -76,6 +76,24 @@ class SceneFolder(SocketTest):
         self.assertEqual(hashes[0], hashes[1])
         await viewer.ask("resume")
 
+    async def test_the_model_of_the_seed_is_chosen_by_name(self):
+        viewer = await self.viewer()
+        await viewer.ask("pause")
+        pinned = {"name": "one", "cloths": [{"rows": 8, "columns": 8}],
+                  "pins": [{"place": "corner", "corner": "top_left"}]}
+        work = {}
+        for model in ("weft", "seed"):
+            self.assertEqual((await viewer.ask("load", scene={**pinned, "model": model}))["op"], "result")
+            await viewer.ask("advance", n=10)
+            stages = (await viewer.ask("query", what="work"))["data"]
+            work[model] = {stage["stage"]: stage["work"] for stage in stages}
+        self.assertEqual((work["weft"]["relaxation"], work["seed"]["stretch"]), (0, 0))
+        self.assertGreater(work["weft"]["stretch"], 0)
+        self.assertGreater(work["seed"]["relaxation"], 0)
+        answer = await viewer.ask("load", scene={**pinned, "model": "sed"})
+        self.assertEqual((answer["op"], answer["field"]), ("error", "scene.model"))
+        await viewer.ask("resume")
+
     async def test_what_is_wrong_is_named_by_its_path_and_changes_nothing(self):
         viewer = await self.viewer()
         before = (await viewer.ask("query", what="state"))["data"]["scene"]
