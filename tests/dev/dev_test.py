@@ -195,6 +195,12 @@ class DevScript(unittest.TestCase):
         self.assertEqual(out.splitlines()[-1], "100% tests passed, 0 tests failed out of 1")
         self.assertTrue(self.calls("ctest")[0].endswith(" --tests-regex ^laws$"))
 
+    def test_long_tests_run_in_the_full_tier_and_when_asked_for_by_name_alone(self):
+        (self.machine / "bin" / "git").symlink_to("/bin/true")
+        for arguments, excluded in ((["test"], True), (["test", "seed"], False), (["test", "--full"], False)):
+            self.dev(*arguments)
+            self.assertEqual("--label-exclude ^long$" in self.calls("ctest")[0], excluded, arguments)
+
     def test_the_full_tier_goes_on_after_a_failure_and_tells_of_it(self):
         (self.machine / "ctest-status").write_text("8")
         (self.machine / "bin" / "git").symlink_to("/bin/true")

@@ -83,17 +83,17 @@ TEST_CASE("Fig. 15, V.B.5: corners are freed one by one, and the sheet hangs by 
   const std::vector<Index> corners = {0, 24, 24 * 25, 25 * 25 - 1};
   const auto pins = world.pins().list;
   REQUIRE(pins.size() == 4);
-  step(world, 60);
+  step(world, 50);
   const double sag = 1.5 - lowest(world);
   CHECK(sag > 0.02);
   CHECK(sag < 0.35);
   // Free a corner: it falls. The farthest it may hang is the sheet's diagonal below the other
   // corners.
   REQUIRE(world.unpin(pins[3].id));
-  step(world, 100);
+  step(world, 50);
   CHECK(at(world, corners[3])[1] < 1.5 - 0.4);
   REQUIRE(world.unpin(pins[2].id));
-  step(world, 150);
+  step(world, 100);
   // Two neighbouring corners hold it now: it hangs down by its height.
   CHECK(at(world, corners[2])[1] == Approx(0.5).margin(0.12));
   CHECK(at(world, corners[3])[1] == Approx(0.5).margin(0.12));
@@ -101,14 +101,14 @@ TEST_CASE("Fig. 15, V.B.5: corners are freed one by one, and the sheet hangs by 
   const GrabId hand = world.grab(hand_at(world, corners[3]));
   const Vec3d target = at(world, corners[3]) + Vec3d(0, 0.2, 0.4);
   world.move_grab(hand, target);
-  step(world, 60);
+  step(world, 40);
   CHECK((at(world, corners[3]) - target).norm() < 0.1);
   world.release(hand);
-  step(world, 150);
+  step(world, 80);
   CHECK(at(world, corners[3])[1] == Approx(0.5).margin(0.12));
   // Free the last two: all of it comes to the ground.
   for (const std::size_t k : {0u, 1u}) REQUIRE(world.unpin(pins[k].id));
-  step(world, 150);
+  step(world, 60);
   for (const Index corner : corners) CHECK(at(world, corner)[1] < 0.4);
   CHECK(lowest(world) > -0.001);
 }
@@ -124,17 +124,19 @@ TEST_CASE("Fig. 16, V.B.6: a drag runs through the cloth, and the cloth comes ba
         .norm();
   };
   const GrabId hand = world.grab(hand_at(world, middle));
-  const Vec3d target = at(world, middle) + Vec3d(0, 0, 0.4);
+  // Swung about the pinned corners by 45 degrees, where springs that do not stretch let it go.
+  const double arm = (1.6 - at(world, middle)[1]) / std::sqrt(2.0);
+  const Vec3d target(at(world, middle)[0], 1.6 - arm, arm);
   world.move_grab(hand, target);
-  step(world, 90);
-  CHECK((at(world, middle) - target).norm() < 0.1);  // a spring of 150 N/m against 2 N of cloth
+  step(world, 60);
+  CHECK((at(world, middle) - target).norm() < 0.03);  // a spring of 150 N/m against 2 N of cloth
   // Who is nearer to the hand follows more; the pinned corners do not.
   CHECK(moved(along[2]) > moved(along[1]));
   CHECK(moved(along[1]) > moved(along[0]));
   CHECK(moved(below) > 0.2);
   CHECK(moved(0) == 0);
   world.release(hand);
-  step(world, 200);
+  step(world, 150);
   CHECK(moved(middle) < 0.05);
 }
 
@@ -158,6 +160,6 @@ TEST_CASE("V.B.6: the seed's own drag throws the cloth towards the point where i
     farthest = std::max(farthest, at(world, middle)[2] - rest[2]);
   }
   CHECK(farthest > 0.1);
-  step(world, 200);
+  step(world, 100);
   CHECK((at(world, middle) - rest).norm() < 0.05);
 }

@@ -32,15 +32,15 @@ const TriangleMesh& mesh_of(const World<float>& world, const std::string& name) 
 TEST_CASE("Fig. 4: a rest angle of 15 degrees makes round folds of the wrinkles of no bending") {
   World<float> none(make_scene("seed-fig4-no-bending"));
   World<float> folded(make_scene("seed-fig4-rest-angle"));
-  step(none, 100);
-  step(folded, 100);
+  step(none, 65);
+  step(folded, 65);
   const Folds without = measure_folds(none), with = measure_folds(folded);
   CAPTURE(without.mean, with.mean, without.sharp, with.sharp);
   CHECK(with.mean < 0.7 * without.mean);
   CHECK(with.sharp < 0.5 * without.sharp);
 }
 
-TEST_CASE("Fig. 4: it is the rest angle that curls the cloth, to the side of its sign") {
+TEST_CASE("Fig. 4: it is the rest angle that curls the cloth, to the side of its sign", "[.long]") {
   const auto twist = [](double rest_angle) {
     WorldDef def = make_scene("seed-fig4-rest-angle");
     CHECK(def.cloths[0].rest_angle == Approx(0.2617994));  // 15 degrees
@@ -58,7 +58,7 @@ TEST_CASE("Fig. 4: it is the rest angle that curls the cloth, to the side of its
 TEST_CASE("Fig. 8: projection lays folds flat on the ground, the map of distances keeps them") {
   const auto height_of_folds = [](const char* scene, double& flat) {
     World<float> world(make_scene(scene));
-    step(world, 100);
+    step(world, 50);
     const double lift = world.def().contact.seed.lift;
     double sum = 0, count = 0, lying = 0;
     for (const Vec3f& x : world.state().x) {
@@ -101,7 +101,7 @@ TEST_CASE("Figs. 11, 12, V.B.2, V.B.3: particle pairs let folds through, triangl
   World<float> triangles(make_scene("seed-fig12-triangle-pairs"));
   std::size_t through = 0, held = 0;
   std::uint64_t particle_tests = 0, triangle_tests = 0;
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 9; ++n) {
     for (int tick = 0; tick < 10; ++tick) {
       particle_tests += particles.step().profile[Stage::narrow_phase].work;
       triangle_tests += triangles.step().profile[Stage::narrow_phase].work;

@@ -134,7 +134,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(other["particles"], 120)
 
     def test_the_model_of_the_seed_is_chosen_by_name_and_its_parts_are_in_the_profile(self):
-        scene = ("simulate", "--scene", "default", "--ticks", "20", "--json")
+        scene = ("simulate", "--scene", "drape-sphere", "--ticks", "40", "--json")
         weft = json.loads(run(*scene).stdout)
         seed = json.loads(run(*scene, "--set", "model=seed",
                               "--set", "contact.self=triangles").stdout)

@@ -197,7 +197,8 @@ TEMPLATE_TEST_CASE("compliance 0, one substep, k sweeps is the seed, bit for bit
   }
 }
 
-TEST_CASE("sweeps over 256 x 256 rigid edges do not diverge, and stretch less than one sweep may") {
+TEST_CASE("sweeps over 256 x 256 rigid edges do not diverge, and stretch less than one sweep may",
+          "[.long]") {
   // A sweep hands a pull on by one cell or so, so a substep h with one sweep leaves a false stretch
   // of up to g h^2 N^2 / length (NUMERICS.md c); several sweeps leave less.
   ClothDef cloth = flat_cloth(256, 256);
@@ -250,7 +251,7 @@ TEST_CASE("more sweeps over 256 x 256 rigid edges leave less of a shake, and nev
   double before = residual(1);
   CHECK(before < 0.1);
   const double first = before;
-  for (const int sweeps : {2, 4, 8, 16, 32, 64}) {
+  for (const int sweeps : {2, 4, 8, 16, 32}) {
     const double left = residual(sweeps);
     INFO(sweeps << " sweeps leave " << left << " of " << before);
     CHECK(left < before);
