@@ -200,7 +200,7 @@ class SceneFiles(unittest.TestCase):
                 self.assertEqual([error.message for error in self.judge.iter_errors(document)], [])
                 path = Path(self.folder.name) / "round.json"
                 path.write_text(json.dumps(document))
-                hashes = [json.loads(run("simulate", "--scene", scene, "--ticks", "60", "--json").stdout)["hash"]
+                hashes = [json.loads(run("simulate", "--scene", scene, "--ticks", "30", "--json").stdout)["hash"]
                           for scene in (name, path)]
                 self.assertEqual(hashes[0], hashes[1])
 
