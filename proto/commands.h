@@ -179,7 +179,8 @@ enum class QueryWhat : std::uint8_t {
   work,
   trees,
   boxes,
-  colliders
+  colliders,
+  measurements
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 

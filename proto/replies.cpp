@@ -36,6 +36,12 @@ Json json_of(const ColliderPose& collider) {
           {"blocked", collider.blocked}};
 }
 
+Json json_of(const Measurements& measurements) {
+  Json out = Json::object();
+  for (const auto& [name, value] : measurements.values) out[name] = value;
+  return out;
+}
+
 namespace {
 
 struct DataName {
@@ -49,6 +55,7 @@ struct DataName {
   QueryWhat operator()(const std::vector<StageWork>&) const { return QueryWhat::work; }
   QueryWhat operator()(const std::vector<TreeInfo>&) const { return QueryWhat::trees; }
   QueryWhat operator()(const std::vector<ColliderPose>&) const { return QueryWhat::colliders; }
+  QueryWhat operator()(const Measurements&) const { return QueryWhat::measurements; }
 };
 
 struct ReplyWriter {

@@ -145,12 +145,17 @@ struct ColliderPose {
   bool blocked = false;  ///< held back in the last tick by cloth that cannot give way
 };
 
+/// What the scene's test measures, by names that end in their unit; empty if it is no test.
+struct Measurements {
+  std::vector<std::pair<std::string, double>> values;
+};
+
 /// All other queries; the alternative decides `what`.
 struct QueryReply {
   std::uint64_t tick = 0;
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
-               std::vector<TreeInfo>, std::vector<ColliderPose>>
+               std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements>
       data;
 };
 

@@ -87,6 +87,9 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
     case proto::QueryWhat::colliders:
       reply.data = collider_poses(*world_);
       break;
+    case proto::QueryWhat::measurements:
+      reply.data = measurements_of(*world_);
+      break;
     case proto::QueryWhat::trees:
       reply.data = trees_of(*world_);
       break;

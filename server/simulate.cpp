@@ -106,6 +106,10 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
   std::vector<float> scratch;
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   const Energies& energy = world.report().energies;
+  Json measured = Json::object();
+  for (const NamedNumber& number : measurements(world.def().test, world.model(), world.state(),
+                                                world.environment().gravity.norm()))
+    measured[number.name] = number.value;
   Json stages = Json::object();
   for (std::size_t i = 0; i < kStageCount; ++i) {
     stages[kStageNames[i]] = {{"milliseconds", m.stages.stages[i].seconds * 1000},
@@ -133,6 +137,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
         {"total", energy.total()}}},
       {"strain",
        {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
+      {"measurements", measured},
       {"deepest_penetration", m.deepest},
       {"penetration_checks", m.checks},
       {"self_crossings", m.crossings},

@@ -222,6 +222,14 @@ std::vector<proto::TreeInfo> trees_of(ServedWorld& world) {
   return trees;
 }
 
+proto::Measurements measurements_of(const ServedWorld& world) {
+  proto::Measurements result;
+  for (const NamedNumber& m : measurements(world.def().test, world.model(), world.state(),
+                                           world.environment().gravity.norm()))
+    result.values.emplace_back(m.name, m.value);
+  return result;
+}
+
 std::vector<proto::StageWork> work_of(const ServedWorld& world) {
   std::vector<proto::StageWork> work;
   for (std::size_t i = 0; i < kStageCount; ++i) {

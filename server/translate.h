@@ -49,6 +49,9 @@ proto::State state_of(const ServedWorld& world);  ///< without what only the roo
 std::vector<proto::StageWork> work_of(const ServedWorld& world);
 std::vector<proto::TreeInfo> trees_of(ServedWorld& world);
 
+/// What the scene's test measures, e.g. the drape coefficient.
+proto::Measurements measurements_of(const ServedWorld& world);
+
 proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner);
 proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,
                           std::uint32_t drag);

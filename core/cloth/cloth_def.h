@@ -23,6 +23,12 @@ enum class BendingModel {
   quadratic,  ///< constant Hessian on the grid; needs zero rest angles and no bending damping
 };
 
+/// What is cut out of the rectangle of a grid.
+enum class Outline {
+  rectangle,  ///< all of it
+  ellipse,    ///< the cells whose middle lies in the ellipse that fills the rectangle
+};
+
 /// Spring stiffnesses given one by one, as the seed has them, instead of derived from the fabric.
 struct DirectSprings {
   double structural = 0;  ///< neighbours in a row or column [N/m]
@@ -46,15 +52,16 @@ struct ClothMesh {
 /// origin + u * width * c/(columns-1) + v * height * r/(rows-1).
 struct ClothDef {
   std::string name = "cloth";
-  int rows = 20;                 ///< particles along v
-  int columns = 30;              ///< particles along u
-  double width = 1;              ///< extent along u [m]
-  double height = 1;             ///< extent along v [m]
-  Vec3d origin = Vec3d::Zero();  ///< where particle 0 starts [m]
-  Vec3d u = Vec3d::UnitX();      ///< direction of a row, warp; normalised when built
-  Vec3d v = -Vec3d::UnitY();     ///< direction of a column, weft; must be normal to u
-  double rest_angle = 0;         ///< of every hinge [rad]
-  double skip_stiffness = 0;     ///< seed's bending springs beside the hinges [N/m]
+  int rows = 20;                         ///< particles along v
+  int columns = 30;                      ///< particles along u
+  double width = 1;                      ///< extent along u [m]
+  double height = 1;                     ///< extent along v [m]
+  Vec3d origin = Vec3d::Zero();          ///< where particle 0 starts [m]
+  Vec3d u = Vec3d::UnitX();              ///< direction of a row, warp; normalised when built
+  Vec3d v = -Vec3d::UnitY();             ///< direction of a column, weft; must be normal to u
+  double rest_angle = 0;                 ///< of every hinge [rad]
+  Outline outline = Outline::rectangle;  ///< of a cut grid the particles are counted row by row
+  double skip_stiffness = 0;             ///< seed's bending springs beside the hinges [N/m]
   BendingModel bending_model = BendingModel::automatic;
   MassLumping mass_lumping = MassLumping::area;
   std::optional<DirectSprings> direct_springs;
@@ -72,6 +79,7 @@ void visit_fields_of_grid(Def& c, Visitor&& visit) {
   visit(FieldInfo{"origin", -100, 100, "m", "where particle 0 starts"}, c.origin);
   visit(FieldInfo{"u", -1e3, 1e3, "", "direction of a row"}, c.u);
   visit(FieldInfo{"v", -1e3, 1e3, "", "direction of a column"}, c.v);
+  visit(choice("outline", "rectangle|ellipse", "what is cut out of the rectangle"), c.outline);
   visit(FieldInfo{"skip_stiffness", 0, 1e6, "N/m", "springs to every second neighbour"},
         c.skip_stiffness);
 }
@@ -100,10 +108,11 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
 
-/// Whether the quadratic form may stand for the hinges: a grid, flat at rest and without bending
-/// damping.
+/// Whether the quadratic form may stand for the hinges: a whole grid, flat at rest and without
+/// bending damping.
 inline bool quadratic_bending_fits(const ClothDef& def) {
-  return !def.mesh && def.rest_angle == 0 && def.fabric.bending_damping == 0;
+  return !def.mesh && def.outline == Outline::rectangle && def.rest_angle == 0 &&
+         def.fabric.bending_damping == 0;
 }
 
 /// Checks every range and the combination (u and v independent, direct springs finite).

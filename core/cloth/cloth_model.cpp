@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/cloth/cut_grid.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
 #include "core/error.h"
@@ -52,7 +53,9 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def) {
   validate(def);
-  return def.mesh ? build_mesh_cloth<Real>(def) : build_grid_cloth<Real>(def);
+  if (def.mesh) return build_mesh_cloth<Real>(def);
+  return def.outline == Outline::rectangle ? build_grid_cloth<Real>(def)
+                                           : build_cut_grid<Real>(def);
 }
 
 template <class Real>

@@ -8,7 +8,7 @@
 //            fabrics by a tensile test: thickness t, areal density, Young's modulus E; the stretch
 //            stiffness is E t.
 //   ASTM     D1388: B = sigma g c^3 with c the bending length; c is ours where no measurement is
-//            named, from the middle of what the literature on drape gives for such a fabric.
+//            named, so that the drape test gives what the literature gives for such a fabric.
 //   KES      Kawabata: shear G of 1 gf/(cm degree) is 56.188 N/m, bending B of 1 gf cm^2/cm is
 //            9.80665e-5 N m.
 //   Denim    Regenerated cellulose-based denim fabric for tropical regions, Journal of Textiles
@@ -23,68 +23,63 @@ namespace {
 constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kKesShear = 56.188;  // [N/m] in 1 gf/(cm degree)
 
-/// Bending rigidity of a fabric with a bending length [N m] (ASTM D1388).
-constexpr double rigidity(double areal_density, double bending_length) {
-  return areal_density * kGravity * bending_length * bending_length * bending_length;
-}
-
 FabricDef cotton() {
   FabricDef f;
-  f.areal_density = 0.1503;                                    // Penava
-  f.stretch_warp = f.stretch_weft = 0.821e6 * 0.318e-3;        // Penava: E t
-  f.shear = 0.8 * kKesShear;                                   // ours, a plain weave
-  f.bending_warp = f.bending_weft = rigidity(0.1503, 0.0215);  // ASTM, c ours
-  f.friction = 0.5;                                            // ours
+  f.areal_density = 0.1503;                                            // Penava
+  f.stretch_warp = f.stretch_weft = 0.821e6 * 0.318e-3;                // Penava: E t
+  f.shear = 0.8 * kKesShear;                                           // ours, a plain weave
+  f.bending_warp = f.bending_weft = bending_rigidity(0.1503, 0.0215);  // ASTM, c ours
+  f.friction = 0.5;                                                    // ours
   return f;
 }
 
 FabricDef silk() {
   FabricDef f;
-  f.areal_density = 0.07;                                    // ours, a light plain silk
-  f.stretch_warp = f.stretch_weft = 400;                     // ours
-  f.shear = 0.3 * kKesShear;                                 // ours
-  f.bending_warp = f.bending_weft = rigidity(0.07, 0.0115);  // ASTM, c ours
-  f.friction = 0.25;                                         // ours
+  f.areal_density = 0.07;                                            // ours, a light plain silk
+  f.stretch_warp = f.stretch_weft = 400;                             // ours
+  f.shear = 0.3 * kKesShear;                                         // ours
+  f.bending_warp = f.bending_weft = bending_rigidity(0.07, 0.0098);  // ASTM, c ours
+  f.friction = 0.25;                                                 // ours
   return f;
 }
 
 FabricDef wool() {
   FabricDef f;
-  f.areal_density = 0.2348;                                   // Penava
-  f.stretch_warp = f.stretch_weft = 0.170e6 * 0.568e-3;       // Penava: E t
-  f.shear = 0.4 * kKesShear;                                  // ours, a suiting
-  f.bending_warp = f.bending_weft = rigidity(0.2348, 0.019);  // ASTM, c ours
-  f.friction = 0.6;                                           // ours
+  f.areal_density = 0.2348;                                           // Penava
+  f.stretch_warp = f.stretch_weft = 0.170e6 * 0.568e-3;               // Penava: E t
+  f.shear = 0.4 * kKesShear;                                          // ours, a suiting
+  f.bending_warp = f.bending_weft = bending_rigidity(0.2348, 0.019);  // ASTM, c ours
+  f.friction = 0.6;                                                   // ours
   return f;
 }
 
 FabricDef denim() {
   FabricDef f;
-  f.areal_density = 0.324;                                    // ours
-  f.stretch_warp = f.stretch_weft = 1500;                     // ours
-  f.shear = 1.6 * kKesShear;                                  // Denim, median
-  f.bending_warp = f.bending_weft = rigidity(0.324, 0.0267);  // ASTM, c ours: 6e-5 N m
-  f.friction = 0.6;                                           // ours
+  f.areal_density = 0.324;                                            // ours
+  f.stretch_warp = f.stretch_weft = 1500;                             // ours
+  f.shear = 1.6 * kKesShear;                                          // Denim, median
+  f.bending_warp = f.bending_weft = bending_rigidity(0.324, 0.0267);  // ASTM, c ours: 6e-5 N m
+  f.friction = 0.6;                                                   // ours
   return f;
 }
 
 FabricDef leather() {
   FabricDef f;
-  f.areal_density = 0.6;                                   // ours, 0.9 mm of garment leather
-  f.stretch_warp = f.stretch_weft = 2500;                  // ours
-  f.shear = 600;                                           // ours: no weave, so nearly isotropic
-  f.bending_warp = f.bending_weft = rigidity(0.6, 0.024);  // ASTM, c ours
-  f.friction = 0.6;                                        // ours
+  f.areal_density = 0.6;                   // ours, 0.9 mm of garment leather
+  f.stretch_warp = f.stretch_weft = 2500;  // ours
+  f.shear = 600;                           // ours: no weave, so nearly isotropic
+  f.bending_warp = f.bending_weft = bending_rigidity(0.6, 0.0192);  // ASTM, c ours
+  f.friction = 0.6;                                                 // ours
   return f;
 }
 
 FabricDef nylon() {
   FabricDef f;
-  f.areal_density = 0.05;                                   // ours, flag cloth
-  f.stretch_warp = f.stretch_weft = 1000;                   // ours
-  f.shear = 0.7 * kKesShear;                                // ours
-  f.bending_warp = f.bending_weft = rigidity(0.05, 0.011);  // ASTM, c ours
-  f.friction = 0.3;                                         // ours
+  f.areal_density = 0.05;                                           // ours, flag cloth
+  f.stretch_warp = f.stretch_weft = 1000;                           // ours
+  f.shear = 0.7 * kKesShear;                                        // ours
+  f.bending_warp = f.bending_weft = bending_rigidity(0.05, 0.008);  // ASTM, c ours
+  f.friction = 0.3;                                                 // ours
   return f;
 }
 
@@ -109,6 +104,24 @@ const std::vector<FabricPreset>& fabric_presets() {
       {"leather", "garment leather: heavy, stiff in every direction", leather()},
       {"nylon", "flag nylon: very light and hard to stretch", nylon()}};
   return presets;
+}
+
+double bending_rigidity(double areal_density, double bending_length) {
+  return areal_density * kGravity * bending_length * bending_length * bending_length;
+}
+
+FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft) {
+  FabricDef fabric = base;
+  visit_fields_of_fabric(base, [&](const FieldInfo& info, double) {
+    if (std::string(info.name) == "areal_density") check_field("fabric.", info, areal_density);
+  });
+  constexpr double kLongest = 0.5;
+  check_field("fabric.", {"bending_length_warp", 0, kLongest, "m", "along u"}, warp);
+  check_field("fabric.", {"bending_length_weft", 0, kLongest, "m", "along v"}, weft);
+  fabric.areal_density = areal_density;
+  fabric.bending_warp = bending_rigidity(areal_density, warp);
+  fabric.bending_weft = bending_rigidity(areal_density, weft);
+  return fabric;
 }
 
 FabricDef make_fabric(const std::string& name) {

@@ -20,6 +20,18 @@ const std::vector<FabricPreset>& fabric_presets();
 /// Throws DefinitionError on field "fabric" if there is none of this name.
 FabricDef make_fabric(const std::string& name);
 
+/// Bending rigidity of a fabric with this bending length, B = sigma g c^3 [N m] (ASTM D1388).
+/// @param areal_density   sigma [kg/m^2]
+/// @param bending_length  c [m]: half the overhang at which a strip hangs 41.5 degrees down
+double bending_rigidity(double areal_density, double bending_length);
+
+/// A fabric from one's own measurement: mass per area and bending lengths, everything else as in
+/// `base`. Throws DefinitionError on "fabric.areal_density", "fabric.bending_length_warp" or
+/// "fabric.bending_length_weft" if a number is out of range.
+/// @param areal_density  [kg/m^2], as of every fabric
+/// @param warp,weft      bending lengths of strips cut along warp and weft [m], 0 to 0.5
+FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft);
+
 /// The preset that has exactly these values; "default" for those of a FabricDef as it is made;
 /// "custom" for all others.
 std::string fabric_name(const FabricDef& fabric);

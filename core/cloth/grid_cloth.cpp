@@ -58,17 +58,6 @@ void split_cells(const ClothDef& def, int first, ClothModel<Real>& model) {
   model.triangle_area.assign(model.triangles.size(), static_cast<Real>(area));
 }
 
-/// Bending rigidity times weight of a hinge whose edge spans (du, dv) in the material. An edge
-/// along v bends with curvature along u. The diagonals resist twist alone, so their weight is 2
-/// h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
-double hinge_rigidity(const FabricDef& fabric, double du, double dv) {
-  constexpr double kAlongAxis = 1e-9;
-  if (du < kAlongAxis) return fabric.bending_warp;
-  if (dv < kAlongAxis) return fabric.bending_weft;
-  const double d2 = du * du + dv * dv;
-  return 0.5 * (fabric.bending_warp + fabric.bending_weft) * 2 * du * du * dv * dv / (d2 * d2);
-}
-
 /// Hinges over both ways to split the cells, with half the rigidity each. In one way alone every
 /// second particle is opposite to no edge along the axes: nothing resists its second difference,
 /// and a strip free to relax into that pattern bends up to a quarter too easily.
@@ -76,7 +65,7 @@ template <class Real>
 void add_hinges(const ClothDef& def, ClothModel<Real>& model) {
   const HingeSettings settings{
       def.rest_angle, false, def.fabric.bending_damping,
-      [&](double du, double dv) { return 0.5 * hinge_rigidity(def.fabric, du, dv); }};
+      [&](double du, double dv) { return 0.5 * grid_hinge_rigidity(def.fabric, du, dv); }};
   ClothModel<Real> other;
   other.rest_positions = model.rest_positions;
   other.material = model.material;
@@ -125,6 +114,16 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
 }
 
 }  // namespace
+
+// An edge along v bends with curvature along u. The diagonals resist twist alone, so their weight
+// is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
+double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
+  constexpr double kAlongAxis = 1e-9;
+  if (du < kAlongAxis) return fabric.bending_warp;
+  if (dv < kAlongAxis) return fabric.bending_weft;
+  const double d2 = du * du + dv * dv;
+  return 0.5 * (fabric.bending_warp + fabric.bending_weft) * 2 * du * du * dv * dv / (d2 * d2);
+}
 
 template <class Real>
 ClothModel<Real> build_grid_cloth(const ClothDef& def) {

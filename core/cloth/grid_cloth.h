@@ -10,6 +10,9 @@ namespace weft {
 template <class Real>
 ClothModel<Real> build_grid_cloth(const ClothDef& def);
 
+/// Bending rigidity times weight of a grid's hinge whose edge spans (du, dv) in the material [N m].
+double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv);
+
 /// Sets name, fabric and ranges of the one part of a model whose lists are complete.
 template <class Real>
 void complete_part(const ClothDef& def, ClothModel<Real>& model) {

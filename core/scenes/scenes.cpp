@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/seed_scenes.h"
+#include "core/scenes/textile_scenes.h"
 
 namespace weft {
 namespace {
@@ -235,7 +236,15 @@ std::vector<SceneEntry> own_scenes() {
       {{"lift-sphere",
         "A ball rises under a silk sheet, holds it up and sinks: the sheet slides and never lets "
         "it through."},
-       build_lift_sphere}};
+       build_lift_sphere},
+      {{"drape-test",
+        "Cusick's drape test, a round cloth of 30 cm on a disc of 18 cm: read its drape "
+        "coefficient and count its folds."},
+       build_drape_test},
+      {{"cantilever-test",
+        "The bending test, a strip that hangs 6 cm over an edge: read its bending length from the "
+        "droop."},
+       build_cantilever_test}};
 }
 
 const std::vector<SceneEntry>& entries() {

@@ -7,6 +7,7 @@
 #include "core/cloth/cloth_def.h"
 #include "core/contact/collider.h"
 #include "core/contact/seed_contact.h"
+#include "core/diagnostics/measurements.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/environment.h"
@@ -39,7 +40,8 @@ struct WorldDef {
   std::string name = "unnamed";
   std::string description;  ///< one sentence on what to look at
   Model model = Model::weft;
-  double tick_rate = 60;  ///< ticks a simulated second [1/s]
+  double tick_rate = 60;                 ///< ticks a simulated second [1/s]
+  TextileTest test = TextileTest::none;  ///< what is measured of the first cloth
   EnvironmentDef environment;
   SolverDef solver;
   RelaxationDef relaxation;
@@ -59,6 +61,8 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
   below("")(choice("model", "weft|seed", "solver and contact, unless they are chosen by name"),
             def.model);
   below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks a simulated second"}, def.tick_rate);
+  below("")(choice("test", "none|drape|cantilever", "what is measured of the first cloth"),
+            def.test);
   visit_fields_of_environment(def.environment, below("environment."));
   visit_fields_of_solver(def.solver, below("solver."));
   below("contact.")(choice("model", "automatic|weft|seed", "automatic: by the model"),

@@ -14,7 +14,8 @@ export type QueryWhat =
   | 'work'
   | 'trees'
   | 'boxes'
-  | 'colliders';
+  | 'colliders'
+  | 'measurements';
 
 /** A hierarchy of boxes. */
 export interface Tree {

@@ -108,6 +108,15 @@ class CommandLine(unittest.TestCase):
             self.assertIn(key, result)
         self.assertGreater(result["stages"]["stretch"]["work"], 0)
 
+    def test_the_cantilever_test_measures_the_bending_length_of_its_fabric(self):
+        result = json.loads(run("simulate", "--scene", "cantilever-test", "--set", "fabric=denim",
+                                "--ticks", "180", "--json").stdout)
+        self.assertAlmostEqual(result["measurements"]["bending_length_m"], 0.0267, delta=0.0003)
+        self.assertIn("measurements.bending_length_m",
+                      run("simulate", "--scene", "cantilever-test", "--ticks", "1").stdout)
+        plain = json.loads(run("simulate", "--ticks", "1", "--json").stdout)
+        self.assertEqual(plain["measurements"], {})
+
     def test_ten_seconds_of_the_default_scene_keep_out_of_ground_and_model(self):
         result = json.loads(run("simulate", "--scene", "default", "--ticks", "600", "--json").stdout)
         self.assertLessEqual(result["deepest_penetration"], 0.004)  # the thickness

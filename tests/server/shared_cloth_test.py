@@ -213,7 +213,7 @@ class LockStep(SocketTest):
         a = await self.viewer()
         await a.ask("advance", n=5)
         for what in ("energies", "strain", "pins", "grabs", "camera", "roster", "state", "work",
-                     "trees"):
+                     "trees", "measurements"):
             answer = await a.ask("query", what=what)
             self.assertEqual((answer["op"], answer["what"], answer["tick"]), ("result", what, 5))
 
@@ -257,6 +257,22 @@ class LockStep(SocketTest):
         self.assertEqual(hit["particle"], 310)
         self.assertAlmostEqual(hit["distance"], 2, places=2)
         self.assertIsNone((await a.ask("pick", origin=[0, 50, 0], direction=[0, 1, 0]))["hit"])
+
+
+class DrapeTest(SocketTest):
+    options = ("--scene", "drape-test", "--paused")
+
+    async def test_a_flat_specimen_has_a_drape_coefficient_of_100_percent(self):
+        a = await self.viewer()
+        measured = (await a.ask("query", what="measurements"))["data"]
+        self.assertEqual(set(measured),
+                         {"drape_coefficient_percent", "folds", "droop_m", "largest_speed_m_s"})
+        self.assertAlmostEqual(measured["drape_coefficient_percent"], 100, delta=1)
+        self.assertEqual((measured["folds"], measured["largest_speed_m_s"]), (0, 0))
+        await a.ask("advance", n=6)
+        fallen = (await a.ask("query", what="measurements"))["data"]
+        self.assertLess(fallen["drape_coefficient_percent"], 99)
+        self.assertGreater(fallen["droop_m"], 0.005)
 
 
 class Wall(SocketTest):

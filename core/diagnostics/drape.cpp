@@ -1,0 +1,166 @@
+#include "core/diagnostics/drape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace weft {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPointDistance = 5e-4;  // of the points on which the shadow is counted [m]
+constexpr int kDirections = 180;         // around the hem
+constexpr double kCrestHeight = 2e-3;    // least rise of a fold [m]
+
+/// Points of a square around the middle, marked where a triangle is above them.
+class Shadow {
+ public:
+  explicit Shadow(double reach)
+      : side_(static_cast<int>(std::ceil(2 * reach / kPointDistance)) + 2),
+        marks_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), false) {}
+
+  /// Corners relative to the middle, as (x, z).
+  void add(const std::array<std::array<double, 2>, 3>& corners) {
+    const auto [low_u, high_u] = range(corners, 0);
+    const auto [low_v, high_v] = range(corners, 1);
+    for (int i = low_u; i <= high_u; ++i) {
+      for (int j = low_v; j <= high_v; ++j) {
+        if (covers(corners, at(i), at(j))) marks_[index(i, j)] = true;
+      }
+    }
+  }
+
+  double area() const {
+    return kPointDistance * kPointDistance *
+           static_cast<double>(std::count(marks_.begin(), marks_.end(), true));
+  }
+
+ private:
+  double at(int k) const { return (k - 0.5 * (side_ - 1)) * kPointDistance; }
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(side_) +
+           static_cast<std::size_t>(j);
+  }
+  std::pair<int, int> range(const std::array<std::array<double, 2>, 3>& p, std::size_t k) const {
+    const double low = std::min({p[0][k], p[1][k], p[2][k]});
+    const double high = std::max({p[0][k], p[1][k], p[2][k]});
+    const double middle = 0.5 * (side_ - 1);
+    return {std::max(0, static_cast<int>(std::ceil(low / kPointDistance + middle))),
+            std::min(side_ - 1, static_cast<int>(std::floor(high / kPointDistance + middle)))};
+  }
+  static bool covers(const std::array<std::array<double, 2>, 3>& p, double u, double v) {
+    int left = 0, right = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &a = p[k], &b = p[(k + 1) % 3];
+      const double side = (b[0] - a[0]) * (v - a[1]) - (b[1] - a[1]) * (u - a[0]);
+      left += side >= 0;
+      right += side <= 0;
+    }
+    return left == 3 || right == 3;
+  }
+
+  int side_;
+  std::vector<bool> marks_;
+};
+
+/// Particles at edges of one triangle alone.
+template <class Real>
+std::vector<Index> hem_particles(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+  std::map<Edge, int> triangles;
+  for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
+    const Triangle& t = model.triangles[static_cast<std::size_t>(n)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      ++triangles[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  std::vector<Index> hem;
+  for (const auto& [edge, count] : triangles) {
+    if (count == 1) hem.insert(hem.end(), edge.begin(), edge.end());
+  }
+  std::sort(hem.begin(), hem.end());
+  hem.erase(std::unique(hem.begin(), hem.end()), hem.end());
+  return hem;
+}
+
+/// Crests of a closed line of heights: a crest counts where the line falls by `least` on both
+/// sides.
+int count_crests(const std::vector<double>& heights, double least) {
+  const std::size_t n = heights.size();
+  const auto start =
+      static_cast<std::size_t>(std::min_element(heights.begin(), heights.end()) - heights.begin());
+  int crests = 0;
+  bool rising = true;
+  double extreme = heights[start];
+  for (std::size_t k = 1; k <= n; ++k) {
+    const double h = heights[(start + k) % n];
+    if (rising) {
+      if (h > extreme) extreme = h;
+      // The last crest has the lowest point behind it, where the walk began.
+      if (h >= extreme - least || extreme - heights[start] < least) continue;
+      ++crests;
+      rising = false;
+      extreme = h;
+    } else if (h < extreme) {
+      extreme = h;
+    } else if (h > extreme + least) {
+      rising = true;
+      extreme = h;
+    }
+  }
+  return crests;
+}
+
+}  // namespace
+
+template <class Real>
+DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                               const Vec3Array<Real>& x, const Vec3d& centre) {
+  const auto from_centre = [&](Index i) {
+    return (x[static_cast<std::size_t>(i)].template cast<double>() - centre).eval();
+  };
+  Shadow shadow(2 * kDrapeSpecimenRadius);
+  double flat = 0;
+  for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
+    std::array<std::array<double, 2>, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d p = from_centre(model.triangles[static_cast<std::size_t>(n)][k]);
+      corners[k] = {p[0], p[2]};
+    }
+    shadow.add(corners);
+    flat += static_cast<double>(model.triangle_area[static_cast<std::size_t>(n)]);
+  }
+  DrapeMeasurement result;
+  const double disc = kPi * kDrapeSupportRadius * kDrapeSupportRadius;
+  result.coefficient = 100 * (shadow.area() - disc) / (flat - disc);
+
+  // The hem in even directions: a running mean over the staircase of a cut grid.
+  std::vector<double> sum(kDirections, 0), weight(kDirections, 0);
+  const std::vector<Index> hem = hem_particles(model, part);
+  for (const Index i : hem) {
+    const Vec3d p = from_centre(i);
+    result.droop -= p[1] / static_cast<double>(hem.size());
+    const double place = (std::atan2(p[2], p[0]) / (2 * kPi) + 1) * kDirections;
+    constexpr int kReach = 6;
+    for (int k = -kReach; k <= kReach; ++k) {
+      const double direction = std::round(place) + k, off = (direction - place) / 3;
+      const auto slot = static_cast<std::size_t>(static_cast<long>(direction) % kDirections);
+      const double w = std::exp(-off * off);
+      sum[slot] += w * std::hypot(p[0], p[2]);
+      weight[slot] += w;
+    }
+  }
+  std::vector<double> radius;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    if (weight[k] > 0) radius.push_back(sum[k] / weight[k]);
+  }
+  if (!radius.empty()) result.folds = count_crests(radius, kCrestHeight);
+  return result;
+}
+
+template DrapeMeasurement measure_drape(const ClothModel<float>&, const ClothPart<float>&,
+                                        const Vec3Array<float>&, const Vec3d&);
+template DrapeMeasurement measure_drape(const ClothModel<double>&, const ClothPart<double>&,
+                                        const Vec3Array<double>&, const Vec3d&);
+
+}  // namespace weft

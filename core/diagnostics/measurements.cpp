@@ -1,0 +1,88 @@
+#include "core/diagnostics/measurements.h"
+
+#include <algorithm>
+
+#include "core/diagnostics/cantilever.h"
+#include "core/diagnostics/drape.h"
+
+namespace weft {
+namespace {
+
+template <class Real>
+bool is_pinned(const ClothState<Real>& state, Index i) {
+  return state.inverse_mass[static_cast<std::size_t>(i)] == 0;
+}
+
+template <class Real>
+double largest_speed(const ClothPart<Real>& part, const ClothState<Real>& state) {
+  double largest = 0;
+  for (Index i = part.particles.first; i < part.particles.end(); ++i)
+    largest = std::max(largest, static_cast<double>(state.v[static_cast<std::size_t>(i)].norm()));
+  return largest;
+}
+
+template <class Real>
+std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<Real>& state) {
+  const ClothPart<Real>& part = model.parts.front();
+  Vec3d centre = Vec3d::Zero();
+  int pinned = 0;
+  for (Index i = part.particles.first; i < part.particles.end(); ++i) {
+    if (!is_pinned(state, i)) continue;
+    centre += state.x[static_cast<std::size_t>(i)].template cast<double>();
+    ++pinned;
+  }
+  if (pinned == 0) return {};
+  const DrapeMeasurement m = measure_drape(model, part, state.x, (centre / pinned).eval());
+  return {{"drape_coefficient_percent", m.coefficient},
+          {"folds", static_cast<double>(m.folds)},
+          {"droop_m", m.droop},
+          {"largest_speed_m_s", largest_speed(part, state)}};
+}
+
+template <class Real>
+std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothState<Real>& state,
+                                    double gravity) {
+  const ClothPart<Real>& part = model.parts.front();
+  const auto at = [&](int row, int column) {
+    return part.particles.first + row * part.columns + column;
+  };
+  int pinned = 0;
+  while (pinned < part.columns && is_pinned(state, at(0, pinned))) ++pinned;
+  if (pinned == 0 || pinned == part.columns) return {};
+  const auto column = [&](int c) {
+    Vec3d sum = Vec3d::Zero();
+    for (int r = 0; r < part.rows; ++r)
+      sum += state.x[static_cast<std::size_t>(at(r, c))].template cast<double>();
+    return (sum / part.rows).eval();
+  };
+  // Two pinned columns make a hinge that stands for half a cell behind the second.
+  const int behind = std::max(pinned - 2, 0);
+  const Vec3d clamp = 0.5 * (column(pinned - 1) + column(behind));
+  const double cells = part.columns - 1 - 0.5 * (pinned - 1 + behind);
+  const CantileverMeasurement m =
+      measure_cantilever(clamp, column(part.columns - 1), cells * static_cast<double>(part.cell_u));
+  const double rigidity =
+      part.fabric.areal_density * gravity * m.bending_length * m.bending_length * m.bending_length;
+  return {{"droop_m", m.droop},
+          {"chord_angle_degrees", m.chord_angle},
+          {"bending_length_m", m.bending_length},
+          {"bending_rigidity_n_m", rigidity},
+          {"largest_speed_m_s", largest_speed(part, state)}};
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,
+                                      const ClothState<Real>& state, double gravity) {
+  if (test == TextileTest::drape) return drape(model, state);
+  if (test == TextileTest::cantilever) return cantilever(model, state, gravity);
+  return {};
+}
+
+template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<float>&,
+                                               const ClothState<float>&, double);
+template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<double>&,
+                                               const ClothState<double>&, double);
+
+}  // namespace weft

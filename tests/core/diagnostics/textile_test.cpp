@@ -1,0 +1,178 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "core/cloth/fabric_presets.h"
+#include "core/diagnostics/cantilever.h"
+#include "core/diagnostics/drape.h"
+#include "core/error.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/worlds.h"
+
+using namespace weft;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+ClothModel<double> specimen(int cells) {
+  WorldDef def = make_scene("drape-test");
+  def.cloths[0].rows = def.cloths[0].columns = cells + 1;
+  return build_cloth<double>(def.cloths[0]);
+}
+
+/// Each particle of the specimen moved along its own ray to the radius and height that `shape`
+/// gives for its radius and direction.
+template <class Shape>
+DrapeMeasurement measured(const ClothModel<double>& model, Shape&& shape) {
+  Vec3Array<double> x;
+  for (const auto& m : model.material) {
+    const double u = m[0] - kDrapeSpecimenRadius, v = m[1] - kDrapeSpecimenRadius;
+    const double direction = std::atan2(v, u);
+    const auto [radius, height] = shape(std::hypot(u, v), direction);
+    x.push_back(
+        Vec3d(7 + radius * std::cos(direction), 2 + height, -3 + radius * std::sin(direction)));
+  }
+  return measure_drape(model, model.parts[0], x, Vec3d(7, 2, -3));
+}
+
+}  // namespace
+
+TEST_CASE("a grid cut to a disc has the disc's area and mass, to 1 %, and whole cells") {
+  const ClothModel<double> model = specimen(60);
+  double area = 0, mass = 0;
+  for (const double a : model.triangle_area) area += a;
+  for (const double m : model.mass) mass += m;
+  CHECK(area == Approx(kPi * 0.15 * 0.15).epsilon(0.01));
+  CHECK(mass == Approx(area * model.parts[0].fabric.areal_density).epsilon(1e-12));
+  CHECK(model.triangles.size() % 2 == 0);
+  for (const auto& m : model.material)
+    CHECK(std::hypot(m[0] - 0.15, m[1] - 0.15) < 0.15 + std::sqrt(0.5) * 0.005);
+}
+
+TEST_CASE("the springs and hinges of a cut grid are those of the whole grid at the same places") {
+  ClothDef def = test::flat_cloth(9, 11, 1, 0.9);
+  def.bending_model = BendingModel::hinges;
+  const ClothModel<double> whole = build_cloth<double>(def);
+  def.outline = Outline::ellipse;
+  const ClothModel<double> cut = build_cloth<double>(def);
+  CHECK(cut.mass.size() < whole.mass.size());
+  const auto near = [](const auto& a, const auto& b) { return std::abs(a - b) < 1e-12; };
+  const auto place_in_whole = [&](Index i) {
+    const Vec3d& x = cut.rest_positions[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < whole.mass.size(); ++k) {
+      if ((whole.rest_positions[k] - x).norm() < 1e-9) return static_cast<Index>(k);
+    }
+    return kNone;
+  };
+  std::size_t inner = 0;
+  for (const Spring<double>& s : cut.springs) {
+    const Index i = place_in_whole(s.i), j = place_in_whole(s.j);
+    bool found = false;
+    for (const Spring<double>& w : whole.springs) {
+      if (std::minmax(w.i, w.j) != std::minmax(i, j)) continue;
+      found = near(w.rest_length, s.rest_length) && s.stiffness < w.stiffness + 1e-9;
+      inner += near(w.stiffness, s.stiffness);
+    }
+    CHECK(found);
+  }
+  CHECK(inner > cut.springs.size() / 2);
+  CHECK(cut.hinges.size() > whole.hinges.size() / 2);
+}
+
+TEST_CASE("a disc that stays flat has drape coefficient 100 %, a skirt that hangs straight 0 %") {
+  const ClothModel<double> model = specimen(60);
+  const DrapeMeasurement flat = measured(model, [](double r, double) { return std::pair(r, 0.0); });
+  CHECK(flat.coefficient == Approx(100).margin(0.5));
+  CHECK(flat.folds == 0);
+  CHECK(flat.droop == Approx(0).margin(1e-12));
+  const DrapeMeasurement skirt = measured(model, [](double r, double) {
+    return std::pair(std::min(r, 0.09), std::min(0.0, 0.09 - r));
+  });
+  CHECK(skirt.coefficient == Approx(0).margin(1.5));
+  CHECK(skirt.droop == Approx(0.06).margin(0.003));
+}
+
+TEST_CASE("waves around the disc are counted as folds, ripples of a millimetre are not") {
+  const ClothModel<double> model = specimen(60);
+  for (int folds = 2; folds <= 9; ++folds) {
+    const DrapeMeasurement wavy = measured(model, [&](double r, double direction) {
+      const double out = std::max(0.0, r - 0.09);
+      return std::pair(r - out * (0.5 + 0.25 * std::cos(folds * direction)), -out);
+    });
+    CHECK(wavy.folds == folds);
+    // The shadow's edge is at 0.12 + 0.015 cos: its area pi (0.12^2 + 0.015^2 / 2).
+    CHECK(wavy.coefficient ==
+          Approx(100 * (0.0144 + 0.0001125 - 0.0081) / (0.0225 - 0.0081)).margin(1.5));
+  }
+  const DrapeMeasurement ripples = measured(model, [](double r, double direction) {
+    const double out = std::max(0.0, r - 0.09);
+    return std::pair(r - out * (0.3 + 0.008 * std::cos(6 * direction)), -out);
+  });
+  CHECK(ripples.folds == 0);
+}
+
+TEST_CASE("chord angle and gamma of the elastica are those of the table, to 1e-4, and inverses") {
+  // heavy_elastica_cantilever.table and peirce_cantilever_41.5_degrees.
+  const auto [gamma, degrees] = GENERATE(table<double, double>({{0.1, 0.716134375803661},
+                                                                {1, 7.100292374864014},
+                                                                {3, 20.032909148863038},
+                                                                {8.004197032598174, 41.5},
+                                                                {10, 46.851245752486825},
+                                                                {30, 68.56573347004903},
+                                                                {100, 80.3612022971564}}));
+  CHECK(elastica_chord_angle(gamma) * 180 / kPi == Approx(degrees).epsilon(1e-4));
+  CHECK(elastica_gamma(degrees * kPi / 180) == Approx(gamma).epsilon(1e-3));
+}
+
+TEST_CASE("the cantilever test finds the bending length of every preset, to 1 % below 75 degrees") {
+  for (const FabricPreset& preset : fabric_presets()) {
+    WorldDef def = make_scene("cantilever-test");
+    def.cloths[0].fabric = preset.fabric;
+    World<float> world(def);
+    test::advance(world, 3);
+    const auto m = measurements(def.test, world.model(), world.state(), 9.81);
+    REQUIRE(m.size() == 5);
+    INFO(preset.name << ": droop " << m[0].value << " m, " << m[1].value << " degrees");
+    CHECK(m[4].value < 0.01);  // what rounding keeps moving in single precision
+    const double expected =
+        std::cbrt(preset.fabric.bending_warp / (preset.fabric.areal_density * 9.81));
+    // Close to the plumb line a degree is a tenth of the bending length and more.
+    const double tolerance = m[1].value < 75 ? 0.01 : 0.05;
+    CHECK(m[2].value == Approx(expected).epsilon(tolerance));
+    CHECK(m[3].value == Approx(preset.fabric.bending_warp).epsilon(3 * tolerance));
+  }
+}
+
+TEST_CASE("a fabric measured by its bending lengths has B = sigma g c^3 and the rest of its base") {
+  const FabricDef base = make_fabric("wool");
+  const FabricDef own = measured_fabric(base, 0.324, 0.02662639748288505, 0.02);
+  CHECK(own.bending_warp == Approx(6e-5).epsilon(1e-6));  // fabric_cantilever.table, denim
+  CHECK(own.bending_weft == Approx(0.324 * 9.81 * 8e-6));
+  CHECK(own.areal_density == 0.324);
+  CHECK(own.stretch_warp == base.stretch_warp);
+  CHECK(own.friction == base.friction);
+  const auto refused = [&](double density, double warp, double weft) {
+    try {
+      measured_fabric(base, density, warp, weft);
+    } catch (const DefinitionError& error) {
+      return error.field;
+    }
+    return std::string();
+  };
+  CHECK(refused(0, 0.02, 0.02) == "fabric.areal_density");
+  CHECK(refused(0.2, -0.02, 0.02) == "fabric.bending_length_warp");
+  CHECK(refused(0.2, 0.02, std::nan("")) == "fabric.bending_length_weft");
+}
+
+TEST_CASE("a scene that is no test measures nothing, and one that does not fit its test neither") {
+  WorldDef def = make_scene("wall");
+  World<float> wall(def);
+  CHECK(measurements(def.test, wall.model(), wall.state(), 9.81).empty());
+  def = make_scene("cantilever-test");
+  def.pins.clear();
+  World<float> loose(def);
+  CHECK(measurements(TextileTest::cantilever, loose.model(), loose.state(), 9.81).empty());
+  CHECK(measurements(TextileTest::drape, loose.model(), loose.state(), 9.81).empty());
+}
