@@ -134,19 +134,34 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
   const double disc = kPi * kDrapeSupportRadius * kDrapeSupportRadius;
   result.coefficient = 100 * (shadow.area() - disc) / (flat - disc);
 
-  // The hem in even directions: a running mean over the staircase of a cut grid.
+  // The hem in even directions. What hangs over is stretched to the overhang of a round specimen,
+  // so that the staircase of a cut grid is no fold.
   std::vector<double> sum(kDirections, 0), weight(kDirections, 0);
   const std::vector<Index> hem = hem_particles(model, part);
+  const auto material = [&](Index i, std::size_t k) {
+    return static_cast<double>(model.material[static_cast<std::size_t>(i)][k]);
+  };
+  double middle[2] = {0, 0};
+  for (const Index i : hem) {
+    for (std::size_t k = 0; k < 2; ++k)
+      middle[k] += material(i, k) / static_cast<double>(hem.size());
+  }
   for (const Index i : hem) {
     const Vec3d p = from_centre(i);
     result.droop -= p[1] / static_cast<double>(hem.size());
+    const double own = std::hypot(material(i, 0) - middle[0], material(i, 1) - middle[1]);
+    if (own < 1.2 * kDrapeSupportRadius) continue;
+    const double radius_if_round =
+        kDrapeSupportRadius + (std::hypot(p[0], p[2]) - kDrapeSupportRadius) *
+                                  (kDrapeSpecimenRadius - kDrapeSupportRadius) /
+                                  (own - kDrapeSupportRadius);
     const double place = (std::atan2(p[2], p[0]) / (2 * kPi) + 1) * kDirections;
     constexpr int kReach = 6;
     for (int k = -kReach; k <= kReach; ++k) {
       const double direction = std::round(place) + k, off = (direction - place) / 3;
       const auto slot = static_cast<std::size_t>(static_cast<long>(direction) % kDirections);
       const double w = std::exp(-off * off);
-      sum[slot] += w * std::hypot(p[0], p[2]);
+      sum[slot] += w * radius_if_round;
       weight[slot] += w;
     }
   }

@@ -20,7 +20,7 @@ struct DrapeMeasurement {
 ///
 /// The coefficient is (shadow - disc) / (specimen - disc) with the specimen's own flat area, the
 /// shadow counted on points 0.5 mm apart. A fold is a crest of the hem's distance from the middle
-/// that rises by 2 mm on both sides.
+/// that rises by 2 mm on both sides, as it would be on a hem that is round when flat.
 /// @param x       positions of all particles [m], finite
 /// @param centre  of the disc, at its height [m]
 template <class Real>
