@@ -13,16 +13,18 @@ using namespace weft;
 
 namespace {
 
-/// A square metre that starts level.
+/// A square that starts level. Of this side the strip ends at a row of particles at each
+/// resolution, to 1.3 mm, so that it is the same cloth that hangs; where a strip ends between rows,
+/// what hangs is longer by up to a cell.
 World<float> hung(int n, const std::string& fabric, double drag) {
   WorldDef def;
   ClothDef& cloth = def.cloths[0];
   cloth.rows = cloth.columns = n;
-  cloth.width = cloth.height = 1;
+  cloth.width = cloth.height = 31 * 0.05;
   cloth.u = Vec3d::UnitX();
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric(fabric);
-  def.pins = {{EdgeStrip{Side::top, 0.05}, 0, {}}};
+  def.pins = {{EdgeStrip{Side::top, 0.0501}, 0, {}}};
   def.environment.air_density = 0;
   def.environment.drag = drag;
   return World<float>(def);
