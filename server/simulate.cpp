@@ -218,11 +218,18 @@ int list_scenes(const ScenesOptions& options) {
     return 0;
   }
   Json list = Json::array();
+  std::size_t longest = 0;
   for (const SceneInfo& scene : scenes()) {
     list.push_back({{"name", scene.name}, {"description", scene.description}});
-    if (!options.json) std::printf("%-14s %s\n", scene.name.c_str(), scene.description.c_str());
+    longest = std::max(longest, scene.name.size());
   }
-  if (options.json) std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
+  if (options.json) {
+    std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
+    return 0;
+  }
+  for (const SceneInfo& scene : scenes())
+    std::printf("%-*s  %s\n", static_cast<int>(longest), scene.name.c_str(),
+                scene.description.c_str());
   return 0;
 }
 

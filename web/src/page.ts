@@ -114,6 +114,7 @@ export class Page {
       const same = this.world?.announcement.scene === announcement.scene;
       this.world?.dispose();
       this.world = new WorldView(announcement, data, this.stage);
+      this.pins.fit(this.world.cloth_extent);
       this.grabs = [];
       this.box_view.renew();
       if (!same) {

@@ -3,6 +3,7 @@ import type { PerspectiveCamera, Vector2 } from 'three';
 import type { Pin } from '../../proto/js/messages.js';
 
 const PIN_RADIUS = 0.009; // of a head [m]
+const SMALL_CLOTH = 1; // smaller cloths have smaller heads [m]
 const REACH = 16; // within which a pointer means a pin [pixels]
 const SCENE_COLOR = '#4a4e55';
 
@@ -10,7 +11,14 @@ const SCENE_COLOR = '#4a4e55';
 export class Pins {
   readonly group = new Group();
   private sphere = new SphereGeometry(PIN_RADIUS, 24, 16);
+  private scale = 1;
   list: Pin[] = [];
+
+  /** @param extent of the cloths: their longest side [m] */
+  fit(extent: number): void {
+    this.scale = Math.min(1, extent / SMALL_CLOTH);
+    for (const head of this.group.children) head.scale.setScalar(this.scale);
+  }
 
   /** @param color of a viewer's number, or null if it has left */
   set(list: Pin[], color: (viewer: number) => string | null): void {
@@ -26,6 +34,7 @@ export class Pins {
       });
       const head = new Mesh(this.sphere, material);
       head.position.set(...pin.position);
+      head.scale.setScalar(this.scale);
       head.castShadow = true;
       this.group.add(head);
     }

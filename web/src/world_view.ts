@@ -69,6 +69,12 @@ export class WorldView {
     return cloth && cloth.distance < hit.distance ? null : hit;
   }
 
+  /** The longest side of the box around the cloths [m]. */
+  get cloth_extent(): number {
+    const size = new Box3().setFromArray(this.playback.positions).getSize(new Vector3());
+    return Math.max(size.x, size.y, size.z);
+  }
+
   /** Bounds of the cloth and of the objects, with the ground below [m]. */
   bounds(): Box3 {
     const box = this.objects.bounds();
