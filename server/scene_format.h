@@ -17,6 +17,7 @@
 //   text(TextInfo, value&)               a string
 //   orientation(name, meaning, value&)   a quaternion [x, y, z, w]
 //   preset(fabric&)                      the key "preset"; true if nothing else has to be told
+//   bending_lengths(fabric&)             the keys in place of the bending rigidities
 //   object(name, meaning, describe)      describe(Io&) of what is inside
 //   optional(name, meaning, value&, describe)   an object that may be absent
 //   list(ListInfo, vector&, describe)    describe(Io&, element&)
@@ -66,10 +67,27 @@ void describe_placement(Io& io, MeshPlacement& placement) {
   io.orientation("orientation", "how it is turned", placement.orientation);
 }
 
+/// A fabric measured by ASTM D1388 may tell its bending lengths in place of its rigidities.
+struct BendingLength {
+  FieldInfo info;
+  const char* instead_of;
+  double FabricDef::*rigidity;
+};
+inline constexpr BendingLength kBendingLengths[] = {
+    {{"bending_length_warp", 0, kLongestBendingLength, "m",
+      "measured along u, in place of bending_warp: the rigidity is areal_density g c^3"},
+     "bending_warp",
+     &FabricDef::bending_warp},
+    {{"bending_length_weft", 0, kLongestBendingLength, "m",
+      "measured along v, in place of bending_weft: the rigidity is areal_density g c^3"},
+     "bending_weft",
+     &FabricDef::bending_weft}};
+
 template <class Io>
 void describe_fabric(Io& io, FabricDef& fabric) {
   if (io.preset(fabric)) return;
   io.fields([&](auto&& visit) { visit_fields_of_fabric(fabric, visit); });
+  io.bending_lengths(fabric);
 }
 
 template <class Io>

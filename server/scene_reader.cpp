@@ -88,6 +88,19 @@ class Reader {
     return false;
   }
 
+  void bending_lengths(FabricDef& fabric) {
+    for (const BendingLength& length : kBendingLengths) {
+      const Json* node = find(length.info.name);
+      if (!node) continue;
+      if (node_.contains(length.instead_of))
+        throw wrong(at(length.info.name), *node, std::string("none beside ") + length.instead_of,
+                    "each tells the rigidity");
+      double value = 0;
+      read(length.info, *node, value);
+      fabric.*length.rigidity = bending_rigidity(fabric.areal_density, value);
+    }
+  }
+
   template <class Describe>
   void object(const char* name, const char*, Describe&& describe) {
     const Json* node = find(name);

@@ -74,6 +74,15 @@ class Schema {
                              {"enum", names}};
     return false;
   }
+  void bending_lengths(const FabricDef&) {
+    for (const BendingLength& length : kBendingLengths) {
+      properties_[length.info.name] = {{"description", meaning_of(length.info)},
+                                       {"type", "number"},
+                                       {"minimum", bound(length.info.minimum)},
+                                       {"maximum", bound(length.info.maximum)}};
+      exclusive_[length.info.name] = {{"not", {{"required", Json::array({length.instead_of})}}}};
+    }
+  }
   template <class Describe>
   void object(const char* name, const char* meaning, Describe&& describe) {
     Schema inner;
@@ -131,6 +140,7 @@ class Schema {
       return out;
     }
     out["properties"] = properties_;
+    if (!exclusive_.empty()) out["dependencies"] = exclusive_;
     out["additionalProperties"] = false;
     return out;
   }
@@ -159,7 +169,7 @@ class Schema {
   }
 
   Json properties_ = Json::object(), required_ = Json::array(), alternatives_ = Json::array(),
-       tag_ = Json::object();
+       tag_ = Json::object(), exclusive_ = Json::object();
 };
 
 }  // namespace

@@ -36,6 +36,7 @@ class Writer {
     }
     return false;
   }
+  void bending_lengths(const FabricDef&) {}  // the rigidities are written
   template <class Describe>
   void object(const char* name, const char*, Describe&& describe) {
     Writer inner;

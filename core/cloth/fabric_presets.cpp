@@ -115,9 +115,8 @@ FabricDef measured_fabric(const FabricDef& base, double areal_density, double wa
   visit_fields_of_fabric(base, [&](const FieldInfo& info, double) {
     if (std::string(info.name) == "areal_density") check_field("fabric.", info, areal_density);
   });
-  constexpr double kLongest = 0.5;
-  check_field("fabric.", {"bending_length_warp", 0, kLongest, "m", "along u"}, warp);
-  check_field("fabric.", {"bending_length_weft", 0, kLongest, "m", "along v"}, weft);
+  check_field("fabric.", {"bending_length_warp", 0, kLongestBendingLength, "m", "along u"}, warp);
+  check_field("fabric.", {"bending_length_weft", 0, kLongestBendingLength, "m", "along v"}, weft);
   fabric.areal_density = areal_density;
   fabric.bending_warp = bending_rigidity(areal_density, warp);
   fabric.bending_weft = bending_rigidity(areal_density, weft);

@@ -20,6 +20,8 @@ const std::vector<FabricPreset>& fabric_presets();
 /// Throws DefinitionError on field "fabric" if there is none of this name.
 FabricDef make_fabric(const std::string& name);
 
+inline constexpr double kLongestBendingLength = 0.2;  ///< that is accepted [m]
+
 /// Bending rigidity of a fabric with this bending length, B = sigma g c^3 [N m] (ASTM D1388).
 /// @param areal_density   sigma [kg/m^2]
 /// @param bending_length  c [m]: half the overhang at which a strip hangs 41.5 degrees down
@@ -29,7 +31,8 @@ double bending_rigidity(double areal_density, double bending_length);
 /// `base`. Throws DefinitionError on "fabric.areal_density", "fabric.bending_length_warp" or
 /// "fabric.bending_length_weft" if a number is out of range.
 /// @param areal_density  [kg/m^2], as of every fabric
-/// @param warp,weft      bending lengths of strips cut along warp and weft [m], 0 to 0.5
+/// @param warp,weft      bending lengths of strips cut along warp and weft [m], 0 to
+/// kLongestBendingLength
 FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft);
 
 /// The preset that has exactly these values; "default" for those of a FabricDef as it is made;

@@ -232,6 +232,8 @@ class SceneFiles(unittest.TestCase):
         table = [
             ({"cloths": [{**cloth, "fabric": {"shear": 1e5}}]}, "cloths[0].fabric.shear"),
             ({"cloths": [{**cloth, "u": [0, 0, 0]}]}, "cloths[0].u"),
+            ({"cloths": [{**cloth, "fabric": {"bending_length_weft": 0.02, "bending_weft": 1e-6}}]},
+             "cloths[0].fabric.bending_length_weft"),
             ({"cloths": [cloth], "contact": {"self": "triangles"}}, "contact.self"),
             ({"cloths": [cloth], "contact": {"model": "seed", "correction": "fold_map", "lift": 0.03}},
              "contact.lift"),
@@ -257,6 +259,31 @@ class SceneFiles(unittest.TestCase):
                 result = self.simulate(document)
                 self.assertEqual(result.returncode, 2, result)
                 self.assertIn(f": {where} = ", result.stderr)
+
+    def test_a_fabric_may_tell_its_bending_lengths_in_place_of_its_rigidities(self):
+        def scene(**fabric):
+            return {"cloths": [{"rows": 9, "columns": 9, "width": 0.2, "height": 0.2, "v": [0, 0, 1],
+                                "fabric": {"preset": "wool", "areal_density": 0.3, **fabric}}],
+                    "pins": [{"place": "edge", "side": "left", "depth": 0.03}]}
+
+        def outcome(document):
+            self.assertEqual([error.message for error in self.judge.iter_errors(document)], [])
+            result = self.simulate(document, ticks=30)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return json.loads(result.stdout)["hash"]
+
+        rigidity = [0.3 * 9.81 * c * c * c for c in (0.03, 0.02)]  # ASTM D1388
+        lengths = outcome(scene(bending_length_warp=0.03, bending_length_weft=0.02))
+        self.assertEqual(lengths, outcome(scene(bending_warp=rigidity[0], bending_weft=rigidity[1])))
+        self.assertEqual(outcome(scene(bending_length_warp=0.03)), outcome(scene(bending_warp=rigidity[0])))
+        self.assertNotEqual(lengths, outcome(scene()))
+        for wrong in ({"bending_length_warp": 0.3}, {"bending_length_warp": "2 cm"},
+                      {"bending_length_warp": 0.02, "bending_warp": 1e-6}):
+            with self.subTest(wrong=wrong):
+                self.assertNotEqual(list(self.judge.iter_errors(scene(**wrong))), [])
+                result = self.simulate(scene(**wrong))
+                self.assertEqual(result.returncode, 2, result)
+                self.assertIn(": cloths[0].fabric.bending_length_warp = ", result.stderr)
 
     def test_texts_that_are_no_scene_are_refused(self):
         deep = '{"cloths":' + "[" * 50 + "]" * 50 + "}"
