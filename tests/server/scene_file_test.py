@@ -264,7 +264,7 @@ class SceneFiles(unittest.TestCase):
         def scene(**fabric):
             return {"cloths": [{"rows": 9, "columns": 9, "width": 0.2, "height": 0.2, "v": [0, 0, 1],
                                 "fabric": {"preset": "wool", "areal_density": 0.3, **fabric}}],
-                    "pins": [{"place": "edge", "side": "left", "depth": 0.03}]}
+                    "pins": [{"place": "edge", "side": "left", "width": 0.03}]}
 
         def outcome(document):
             self.assertEqual([error.message for error in self.judge.iter_errors(document)], [])
