@@ -21,6 +21,7 @@ enum class BendingModel {
   automatic,  ///< quadratic where it is exact enough, hinges otherwise; see quadratic_bending_fits
   hinges,     ///< dihedral angles with rest angle and damping (Bridson 2003)
   quadratic,  ///< constant Hessian on the grid; needs zero rest angles and no bending damping
+  sine_hinges,  ///< hinges that answer to sin(theta/2), as printed in Bridson 2003 (the seed's)
 };
 
 /// What is cut out of the rectangle of a grid.
@@ -87,7 +88,8 @@ void visit_fields_of_grid(Def& c, Visitor&& visit) {
 /// The same for what every cloth has, grid or mesh.
 template <class Def, class Visitor>
 void visit_fields_of_any_cloth(Def& c, Visitor&& visit) {
-  visit(choice("bending_model", "automatic|hinges|quadratic", "how the cloth resists bending"),
+  visit(choice("bending_model", "automatic|hinges|quadratic|sine_hinges",
+               "how the cloth resists bending"),
         c.bending_model);
   visit(choice("mass_lumping", "area|equal", "how the particles share the mass"), c.mass_lumping);
   visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);

@@ -41,7 +41,8 @@ struct Hinge {
   Real stiffness = 0;   ///< B l^2 / (A1 + A2) [N m]
   Real damping = 0;     ///< [N m s]
   Real smallest_normal2 =
-      0;  ///< squared doubled area below which a triangle counts as crumpled [m^4]
+      0;                   ///< squared doubled area below which a triangle counts as crumpled [m^4]
+  bool sine_form = false;  ///< moment by sines of half angles; see hinge_moment
 };
 
 /// A triangle crumpled below this part of its area at rest pulls on its hinges with less lever.

@@ -65,6 +65,7 @@ template <class Real>
 void add_hinges(const ClothDef& def, ClothModel<Real>& model) {
   const HingeSettings settings{
       def.rest_angle, false, def.fabric.bending_damping,
+      def.bending_model == BendingModel::sine_hinges,
       [&](double du, double dv) { return 0.5 * grid_hinge_rigidity(def.fabric, du, dv); }};
   ClothModel<Real> other;
   other.rest_positions = model.rest_positions;

@@ -58,6 +58,7 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
   hinge.stiffness = static_cast<Real>(rigidity * length2 / area);
   hinge.damping = static_cast<Real>(settings.damping) * hinge.stiffness;
   hinge.rest_angle = static_cast<Real>(settings.rest_angle);
+  hinge.sine_form = settings.sine_form;
   if (settings.add_own_angle) {
     const auto x = [&](std::size_t k) -> const Vec3<Real>& {
       return model.rest_positions[static_cast<std::size_t>(hinge.x[k])];

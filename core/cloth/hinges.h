@@ -11,6 +11,7 @@ struct HingeSettings {
   double rest_angle = 0;       ///< [rad]
   bool add_own_angle = false;  ///< add the angle that the hinge has in the rest positions
   double damping = 0;          ///< per stiffness [s]
+  bool sine_form = false;      ///< see Hinge::sine_form
   /// Rigidity of a hinge whose edge spans (|du|, |dv|) in the material [N m]; 0: no hinge there.
   std::function<double(double du, double dv)> rigidity;
 };

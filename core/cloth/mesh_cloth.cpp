@@ -243,13 +243,14 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   place_particles(def, breadth_first_order(mesh.positions.size(), mesh.triangles), model);
   lump_masses(def, model);
   const FabricDef& fabric = def.fabric;
-  connect_triangles({def.rest_angle, true, fabric.bending_damping,
-                     [&](double du, double dv) {
-                       // An edge along v bends with curvature along u.
-                       const double cos2 = warp_part(du, dv);
-                       return fabric.bending_weft * cos2 + fabric.bending_warp * (1 - cos2);
-                     }},
-                    model);
+  connect_triangles(
+      {def.rest_angle, true, fabric.bending_damping, def.bending_model == BendingModel::sine_hinges,
+       [&](double du, double dv) {
+         // An edge along v bends with curvature along u.
+         const double cos2 = warp_part(du, dv);
+         return fabric.bending_weft * cos2 + fabric.bending_warp * (1 - cos2);
+       }},
+      model);
   add_edge_springs(fabric, model);
   complete_part(def, model);
   bound_frequencies(model, part);

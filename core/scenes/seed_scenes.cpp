@@ -10,7 +10,7 @@ void use_seed(WorldDef& def) {
   def.model = Model::seed;
   for (ClothDef& cloth : def.cloths) {
     cloth.mass_lumping = MassLumping::equal;
-    cloth.bending_model = BendingModel::hinges;
+    cloth.bending_model = BendingModel::sine_hinges;
     cloth.fabric.bending_warp = cloth.fabric.bending_weft = 0;
     cloth.fabric.thickness = 0.01;
   }

@@ -8,7 +8,23 @@ import { start_server } from './support/server.mjs';
 
 const USUAL_TICK = 240;
 /** Where a scene shows what it is about at another time. */
-const TICKS = { default: 600, 'drape-sphere': 150 };
+const TICKS = {
+  default: 600,
+  'drape-sphere': 150,
+  'seed-fig4-no-bending': 100,
+  'seed-fig4-rest-angle': 100,
+  'seed-fig8-projection': 70,
+  'seed-fig8-fold-map': 70,
+  'seed-fig10-sharp-edge': 120,
+  'seed-fig10-edge-pairs': 120,
+  'seed-fig11-particle-pairs': 110,
+  'seed-fig12-triangle-pairs': 110,
+};
+/** What a hand does in experiments that are about hands, halfway to the picture's tick. */
+const HANDS = {
+  'seed-fig15-corners': (script) => script.release({ particle: 25 * 25 - 1 }),
+  'seed-fig16-drag': (script) => script.drag({ particle: 12 * 25 + 12 }, { target: [0, 1.24, 0.36] }).started,
+};
 const DESKTOP = { width: 1280, height: 800 };
 const PHONE = { width: 390, height: 780, touch: true };
 /** Pictures of a scene beside that of the scene by itself: what they show, and what is done for it. */
@@ -49,7 +65,11 @@ try {
 async function draw(scene) {
   const server = await start_server(['--paused', '--scene', scene.name]);
   const script = await server.script();
-  if (scene.tick > 0) await script.advance(scene.tick);
+  const hand = HANDS[scene.name];
+  const before = hand ? Math.floor(scene.tick / 2) : scene.tick;
+  if (before > 0) await script.advance(before);
+  await hand?.(script);
+  if (scene.tick > before) await script.advance(scene.tick - before);
   script.close(); // or its name would be in the pictures
   const pictures = [];
   const views = [{ view: 'desktop', title: '', options: DESKTOP }, ...(EXTRA[scene.name] ?? [])];

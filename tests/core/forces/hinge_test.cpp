@@ -62,6 +62,42 @@ TEST_CASE("a rest angle moves the point without moment") {
   CHECK(hinge_energy(hinge, 0.46) == Approx(0.02));
 }
 
+TEST_CASE("the sine form is Bridson's: 2k (sin theta/2 - sin theta_0/2), worked by hand") {
+  Hinge<double> hinge;
+  hinge.sine_form = true;
+  hinge.stiffness = 3;
+  // sin 45 and sin 30 degrees.
+  CHECK(hinge_moment(hinge, 1.5707963267948966, 0.0) == Approx(-6 * 0.70710678118654752));
+  CHECK(hinge_energy(hinge, 1.5707963267948966) == Approx(12 * (1 - 0.70710678118654752)));
+  hinge.rest_angle = 1.0471975511965976;
+  CHECK(hinge_moment(hinge, 1.5707963267948966, 0.0) == Approx(-6 * 0.20710678118654752));
+  CHECK(hinge_moment(hinge, hinge.rest_angle, 0.0) == 0);
+  CHECK(hinge_moment(hinge, 0.0, 2.0) == Approx(6 * 0.5));
+  hinge.damping = 0.25;
+  CHECK(hinge_moment(hinge, hinge.rest_angle, 2.0) == Approx(-0.5));
+}
+
+TEST_CASE(
+    "the sine form's moment is the slope of its energy, and small bends are as of the angle") {
+  Hinge<double> sine, angle;
+  sine.sine_form = true;
+  sine.stiffness = angle.stiffness = 0.7;
+  for (const double rest : {-0.5, 0.0, 0.26}) {
+    sine.rest_angle = angle.rest_angle = rest;
+    for (double theta = -3; theta <= 3; theta += 0.25) {
+      const double step = 1e-5;
+      const double slope =
+          (hinge_energy(sine, theta + step) - hinge_energy(sine, theta - step)) / (2 * step);
+      CHECK(hinge_moment(sine, theta, 0.0) == Approx(-slope).margin(1e-9));
+      CHECK(hinge_energy(sine, theta) >= 0);
+      // It never resists more than a hinge that answers to the angle itself.
+      CHECK(std::abs(hinge_moment(sine, theta, 0.0)) <= std::abs(hinge_moment(angle, theta, 0.0)));
+    }
+  }
+  sine.rest_angle = angle.rest_angle = 0;
+  CHECK(hinge_moment(sine, 0.01, 0.0) == Approx(hinge_moment(angle, 0.01, 0.0)).epsilon(1e-5));
+}
+
 TEST_CASE("damping is the damping coefficient times the rate of the angle") {
   Hinge<double> hinge;
   hinge.damping = 0.3;
