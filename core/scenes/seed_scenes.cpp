@@ -22,18 +22,18 @@ void use_seed(WorldDef& def) {
 }
 
 /// A square cloth that falls on a ball, as Figs. 4, 11 and 12 have it.
-void drop_on_ball(WorldDef& def) {
-  def.cloths[0] = lying_cloth(33, 1.2, 1.1);
+void drop_on_ball(WorldDef& def, double side, const SphereDef& ball) {
+  def.cloths[0] = lying_cloth(33, side, 1.1);
   // Turned over: positive rest angles curl the cloth downwards.
   def.cloths[0].origin[2] *= -1;
   def.cloths[0].v *= -1;
   use_seed(def);
-  def.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.75, 0), 0.28}}};
+  def.colliders = {ground(), {"ball", ball}};
 }
 
 /// Fig. 4: one cloth, by its bending alone different.
 void build_fig4(WorldDef& def, double bending, double rest_angle) {
-  drop_on_ball(def);
+  drop_on_ball(def, 1.2, {Vec3d(0, 0.75, 0), 0.28});
   def.contact.seed.self = SelfContact::triangles;
   ClothDef& cloth = def.cloths[0];
   cloth.rest_angle = rest_angle;
@@ -66,9 +66,10 @@ void build_fig8_fold_map(WorldDef& def, const std::string&) {
   build_fig8(def, Correction::fold_map);
 }
 
-/// Figs. 11 and 12: a cloth without bending that falls in folds upon itself.
+/// Figs. 11 and 12: a cloth without bending that falls in folds upon itself, on a ball so small
+/// that they press together.
 void build_self_collision(WorldDef& def, SelfContact self) {
-  drop_on_ball(def);
+  drop_on_ball(def, 1.4, {Vec3d(0, 0.86, 0), 0.16});
   def.contact.seed.self = self;
 }
 
@@ -86,6 +87,8 @@ void build_fig9(WorldDef& def, const std::string& mesh_directory) {
   def.name = name;
   def.description = description;
   use_seed(def);
+  // The third kind of springs as well. Rigid springs only need to be there.
+  def.cloths[0].skip_stiffness = 1;
 }
 
 /// Fig. 10, experiment V.B.1: a cloth on a model with a sharp ridge.
@@ -143,10 +146,11 @@ void build_fig16(WorldDef& def, const std::string&) {
 std::vector<SceneEntry> seed_scenes() {
   return {
       {{"seed-fig4-no-bending",
-        "A cloth without bending falls on a ball: it crumples into sharp wrinkles everywhere."},
+        "A cloth without bending falls on a ball: it hangs in narrow folds with sharp wrinkles."},
        build_fig4_no_bending},
       {{"seed-fig4-rest-angle",
-        "The same cloth with hinges at rest at 15 degrees: the wrinkles give way to round folds."},
+        "The same cloth with hinges at rest at 15 degrees: it curls, and wrinkles give way to "
+        "round folds."},
        build_fig4_rest_angle},
       {{"seed-fig8-projection",
         "A cloth is projected onto the ground where it gets in: watch its folds go flat."},
@@ -165,7 +169,8 @@ std::vector<SceneEntry> seed_scenes() {
         "below."},
        build_fig10_edge_pairs},
       {{"seed-fig11-particle-pairs",
-        "A cloth falls in folds upon itself, with pairs of particles: folds pass through folds."},
+        "A cloth falls in folds upon itself, with pairs of particles: watch folds cut through "
+        "folds below the ball."},
        build_fig11},
       {{"seed-fig12-triangle-pairs",
         "The same cloth with pairs of particles and triangles: its folds stay apart."},

@@ -46,6 +46,10 @@ TEST_CASE("Fig. 9: the seed's default scene holds its cloth by six particles bef
   CHECK(world.model().particle_count() == 600);
   CHECK(std::string(solver_name(world.def())) == "relaxation");
   CHECK(contact_of(world.def()) == ContactModel::seed);
+  for (const SpringKind kind :
+       {SpringKind::warp, SpringKind::weft, SpringKind::shear, SpringKind::skip})
+    CHECK(std::count(world.model().spring_kinds.begin(), world.model().spring_kinds.end(), kind) >
+          0);
   std::vector<Index> fixed;
   for (Index i = 0; i < 600; ++i) {
     if (world.state().inverse_mass[static_cast<std::size_t>(i)] == 0) fixed.push_back(i);
