@@ -444,9 +444,9 @@ class Client:
 
     async def close(self) -> None:
         self._reconnect = False
-        await self._socket.close()
         if self._redial is not None:
             self._redial.cancel()
+        await self._socket.close()
         await self._reader
 
     # --- commands (section 5 of the specification) ---
@@ -635,6 +635,13 @@ class Client:
                 await self._redial
             except asyncio.CancelledError:
                 break
+            except ProtocolError as error:  # who answers there now is no server of ours
+                self._lost = error
+                break
+            # A dial that succeeds or fails at the moment of its cancellation may swallow that.
+            if not self._reconnect:
+                break
+        await self._socket.close()
         self._ended = True
         self._tell("status", {"phase": "closed", **self._why()})
         async with self._changed:
@@ -659,7 +666,7 @@ class Client:
                 answer.set_exception(lost)
 
     async def _join_again(self) -> None:
-        while True:
+        while self._reconnect:
             pause = _pause_before(self._attempts, random.random())
             self._attempts += 1
             self._tell("status", {"phase": "waiting", **self._why(), "retry_in": pause})

@@ -117,6 +117,43 @@ class ReconnectTest(unittest.IsolatedAsyncioTestCase):
             await client.pause()
 
 
+    async def test_closing_ends_the_trying_even_where_a_dial_swallows_its_cancellation(self):
+        client = await self.join()
+        dialling = asyncio.Event()
+
+        async def refused():
+            dialling.set()
+            try:
+                await asyncio.sleep(60)
+            except asyncio.CancelledError:  # as wait_for does if the answer comes at the same time
+                raise weft.ConnectionLost(1006, "refused") from None
+
+        client._dial = refused
+        await self.cut()
+        await dialling.wait()
+        await asyncio.wait_for(client.close(), 20)
+        self.assertEqual(self.phases[-1], "closed")
+
+    async def test_a_connection_that_comes_while_closing_is_closed(self):
+        client = await self.join()
+        dial, dialling, made = client._dial, asyncio.Event(), []
+
+        async def late():
+            dialling.set()
+            try:
+                await asyncio.sleep(60)
+            except asyncio.CancelledError:
+                made.append(await dial())
+                return made[-1]
+
+        client._dial = late
+        await self.cut()
+        await dialling.wait()
+        await asyncio.wait_for(client.close(), 20)
+        self.assertTrue(made[0].closed)
+        self.assertEqual(self.phases[-1], "closed")
+
+
 class PauseTest(unittest.TestCase):
     def test_pauses_double_from_a_quarter_of_a_second_to_eight_with_jitter_down_to_half(self):
         longest = [weft._pause_before(attempt, 1) for attempt in range(8)]
