@@ -33,7 +33,8 @@ constexpr double kSmallestGap = 1e-5;
 /// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
 /// particle, of weight 1.
 template <class Real>
-Vec3<Real> weighted(const ContactRow<Real>& row, const Vec3Array<Real>& values) {
+[[gnu::always_inline]] inline Vec3<Real> weighted(const ContactRow<Real>& row,
+                                                  const Vec3Array<Real>& values) {
   const auto at = [&](std::size_t k) -> const Vec3<Real>& {
     return values[static_cast<std::size_t>(row.particle[k])];
   };

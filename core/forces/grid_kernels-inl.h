@@ -6,6 +6,7 @@
 #define WEFT_GRID_KERNELS_INL_H
 #endif
 
+#include <algorithm>
 #include <cstddef>
 
 #include <hwy/highway.h>
@@ -180,7 +181,8 @@ HWY_INLINE void internal_forces(const GridView<Real>& g, Real* force) {
       const auto total = ((carry.load(d, c) + stretched) - bent) - twisted;
       carry.store(d, c,
                   twisted - ((p.down.load(d, c) + p.rising.load(d, c)) + p.falling.load(d, c - 1)));
-      store_particles(d, total, g.columns - c,
+      // What goes beyond the row is written over by the next one.
+      store_particles(d, total, static_cast<std::ptrdiff_t>(g.rows - r) * g.columns - c,
                       force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
     }
     bend_down_columns(d, g, r + 2, column_bend[(r + 2) % 3]);
@@ -215,6 +217,12 @@ struct CellPushes {
       : a(g, first), b(g, first + 1), e(g, first + 2), f(g, first + 3) {}
 };
 
+/// Velocity of the air past particles.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> slip(D d, const GridView<Real>& g, std::ptrdiff_t at) {
+  return load(d, g.wind, at) - load(d, g.v, at);
+}
+
 template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r,
                          const CellPushes<Real>& out) {
@@ -225,8 +233,8 @@ HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r
     const std::ptrdiff_t at = row + c, under = at + g.stride;
     const auto a = load(d, g.x, at), b = load(d, g.x, at + 1), e = load(d, g.x, under + 1),
                f = load(d, g.x, under);
-    const auto sa = load(d, g.slip, at), sb = load(d, g.slip, at + 1),
-               se = load(d, g.slip, under + 1), sf = load(d, g.slip, under);
+    const auto sa = slip(d, g, at), sb = slip(d, g, at + 1), se = slip(d, g, under + 1),
+               sf = slip(d, g, under);
     // Even cells are cut from a to e, odd ones from b to f (split_cells in cloth_model.cpp).
     const auto even = hn::Eq(hn::LoadU(d, g.odd + c), row_parity);
     const auto exists = hn::Mul(below, hn::LoadU(d, g.cell + c));
@@ -259,7 +267,8 @@ HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_fri
     for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
       const auto total = carry.load(d, c) + (p.a.load(d, c) + p.b.load(d, c - 1));
       carry.store(d, c, p.f.load(d, c) + p.e.load(d, c - 1));
-      store_particles(d, total, g.columns - c,
+      // What goes beyond the row is written over by the next one.
+      store_particles(d, total, static_cast<std::ptrdiff_t>(g.rows - r) * g.columns - c,
                       force + 3 * (static_cast<std::ptrdiff_t>(r) * g.columns + c));
     }
   }
@@ -273,7 +282,8 @@ HWY_INLINE void take_apart(const GridView<Real>& g, const Real* from, Real* cons
   for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
     const Real* particles = from + 3 * r * g.columns;
     std::ptrdiff_t c = 0;
-    for (; c + lanes <= g.columns; c += lanes) {
+    for (; c < g.columns && lanes <= g.columns; c += lanes) {
+      c = std::min(c, g.columns - lanes);  // the last one overlaps the one before
       hn::Vec<decltype(d)> x, y, z;
       hn::LoadInterleaved3(d, particles + 3 * c, x, y, z);
       hn::StoreU(x, d, to[0] + r * g.stride + c);

@@ -25,13 +25,13 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
 
   const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4));
-  for (Components* components : {&x_, &v_, &wind_, &slip_}) {
+  for (Components* components : {&x_, &v_, &wind_}) {
     for (std::vector<Real>& array : *components) array.assign(size, Real(0));
   }
   for (std::size_t k = 0; k < 3; ++k) {
     view_.x[k] = at_origin(x_[k]);
     view_.v[k] = at_origin(v_[k]);
-    view_.slip[k] = at_origin(slip_[k]);
+    view_.wind[k] = at_origin(wind_[k]);
   }
   for (std::vector<Real>* table : {&cell_, &border_half_, &inner_, &odd_})
     table->assign(static_cast<std::size_t>(view_.stride), Real(0));
@@ -77,12 +77,6 @@ void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
 
 template <class Real>
 void GridPass<Real>::compute_air_forces(double density, Vec3Array<Real>& force) {
-  const std::ptrdiff_t size = view_.stride * view_.rows;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Real *wind = at_origin(wind_[k]), *v = view_.v[k];
-    Real* slip = slip_[k].data() + 2 * view_.stride + kGridMargin;
-    for (std::ptrdiff_t i = 0; i < size; ++i) slip[i] = wind[i] - v[i];
-  }
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
   grid_air_forces(view_, pressure, air_tangential_, force[first_].data());
 }

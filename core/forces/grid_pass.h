@@ -17,7 +17,7 @@ struct GridView {
   std::ptrdiff_t stride = 0;
   const Real* x[3] = {};              ///< positions [m]
   const Real* v[3] = {};              ///< velocities [m/s]
-  const Real* slip[3] = {};           ///< velocity of the air minus that of the particle [m/s]
+  const Real* wind[3] = {};           ///< velocity of the air [m/s]
   const Real* cell = nullptr;         ///< by column: 1 where a cell begins, 0 elsewhere
   const Real* border_half = nullptr;  ///< by column: 1/2 on the border lines, 1 between, 0 outside
   const Real* inner = nullptr;        ///< by column: 1 strictly between the border lines, else 0
@@ -62,7 +62,7 @@ class GridPass {
   GridView<Real> view_;
   std::size_t first_ = 0;  ///< particle of the model that is particle 0 of the grid
   Real air_normal_ = 0, air_tangential_ = 0;
-  Components x_, v_, wind_, slip_;
+  Components x_, v_, wind_;
   std::vector<Real> cell_, border_half_, inner_, odd_, scratch_;
 };
 
