@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/grid_springs.h"
-#include "core/cloth/hinges.h"
 #include "core/solver/substep_rule.h"
 
 namespace weft {
@@ -24,6 +24,7 @@ struct Cut {
   int cells_around(int r, int c) const {
     return has_cell(r - 1, c - 1) + has_cell(r - 1, c) + has_cell(r, c - 1) + has_cell(r, c);
   }
+  double triangle_area() const { return 0.5 * cell_u * cell_v; }
   Index particle(int r, int c) const {
     return particles[static_cast<std::size_t>(r * columns + c)];
   }
@@ -71,27 +72,6 @@ void place_particles(const ClothDef& def, const Cut& cut, ClothModel<Real>& mode
                       static_cast<Real>(whole / static_cast<double>(model.mass.size())));
 }
 
-/// @param first  0 or 1: which of the two ways the first cell is split
-template <class Real>
-void split_cells(const Cut& cut, int first, ClothModel<Real>& model) {
-  for (int r = 0; r + 1 < cut.rows; ++r) {
-    for (int c = 0; c + 1 < cut.columns; ++c) {
-      if (!cut.has_cell(r, c)) continue;
-      const Index a = cut.particle(r, c), b = cut.particle(r, c + 1), d = cut.particle(r + 1, c),
-                  e = cut.particle(r + 1, c + 1);
-      if ((r + c + first) % 2 == 0) {
-        model.triangles.push_back({a, b, e});
-        model.triangles.push_back({a, e, d});
-      } else {
-        model.triangles.push_back({a, b, d});
-        model.triangles.push_back({b, e, d});
-      }
-    }
-  }
-  model.triangle_area.assign(model.triangles.size(),
-                             static_cast<Real>(0.5 * cut.cell_u * cut.cell_v));
-}
-
 /// Half an axis spring from each cell beside it, both diagonals from each cell.
 template <class Real>
 void add_springs(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
@@ -121,22 +101,6 @@ void add_springs(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
       if (left) add(i, cut.particle(r + 1, c - 1), diagonal, k.shear, SpringKind::shear);
     }
   }
-}
-
-/// Over both ways to split the cells, with half the rigidity each; see grid_cloth.cpp.
-template <class Real>
-void add_hinges(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
-  const HingeSettings settings{
-      def.rest_angle, false, def.fabric.bending_damping,
-      def.bending_model == BendingModel::sine_hinges,
-      [&](double du, double dv) { return 0.5 * grid_hinge_rigidity(def.fabric, du, dv); }};
-  ClothModel<Real> other;
-  other.rest_positions = model.rest_positions;
-  other.material = model.material;
-  split_cells(cut, 1, other);
-  connect_triangles(settings, other);
-  connect_triangles(settings, model);
-  model.hinges.insert(model.hinges.end(), other.hinges.begin(), other.hinges.end());
 }
 
 }  // namespace

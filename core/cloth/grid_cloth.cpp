@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_springs.h"
-#include "core/cloth/hinges.h"
 #include "core/solver/substep_rule.h"
 
 namespace weft {
@@ -37,44 +37,15 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
-/// Two triangles a cell with alternating diagonals: a grid split along one diagonal is three times
-/// too stiff against bending in one diagonal direction. Normals point along u x v.
-/// @param first  0 or 1: which of the two ways the first cell is split
-template <class Real>
-void split_cells(const ClothDef& def, int first, ClothModel<Real>& model) {
-  for (int r = 0; r + 1 < def.rows; ++r) {
-    for (int c = 0; c + 1 < def.columns; ++c) {
-      const Index a = r * def.columns + c, b = a + 1, d = a + def.columns, e = d + 1;
-      if ((r + c + first) % 2 == 0) {
-        model.triangles.push_back({a, b, e});
-        model.triangles.push_back({a, e, d});
-      } else {
-        model.triangles.push_back({a, b, d});
-        model.triangles.push_back({b, e, d});
-      }
-    }
-  }
-  const double area = 0.5 * def.width * def.height / ((def.rows - 1.0) * (def.columns - 1.0));
-  model.triangle_area.assign(model.triangles.size(), static_cast<Real>(area));
-}
+/// All cells of a rectangle.
+struct WholeGrid {
+  int rows, columns;
+  double width, height;  ///< [m]
 
-/// Hinges over both ways to split the cells, with half the rigidity each. In one way alone every
-/// second particle is opposite to no edge along the axes: nothing resists its second difference,
-/// and a strip free to relax into that pattern bends up to a quarter too easily.
-template <class Real>
-void add_hinges(const ClothDef& def, ClothModel<Real>& model) {
-  const HingeSettings settings{
-      def.rest_angle, false, def.fabric.bending_damping,
-      def.bending_model == BendingModel::sine_hinges,
-      [&](double du, double dv) { return 0.5 * grid_hinge_rigidity(def.fabric, du, dv); }};
-  ClothModel<Real> other;
-  other.rest_positions = model.rest_positions;
-  other.material = model.material;
-  split_cells(def, 1, other);
-  connect_triangles(settings, other);
-  connect_triangles(settings, model);
-  model.hinges.insert(model.hinges.end(), other.hinges.begin(), other.hinges.end());
-}
+  bool has_cell(int, int) const { return true; }
+  Index particle(int r, int c) const { return r * columns + c; }
+  double triangle_area() const { return 0.5 * width * height / ((rows - 1.0) * (columns - 1.0)); }
+};
 
 /// The springs' numbers by kind, unless some of them follow no rule.
 template <class Real>
@@ -139,9 +110,10 @@ ClothModel<Real> build_grid_cloth(const ClothDef& def) {
       std::hypot(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v));
   place_particles(def, model);
   lump_masses(def, model);
-  split_cells(def, 0, model);
+  const WholeGrid grid{def.rows, def.columns, def.width, def.height};
+  split_cells(grid, 0, model);
   model.springs = grid_springs<Real>(def, model.spring_kinds);
-  add_hinges(def, model);
+  add_hinges(def, grid, model);
   complete_part(def, model);
   bound_frequencies(model, part);
   if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);

@@ -235,7 +235,7 @@ HWY_INLINE void push_row(D d, const GridView<Real>& g, V pressure, V skin, int r
                f = load(d, g.x, under);
     const auto sa = slip(d, g, at), sb = slip(d, g, at + 1), se = slip(d, g, under + 1),
                sf = slip(d, g, under);
-    // Even cells are cut from a to e, odd ones from b to f (split_cells in cloth_model.cpp).
+    // Even cells are cut from a to e, odd ones from b to f (split_cells in grid_cells.h).
     const auto even = hn::Eq(hn::LoadU(d, g.odd + c), row_parity);
     const auto exists = hn::Mul(below, hn::LoadU(d, g.cell + c));
     const auto first =

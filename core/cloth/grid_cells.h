@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+#include "core/cloth/grid_cloth.h"
+#include "core/cloth/hinges.h"
+
+namespace weft {
+
+// Cells of a grid as triangles and hinges, for whole grids and for those that are cut out. A Shape
+// has `rows` and `columns` of particles, `has_cell(r, c)`, `particle(r, c)` and `triangle_area()`
+// [m^2].
+
+/// Two triangles a cell with alternating diagonals: a grid split along one diagonal is three times
+/// too stiff against bending in one diagonal direction. Normals point along u x v.
+/// @param first  0 or 1: which of the two ways the first cell is split
+template <class Real, class Shape>
+void split_cells(const Shape& shape, int first, ClothModel<Real>& model) {
+  for (int r = 0; r + 1 < shape.rows; ++r) {
+    for (int c = 0; c + 1 < shape.columns; ++c) {
+      if (!shape.has_cell(r, c)) continue;
+      const Index a = shape.particle(r, c), b = shape.particle(r, c + 1),
+                  d = shape.particle(r + 1, c), e = shape.particle(r + 1, c + 1);
+      if ((r + c + first) % 2 == 0) {
+        model.triangles.push_back({a, b, e});
+        model.triangles.push_back({a, e, d});
+      } else {
+        model.triangles.push_back({a, b, d});
+        model.triangles.push_back({b, e, d});
+      }
+    }
+  }
+  model.triangle_area.assign(model.triangles.size(), static_cast<Real>(shape.triangle_area()));
+}
+
+/// Hinges over both ways to split the cells, with half the rigidity each. In one way alone every
+/// second particle is opposite to no edge along the axes: nothing resists its second difference,
+/// and a strip free to relax into that pattern bends up to a quarter too easily.
+template <class Real, class Shape>
+void add_hinges(const ClothDef& def, const Shape& shape, ClothModel<Real>& model) {
+  const HingeSettings settings{
+      def.rest_angle, false, def.fabric.bending_damping,
+      def.bending_model == BendingModel::sine_hinges,
+      [&](double du, double dv) { return 0.5 * grid_hinge_rigidity(def.fabric, du, dv); }};
+  ClothModel<Real> other;
+  other.rest_positions = model.rest_positions;
+  other.material = model.material;
+  split_cells(shape, 1, other);
+  connect_triangles(settings, other);
+  connect_triangles(settings, model);
+  model.hinges.insert(model.hinges.end(), other.hinges.begin(), other.hinges.end());
+}
+
+}  // namespace weft
