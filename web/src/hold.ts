@@ -2,6 +2,7 @@ import type { Vector2 } from 'three';
 import type { Drag, WeftClient } from '../../proto/js/index.js';
 import type { Vec3 } from '../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
+import { PointerDepth } from './pointer_depth.js';
 import type { ClothHit } from './ray.js';
 
 const RADIUS = 0.03; // of the fabric in the hand [m]
@@ -9,22 +10,19 @@ const RADIUS = 0.03; // of the fabric in the hand [m]
 /** Live: the cloth follows. Sling: it is thrown when it is let go. */
 export type HandMode = 'live' | 'sling';
 
-const NEAREST = 0.1; // of the hand to the eye [m]
-const FARTHEST = 20; // [m]
-
 /** The own hand in the cloth. Its target stays under the pointer at a depth that the wheel sets. */
 export class Hold {
   readonly triangle: number;
   readonly barycentric: Vec3;
   target: Vec3;
   private drag: Drag;
-  private depth: number;
+  private depth: PointerDepth;
 
   /** @param lost called when the hand lets go other than by `end`, with the reason */
   constructor(
     client: WeftClient,
     hit: ClothHit,
-    private camera: OrbitCamera,
+    camera: OrbitCamera,
     mode: HandMode,
     lost: (reason: string) => void,
   ) {
@@ -32,7 +30,7 @@ export class Hold {
     this.triangle = triangle;
     this.barycentric = barycentric;
     this.target = position;
-    this.depth = camera.depth(position);
+    this.depth = new PointerDepth(camera, position);
     const options = { target: position, radius: RADIUS, mode };
     this.drag = client.drag({ triangle, barycentric }, options);
     void this.drag.ended.then((reason) => reason !== 'end' && lost(reason));
@@ -45,7 +43,7 @@ export class Hold {
 
   /** Brings the target under the pointer; only what differs is sent. */
   follow(pointer: Vector2): void {
-    const target = this.camera.point_at(pointer, this.depth);
+    const target = this.depth.under(pointer);
     const moved = Math.hypot(...target.map((value, axis) => value - this.target[axis]));
     if (moved < 1e-5) return;
     this.target = target;
@@ -54,7 +52,7 @@ export class Hold {
 
   /** @param factor of the distance from the eye */
   push(factor: number): void {
-    this.depth = Math.min(FARTHEST, Math.max(NEAREST, this.depth * factor));
+    this.depth.push(factor);
   }
 
   /** @param fire whether a sling gives the cloth its impulse */

@@ -1,12 +1,10 @@
 import type { Vector2 } from 'three';
 import type { Vec3 } from '../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
+import { HandleHold } from './handle_hold.js';
 import type { ObjectHit } from './objects.js';
 
-const SEND_INTERVAL = 40; // between places of an object that moves [ms]
 const SPEED = 2; // at which it follows the hand [m/s]
-const NEAREST = 0.1; // of the hand to the eye [m]
-const FARTHEST = 20; // [m]
 
 /** Where an object shall go. */
 export interface Move {
@@ -15,44 +13,26 @@ export interface Move {
 }
 
 /** The own hand on an object. The server moves it, and it lags where cloth holds it back. */
-export class ObjectHold {
-  private depth: number;
-  private grip: Vec3; // from the pointer to the object's pivot [m]
+export class ObjectHold extends HandleHold {
   private target: Vec3;
-  private timer = 0;
 
   constructor(
     hit: ObjectHit,
     pointer: Vector2,
-    private camera: OrbitCamera,
+    camera: OrbitCamera,
     private send: (move: Move) => void,
   ) {
-    this.depth = camera.depth(hit.position);
-    const under = camera.point_at(pointer, this.depth);
-    this.grip = hit.pivot.map((value, axis) => value - under[axis]) as Vec3;
+    super(pointer, hit.position, hit.pivot, camera);
     this.target = hit.pivot;
   }
 
-  follow(pointer: Vector2): void {
-    const under = this.camera.point_at(pointer, this.depth);
-    const target = under.map((value, axis) => value + this.grip[axis]) as Vec3;
-    if (target.every((value, axis) => Math.abs(value - this.target[axis]) < 1e-4)) return;
-    this.target = target;
-    if (!this.timer) this.timer = window.setTimeout(() => this.tell(), SEND_INTERVAL);
+  protected put(place: Vec3): boolean {
+    if (place.every((value, axis) => Math.abs(value - this.target[axis]) < 1e-4)) return false;
+    this.target = place;
+    return true;
   }
 
-  /** @param factor of the distance from the eye */
-  push(factor: number): void {
-    this.depth = Math.min(FARTHEST, Math.max(NEAREST, this.depth * factor));
-  }
-
-  end(): void {
-    if (this.timer) this.tell();
-  }
-
-  private tell(): void {
-    window.clearTimeout(this.timer);
-    this.timer = 0;
+  protected tell(): void {
     this.send({ position: this.target, speed: SPEED });
   }
 }

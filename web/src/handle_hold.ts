@@ -1,0 +1,51 @@
+import type { Vector2 } from 'three';
+import type { Vec3 } from '../../proto/js/messages.js';
+import type { OrbitCamera } from './camera.js';
+import { PointerDepth } from './pointer_depth.js';
+
+const SEND_INTERVAL = 40; // between places of what moves [ms]
+
+/** The own hand on something that is no cloth: it goes with the pointer, and tells so now and then. */
+export abstract class HandleHold {
+  private depth: PointerDepth;
+  private grip: Vec3; // from the pointer to the place that is moved [m]
+  private timer = 0;
+
+  /**
+   * @param position where the pointer meets the thing [m]
+   * @param moved the place that is moved [m]
+   */
+  constructor(pointer: Vector2, position: Vec3, moved: Vec3, camera: OrbitCamera) {
+    this.depth = new PointerDepth(camera, position);
+    const under = this.depth.under(pointer);
+    this.grip = moved.map((value, axis) => value - under[axis]) as Vec3;
+  }
+
+  follow(pointer: Vector2): void {
+    const under = this.depth.under(pointer);
+    const place = under.map((value, axis) => value + this.grip[axis]) as Vec3;
+    if (!this.put(place) || this.timer) return;
+    this.timer = window.setTimeout(() => this.flush(), SEND_INTERVAL);
+  }
+
+  /** @param factor of the distance from the eye */
+  push(factor: number): void {
+    this.depth.push(factor);
+  }
+
+  end(): void {
+    if (this.timer) this.flush();
+  }
+
+  /** Takes the thing to a place [m]; tells whether that changes anything. */
+  protected abstract put(place: Vec3): boolean;
+
+  /** Tells the server. */
+  protected abstract tell(): void;
+
+  private flush(): void {
+    window.clearTimeout(this.timer);
+    this.timer = 0;
+    this.tell();
+  }
+}
