@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { import_page_module } from './support/page_module.mjs';
 
+const { Fans } = await import_page_module('fans');
 const { Playback } = await import_page_module('playback');
 const { cast_ray, point_on_triangle } = await import_page_module('ray');
 const { smooth_normals } = await import_page_module('normals');
@@ -117,6 +118,27 @@ test('an object goes with the cloth and turns the shorter way, whichever sign it
     }
   }
   assert.ok(playback.positions[0] % PERIOD > 1e-4); // between frames
+});
+
+test('a fan stays where the own hand put it until the server has answered', async () => {
+  const fan = (x) => ({ position: [x, 1, 0], direction: [0, 0, 1] });
+  const fans = new Fans();
+  fans.receive([fan(0)]);
+  const answers = [1, 2].map((x) => {
+    fans.show([fan(x)]);
+    let settle;
+    fans.told(new Promise((resolve, reject) => (settle = { resolve, reject })));
+    return settle;
+  });
+  assert.equal(fans.receive([fan(0)]), false, 'said before the server knew');
+  answers[0].resolve();
+  await null;
+  assert.equal(fans.receive([fan(1)]), false, 'a place on the way');
+  assert.deepEqual(fans.list, [fan(2)]);
+  answers[1].reject(new Error('refused'));
+  await null;
+  assert.equal(fans.receive([fan(1)]), true, 'what it says after that counts');
+  assert.deepEqual(fans.list, [fan(1)]);
 });
 
 test('a ray through a point of a triangle meets it there, from both sides', () => {

@@ -68,6 +68,23 @@ export class Fans {
     side: DoubleSide,
   });
   private rotors: Group[] = [];
+  private unanswered = 0;
+
+  /**
+   * Shows what the server says, unless it has not answered yet to what the own hand told: what it
+   * says until then is older than the picture.
+   * @returns whether anything changed
+   */
+  receive(fans: Fan[]): boolean {
+    return this.unanswered === 0 && this.show(fans);
+  }
+
+  /** @param answer of the server to what it was told about the fans */
+  told(answer: Promise<unknown>): void {
+    const answered = () => void (this.unanswered -= 1);
+    this.unanswered += 1;
+    answer.then(answered, answered);
+  }
 
   /** @returns whether anything changed */
   show(fans: Fan[]): boolean {

@@ -127,7 +127,7 @@ export class Page {
     client.on('state', (state) => {
       this.state = state;
       this.toolbar.state(state);
-      if (!this.fan_hold && this.fans.show(state.fans)) this.dirty = true;
+      this.show_fans();
       panels.state(state);
     });
     client.on('roster', (roster) => {
@@ -170,6 +170,10 @@ export class Page {
     if (this.hold) this.pending_latency = { came_at: now, latency };
   }
 
+  private show_fans(): void {
+    if (this.state && !this.fan_hold && this.fans.receive(this.state.fans)) this.dirty = true;
+  }
+
   private show_pins(): void {
     this.pins.set(this.pins.list, (viewer) => this.viewer(viewer)?.color ?? null);
     this.dirty = true;
@@ -199,9 +203,12 @@ export class Page {
   private take_fan(point: Vector2, cloth: ClothHit | null): boolean {
     const hit = this.fan_at(point, cloth);
     if (!hit) return false;
-    this.fan_hold = new FanHold(hit, point, this.fans, this.orbit, (fans) =>
-      tell_refusal(this.client.set({ fans }), (text) => this.panels.tell(text)),
-    );
+    this.fan_hold = new FanHold(hit, point, this.fans, this.orbit, (fans) => {
+      const answer = this.client.set({ fans });
+      this.fans.told(answer);
+      answer.catch(() => this.show_fans()); // refused, they are where they were
+      tell_refusal(answer, (text) => this.panels.tell(text));
+    });
     return true;
   }
 
