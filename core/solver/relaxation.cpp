@@ -22,9 +22,17 @@ struct Tick {
   Profile& profile;
 
   bool pulled() const { return surroundings.air || !idle(grabs); }
+  bool compliant() const { return solver.compliance > 0; }
 };
 
-/// Everything that is a force and no constraint, gravity excepted.
+/// Whether a part is swept row by row.
+template <class Real>
+bool in_rows(const Tick<Real>& tick, std::size_t part) {
+  return tick.compliant() && tick.work.grids[part].fits();
+}
+
+/// Everything that is a force and no constraint, gravity excepted, and the bending of parts that
+/// are swept row by row.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, Real progress) {
   const ClothModel<Real>& model = tick.model;
@@ -35,7 +43,10 @@ void evaluate_forces(Tick<Real>& tick, Real progress) {
     for (const ClothPart<Real>& part : model.parts) stencils += quadratic_stencil_count(part);
     const StageTimer timer(tick.profile, Stage::bending, model.hinges.size() + stencils);
     add_hinge_forces(model, tick.state.x, tick.state.v, work.force);
-    if (stencils > 0) add_quadratic_bending_forces(model, tick.state.x, work.force);
+    for (std::size_t p = 0; p < model.parts.size(); ++p) {
+      if (in_rows(tick, p) || quadratic_stencil_count(model.parts[p]) == 0) continue;
+      add_quadratic_bending_forces(model.parts[p], tick.state.x, work.force);
+    }
   }
   if (!tick.pulled()) return;
   std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
@@ -52,29 +63,66 @@ void evaluate_forces(Tick<Real>& tick, Real progress) {
   for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.external[i];
 }
 
-/// Eq. (5), into `wanted`.
+template <class Real>
+Prediction<Real> prediction(const Tick<Real>& tick) {
+  const auto dt = static_cast<double>(tick.dt);
+  const double keep = (1 - tick.solver.damping) / (1 + tick.surroundings.drag * dt);
+  return {static_cast<Real>(keep), tick.dt * tick.dt, tick.surroundings.gravity, tick.pulled()};
+}
+
+/// Eq. (5), into `wanted`: the way of compliant springs, the place of rigid ones.
 template <class Real>
 void predict(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, tick.state.x.size());
   const ClothState<Real>& state = tick.state;
-  const auto dt = static_cast<double>(tick.dt);
-  const Real keep =
-      static_cast<Real>((1 - tick.solver.damping) / (1 + tick.surroundings.drag * dt));
-  const Real dt2 = tick.dt * tick.dt;
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    const Real w = state.inverse_mass[i];
-    tick.work.wanted[i] = state.x[i];
-    if (w == 0) continue;
-    const Vec3<Real> acceleration = tick.work.force[i] * w + tick.surroundings.gravity;
-    tick.work.wanted[i] += state.v[i] * tick.dt * keep + acceleration * dt2;
+  const Prediction<Real> step = prediction(tick);
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    if (in_rows(tick, p)) {
+      GridRelaxation<Real>& grid = tick.work.grids[p];
+      grid.load(state.x, state.v, tick.dt);
+      if (step.forced) grid.load_force(tick.work.force);
+      predict_grid(grid.view(), step);
+      continue;
+    }
+    const IndexRange& range = tick.model.parts[p].particles;
+    for (auto i = static_cast<std::size_t>(range.first); i < static_cast<std::size_t>(range.end());
+         ++i) {
+      const Real w = state.inverse_mass[i];
+      Vec3<Real> way = Vec3<Real>::Zero();
+      if (w != 0) {
+        const Vec3<Real> acceleration = tick.work.force[i] * w + tick.surroundings.gravity;
+        way = state.v[i] * tick.dt * step.keep + acceleration * step.dt2;
+      }
+      tick.work.wanted[i] = tick.compliant() ? way : (state.x[i] + way).eval();
+    }
   }
 }
 
-/// Relaxes springs first, first + step, ... until `end`.
+/// Relaxes rigid springs first, first + step, ... until `count` of them are done.
 template <class Real>
-void sweep(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
-  const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
+void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   Vec3Array<Real>& x = tick.work.wanted;
+  const std::vector<Real>& w = tick.state.inverse_mass;
+  auto n = static_cast<std::ptrdiff_t>(first);
+  for (; count > 0; --count, n += step) {
+    const Spring<Real>& spring = tick.model.springs[static_cast<std::size_t>(n)];
+    const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
+    const Real mobility = w[i] + w[j];
+    const Vec3<Real> delta = x[j] - x[i];
+    const Real length = delta.norm();
+    if (mobility == 0 || spring.stiffness == 0 || !(length > 0)) continue;
+    const Real excess = Real(1) - spring.rest_length / length;
+    x[i] += delta * (excess * (w[i] / mobility));
+    x[j] -= delta * (excess * (w[j] / mobility));
+  }
+}
+
+/// The same for compliant springs, whose ends are at x + way.
+template <class Real>
+void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
+  const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
+  const Vec3Array<Real>& x = tick.state.x;
+  Vec3Array<Real>& way = tick.work.wanted;
   const std::vector<Real>& w = tick.state.inverse_mass;
   auto n = static_cast<std::ptrdiff_t>(first);
   for (; count > 0; --count, n += step) {
@@ -82,34 +130,61 @@ void sweep(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_
     const Spring<Real>& spring = tick.model.springs[k];
     const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
     const Real mobility = w[i] + w[j];
-    const Vec3<Real> delta = x[j] - x[i];
+    const Vec3<Real> delta = (x[j] - x[i]) + (way[j] - way[i]);
     const Real length = delta.norm();
     if (mobility == 0 || spring.stiffness == 0 || !(length > 0)) continue;
-    Real excess = Real(1) - spring.rest_length / length;
-    if (softness > 0) {
-      const Real alpha = softness / spring.stiffness;
-      Real& lambda = tick.work.multiplier[k];
-      const Real push = (excess * length - alpha * lambda) / (mobility + alpha);
-      lambda += push;
-      excess = push * mobility / length;
-    }
-    x[i] += delta * (excess * (w[i] / mobility));
-    x[j] -= delta * (excess * (w[j] / mobility));
+    const Real alpha = softness / spring.stiffness;
+    Real& lambda = tick.work.multiplier[k];
+    const Real push = ((length - spring.rest_length) - alpha * lambda) / (mobility + alpha);
+    lambda += push;
+    way[i] += delta * (push / length * w[i]);
+    way[j] -= delta * (push / length * w[j]);
+  }
+}
+
+/// All sweeps of a substep over the springs of one part that is not swept row by row. Without
+/// compliance they are the seed's and start anew in each substep; with it, `turn` counts the sweeps
+/// of the tick.
+template <class Real>
+void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
+  const auto first = static_cast<std::size_t>(springs.first);
+  const auto count = static_cast<std::size_t>(springs.count);
+  if (count == 0) return;
+  for (int s = 0; s < tick.solver.sweeps; ++s) {
+    const bool compliant = tick.compliant(), down = (compliant ? turn + s : s) % 2 == 0;
+    const std::size_t begin = down ? first : first + count - 1;
+    const std::ptrdiff_t step = down ? 1 : -1;
+    if (compliant)
+      sweep_compliant(tick, begin, count, step);
+    else
+      sweep_rigid(tick, begin, count, step);
   }
 }
 
 template <class Real>
-void relax(Tick<Real>& tick) {
-  const std::size_t count = tick.model.springs.size();
+void sweep_rows(const SweepView<Real>& grid, int sweeps, int turn) {
+  for (int s = 0; s < sweeps; ++s) sweep_grid(grid, (turn + s) % 2 == 0, s == 0, s + 1 == sweeps);
+}
+
+/// @param substep  counted from 0
+template <class Real>
+void relax(Tick<Real>& tick, int substep) {
   const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
-  const StageTimer timer(tick.profile, Stage::relaxation, count * sweeps);
-  if (count == 0) return;
+  const StageTimer timer(tick.profile, Stage::relaxation, tick.model.springs.size() * sweeps);
+  const int turn = substep * tick.solver.sweeps;
   std::fill(tick.work.multiplier.begin(), tick.work.multiplier.end(), Real(0));
-  for (std::size_t s = 0; s < sweeps; ++s) {
-    if (s % 2 == 0)
-      sweep(tick, 0, count, 1);
-    else
-      sweep(tick, count - 1, count, -1);
+  if (!tick.compliant()) {
+    relax_part(tick, {0, static_cast<Index>(tick.model.springs.size())}, turn);
+    return;
+  }
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    GridRelaxation<Real>& grid = tick.work.grids[p];
+    if (in_rows(tick, p)) {
+      sweep_rows(grid.view(), tick.solver.sweeps, turn);
+      grid.store_way(tick.work.wanted);
+    } else {
+      relax_part(tick, tick.model.parts[p].springs, turn);
+    }
   }
 }
 
@@ -117,15 +192,57 @@ void relax(Tick<Real>& tick) {
 template <class Real>
 void move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
+  Vec3Array<Real>& wanted = tick.work.wanted;
+  const bool ways = tick.compliant();
   for (std::size_t i = 0; i < state.x.size(); ++i)
-    state.v[i] = (tick.work.wanted[i] - state.x[i]) / tick.dt;
+    state.v[i] = (ways ? wanted[i] : (wanted[i] - state.x[i]).eval()) / tick.dt;
   if (tick.collision.empty()) {
-    std::swap(state.x, tick.work.wanted);
+    if (!ways) std::swap(state.x, wanted);
+    for (std::size_t i = 0; ways && i < state.x.size(); ++i) state.x[i] += wanted[i];
     return;
   }
   tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;
   tick.collision.after_drift(state, tick.dt, tick.profile);
+}
+
+/// Whether nothing but the sweeps' own arrays is needed during the tick.
+template <class Real>
+bool rows_alone(const Tick<Real>& tick) {
+  if (tick.pulled() || !tick.collision.empty()) return false;
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    if (!in_rows(tick, p)) return false;
+  }
+  return true;
+}
+
+/// All substeps of such a tick.
+template <class Real>
+void advance_rows(Tick<Real>& tick, int substeps) {
+  const auto times = static_cast<std::size_t>(substeps);
+  const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
+  std::size_t stencils = 0;
+  for (const ClothPart<Real>& part : tick.model.parts) stencils += quadratic_stencil_count(part);
+  tick.profile[Stage::bending].work += stencils * times;  // their time is part of integration
+  const Prediction<Real> step = prediction(tick);
+  for (GridRelaxation<Real>& grid : tick.work.grids) {
+    grid.load(tick.state.x, tick.state.v, tick.dt);
+    for (int s = 0; s < substeps; ++s) {
+      {
+        const StageTimer timer(tick.profile, Stage::integration, 0);
+        predict_grid(grid.view(), step);
+      }
+      {
+        const StageTimer timer(tick.profile, Stage::relaxation, 0);
+        sweep_rows(grid.view(), tick.solver.sweeps, s * tick.solver.sweeps);
+      }
+      const StageTimer timer(tick.profile, Stage::integration, 0);
+      move_grid(grid.view());
+    }
+    grid.store(tick.state.x, tick.state.v, tick.dt);
+  }
+  tick.profile[Stage::integration].work += tick.state.x.size() * times;
+  tick.profile[Stage::relaxation].work += tick.model.springs.size() * sweeps * times;
 }
 
 /// Work of the external forces over the last move [J].
@@ -151,6 +268,8 @@ void RelaxationWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   for (Vec3Array<Real>* array : {&force, &external, &wanted})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   multiplier.assign(model.springs.size(), Real(0));
+  grids.assign(model.parts.size(), {});
+  for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
 }
 
 template <class Real>
@@ -164,10 +283,20 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                   state, work,         profile};
   AdvanceResult result;
   result.before = timed_energies(tick).energies;
+  if (tick.compliant()) {
+    const auto softness = static_cast<Real>(solver.compliance / (dt * dt));
+    for (GridRelaxation<Real>& grid : work.grids) {
+      if (grid.fits()) grid.set_masses(state.inverse_mass, softness);
+    }
+  }
+  if (rows_alone(tick)) {
+    advance_rows(tick, substeps);
+    substeps = 0;
+  }
   for (int s = 0; s < substeps; ++s) {
     evaluate_forces(tick, static_cast<Real>(s + 1) / static_cast<Real>(substeps));
     predict(tick);
-    relax(tick);
+    relax(tick, s);
     move(tick);
     result.work += external_work(tick);
   }

@@ -5,6 +5,7 @@
 #include "core/cloth/cloth_state.h"
 #include "core/contact/collision.h"
 #include "core/definition.h"
+#include "core/solver/grid_relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/profile.h"
 
@@ -32,10 +33,11 @@ void visit_fields_of_relaxation(Def& r, Visitor&& visit) {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct RelaxationWorkspace {
-  Vec3Array<Real> force;         ///< of bending, hands and air [N]
-  Vec3Array<Real> external;      ///< of hands and air alone [N]
-  Vec3Array<Real> wanted;        ///< positions before contact [m]
-  std::vector<Real> multiplier;  ///< of each spring, over the substep [N s^2]
+  Vec3Array<Real> force;                    ///< of bending, hands and air [N]
+  Vec3Array<Real> external;                 ///< of hands and air alone [N]
+  Vec3Array<Real> wanted;                   ///< positions before contact, or the way there [m]
+  std::vector<Real> multiplier;             ///< of each spring, over the substep [N s^2]
+  std::vector<GridRelaxation<Real>> grids;  ///< for each part the row-wise form of XPBD
 
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);
@@ -50,7 +52,9 @@ struct RelaxationWorkspace {
 /// v = (x' - x) / dt.
 ///
 /// With compliance the same sweeps are XPBD (Macklin, Mueller, Chentanez 2016): a spring of
-/// stiffness k gives way with compliance/k.
+/// stiffness k gives way with compliance/k. Their variable is the way x' - x, so that many small
+/// substeps do not lose the velocity in the last bits of the positions, and on grids they run row
+/// by row in colours (grid_relaxation.h).
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1

@@ -27,6 +27,7 @@ struct Chain {
     def.rows = def.columns = 2;
     def.fabric.bending_warp = def.fabric.bending_weft = 0;
     model = build_cloth<double>(def);
+    model.parts[0].grid_springs.reset();  // a chain is no grid
     model.springs.clear();
     model.spring_kinds.clear();
     model.triangles.clear();

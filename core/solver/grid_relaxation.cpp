@@ -1,0 +1,188 @@
+#include "core/solver/grid_relaxation.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace weft {
+namespace {
+
+constexpr std::uintptr_t kCacheLine = 64;  // [bytes]; vectors that cross it cost twice
+
+/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
+/// the particle itself, of the one before and of the one behind. Two away it is 1.
+template <class Real>
+std::array<Real, 3> bending_line(int k, int count) {
+  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
+  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
+  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
+          static_cast<Real>(-2 * (here + behind))};
+}
+
+template <class Real>
+Real cells_at(int k, int count) {
+  return k == 0 || k + 1 == count ? Real(1) : Real(2);
+}
+
+/// The first number of an array that begins a cache line.
+template <class Real>
+Real* at_line(std::vector<Real>& array) {
+  const auto start = reinterpret_cast<std::uintptr_t>(array.data());
+  const std::uintptr_t to_line = (kCacheLine - start % kCacheLine) % kCacheLine;
+  return array.data() + to_line / sizeof(Real);
+}
+
+}  // namespace
+
+template <class Real>
+Real* GridRelaxation<Real>::at_origin(Array& array) const {
+  return at_line(array) + 2 * view_.stride + kSweepMargin;
+}
+
+template <class Real>
+void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
+  view_ = {};
+  if (!part.grid_springs || part.hinges.count > 0) return;
+  first_ = static_cast<std::size_t>(part.particles.first);
+  springs_ = *part.grid_springs;
+  view_.rows = part.rows;
+  view_.columns = part.columns;
+  const int half = (part.columns + 1) / 2;
+  view_.half = (half + kSweepMargin - 1) / kSweepMargin * kSweepMargin + kSweepMargin;
+  view_.stride = 2 * view_.half;
+  view_.bending = part.quadratic_bending;
+
+  const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4) + 4 * kSweepMargin);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (Array* array : {&x_[k], &way_[k], &force_[k]}) array->assign(size, Real(0));
+    view_.x[k] = at_origin(x_[k]);
+    view_.way[k] = at_origin(way_[k]);
+    view_.force[k] = at_origin(force_[k]);
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (Array* array : {&share_[k], &multiplier_[k]}) array->assign(size, Real(0));
+    view_.share[k] = at_origin(share_[k]);
+    view_.multiplier[k] = at_origin(multiplier_[k]);
+  }
+  for (Array* array : {&w_, &free_}) array->assign(size, Real(0));
+  view_.w = at_origin(w_);
+  view_.free = at_origin(free_);
+
+  const auto row_size = static_cast<std::size_t>(view_.stride + 3 * kSweepMargin);
+  for (Array* table : {&border_, &softer_, &bend_, &bend_left_, &bend_right_, &cells_})
+    table->assign(row_size, Real(0));
+  const auto origin = [](Array& table) { return at_line(table) + kSweepMargin; };
+  for (int c = 0; c < view_.columns; ++c) {
+    const std::ptrdiff_t k = place(0, c);
+    const std::array<Real, 3> line = bending_line<Real>(c, view_.columns);
+    origin(bend_)[k] = line[0];
+    origin(bend_left_)[k] = line[1];
+    origin(bend_right_)[k] = line[2];
+    origin(cells_)[k] = cells_at<Real>(c, view_.columns);
+    origin(border_)[k] = Real(0.5) * origin(cells_)[k];
+    origin(softer_)[k] = Real(1) / origin(border_)[k];
+  }
+  view_.border = origin(border_);
+  view_.softer = origin(softer_);
+  view_.bend = origin(bend_);
+  view_.bend_left = origin(bend_left_);
+  view_.bend_right = origin(bend_right_);
+  view_.cells = origin(cells_);
+  for (int r = 0; r < view_.rows; ++r) {
+    const std::array<Real, 3> line = bending_line<Real>(r, view_.rows);
+    view_.row_bend.push_back({line[0], line[1], line[2], cells_at<Real>(r, view_.rows)});
+  }
+  view_.length[0] = springs_.rest_warp;
+  view_.length[1] = springs_.rest_weft;
+  view_.length[2] = springs_.rest_shear;
+}
+
+template <class Real>
+void GridRelaxation<Real>::set_masses(const std::vector<Real>& inverse_mass, Real softness) {
+  const Real stiffness[3] = {springs_.warp, springs_.weft, springs_.shear};
+  for (int kind = 0; kind < 3; ++kind)
+    view_.alpha[kind] = stiffness[kind] > 0 ? softness / stiffness[kind] : Real(0);
+  Real *w = at_origin(w_), *free = at_origin(free_);
+  const int rows = view_.rows, columns = view_.columns;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const Real inverse = inverse_mass[first_ + static_cast<std::size_t>(r * columns + c)];
+      w[place(r, c)] = inverse;
+      free[place(r, c)] = inverse > 0 ? Real(1) : Real(0);
+    }
+  }
+  const auto share = [&](int kind, Real part_of_stiffness, std::ptrdiff_t i, std::ptrdiff_t j) {
+    const Real mobility = w[i] + w[j];
+    if (!(stiffness[kind] > 0) || mobility == 0) return Real(0);
+    return Real(1) / (mobility + view_.alpha[kind] / part_of_stiffness);
+  };
+  for (int r = 0; r < rows; ++r) {
+    const Real row_part = Real(0.5) * cells_at<Real>(r, rows);
+    for (int c = 0; c < columns; ++c) {
+      const std::ptrdiff_t here = place(r, c);
+      const Real column_part = Real(0.5) * cells_at<Real>(c, columns);
+      const bool right = c + 1 < columns, below = r + 1 < rows;
+      const auto set = [&](std::size_t spring, Real value) {
+        at_origin(share_[spring])[here] = value;
+      };
+      if (right) set(0, share(0, row_part, here, place(r, c + 1)));
+      if (below) set(1, share(1, column_part, here, place(r + 1, c)));
+      if (!right || !below) continue;
+      set(2, share(2, Real(1), here, place(r + 1, c + 1)));
+      set(3, share(2, Real(1), place(r, c + 1), place(r + 1, c)));
+    }
+  }
+}
+
+template <class Real>
+void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt) {
+  std::size_t i = first_;
+  for (int r = 0; r < view_.rows; ++r) {
+    for (int c = 0; c < view_.columns; ++c, ++i) {
+      const std::ptrdiff_t here = place(r, c);
+      for (int k = 0; k < 3; ++k) {
+        view_.x[k][here] = x[i][k];
+        view_.way[k][here] = v[i][k] * dt;
+      }
+    }
+  }
+}
+
+template <class Real>
+void GridRelaxation<Real>::load_force(const Vec3Array<Real>& force) {
+  std::size_t i = first_;
+  for (int r = 0; r < view_.rows; ++r) {
+    for (int c = 0; c < view_.columns; ++c, ++i) {
+      for (int k = 0; k < 3; ++k)
+        at_origin(force_[static_cast<std::size_t>(k)])[place(r, c)] = force[i][k];
+    }
+  }
+}
+
+template <class Real>
+void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const {
+  std::size_t i = first_;
+  for (int r = 0; r < view_.rows; ++r) {
+    for (int c = 0; c < view_.columns; ++c, ++i) {
+      const std::ptrdiff_t here = place(r, c);
+      for (int k = 0; k < 3; ++k) {
+        x[i][k] = view_.x[k][here];
+        v[i][k] = view_.way[k][here] / dt;
+      }
+    }
+  }
+}
+
+template <class Real>
+void GridRelaxation<Real>::store_way(Vec3Array<Real>& way) const {
+  std::size_t i = first_;
+  for (int r = 0; r < view_.rows; ++r) {
+    for (int c = 0; c < view_.columns; ++c, ++i) {
+      for (int k = 0; k < 3; ++k) way[i][k] = view_.way[k][place(r, c)];
+    }
+  }
+}
+
+template class GridRelaxation<float>;
+template class GridRelaxation<double>;
+
+}  // namespace weft

@@ -1,0 +1,255 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_GRID_RELAXATION_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_GRID_RELAXATION_KERNELS_INL_H
+#undef WEFT_GRID_RELAXATION_KERNELS_INL_H
+#else
+#define WEFT_GRID_RELAXATION_KERNELS_INL_H
+#endif
+
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "core/forces/spring.h"
+#include "core/math/triple-inl.h"
+#include "core/solver/grid_relaxation.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D, class Pointer>
+HWY_INLINE Triple<hn::Vec<D>> load_at(D d, const Pointer (&fields)[3], std::ptrdiff_t at) {
+  return {hn::LoadU(d, fields[0] + at), hn::LoadU(d, fields[1] + at), hn::LoadU(d, fields[2] + at)};
+}
+
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void store_at(D d, Real* const (&fields)[3], std::ptrdiff_t at,
+                         const Triple<hn::Vec<D>>& a) {
+  hn::StoreU(a.x, d, fields[0] + at);
+  hn::StoreU(a.y, d, fields[1] + at);
+  hn::StoreU(a.z, d, fields[2] + at);
+}
+
+/// Which multipliers a sweep reads and writes.
+template <bool kRead, bool kWrite>
+struct Multipliers {
+  static constexpr bool read = kRead, write = kWrite;
+};
+
+/// Springs of one colour, `count` of them: spring n goes from particle i + n to particle j + n and
+/// has the tables' entry k + n.
+/// @param times  `alpha` is that of each spring, by spring; null: once
+template <class Use, class D, class Real = hn::TFromD<D>>
+HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table, Real rest_length,
+                           Real alpha, const hn::TFromD<D>* times, std::ptrdiff_t i,
+                           std::ptrdiff_t j, std::ptrdiff_t k, std::ptrdiff_t count) {
+  const auto length = hn::Set(d, rest_length), smallest = hn::Set(d, Real(kSmallestSquaredLength));
+  const auto softness = hn::Set(d, alpha);
+  const Real* share = g.share[table] + k;
+  for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const auto way_i = load_at(d, g.way, i + n), way_j = load_at(d, g.way, j + n);
+    const auto delta = (load_at(d, g.x, j + n) - load_at(d, g.x, i + n)) + (way_j - way_i);
+    const auto l = hn::Sqrt(hn::Add(dot(delta, delta), smallest));
+    auto excess = hn::Sub(l, length);
+    if constexpr (Use::read) {
+      const auto lambda = hn::LoadU(d, g.multiplier[table] + k + n);
+      auto give = hn::Mul(softness, lambda);
+      if (times != nullptr) give = hn::Mul(give, hn::LoadU(d, times + n));
+      excess = hn::Sub(excess, give);
+    }
+    const auto push = hn::Mul(hn::LoadU(d, share + n), excess);
+    if constexpr (Use::write) {
+      auto lambda = push;
+      if constexpr (Use::read) lambda = hn::Add(hn::LoadU(d, g.multiplier[table] + k + n), push);
+      hn::StoreU(lambda, d, g.multiplier[table] + k + n);
+    }
+    const auto ratio = hn::Div(push, l);
+    const auto w_i = hn::LoadU(d, g.w + i + n), w_j = hn::LoadU(d, g.w + j + n);
+    auto new_i = way_i + delta * hn::Mul(ratio, w_i), new_j = way_j - delta * hn::Mul(ratio, w_j);
+    if (const std::ptrdiff_t left = count - n; left < static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+      // Adding 0 to what is no end of these springs could turn the sign of a zero.
+      const auto ends = hn::FirstN(d, static_cast<std::size_t>(left));
+      new_i = select(ends, new_i, way_i);
+      new_j = select(ends, new_j, way_j);
+    }
+    store_at(d, g.way, i + n, new_i);
+    store_at(d, g.way, j + n, new_j);
+  }
+}
+
+/// Springs along row r, in two colours.
+template <class Use, class D, class Real = hn::TFromD<D>>
+HWY_INLINE void relax_row(Use use, D d, const SweepView<Real>& g, int r) {
+  const std::ptrdiff_t even = r * g.stride, odd = even + g.half;
+  const bool border = r == 0 || r + 1 == g.rows;
+  const Real alpha = border ? Real(2) * g.alpha[0] : g.alpha[0];
+  relax_line(use, d, g, 0, g.length[0], alpha, nullptr, even, odd, even, g.columns / 2);
+  relax_line(use, d, g, 0, g.length[0], alpha, nullptr, odd, even + 1, odd, (g.columns - 1) / 2);
+}
+
+/// Springs between rows r and r + 1; those of one direction have no particle in common.
+template <class Use, class D, class Real = hn::TFromD<D>>
+HWY_INLINE void relax_between_rows(Use use, D d, const SweepView<Real>& g, int r) {
+  const std::ptrdiff_t even = r * g.stride, odd = even + g.half;
+  const std::ptrdiff_t even_below = even + g.stride, odd_below = odd + g.stride;
+  const std::ptrdiff_t evens = (g.columns + 1) / 2, odds = g.columns / 2;
+  const Real down = g.length[1], diagonal = g.length[2];
+  const Real a = g.alpha[1], b = g.alpha[2];
+  relax_line(use, d, g, 1, down, a, g.softer, even, even_below, even, evens);
+  relax_line(use, d, g, 1, down, a, g.softer + g.half, odd, odd_below, odd, odds);
+  const std::ptrdiff_t cells = odds, more_cells = (g.columns - 1) / 2;
+  relax_line(use, d, g, 2, diagonal, b, nullptr, even, odd_below, even, cells);
+  relax_line(use, d, g, 2, diagonal, b, nullptr, odd, even_below + 1, odd, more_cells);
+  relax_line(use, d, g, 3, diagonal, b, nullptr, odd, even_below, even, cells);
+  relax_line(use, d, g, 3, diagonal, b, nullptr, even + 1, odd_below, odd, more_cells);
+}
+
+template <class Use, class Real>
+HWY_INLINE void sweep_rows(Use use, const SweepView<Real>& g, bool down) {
+  const hn::CappedTag<Real, kSweepMargin> d;
+  for (int n = 0; n < g.rows; ++n) {
+    const int r = down ? n : g.rows - 1 - n;
+    if (down) relax_row(use, d, g, r);
+    if (r + 1 < g.rows) relax_between_rows(use, d, g, r);
+    if (!down) relax_row(use, d, g, r);
+  }
+}
+
+template <class Real>
+HWY_INLINE void sweep(const SweepView<Real>& g, bool down, bool first, bool last) {
+  if (first && last)
+    sweep_rows(Multipliers<false, false>(), g, down);
+  else if (first)
+    sweep_rows(Multipliers<false, true>(), g, down);
+  else
+    sweep_rows(Multipliers<true, true>(), g, down);
+}
+
+/// Where particles that follow each other in a row and their neighbours stand; `column` is the
+/// place of the first in the tables by column.
+struct Places {
+  std::ptrdiff_t at, left, right, column;
+};
+
+/// Bending of one row in registers: the stencils of bending_stencil.h, summed for each particle.
+/// Beyond the border all positions are 0 and count for nothing.
+template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
+struct RowBending {
+  D d;
+  V here, up, down, cells_across;  ///< weights of the stencils across the rows
+  V along, across, twist;          ///< stiffnesses
+  const Real *bend, *bend_left, *bend_right, *cells, *border;  ///< by column
+  std::ptrdiff_t stride;
+
+  HWY_INLINE RowBending(D tag, const SweepView<Real>& g, int r, std::ptrdiff_t column)
+      : d(tag), bend(g.bend + column), bend_left(g.bend_left + column),
+        bend_right(g.bend_right + column), cells(g.cells + column), border(g.border + column),
+        stride(g.stride) {
+    const std::array<Real, 4>& line = g.row_bend[static_cast<std::size_t>(r)];
+    here = hn::Set(d, line[0]);
+    up = hn::Set(d, line[1]);
+    down = hn::Set(d, line[2]);
+    cells_across = hn::Set(d, line[3]);
+    along = hn::Set(d, Real(0.5) * line[3] * g.bending.along_u);
+    across = hn::Set(d, g.bending.along_v);
+    twist = hn::Set(d, g.bending.twist);
+  }
+
+  HWY_INLINE V twist_of(V cells_along, V x, const Real* left, const Real* right) const {
+    return hn::Sub(hn::Sub(hn::Mul(x, cells_along), hn::LoadU(d, left)), hn::LoadU(d, right));
+  }
+
+  /// One component of minus the force on particles n, n + 1, ...
+  /// @param x,left,right  that component of the positions of particle 0 and of its neighbours
+  HWY_INLINE V pull(const Real* x, const Real* left, const Real* right, std::ptrdiff_t n) const {
+    const Real* p = x + n;
+    const V x0 = hn::LoadU(d, p), xu = hn::LoadU(d, p - stride), xd = hn::LoadU(d, p + stride);
+    const V two_along = hn::Add(hn::LoadU(d, p - 1), hn::LoadU(d, p + 1));
+    const V two_across = hn::Add(hn::LoadU(d, p - 2 * stride), hn::LoadU(d, p + 2 * stride));
+    const V one_along = hn::Add(hn::Mul(hn::LoadU(d, left + n), hn::LoadU(d, bend_left + n)),
+                                hn::Mul(hn::LoadU(d, right + n), hn::LoadU(d, bend_right + n)));
+    const V one_across = hn::Add(hn::Mul(xu, up), hn::Mul(xd, down));
+    const V bent_along =
+        hn::Add(hn::Add(hn::Mul(x0, hn::LoadU(d, bend + n)), one_along), two_along);
+    const V bent_across = hn::Add(hn::Add(hn::Mul(x0, here), one_across), two_across);
+    const V c = hn::LoadU(d, cells + n);
+    const V twisted = hn::Sub(hn::Sub(hn::Mul(twist_of(c, x0, left + n, right + n), cells_across),
+                                      twist_of(c, xu, left + n - stride, right + n - stride)),
+                              twist_of(c, xd, left + n + stride, right + n + stride));
+    return hn::Add(hn::Add(hn::Mul(bent_along, along),
+                           hn::Mul(bent_across, hn::Mul(across, hn::LoadU(d, border + n)))),
+                   hn::Mul(twisted, twist));
+  }
+};
+
+/// Predicts one component of `count` particles that follow each other in row r.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void predict_line(D d, const SweepView<Real>& g, const Prediction<Real>& step, int r,
+                             int component, const Places& p, std::ptrdiff_t count) {
+  const bool bends = g.bending.along_u != 0 || g.bending.along_v != 0 || g.bending.twist != 0;
+  const bool forced = step.forced;
+  const RowBending<D> bending(d, g, r, p.column);
+  const auto dt2 = hn::Set(d, step.dt2), keep = hn::Set(d, step.keep);
+  const auto gravity = hn::Set(d, step.gravity[component]);
+  const Real *x = g.x[component] + p.at, *left = g.x[component] + p.left,
+             *right = g.x[component] + p.right, *force = g.force[component] + p.at, *w = g.w + p.at,
+             *free = g.free + p.at;
+  Real* way = g.way[component] + p.at;
+  for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const auto mobile = hn::LoadU(d, free + n), inverse_mass = hn::LoadU(d, w + n);
+    auto acceleration = hn::Mul(gravity, mobile);
+    if (bends)
+      acceleration = hn::Sub(acceleration, hn::Mul(bending.pull(x, left, right, n), inverse_mass));
+    if (forced)
+      acceleration = hn::Add(acceleration, hn::Mul(hn::LoadU(d, force + n), inverse_mass));
+    const auto kept = hn::Mul(hn::LoadU(d, way + n), hn::Mul(keep, mobile));
+    hn::StoreU(hn::Add(kept, hn::Mul(acceleration, dt2)), d, way + n);
+  }
+}
+
+template <class Real>
+HWY_INLINE void predict(const SweepView<Real>& g, const Prediction<Real>& step) {
+  const hn::CappedTag<Real, kSweepMargin> d;
+  for (int r = 0; r < g.rows; ++r) {
+    const std::ptrdiff_t even = r * g.stride, odd = even + g.half;
+    for (int k = 0; k < 3; ++k) {
+      predict_line(d, g, step, r, k, {even, odd - 1, odd, 0}, (g.columns + 1) / 2);
+      predict_line(d, g, step, r, k, {odd, even, even + 1, g.half}, g.columns / 2);
+    }
+  }
+}
+
+template <class Real>
+HWY_INLINE void move(const SweepView<Real>& g) {
+  const hn::CappedTag<Real, kSweepMargin> d;
+  const std::ptrdiff_t count = g.rows * g.stride;
+  for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
+    store_at(d, g.x, n, load_at(d, g.x, n) + load_at(d, g.way, n));
+}
+
+HWY_ATTR void predict_f32(const SweepView<float>& g, const Prediction<float>& step) {
+  predict(g, step);
+}
+HWY_ATTR void predict_f64(const SweepView<double>& g, const Prediction<double>& step) {
+  predict(g, step);
+}
+HWY_ATTR void sweep_f32(const SweepView<float>& g, bool down, bool first, bool last) {
+  sweep(g, down, first, last);
+}
+HWY_ATTR void sweep_f64(const SweepView<double>& g, bool down, bool first, bool last) {
+  sweep(g, down, first, last);
+}
+HWY_ATTR void move_f32(const SweepView<float>& g) {
+  move(g);
+}
+HWY_ATTR void move_f64(const SweepView<double>& g) {
+  move(g);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif
