@@ -96,6 +96,7 @@ Json guard_summary(const World<float>& world) {
           {"truncated_motion", counts.truncated},
           {"truncated_part", counts.wanted > 0 ? counts.truncated / counts.wanted : 0},
           {"collections", counts.collections},
+          {"renewals", counts.renewals},
           {"particles_anchored", counts.anchored},
           {"steps_certified", counts.critical},
           {"open_pairs", world.guard()->open_pairs()}};

@@ -46,6 +46,9 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   wave_of_.assign(n, 0);
   anchored_at_.assign(n, 0);
   is_tight_.assign(n, 0);
+  is_pushed_.assign(n, 0);
+  for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
+    columns_of(kind).kind = kind;
   vertex_boxes_.resize(n);
   edge_boxes_.resize(edges_.size());
   triangle_boxes_.resize(triangles_.size());
@@ -63,10 +66,15 @@ template <class Real>
 void ClothGuard<Real>::reset() {
   collected_ = rows_built_ = false;
   rows_.clear();
+  busy_rows_.clear();
+  arrived_.clear();
   pairs_.clear();
   active_.clear();
   dirty_.clear();
-  for (const Index i : pushed_) extra_[static_cast<std::size_t>(i)].setZero();
+  for (const Index i : pushed_) {
+    extra_[static_cast<std::size_t>(i)].setZero();
+    is_pushed_[static_cast<std::size_t>(i)] = 0;
+  }
   pushed_.clear();
   open_pairs_ = 0;
   counts_ = {};

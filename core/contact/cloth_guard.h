@@ -7,6 +7,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/feature_pair.h"
+#include "core/contact/pair_separation.h"
 #include "core/contact/patch_tree.h"
 #include "core/world/profile.h"
 
@@ -24,6 +25,13 @@ struct GuardedPair {
   std::uint32_t listed = 0;    ///< search for critical pairs that met it last
 };
 
+/// Names a pair.
+template <class Real>
+std::uint64_t key_of(const GuardedPair<Real>& pair) {
+  return (static_cast<std::uint64_t>(pair.kind == PairKind::edge_edge) << 63) |
+         (static_cast<std::uint64_t>(pair.a) << 31) | static_cast<std::uint64_t>(pair.b);
+}
+
 /// A contact of two features of cloths, frozen for a few substeps: gap = n . sum w x.
 template <class Real>
 struct GuardRow {
@@ -39,14 +47,16 @@ struct GuardRow {
   Real push = 0;                         ///< impulse along the normal in a substep [N s]
   Vec3<Real> drag = Vec3<Real>::Zero();  ///< friction's impulse in a substep [N s]
   Vec3<Real> slip = Vec3<Real>::Zero();  ///< displacement since it sticks [m]
-  std::uint64_t key = 0;                 ///< names the pair
+  std::uint64_t key = 0;                 ///< of the pair
 };
 
 /// What the guard did since it was reset; sums of lengths of single particles' motions.
 struct GuardCounts {
-  double wanted = 0;     ///< motion that particles in pairs wanted [m]
-  double truncated = 0;  ///< part of it that was not allowed [m]
-  std::uint64_t collections = 0, anchored = 0, critical = 0;
+  double wanted = 0;              ///< motion that particles in pairs wanted [m]
+  double truncated = 0;           ///< part of it that was not allowed [m]
+  std::uint64_t collections = 0;  ///< of all pairs
+  std::uint64_t renewals = 0;     ///< of the pairs of some particles
+  std::uint64_t anchored = 0, critical = 0;
 };
 
 /// Contact of cloths with themselves and each other, with the promise that no particle passes a
@@ -108,8 +118,13 @@ class ClothGuard {
 
   // guard_pairs.cpp
   void collect(Real dt, Profile& profile);
-  std::uint64_t test_patches(Index p, Index q);
+  void collect_strays(Real dt, Profile& profile);
+  void admit_pairs(std::size_t first);
+  std::uint64_t test_patches(Index p, Index q, bool all);
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
+  void keep_near(PairColumns<Real>& columns);
+  PairColumns<Real>& columns_of(PairKind kind) { return columns_[static_cast<std::size_t>(kind)]; }
+  Vec3<Real> path_velocity(std::size_t particle, Real dt) const;
   Vec3<Real> steady(const Vec3<Real>& v, std::size_t particle) const;
   void box_patch(Index p);
   void join_pairs();
@@ -127,7 +142,7 @@ class ClothGuard {
     Real first, second;
   };
   Speeds speeds(const GuardedPair<Real>& pair) const;
-  bool predicted();
+  void find_strays();
   void find_loose();
   void anchor(const std::vector<Index>& list);
   void anchor_wave(bool first);
@@ -141,17 +156,21 @@ class ClothGuard {
   bool is_critical(GuardedPair<Real>& pair);
   bool holds(const Critical& c) const;
   void fix(Critical& c);
-  bool truncate(ClothState<Real>& state, Real dt, bool halt);
+  void truncate(ClothState<Real>& state, Real dt, bool halt);
   void count_motion();
 
   // guard_rows.cpp
   bool rows_hold(const ClothState<Real>& state) const;
   void build_rows(const ClothState<Real>& state, Profile& profile);
-  void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair);
+  void add_arrived(const ClothState<Real>& state, Profile& profile);
+  bool is_beyond(const GuardedPair<Real>& pair) const;
+  void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
+               const PairSeparation<Real>& s);
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   void remember(GuardRow<Real>& row) const;
   void aim(GuardRow<Real>& row, const ClothState<Real>& state, Real dt) const;
   void solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const;
+  void find_busy_rows(const ClothState<Real>& state, Real dt);
   void sweep_rows(ClothState<Real>& state, Real dt);
   void push_apart(ClothState<Real>& state);
 
@@ -170,13 +189,19 @@ class ClothGuard {
   PredictedMotion<Real> motion_;
   Vec3Array<Real> velocity_;                  ///< along the predicted paths [m/s]
   Vec3<Real> off_path_ = Vec3<Real>::Zero();  ///< mean way off the paths after the last step [m]
-  Vec3<Real> off_path_now_ = Vec3<Real>::Zero();  ///< with which this step was looked at [m]
-  Real horizon_ = 0, elapsed_ = 0;                ///< how long pairs hold, and how old they are [s]
-  Real smallest_gap_ = 0;  ///< that is left between features after every step [m]
+  Vec3<Real> off_path_now_ = Vec3<Real>::Zero();     ///< with which this step was looked at [m]
+  Vec3<Real> off_path_before_ = Vec3<Real>::Zero();  ///< and the step before [m]
+  Vec3<Real> common_velocity_ = Vec3<Real>::Zero();  ///< of all when pairs were collected [m/s]
+  std::vector<Index> strays_;  ///< particles that leave the balls around their paths
+  std::vector<char> changed_, was_active_;
+  std::vector<std::uint64_t> dropped_keys_;
+  Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
+  Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
   std::vector<Aabb<Real>> vertex_boxes_, edge_boxes_, triangle_boxes_;
   std::vector<std::uint32_t> boxed_;  ///< collection in which a patch's features were boxed
   std::uint32_t collection_ = 0;
-  std::array<std::vector<Index>, 6> near_;  ///< features of two patches near the other
+  std::array<std::vector<Index>, 6> near_;    ///< features of two patches near the other
+  std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
   std::vector<Index> pairs_begin_, pairs_of_;  ///< for each particle its pairs
@@ -204,8 +229,11 @@ class ClothGuard {
   Real warm_dt_ = 0;  ///< length of the step in which the rows' impulses were found [s]
   std::vector<GuardRow<Real>> rows_, old_rows_;
   std::vector<std::pair<std::uint64_t, Index>> old_keys_;
-  Vec3Array<Real> extra_;  ///< velocity of the push [m/s]
+  std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
+  Vec3Array<Real> extra_;                   ///< velocity of the push [m/s]
+  std::vector<Index> busy_rows_;            ///< that push or soon may
   std::vector<Index> pushed_;
+  std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it
 
   GuardCounts counts_;

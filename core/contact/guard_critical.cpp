@@ -14,6 +14,9 @@ constexpr int kRounds = 12;
 /// Times that pairs are collected anew in one step for particles that were stopped off their path.
 constexpr int kRetries = 2;
 
+/// Beyond this part of all particles being off their paths all pairs are collected anew.
+constexpr std::size_t kManyStrays = 6;
+
 /// Neither side of a gap gets less than this part of it.
 constexpr double kLeastPart = 0.05;
 
@@ -28,18 +31,28 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   for (std::size_t i = 0; i < step_.size(); ++i)
     step_[i] = (state.x[i] - legal_[i]) + state.v[i] * dt;
   elapsed_ += dt;
-  const bool fresh = collected_ && elapsed_ <= horizon_ && predicted();
+  strays_.clear();
+  anchored_.clear();
+  bool collected = collected_ && elapsed_ <= horizon_;
+  if (collected) find_strays();
   for (int attempt = 0;; ++attempt) {
-    if (!fresh || attempt > 0) collect(dt, profile);
+    collected = collected && strays_.size() <= step_.size() / kManyStrays;
+    if (!collected)
+      collect(dt, profile);
+    else if (!strays_.empty())
+      collect_strays(dt, profile);
+    collected = true;
     const StageTimer timer(profile, Stage::narrow_phase, 0);
     const std::uint64_t before = counts_.anchored;
     find_loose();
     if (loose_.empty()) break;
+    for (const Index i : anchored_) anchored_at_[static_cast<std::size_t>(i)] = 0;
     anchored_.clear();
     anchor(loose_);
     stop_crossings();
     profile[Stage::narrow_phase].work += counts_.anchored - before;
-    if (!truncate(state, dt, attempt >= kRetries)) break;
+    truncate(state, dt, attempt >= kRetries);
+    if (strays_.empty()) break;
   }
   count_motion();
 }
@@ -175,10 +188,10 @@ void ClothGuard<Real>::fix(Critical& c) {
 
 /// Applies what was not allowed to the state.
 /// @param halt  particles stopped off their predicted path stay where they are
-/// @return whether such particles ask for pairs around their new path
+///              and else are listed as strays, which ask for pairs around a new path
 template <class Real>
-bool ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
-  bool off_path = false;
+void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
+  strays_.clear();
   ++wave_;
   const auto visit = [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
@@ -192,9 +205,9 @@ bool ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
     fraction_[i] = 1;
     const Vec3<Real> off =
         legal_[i] + allowed - (motion_.start[i] + velocity_[i] * elapsed_) - off_path_now_;
-    const bool off_this = !(off.squaredNorm() <= reach_ * reach_);
-    off_path |= off_this;
-    step_[i] = off_this && halt ? Vec3<Real>(Vec3<Real>::Zero()) : allowed;
+    const bool off_path = !(off.squaredNorm() <= reach_ * reach_);
+    if (off_path && !halt) strays_.push_back(k);
+    step_[i] = off_path && halt ? Vec3<Real>(Vec3<Real>::Zero()) : allowed;
     state.x[i] = legal_[i];
     state.v[i] = step_[i] / dt;
   };
@@ -204,7 +217,6 @@ bool ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
   for (const Index k : tight_) visit(k);
   critical_.clear();
   tight_.clear();
-  return off_path;
 }
 
 /// Sums up the motion of particles in pairs.
@@ -225,7 +237,7 @@ void ClothGuard<Real>::count_motion() {
   template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);            \
   template bool ClothGuard<Real>::holds(const Critical&) const;               \
   template void ClothGuard<Real>::fix(Critical&);                             \
-  template bool ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);    \
+  template void ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);    \
   template void ClothGuard<Real>::count_motion();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

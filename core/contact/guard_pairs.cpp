@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/contact/cloth_guard.h"
 
@@ -16,6 +17,9 @@ constexpr double kSmallestGap = 1e-5, kRoundings = 64;
 /// Pairs are to hold while the mean particle moves by this part of an edge, but neither longer than
 /// these seconds nor shorter than these substeps.
 constexpr double kHorizonPart = 0.2, kLongestHorizon = 0.25, kFewestSubsteps = 4;
+
+/// Pairs that are tested together.
+constexpr std::size_t kPairsAtOnce = 1024;
 
 bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
   if (kind == PairKind::vertex_triangle) return p[0] == p[1] || p[0] == p[2] || p[0] == p[3];
@@ -33,6 +37,7 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   Vec3<Real> common = Vec3<Real>::Zero();
   for (const Vec3<Real>& step : step_) common += step;
   common /= static_cast<Real>(n);
+  common_velocity_ = common / dt;
   Real largest = 0, sum2 = 0;
   for (std::size_t i = 0; i < n; ++i) {
     largest = std::max(largest, legal_[i].cwiseAbs().maxCoeff());
@@ -46,22 +51,22 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
                         std::max(static_cast<Real>(kLongestHorizon), shortest));
   motion_.radius = reach_ + smallest_gap_;
   for (std::size_t i = 0; i < n; ++i) {
-    velocity_[i] = steady(step_[i] / dt, i);
-    // The path has to hold at least for the coming step.
-    if ((step_[i] - velocity_[i] * dt).squaredNorm() > reach_ * reach_ / 4)
-      velocity_[i] = step_[i] / dt;
+    velocity_[i] = path_velocity(i, dt);
     motion_.start[i] = legal_[i];
-    motion_.end[i] = legal_[i] + (velocity_[i] - common / dt) * horizon_;
+    motion_.end[i] = legal_[i] + (velocity_[i] - common_velocity_) * horizon_;
   }
   off_path_.setZero();
   off_path_now_.setZero();
+  off_path_before_.setZero();
   ++collection_;
   ++counts_.collections;
   tree_.refit(motion_, true);
   pairs_.clear();
   open_pairs_ = 0;
   std::uint64_t tests = 0;
-  tree_.for_each_near_pair([&](Index p, Index q) { tests += test_patches(p, q); });
+  changed_.assign(n, 1);
+  tree_.for_each_near_pair([&](Index p, Index q) { tests += test_patches(p, q, true); });
+  for (PairColumns<Real>& columns : columns_) keep_near(columns);
   profile[Stage::broad_phase].work += tests;
   join_pairs();
   for (const Index i : active_) {
@@ -72,6 +77,113 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   elapsed_ = dt;
   collected_ = true;
   rows_built_ = false;
+}
+
+/// Gives particles that leave their paths new ones, and collects their pairs anew; the others go
+/// on.
+template <class Real>
+void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
+  const StageTimer timer(profile, Stage::broad_phase, 0);
+  const Real past = elapsed_ - dt;
+  horizon_ -= past;
+  changed_.assign(legal_.size(), 0);
+  for (const Index k : strays_) {
+    const auto i = static_cast<std::size_t>(k);
+    changed_[i] = 1;
+    velocity_[i] = path_velocity(i, dt);
+  }
+  for (std::size_t i = 0; i < legal_.size(); ++i) {
+    if (changed_[i])
+      motion_.start[i] = legal_[i] - off_path_before_;
+    else
+      motion_.start[i] += velocity_[i] * past;
+    motion_.end[i] = motion_.start[i] + (velocity_[i] - common_velocity_) * horizon_;
+  }
+  elapsed_ = dt;
+  ++collection_;
+  ++counts_.renewals;
+  const auto is_old = [&](const GuardedPair<Real>& pair) {
+    return std::any_of(pair.particle.begin(), pair.particle.end(),
+                       [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; });
+  };
+  const auto gone = std::stable_partition(pairs_.begin(), pairs_.end(), std::not_fn(is_old));
+  dropped_keys_.clear();
+  for (auto pair = gone; pair != pairs_.end(); ++pair) dropped_keys_.push_back(key_of(*pair));
+  std::sort(dropped_keys_.begin(), dropped_keys_.end());
+  pairs_.erase(gone, pairs_.end());
+  open_pairs_ = static_cast<std::size_t>(
+      std::count_if(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair.open; }));
+  const std::size_t kept = pairs_.size();
+  tree_.refit(motion_, true);
+  tree_.mark(changed_);
+  std::uint64_t tests = 0;
+  tree_.for_each_changed_pair([&](Index p, Index q) { tests += test_patches(p, q, false); });
+  for (PairColumns<Real>& columns : columns_) keep_near(columns);
+  profile[Stage::broad_phase].work += tests;
+  was_active_.assign(legal_.size(), 0);
+  for (const Index i : active_) was_active_[static_cast<std::size_t>(i)] = 1;
+  join_pairs();
+  admit_pairs(kept);
+  // The rows of pairs that were found again hold as before.
+  for (std::size_t k = kept; k < pairs_.size(); ++k) {
+    const bool known =
+        std::binary_search(dropped_keys_.begin(), dropped_keys_.end(), key_of(pairs_[k]));
+    if (!known && !pairs_[k].open) arrived_.push_back(pairs_[k]);
+  }
+}
+
+/// Gives room to particles that had no pairs, and lists for anchoring whoever has more than a new
+/// pair allows.
+/// @param first  new pair
+template <class Real>
+void ClothGuard<Real>::admit_pairs(std::size_t first) {
+  const auto for_new = [&](auto&& visit) {
+    for (std::size_t k = first; k < pairs_.size(); ++k) {
+      if (!pairs_[k].open) visit(pairs_[k]);
+    }
+  };
+  for_new([&](const GuardedPair<Real>& pair) {
+    for (const Index k : pair.particle) {
+      const auto i = static_cast<std::size_t>(k);
+      if (was_active_[i]) continue;
+      anchor_[i] = legal_[i];
+      room_[i] = std::numeric_limits<Real>::infinity();
+    }
+  });
+  for (std::size_t k = first; k < pairs_.size(); ++k)
+    columns_of(pairs_[k].kind).add(static_cast<Index>(k), 0, pairs_[k].particle);
+  for (PairColumns<Real>& columns : columns_) {
+    separate_pairs(anchor_, anchor_, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+    columns.clear();
+  }
+  for_new([&](GuardedPair<Real>& pair) {
+    const Real room = std::max(Real(0), pair.bound - smallest_gap_);
+    const auto [one, other] = speeds(pair);
+    const Real share = one / (one + other);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto i = static_cast<std::size_t>(pair.particle[k]);
+      if (was_active_[i]) continue;
+      room_[i] = std::min(room_[i], room * (k < first_side(pair.kind) ? share : 1 - share));
+    }
+  });
+  for_new([&](const GuardedPair<Real>& pair) {
+    Real side[2] = {0, 0};
+    for (std::size_t k = 0; k < 4; ++k) {
+      Real& most = side[k < first_side(pair.kind) ? 0 : 1];
+      most = std::max(most, room_[static_cast<std::size_t>(pair.particle[k])]);
+    }
+    if (side[0] + side[1] + smallest_gap_ <= pair.bound) return;
+    dirty_.insert(dirty_.end(), pair.particle.begin(), pair.particle.end());
+  });
+}
+
+/// Velocity of a predicted path, which has to hold at least for the coming step [m/s].
+template <class Real>
+Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t i, Real dt) const {
+  const Vec3<Real> now = step_[i] / dt, v = steady(now, i);
+  return (step_[i] - v * dt).squaredNorm() > reach_ * reach_ / 4 ? now : v;
 }
 
 /// What of a velocity is not jitter: the smaller of it and of the mean velocity since the last
@@ -109,32 +221,47 @@ void ClothGuard<Real>::box_patch(Index p) {
     triangle_boxes_[static_cast<std::size_t>(t)] = box_of(triangles_[static_cast<std::size_t>(t)]);
 }
 
+/// Tests the features of two patches against each other.
+/// @param all  or only pairs that have a changed particle
 template <class Real>
-std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q) {
+std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
   box_patch(p);
   box_patch(q);
   const auto& first = tree_.patch(p);
   const auto& second = tree_.patch(q);
+  const auto changed = [&](const auto& particles) {
+    return std::any_of(particles.begin(), particles.end(),
+                       [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; });
+  };
+  const auto vertex_changed = [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; };
+  const auto edge_changed = [&](Index e) { return changed(edges_[static_cast<std::size_t>(e)]); };
+  const auto triangle_changed = [&](Index t) {
+    return changed(triangles_[static_cast<std::size_t>(t)]);
+  };
   const auto pick = [](const std::vector<Index>& from, const std::vector<Aabb<Real>>& boxes,
-                       const Aabb<Real>& box, std::vector<Index>& into) {
+                       const Aabb<Real>& box, bool any, auto&& wanted, std::vector<Index>& into) {
     into.clear();
     for (const Index f : from) {
-      if (boxes[static_cast<std::size_t>(f)].overlaps(box)) into.push_back(f);
+      if (boxes[static_cast<std::size_t>(f)].overlaps(box) && (any || wanted(f))) into.push_back(f);
     }
   };
-  pick(first.vertices, vertex_boxes_, tree_.box(q), near_[0]);
-  pick(first.edges, edge_boxes_, tree_.box(q), near_[1]);
-  pick(first.triangles, triangle_boxes_, tree_.box(q), near_[2]);
-  pick(second.vertices, vertex_boxes_, tree_.box(p), near_[3]);
-  pick(second.edges, edge_boxes_, tree_.box(p), near_[4]);
-  pick(second.triangles, triangle_boxes_, tree_.box(p), near_[5]);
+  // Where the other patch has nothing changed only what is changed here matters.
+  const bool any_first = all || tree_.is_marked(q), any_second = all || tree_.is_marked(p);
+  pick(first.vertices, vertex_boxes_, tree_.box(q), any_first, vertex_changed, near_[0]);
+  pick(first.edges, edge_boxes_, tree_.box(q), any_first, edge_changed, near_[1]);
+  pick(first.triangles, triangle_boxes_, tree_.box(q), any_first, triangle_changed, near_[2]);
+  pick(second.vertices, vertex_boxes_, tree_.box(p), any_second, vertex_changed, near_[3]);
+  pick(second.edges, edge_boxes_, tree_.box(p), any_second, edge_changed, near_[4]);
+  pick(second.triangles, triangle_boxes_, tree_.box(p), any_second, triangle_changed, near_[5]);
   const auto vertices_against = [&](const std::vector<Index>& vertices,
                                     const std::vector<Index>& triangles) {
     for (const Index v : vertices) {
+      const bool any = all || vertex_changed(v);
       for (const Index t : triangles) {
         if (!vertex_boxes_[static_cast<std::size_t>(v)].overlaps(
                 triangle_boxes_[static_cast<std::size_t>(t)]))
           continue;
+        if (!any && !triangle_changed(t)) continue;
         const Triangle& c = triangles_[static_cast<std::size_t>(t)];
         test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
       }
@@ -143,10 +270,12 @@ std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q) {
   vertices_against(near_[0], near_[5]);
   if (p != q) vertices_against(near_[3], near_[2]);
   for (const Index e : near_[1]) {
+    const bool any = all || edge_changed(e);
     for (const Index f : near_[4]) {
       if ((p == q && f <= e) || !edge_boxes_[static_cast<std::size_t>(e)].overlaps(
                                     edge_boxes_[static_cast<std::size_t>(f)]))
         continue;
+      if (!any && !edge_changed(f)) continue;
       const Edge &a = edges_[static_cast<std::size_t>(std::min(e, f))],
                  &b = edges_[static_cast<std::size_t>(std::max(e, f))];
       test_pair(PairKind::edge_edge, std::min(e, f), std::max(e, f), {a[0], a[1], b[0], b[1]});
@@ -156,25 +285,35 @@ std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q) {
          (p != q ? near_[3].size() * near_[2].size() : 0);
 }
 
-/// Keeps a pair unless one axis separates the balls of its particles at both ends of the horizon,
-/// and thereby all along.
+/// Puts a pair among those that are to be tested.
 template <class Real>
 void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
                                  const std::array<Index, 4>& particle) {
   if (share_particle(particle, kind)) return;
-  GuardedPair<Real> pair;
-  pair.kind = kind;
-  pair.particle = particle;
-  pair.a = a;
-  pair.b = b;
-  const PairSeparation<Real> s = separate_pair(kind, points(pair, motion_.start));
-  if (s.gap > 2 * motion_.radius &&
-      gap_along(kind, points(pair, motion_.end), s.normal) > 2 * motion_.radius)
-    return;
-  pair.bound = s.gap;
-  pair.open = !(s.gap > 0);
-  open_pairs_ += pair.open ? 1 : 0;
-  pairs_.push_back(pair);
+  PairColumns<Real>& columns = columns_of(kind);
+  columns.add(a, b, particle);
+  if (columns.size() >= kPairsAtOnce) keep_near(columns);
+}
+
+/// Keeps pairs unless one axis separates the balls of their particles at both ends of the horizon,
+/// and thereby all along.
+template <class Real>
+void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
+  separate_pairs(motion_.start, motion_.end, columns);
+  const Real apart = 2 * motion_.radius;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns.gap[k] > apart && columns.end_gap[k] > apart) continue;
+    GuardedPair<Real> pair;
+    pair.kind = columns.kind;
+    for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
+    pair.a = columns.a[k];
+    pair.b = columns.b[k];
+    pair.bound = columns.separation(k, motion_.start).gap;
+    pair.open = !(pair.bound > 0);
+    open_pairs_ += pair.open ? 1 : 0;
+    pairs_.push_back(pair);
+  }
+  columns.clear();
 }
 
 /// Lists the pairs of each particle.
@@ -226,8 +365,12 @@ void ClothGuard<Real>::share_all_gaps() {
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template void ClothGuard<Real>::collect(Real, Profile&);                                        \
   template void ClothGuard<Real>::box_patch(Index);                                               \
-  template std::uint64_t ClothGuard<Real>::test_patches(Index, Index);                            \
+  template std::uint64_t ClothGuard<Real>::test_patches(Index, Index, bool);                      \
+  template void ClothGuard<Real>::collect_strays(Real, Profile&);                                 \
+  template void ClothGuard<Real>::admit_pairs(std::size_t);                                       \
+  template Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;                   \
   template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&); \
+  template void ClothGuard<Real>::keep_near(PairColumns<Real>&);                                  \
   template Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>&, std::size_t) const;             \
   template void ClothGuard<Real>::join_pairs();                                                   \
   template void ClothGuard<Real>::share_all_gaps();

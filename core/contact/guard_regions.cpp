@@ -18,6 +18,9 @@ constexpr int kMostWaves = 48;
 /// the faster one's.
 constexpr double kLeastShare = 0.08;
 
+/// Part of the reach beyond which a particle is given a new path with those that have left theirs.
+constexpr double kSoon = 0.6;
+
 }  // namespace
 
 /// How far the sides of a pair want to move in the coming step, both a little.
@@ -33,21 +36,27 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
   return {first + both, second + both};
 }
 
-/// Whether all particles stay near their predicted paths through the coming step. What all leave
-/// them by in common changes nothing between them, and is told from the step before.
+/// Lists the particles that leave the balls around their predicted paths in the coming step, and
+/// with them those that soon will. What all leave their paths by in common changes nothing between
+/// them, and is told from the step before.
 template <class Real>
-bool ClothGuard<Real>::predicted() {
-  const Real limit = reach_ * reach_;
+void ClothGuard<Real>::find_strays() {
+  const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
   Vec3<Real> sum = Vec3<Real>::Zero();
-  bool near = true;
+  bool left = false;
+  strays_.clear();
   for (std::size_t i = 0; i < step_.size(); ++i) {
     const Vec3<Real> off = legal_[i] + step_[i] - (motion_.start[i] + velocity_[i] * elapsed_);
     sum += off;
-    near = near && (off - off_path_).squaredNorm() <= limit;
+    const Real off2 = (off - off_path_).squaredNorm();
+    if (off2 <= soon) continue;
+    strays_.push_back(static_cast<Index>(i));
+    left |= !(off2 <= limit);
   }
+  if (!left) strays_.clear();
+  off_path_before_ = off_path_now_;
   off_path_now_ = off_path_;
   off_path_ = sum / static_cast<Real>(step_.size());
-  return near;
 }
 
 /// Particles that would leave the room around their anchors.
@@ -170,7 +179,7 @@ void ClothGuard<Real>::anchor_all() {
 #define WEFT_INSTANTIATE(Real)                                                                  \
   template typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>&) \
       const;                                                                                    \
-  template bool ClothGuard<Real>::predicted();                                                  \
+  template void ClothGuard<Real>::find_strays();                                                \
   template void ClothGuard<Real>::find_loose();                                                 \
   template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
   template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/contact/cloth_guard.h"
 
@@ -19,6 +20,13 @@ constexpr double kRowMargin = 0.1;
 /// which is looked at every so many steps.
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.2;
 constexpr int kStepsBetweenLooks = 4;
+
+/// Rows that push nobody rest until the next look, unless their room is less than this part of the
+/// radius and so many times what it shrinks by until then.
+constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
+
+/// No row is made for a gap beyond this part of the thickness.
+constexpr double kRowReach = 1 + kRowMotion + kRowMargin;
 
 /// Edges keep less than the thickness, so that particles and triangles respond first.
 constexpr double kEdgeRadius = 0.85;
@@ -56,11 +64,13 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   legal_ = state.x;
   if (pairs_.empty()) {
     rows_.clear();
+    busy_rows_.clear();
     return;
   }
   rows_time_ += dt;
   ++rows_steps_;
   if (!rows_built_ || !rows_hold(state)) build_rows(state, profile);
+  if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
   sweep_rows(state, dt);
@@ -89,11 +99,26 @@ void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profil
     if (old_rows_[k].push > 0) old_keys_.push_back({old_rows_[k].key, static_cast<Index>(k)});
   }
   std::sort(old_keys_.begin(), old_keys_.end());
-  for (const Index i : active_)
-    x_rows_[static_cast<std::size_t>(i)] = state.x[static_cast<std::size_t>(i)];
-  for (const GuardedPair<Real>& pair : pairs_) {
-    if (!pair.open) add_row(state, pair);
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    x_rows_[i] = state.x[i];
+    moved_[i] = (state.x[i] - anchor_[i]).norm();
   }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const GuardedPair<Real>& pair = pairs_[k];
+    if (!pair.open && !is_beyond(pair))
+      columns_of(pair.kind).add(static_cast<Index>(k), 0, pair.particle);
+  }
+  for (PairColumns<Real>& columns : columns_) {
+    separate_pairs(state.x, state.x, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(columns.a[k])];
+      if (!(columns.gap[k] > thickest_ * Real(kRowReach)))
+        add_row(state, pair, columns.separation(k, state.x));
+    }
+    columns.clear();
+  }
+  arrived_.clear();
   profile[Stage::narrow_phase].work += pairs_.size();
   rows_built_ = true;
   rows_time_ = 0;
@@ -114,17 +139,38 @@ Real ClothGuard<Real>::radius_of(const GuardedPair<Real>& pair, Index p, Index q
   return std::min(radius, separate_pair(pair.kind, rest).gap * Real(kFabricPart));
 }
 
+/// Rows of pairs that were collected since rows were built.
 template <class Real>
-void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair) {
-  const Real reach = thickest_ * Real(1 + kRowMotion + kRowMargin);
+void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profile) {
+  const StageTimer timer(profile, Stage::narrow_phase, arrived_.size());
+  for (const GuardedPair<Real>& pair : arrived_) {
+    for (const Index k : pair.particle) {
+      const auto i = static_cast<std::size_t>(k);
+      if (!was_active_[i]) x_rows_[i] = state.x[i];
+    }
+    const std::size_t before = rows_.size();
+    add_row(state, pair, separate_pair(pair.kind, points(pair, state.x)));
+    if (rows_.size() > before) busy_rows_.push_back(static_cast<Index>(before));
+  }
+  arrived_.clear();
+}
+
+/// Whether the gap that a pair had, less what its particles have moved since, is too much for a
+/// row.
+template <class Real>
+bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>& pair) const {
   Real side[2] = {0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    most = std::max(most, room_[static_cast<std::size_t>(pair.particle[k])]);
+    most = std::max(most, moved_[static_cast<std::size_t>(pair.particle[k])]);
   }
-  if (pair.bound - side[0] - side[1] > reach) return;
-  const PairSeparation<Real> s = separate_pair(pair.kind, points(pair, state.x));
-  if (s.gap > reach || !(s.gap > 0)) return;
+  return pair.bound - side[0] - side[1] > thickest_ * Real(kRowReach);
+}
+
+template <class Real>
+void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
+                               const PairSeparation<Real>& s) {
+  if (s.gap > thickest_ * Real(kRowReach) || !(s.gap > 0)) return;
   if (pair.kind == PairKind::edge_edge && !s.inside) return;
   const Index p = part_of(pair.particle[0]), q = part_of(pair.particle[2]);
   GuardRow<Real> row;
@@ -146,8 +192,7 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
   row.normal = s.normal;
   row.friction =
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
-  row.key = (static_cast<std::uint64_t>(pair.kind == PairKind::edge_edge) << 63) |
-            (static_cast<std::uint64_t>(pair.a) << 31) | static_cast<std::uint64_t>(pair.b);
+  row.key = key_of(pair);
   remember(row);
   rows_.push_back(row);
 }
@@ -197,13 +242,31 @@ void ClothGuard<Real>::solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocitie
   share_out(row, change, velocities);
 }
 
+/// Lists the rows that push somebody or may have to before the next look.
+template <class Real>
+void ClothGuard<Real>::find_busy_rows(const ClothState<Real>& state, Real dt) {
+  const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
+  busy_rows_.clear();
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    GuardRow<Real>& row = rows_[k];
+    if (row.push == 0) {
+      const Real room = row.normal.dot(weighted(row, state.x)) - row.radius;
+      const Real approach = -row.normal.dot(weighted(row, state.v));
+      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) continue;
+    }
+    busy_rows_.push_back(static_cast<Index>(k));
+  }
+}
+
 /// Projected Gauss-Seidel that starts from the impulses of the last step, and goes over the rows
 /// from either end in turn.
 template <class Real>
 void ClothGuard<Real>::sweep_rows(ClothState<Real>& state, Real dt) {
   const Real warm = warm_dt_ > 0 ? dt / warm_dt_ : Real(0);
   warm_dt_ = dt;
-  for (GuardRow<Real>& row : rows_) {
+  if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(state, dt);
+  for (const Index k : busy_rows_) {
+    GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     aim(row, state, dt);
     if (row.push == 0) continue;
     row.push *= warm;
@@ -212,12 +275,15 @@ void ClothGuard<Real>::sweep_rows(ClothState<Real>& state, Real dt) {
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     if ((rows_steps_ + sweep) % 2 == 0) {
-      for (std::size_t k = 0; k < rows_.size(); ++k) solve_row(rows_[k], state.v);
+      for (std::size_t k = 0; k < busy_rows_.size(); ++k)
+        solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])], state.v);
     } else {
-      for (std::size_t k = rows_.size(); k-- > 0;) solve_row(rows_[k], state.v);
+      for (std::size_t k = busy_rows_.size(); k-- > 0;)
+        solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])], state.v);
     }
   }
-  for (GuardRow<Real>& row : rows_) {
+  for (const Index k : busy_rows_) {
+    GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     if (row.push == 0) {
       row.slip.setZero();
     } else if (row.friction > 0) {
@@ -230,17 +296,18 @@ void ClothGuard<Real>::sweep_rows(ClothState<Real>& state, Real dt) {
 /// Velocities of the coming drift alone that push apart what is nearer than its radius.
 template <class Real>
 void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
-  for (const GuardRow<Real>& row : rows_) {
+  for (const Index k : busy_rows_) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     const Real lack = -row.room;
     if (!(lack > row.radius * Real(kPushSlack))) continue;
     const Real wanted = std::min(lack * Real(kPushRate), static_cast<Real>(kPushSpeed));
     const Real more = wanted - row.normal.dot(weighted(row, extra_));
     if (!(more > 0)) continue;
     share_out<Real>(row, row.normal * (more * row.inertia), extra_);
-    pushed_.insert(pushed_.end(), row.particle.begin(), row.particle.end());
+    for (const Index i : row.particle) {
+      if (!std::exchange(is_pushed_[static_cast<std::size_t>(i)], 1)) pushed_.push_back(i);
+    }
   }
-  std::sort(pushed_.begin(), pushed_.end());
-  pushed_.erase(std::unique(pushed_.begin(), pushed_.end()), pushed_.end());
   for (const Index k : pushed_) {
     const auto i = static_cast<std::size_t>(k);
     state.v[i] += extra_[i];
@@ -262,6 +329,7 @@ void ClothGuard<Real>::finish(ClothState<Real>& state) {
     }
     v -= extra * part;
     extra_[i].setZero();
+    is_pushed_[i] = 0;
   }
   pushed_.clear();
   pushed_v_.clear();
@@ -285,18 +353,22 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   warm_dt_ *= 2;  // the next step's first kick is half of one
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);                   \
-  template void ClothGuard<Real>::finish(ClothState<Real>&);                                  \
-  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&);                  \
-  template bool ClothGuard<Real>::rows_hold(const ClothState<Real>&) const;                   \
-  template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);              \
-  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&); \
-  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
-  template void ClothGuard<Real>::remember(GuardRow<Real>&) const;                            \
-  template void ClothGuard<Real>::aim(GuardRow<Real>&, const ClothState<Real>&, Real) const;  \
-  template void ClothGuard<Real>::solve_row(GuardRow<Real>&, Vec3Array<Real>&) const;         \
-  template void ClothGuard<Real>::sweep_rows(ClothState<Real>&, Real);                        \
+#define WEFT_INSTANTIATE(Real)                                                               \
+  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);                  \
+  template void ClothGuard<Real>::finish(ClothState<Real>&);                                 \
+  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&);                 \
+  template bool ClothGuard<Real>::rows_hold(const ClothState<Real>&) const;                  \
+  template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);             \
+  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);            \
+  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                 \
+  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&, \
+                                          const PairSeparation<Real>&);                      \
+  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;   \
+  template void ClothGuard<Real>::remember(GuardRow<Real>&) const;                           \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, const ClothState<Real>&, Real) const; \
+  template void ClothGuard<Real>::solve_row(GuardRow<Real>&, Vec3Array<Real>&) const;        \
+  template void ClothGuard<Real>::find_busy_rows(const ClothState<Real>&, Real);             \
+  template void ClothGuard<Real>::sweep_rows(ClothState<Real>&, Real);                       \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -212,6 +212,21 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
   mark_spread(0, motion.radius);
 }
 
+template <class Real>
+void PatchTree<Real>::mark(const std::vector<char>& changed) {
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    if (node.patch == kNone) {
+      node.marked = nodes_[static_cast<std::size_t>(node.left)].marked ||
+                    nodes_[static_cast<std::size_t>(node.right)].marked;
+      continue;
+    }
+    const auto& particles = patches_[static_cast<std::size_t>(node.patch)].particles;
+    node.marked = std::any_of(particles.begin(), particles.end(),
+                              [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+  }
+}
+
 /// Columns of the deformation gradient of each triangle of the grids.
 template <class Real>
 void PatchTree<Real>::measure_tangents(const Vec3Array<Real>& x,

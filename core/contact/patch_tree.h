@@ -44,11 +44,25 @@ class PatchTree {
     return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].box;
   }
 
+  /// Marks the patches that have one of the particles for which `changed` is not 0, of each
+  /// particle one number. After `refit`.
+  void mark(const std::vector<char>& changed);
+  bool is_marked(Index p) const {
+    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].marked;
+  }
+
+  /// Like `for_each_near_pair`, but only for pairs with a marked patch. What goes on as before is
+  /// no matter of the others: two features that were apart on their paths stay so.
+  template <class Visit>
+  void for_each_changed_pair(Visit&& visit) const {
+    if (!nodes_.empty()) visit_inside<true>(0, visit);
+  }
+
   /// Calls visit(p, q), p <= q, for all patches whose boxes overlap, and each patch with itself,
   /// without those that cannot touch; in a fixed order.
   template <class Visit>
   void for_each_near_pair(Visit&& visit) const {
-    if (!nodes_.empty()) visit_inside(0, visit);
+    if (!nodes_.empty()) visit_inside<false>(0, visit);
   }
 
  private:
@@ -69,6 +83,7 @@ class PatchTree {
     Index triangles = 0;                ///< below it
     CellRange cells;                    ///< of a grid
     CellRange spread;                   ///< what is stretched out around it; empty if it is not
+    bool marked = false;                ///< it or one below has a changed particle
   };
   /// In a grid each triangle has one side along the rows and one along the columns.
   struct GridTriangle {
@@ -97,30 +112,31 @@ class PatchTree {
            (b.spread.cells() > 0 && b.spread.holds(a.cells));
   }
 
-  template <class Visit>
+  template <bool kMarked, class Visit>
   void visit_inside(Index n, Visit&& visit) const {
     const Node& node = nodes_[static_cast<std::size_t>(n)];
-    if (node.spread.cells() > 0) return;
+    if (node.spread.cells() > 0 || (kMarked && !node.marked)) return;
     if (node.patch != kNone) {
       visit(node.patch, node.patch);
       return;
     }
-    visit_inside(node.left, visit);
-    visit_inside(node.right, visit);
-    visit_between(node.left, node.right, visit);
+    visit_inside<kMarked>(node.left, visit);
+    visit_inside<kMarked>(node.right, visit);
+    visit_between<kMarked>(node.left, node.right, visit);
   }
-  template <class Visit>
+  template <bool kMarked, class Visit>
   void visit_between(Index a, Index b, Visit&& visit) const {
     const Node &p = nodes_[static_cast<std::size_t>(a)], &q = nodes_[static_cast<std::size_t>(b)];
+    if (kMarked && !p.marked && !q.marked) return;
     if (!p.box.overlaps(q.box) || is_apart(p, q)) return;
     if (p.patch != kNone && q.patch != kNone) {
       visit(std::min(p.patch, q.patch), std::max(p.patch, q.patch));
     } else if (q.patch != kNone || (p.patch == kNone && p.triangles >= q.triangles)) {
-      visit_between(p.left, b, visit);
-      visit_between(p.right, b, visit);
+      visit_between<kMarked>(p.left, b, visit);
+      visit_between<kMarked>(p.right, b, visit);
     } else {
-      visit_between(a, q.left, visit);
-      visit_between(a, q.right, visit);
+      visit_between<kMarked>(a, q.left, visit);
+      visit_between<kMarked>(a, q.right, visit);
     }
   }
 

@@ -4,6 +4,7 @@
 
 #include "core/contact/cloth_guard.h"
 #include "core/contact/feature_pair.h"
+#include "core/contact/pair_separation.h"
 #include "core/diagnostics/crossings.h"
 #include "tests/support/passing.h"
 #include "tests/support/random.h"
@@ -108,7 +109,72 @@ void check_balls(unsigned seed) {
   CHECK(certified > 20000);
 }
 
+/// Many awkward pairs in one array of positions, four a pair, and where they are a little later.
+template <class Real>
+struct PairCloud {
+  Vec3Array<Real> x, end;
+  PairColumns<Real> columns;
+
+  PairCloud(PairKind kind, std::size_t count, Random& random) {
+    columns.kind = kind;
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto first = static_cast<Index>(x.size());
+      for (const Vec3<Real>& p : awkward_pair<Real>(kind, static_cast<int>(n % 6), random)) {
+        x.push_back(p);
+        end.push_back(p + random.vector(0.002).template cast<Real>());
+      }
+      columns.add(first, 0, {first, first + 1, first + 2, first + 3});
+    }
+    separate_pairs(x, end, columns);
+  }
+  PairPoints<Real> points(const Vec3Array<Real>& from, std::size_t n) const {
+    return {from[4 * n], from[4 * n + 1], from[4 * n + 2], from[4 * n + 3]};
+  }
+};
+
+template <class Real>
+void check_separated_together(PairKind kind, unsigned seed) {
+  Random random(seed);
+  const PairCloud<Real> cloud(kind, 6003, random);  // not whole vectors
+  const double rounding = 64 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+  int compared = 0;
+  for (std::size_t n = 0; n < cloud.columns.size(); ++n) {
+    const PairPoints<Real> x = cloud.points(cloud.x, n), end = cloud.points(cloud.end, n);
+    const PairSeparation<Real> together = cloud.columns.separation(n, cloud.x);
+    const PairSeparation<Real> alone = separate_pair(kind, x);
+    if (!(cloud.columns.gap[n] > static_cast<Real>(kCloseGap))) {
+      REQUIRE(together.gap == alone.gap);
+      continue;
+    }
+    ++compared;
+    const auto apart = [&](const PairPoints<Real>& at) {
+      return static_cast<double>(gap_along(kind, at, together.normal));
+    };
+    REQUIRE(static_cast<double>(together.normal.norm()) == Approx(1).epsilon(rounding));
+    REQUIRE(std::abs(apart(x) - static_cast<double>(together.gap)) <= rounding * 0.1);
+    REQUIRE(std::abs(apart(end) - static_cast<double>(cloud.columns.end_gap[n])) <= rounding * 0.1);
+    // The best axis is unique but where sides are parallel, so the gaps are the same.
+    REQUIRE(static_cast<double>(together.gap) ==
+            Approx(static_cast<double>(alone.gap)).epsilon(0.01).margin(1e-5));
+    Vec3<Real> way = Vec3<Real>::Zero();
+    for (std::size_t k = 0; k < 4; ++k) way += x[k] * together.weight[k];
+    REQUIRE(static_cast<double>((way - together.normal * way.norm()).norm()) <= 1e-5);
+    REQUIRE(static_cast<double>(way.norm()) ==
+            Approx(static_cast<double>(together.gap)).margin(1e-5));
+  }
+  CHECK(compared > 2000);
+}
+
 }  // namespace
+
+TEST_CASE("pairs that are separated together lie apart as those separated one by one") {
+  const unsigned seed = seed_or(7);
+  WEFT_REPEAT("pairs that are separated together lie apart as those separated one by one", seed);
+  for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge}) {
+    check_separated_together<double>(kind, seed);
+    check_separated_together<float>(kind, seed + 1);
+  }
+}
 
 TEST_CASE("wherever the corners of a pair are in balls that share its gap, it has not crossed") {
   const unsigned seed = seed_or(1);

@@ -25,12 +25,14 @@ bool share(const std::array<Index, 4>& p, std::size_t middle) {
 
 /// Whether the features come so near that balls around their corners' paths touch: by sampled
 /// times, so never when they do not.
-bool come_near(PairKind kind, const std::array<Index, 4>& p, const PredictedMotion<float>& m) {
-  for (int t = 0; t <= 8; ++t) {
+bool come_near(PairKind kind, const std::array<Index, 4>& p, const PredictedMotion<float>& m,
+               int times = 8) {
+  for (int t = 0; t <= times; ++t) {
     PairPoints<double> x;
     for (std::size_t k = 0; k < 4; ++k) {
       const auto i = static_cast<std::size_t>(p[k]);
-      x[k] = m.start[i].cast<double>() + (m.end[i] - m.start[i]).cast<double>() * (t / 8.0);
+      x[k] = m.start[i].cast<double>() +
+             (m.end[i] - m.start[i]).cast<double>() * (t / static_cast<double>(times));
     }
     if (separate_pair(kind, x).gap < 2 * static_cast<double>(m.radius)) return true;
   }
@@ -68,7 +70,7 @@ struct Found {
 };
 
 Found find_pairs(const ClothModel<float>& model, PatchTree<float>& tree,
-                 const PredictedMotion<float>& motion, bool cull) {
+                 const PredictedMotion<float>& motion, bool cull, int times = 8) {
   Found found;
   tree.refit(motion, cull);
   tree.for_each_near_pair([&](Index p, Index q) {
@@ -76,7 +78,7 @@ Found find_pairs(const ClothModel<float>& model, PatchTree<float>& tree,
     visit_features(model, tree.patch(p), tree.patch(q), p == q,
                    [&](PairKind kind, Index a, Index b, const std::array<Index, 4>& particle) {
                      if (share(particle, first_side(kind))) return;
-                     if (come_near(kind, particle, motion))
+                     if (come_near(kind, particle, motion, times))
                        found.pairs.insert({static_cast<Index>(kind), a, b});
                    });
   });
@@ -139,6 +141,59 @@ TEST_CASE("patches with and without the cull find every pair that a search of al
       }
     }
   }
+}
+
+TEST_CASE("after some particles changed their way, old pairs and changed patches give all pairs") {
+  Random random(9);
+  std::size_t visited = 0, all = 0;
+  for (const auto& [rows, columns] : {std::pair{21, 20}, {9, 25}}) {
+    const ClothModel<float> model =
+        build_cloth<float>(flat_cloth(rows, columns, 0.03 * (columns - 1), 0.03 * (rows - 1)));
+    for (const double radius : {0.0, 0.05, 0.2}) {
+      PatchTree<float> tree(model);
+      PredictedMotion<float> motion = wrap(model, radius, 0.0015, 0, random);
+      Pairs known = find_pairs(model, tree, motion, true, 32).pairs;
+      for (int time = 0; time < 3; ++time) {
+        INFO(rows << " x " << columns << ", radius " << radius << ", time " << time);
+        // A third of the time goes by, and one region flies off, over its neighbours.
+        std::vector<char> changed(model.mass.size(), 0);
+        const auto middle = static_cast<std::size_t>(random.uniform(0, 1) * (columns * rows - 1));
+        for (std::size_t i = 0; i < changed.size(); ++i) {
+          motion.start[i] += (motion.end[i] - motion.start[i]) / 3;
+          if ((model.rest_positions[i] - model.rest_positions[middle]).norm() > 0.07f) continue;
+          changed[i] = 1;
+          motion.end[i] = motion.start[i] +
+                          Vec3f(0.05f, 0.01f, 0.02f) * static_cast<float>(time - 1) +
+                          random.vector(0.01).cast<float>();
+        }
+        const auto is_changed = [&](const std::array<Index, 4>& particle) {
+          return std::any_of(particle.begin(), particle.end(),
+                             [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+        };
+        tree.refit(motion, true);
+        tree.for_each_near_pair([&](Index, Index) { ++all; });
+        tree.mark(changed);
+        Pairs found;
+        tree.for_each_changed_pair([&](Index p, Index q) {
+          ++visited;
+          visit_features(model, tree.patch(p), tree.patch(q), p == q,
+                         [&](PairKind kind, Index a, Index b, const auto& particle) {
+                           if (share(particle, first_side(kind))) return;
+                           if (!is_changed(particle)) return;
+                           if (come_near(kind, particle, motion, 32))
+                             found.insert({static_cast<Index>(kind), a, b});
+                         });
+        });
+        // Nearer, so that the times looked at before cannot have missed them.
+        PredictedMotion<float> nearer = motion;
+        nearer.radius *= 0.8f;
+        for (const auto& pair : all_pairs(model, nearer))
+          REQUIRE((found.count(pair) || known.count(pair)));
+        known.insert(found.begin(), found.end());
+      }
+    }
+  }
+  CHECK(visited < all);
 }
 
 TEST_CASE("a flat or gently waved cloth is culled as one, and no patch of it is visited") {

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/contact/feature_pair.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Pairs are separated in vectors of at most so many.
+inline constexpr std::size_t kPairPadding = 8;
+
+/// Many pairs of one kind, and how their sides lie apart: one column a number, padded to a multiple
+/// of `kPairPadding`. As in PairSeparation, but along the line of closest points alone: where that
+/// gap is not above kCloseGap, `separate_pair` may know better.
+template <class Real>
+struct PairColumns {
+  PairKind kind = PairKind::vertex_triangle;
+  std::vector<Index> a, b;                     ///< features
+  std::array<std::vector<Index>, 4> particle;  ///< as GuardedPair has them
+  std::vector<Real> gap;                       ///< certified, along the normal [m]
+  std::vector<Real> end_gap;                   ///< along the same normal, at the end of the motion
+  std::array<std::vector<Real>, 3> normal;     ///< from the second side to the first
+  std::array<std::vector<Real>, 4> weight;     ///< of the closest points
+
+  std::size_t size() const { return a.size(); }
+  void clear();
+  void add(Index first, Index second, const std::array<Index, 4>& particles);
+  /// All that is known of a pair; exact where it is near.
+  /// @param x  positions that the columns were separated with [m]
+  PairSeparation<Real> separation(std::size_t k, const Vec3Array<Real>& x) const;
+};
+
+/// Fills the columns from `gap` on.
+/// @param x    positions [m]
+/// @param end  positions for `end_gap`; may be x
+void separate_pairs(const Vec3Array<float>& x, const Vec3Array<float>& end,
+                    PairColumns<float>& pairs);
+void separate_pairs(const Vec3Array<double>& x, const Vec3Array<double>& end,
+                    PairColumns<double>& pairs);
+
+}  // namespace weft
