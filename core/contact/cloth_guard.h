@@ -116,6 +116,13 @@ class ClothGuard {
     bool fixed;  ///< stopped at planes
   };
 
+  /// Features of a patch near another one.
+  struct NearFeatures {
+    std::vector<Index> list;  ///< those with a changed particle first
+    std::size_t changed = 0;  ///< so many
+    std::vector<Index> rest;  ///< room to work
+  };
+
   // guard_pairs.cpp
   void collect(Real dt, Profile& profile);
   void collect_strays(Real dt, Profile& profile);
@@ -200,7 +207,7 @@ class ClothGuard {
   std::vector<Aabb<Real>> vertex_boxes_, edge_boxes_, triangle_boxes_;
   std::vector<std::uint32_t> boxed_;  ///< collection in which a patch's features were boxed
   std::uint32_t collection_ = 0;
-  std::array<std::vector<Index>, 6> near_;    ///< features of two patches near the other
+  std::array<NearFeatures, 6> near_;  ///< vertices, edges and triangles of either of two patches
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;

@@ -114,8 +114,7 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   open_pairs_ = static_cast<std::size_t>(
       std::count_if(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair.open; }));
   const std::size_t kept = pairs_.size();
-  tree_.refit(motion_, true);
-  tree_.mark(changed_);
+  tree_.refit_changed(motion_, changed_);
   std::uint64_t tests = 0;
   tree_.for_each_changed_pair([&](Index p, Index q) { tests += test_patches(p, q, false); });
   for (PairColumns<Real>& columns : columns_) keep_near(columns);
@@ -229,60 +228,66 @@ std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
   box_patch(q);
   const auto& first = tree_.patch(p);
   const auto& second = tree_.patch(q);
-  const auto changed = [&](const auto& particles) {
-    return std::any_of(particles.begin(), particles.end(),
-                       [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; });
-  };
   const auto vertex_changed = [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; };
-  const auto edge_changed = [&](Index e) { return changed(edges_[static_cast<std::size_t>(e)]); };
+  const auto any_changed = [&](const auto& particles) {
+    return std::any_of(particles.begin(), particles.end(), vertex_changed);
+  };
+  const auto edge_changed = [&](Index e) {
+    return any_changed(edges_[static_cast<std::size_t>(e)]);
+  };
   const auto triangle_changed = [&](Index t) {
-    return changed(triangles_[static_cast<std::size_t>(t)]);
+    return any_changed(triangles_[static_cast<std::size_t>(t)]);
   };
-  const auto pick = [](const std::vector<Index>& from, const std::vector<Aabb<Real>>& boxes,
-                       const Aabb<Real>& box, bool any, auto&& wanted, std::vector<Index>& into) {
-    into.clear();
+  // The changed ones first; where the other patch has nothing changed these alone matter.
+  const auto pick = [&](const std::vector<Index>& from, const std::vector<Aabb<Real>>& boxes,
+                        const Aabb<Real>& box, bool others, auto&& is_changed, NearFeatures& into) {
+    into.list.clear();
+    into.rest.clear();
     for (const Index f : from) {
-      if (boxes[static_cast<std::size_t>(f)].overlaps(box) && (any || wanted(f))) into.push_back(f);
+      if (!boxes[static_cast<std::size_t>(f)].overlaps(box)) continue;
+      if (all || is_changed(f))
+        into.list.push_back(f);
+      else if (others)
+        into.rest.push_back(f);
     }
+    into.changed = into.list.size();
+    into.list.insert(into.list.end(), into.rest.begin(), into.rest.end());
   };
-  // Where the other patch has nothing changed only what is changed here matters.
-  const bool any_first = all || tree_.is_marked(q), any_second = all || tree_.is_marked(p);
-  pick(first.vertices, vertex_boxes_, tree_.box(q), any_first, vertex_changed, near_[0]);
-  pick(first.edges, edge_boxes_, tree_.box(q), any_first, edge_changed, near_[1]);
-  pick(first.triangles, triangle_boxes_, tree_.box(q), any_first, triangle_changed, near_[2]);
-  pick(second.vertices, vertex_boxes_, tree_.box(p), any_second, vertex_changed, near_[3]);
-  pick(second.edges, edge_boxes_, tree_.box(p), any_second, edge_changed, near_[4]);
-  pick(second.triangles, triangle_boxes_, tree_.box(p), any_second, triangle_changed, near_[5]);
-  const auto vertices_against = [&](const std::vector<Index>& vertices,
-                                    const std::vector<Index>& triangles) {
-    for (const Index v : vertices) {
-      const bool any = all || vertex_changed(v);
-      for (const Index t : triangles) {
-        if (!vertex_boxes_[static_cast<std::size_t>(v)].overlaps(
-                triangle_boxes_[static_cast<std::size_t>(t)]))
-          continue;
-        if (!any && !triangle_changed(t)) continue;
-        const Triangle& c = triangles_[static_cast<std::size_t>(t)];
-        test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
+  const bool first_rest = all || tree_.is_marked(q), second_rest = all || tree_.is_marked(p);
+  auto& [vertices_a, edges_a, triangles_a, vertices_b, edges_b, triangles_b] = near_;
+  pick(first.vertices, vertex_boxes_, tree_.box(q), first_rest, vertex_changed, vertices_a);
+  pick(first.edges, edge_boxes_, tree_.box(q), first_rest, edge_changed, edges_a);
+  pick(first.triangles, triangle_boxes_, tree_.box(q), first_rest, triangle_changed, triangles_a);
+  pick(second.vertices, vertex_boxes_, tree_.box(p), second_rest, vertex_changed, vertices_b);
+  pick(second.edges, edge_boxes_, tree_.box(p), second_rest, edge_changed, edges_b);
+  pick(second.triangles, triangle_boxes_, tree_.box(p), second_rest, triangle_changed, triangles_b);
+  std::uint64_t tests = 0;
+  // Of each pair at least one has changed.
+  const auto for_pairs = [&](const NearFeatures& a, const std::vector<Aabb<Real>>& boxes_a,
+                             const NearFeatures& b, const std::vector<Aabb<Real>>& boxes_b,
+                             auto&& visit) {
+    for (std::size_t m = 0; m < a.list.size(); ++m) {
+      const Aabb<Real>& box = boxes_a[static_cast<std::size_t>(a.list[m])];
+      const std::size_t end = m < a.changed ? b.list.size() : b.changed;
+      for (std::size_t n = 0; n < end; ++n) {
+        if (box.overlaps(boxes_b[static_cast<std::size_t>(b.list[n])])) visit(a.list[m], b.list[n]);
       }
+      tests += end;
     }
   };
-  vertices_against(near_[0], near_[5]);
-  if (p != q) vertices_against(near_[3], near_[2]);
-  for (const Index e : near_[1]) {
-    const bool any = all || edge_changed(e);
-    for (const Index f : near_[4]) {
-      if ((p == q && f <= e) || !edge_boxes_[static_cast<std::size_t>(e)].overlaps(
-                                    edge_boxes_[static_cast<std::size_t>(f)]))
-        continue;
-      if (!any && !edge_changed(f)) continue;
-      const Edge &a = edges_[static_cast<std::size_t>(std::min(e, f))],
-                 &b = edges_[static_cast<std::size_t>(std::max(e, f))];
-      test_pair(PairKind::edge_edge, std::min(e, f), std::max(e, f), {a[0], a[1], b[0], b[1]});
-    }
-  }
-  return near_[0].size() * near_[5].size() + near_[1].size() * near_[4].size() +
-         (p != q ? near_[3].size() * near_[2].size() : 0);
+  const auto test_vertex = [&](Index v, Index t) {
+    const Triangle& c = triangles_[static_cast<std::size_t>(t)];
+    test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
+  };
+  for_pairs(vertices_a, vertex_boxes_, triangles_b, triangle_boxes_, test_vertex);
+  if (p != q) for_pairs(vertices_b, vertex_boxes_, triangles_a, triangle_boxes_, test_vertex);
+  for_pairs(edges_a, edge_boxes_, edges_b, edge_boxes_, [&](Index e, Index f) {
+    if (p == q && f <= e) return;
+    const Edge &c = edges_[static_cast<std::size_t>(std::min(e, f))],
+               &d = edges_[static_cast<std::size_t>(std::max(e, f))];
+    test_pair(PairKind::edge_edge, std::min(e, f), std::max(e, f), {c[0], c[1], d[0], d[1]});
+  });
+  return tests;
 }
 
 /// Puts a pair among those that are to be tested.

@@ -190,10 +190,9 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
 }
 
 template <class Real>
-void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
+void PatchTree<Real>::fit_boxes(const PredictedMotion<Real>& motion) {
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
-    node.spread = {};
     node.box = {};
     if (node.patch == kNone) {
       node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
@@ -206,14 +205,22 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
     }
     node.box = node.box.grown(motion.radius);
   }
-  if (!cull || nodes_.empty()) return;
-  measure_tangents(motion.start, tangents_);
-  measure_tangents(motion.end, end_tangents_);
-  mark_spread(0, motion.radius);
 }
 
 template <class Real>
-void PatchTree<Real>::mark(const std::vector<char>& changed) {
+void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
+  fit_boxes(motion);
+  for (Node& node : nodes_) node.spread = {};
+  if (!cull || nodes_.empty()) return;
+  measure_tangents(motion.start, tangents_);
+  measure_tangents(motion.end, end_tangents_);
+  mark_spread(0, motion.radius, false);
+}
+
+template <class Real>
+void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
+                                    const std::vector<char>& changed) {
+  fit_boxes(motion);
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.patch == kNone) {
@@ -225,6 +232,45 @@ void PatchTree<Real>::mark(const std::vector<char>& changed) {
     node.marked = std::any_of(particles.begin(), particles.end(),
                               [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
   }
+  if (nodes_.empty()) return;
+  sum_changed(changed);
+  measure_tangents(motion.start, tangents_);
+  measure_tangents(motion.end, end_tangents_);
+  mark_spread(0, motion.radius, true);
+}
+
+template <class Real>
+void PatchTree<Real>::sum_changed(const std::vector<char>& changed) {
+  changed_sums_.resize(parts_.size());
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const ClothPart<Real>& part = parts_[p];
+    std::vector<int>& sums = changed_sums_[p];
+    sums.clear();
+    if (part.rows * part.columns != part.particles.count) continue;  // no whole grid
+    const auto width = static_cast<std::size_t>(part.columns) + 1;
+    sums.assign((static_cast<std::size_t>(part.rows) + 1) * width, 0);
+    auto i = static_cast<std::size_t>(part.particles.first);
+    for (std::size_t at = width; at < sums.size(); at += width) {
+      for (std::size_t c = 1; c < width; ++c, ++i)
+        sums[at + c] = sums[at + c - 1] + sums[at - width + c] - sums[at - width + c - 1] +
+                       (changed[i] != 0 ? 1 : 0);
+    }
+  }
+}
+
+/// Whether a particle of these cells changed its motion, or may have.
+template <class Real>
+bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
+  const std::vector<int>& sums = changed_sums_[static_cast<std::size_t>(p)];
+  if (sums.empty()) return true;
+  const int width = parts_[static_cast<std::size_t>(p)].columns + 1;
+  const auto before = [&](int row, int column) {
+    return sums[static_cast<std::size_t>(row * width + column)];
+  };
+  const int row_end = cells.row_end + 1, column_end = cells.column_end + 1;
+  return before(row_end, column_end) - before(cells.row, column_end) -
+             before(row_end, cells.column) + before(cells.row, cells.column) !=
+         0;
 }
 
 /// Columns of the deformation gradient of each triangle of the grids.
@@ -244,7 +290,7 @@ void PatchTree<Real>::measure_tangents(const Vec3Array<Real>& x,
 
 /// Tries the rectangle of a node, grown by the width of a patch, and else those of its children.
 template <class Real>
-void PatchTree<Real>::mark_spread(Index n, Real radius) {
+void PatchTree<Real>::mark_spread(Index n, Real radius, bool only_changed) {
   Node& node = nodes_[static_cast<std::size_t>(n)];
   const bool grid = node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
   if (grid) {
@@ -257,15 +303,19 @@ void PatchTree<Real>::mark_spread(Index n, Real radius) {
     const Real nearest = part.cell_u * part.cell_v /
                          std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
     const Real least = 2 * radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
-    if (least < 1 && is_spread(tangents_, grown, node.part, least) &&
+    const bool inherited = node.spread.cells() > 0 && node.spread != grown;
+    const bool as_before = only_changed && !inherited && !has_changed(node.part, grown);
+    if (as_before && node.spread.cells() > 0) return;
+    if (!as_before && least < 1 && is_spread(tangents_, grown, node.part, least) &&
         is_spread(end_tangents_, grown, node.part, least)) {
       give_spread(n, grown);
       return;
     }
   }
+  node.spread = {};
   if (node.patch != kNone) return;
-  mark_spread(node.left, radius);
-  mark_spread(node.right, radius);
+  mark_spread(node.left, radius, only_changed);
+  mark_spread(node.right, radius, only_changed);
 }
 
 template <class Real>

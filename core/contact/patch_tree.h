@@ -33,6 +33,11 @@ class PatchTree {
   /// @param cull  whether to look for these at all
   void refit(const PredictedMotion<Real>& motion, bool cull);
 
+  /// The same for a motion that, but for some particles, is the rest of the one before; marks the
+  /// patches that have one of these. Rectangles without them are not looked at again.
+  /// @param changed  of each particle one number, not 0 if its motion changed
+  void refit_changed(const PredictedMotion<Real>& motion, const std::vector<char>& changed);
+
   /// What stands in a patch.
   struct Patch {
     std::vector<Index> vertices, edges, triangles;  ///< that belong to it
@@ -44,9 +49,7 @@ class PatchTree {
     return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].box;
   }
 
-  /// Marks the patches that have one of the particles for which `changed` is not 0, of each
-  /// particle one number. After `refit`.
-  void mark(const std::vector<char>& changed);
+  /// Whether a patch has a changed particle.
   bool is_marked(Index p) const {
     return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].marked;
   }
@@ -74,6 +77,7 @@ class PatchTree {
       return row <= o.row && o.row_end <= row_end && column <= o.column &&
              o.column_end <= column_end;
     }
+    bool operator==(const CellRange&) const = default;
   };
   struct Node {
     Aabb<Real> box;
@@ -102,7 +106,10 @@ class PatchTree {
 
   void measure_tangents(const Vec3Array<Real>& x,
                         std::vector<std::vector<Tangents>>& tangents) const;
-  void mark_spread(Index node, Real radius);
+  void fit_boxes(const PredictedMotion<Real>& motion);
+  void sum_changed(const std::vector<char>& changed);
+  bool has_changed(Index part, const CellRange& cells) const;
+  void mark_spread(Index node, Real radius, bool only_changed);
   void give_spread(Index node, const CellRange& cells);
   bool is_spread(const std::vector<std::vector<Tangents>>& tangents, const CellRange& cells,
                  Index part, Real least) const;
@@ -146,6 +153,8 @@ class PatchTree {
   std::vector<ClothPart<Real>> parts_;
   std::vector<std::vector<GridTriangle>> grids_;  ///< of each part, two a cell; none of a mesh
   std::vector<std::vector<Tangents>> tangents_, end_tangents_;
+  /// Of each grid, the number of changed particles before a row and a column.
+  std::vector<std::vector<int>> changed_sums_;
 };
 
 extern template class PatchTree<float>;

@@ -170,9 +170,8 @@ TEST_CASE("after some particles changed their way, old pairs and changed patches
           return std::any_of(particle.begin(), particle.end(),
                              [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
         };
-        tree.refit(motion, true);
+        tree.refit_changed(motion, changed);
         tree.for_each_near_pair([&](Index, Index) { ++all; });
-        tree.mark(changed);
         Pairs found;
         tree.for_each_changed_pair([&](Index p, Index q) {
           ++visited;
