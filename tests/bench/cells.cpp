@@ -1,0 +1,136 @@
+#include "tests/bench/cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace weft::bench {
+namespace {
+
+std::string text(const char* format, double a, double b) {
+  char buffer[128];
+  std::snprintf(buffer, sizeof buffer, format, a, b);
+  return buffer;
+}
+
+/// What one run needs to be timed and compared.
+struct Run {
+  Cell cell;
+  WorldDef def;
+  int timed_ticks = 0;
+  std::vector<double> seconds;  ///< CPU time of the timed ticks, one entry a run
+};
+
+/// Cost of a whole run, from its second tick on [CPU s].
+double expected_seconds(const WorldDef& def, int ticks) {
+  World<float> world(def);
+  world.step();
+  const double start = cpu_seconds();
+  world.step();
+  return (cpu_seconds() - start) * ticks;
+}
+
+/// Follows one run to its end.
+void run_once(const CaseResult& result, Run& run) {
+  const BenchScene& scene = *result.scene;
+  World<float> world(run.def);
+  Path path;
+  path.samples.push_back(snapshot(world.state()));
+  double seconds = 0;
+  run.cell.outcome = Outcome::ran;
+  for (int tick = 1; tick <= scene.ticks; ++tick) {
+    const double start = cpu_seconds();
+    const TickReport& report = world.step();
+    seconds += cpu_seconds() - start;
+    if (tick == run.timed_ticks) run.seconds.push_back(seconds);
+    run.cell.substeps = std::max(run.cell.substeps, report.substeps);
+    if (report.divergence) {
+      run.cell.outcome = Outcome::failed;
+      run.cell.reason = describe(*report.divergence);
+      run.cell.cpu_per_second = seconds / (tick * world.tick_seconds());
+      return;
+    }
+    if (tick % scene.sample_every != 0) continue;
+    path.samples.push_back(snapshot(world.state()));
+    path.deepest = std::max(path.deepest, world.deepest_penetration());
+  }
+  const World<double> reference(without_dashpots(result.def));
+  run.cell.error =
+      compare(reference.model(), result.def.cloths[0], result.def.environment.gravity, path,
+              result.reference.path, result.reference.first, result.reference.last);
+  if (!std::isfinite(run.cell.error.position)) {
+    run.cell.outcome = Outcome::failed;
+    run.cell.reason = "its error is not finite";
+  }
+}
+
+void time_again(Run& run) {
+  World<float> world(run.def);
+  const double start = cpu_seconds();
+  for (int tick = 0; tick < run.timed_ticks; ++tick) world.step();
+  run.seconds.push_back(cpu_seconds() - start);
+}
+
+/// Decides whether a run fits the budget, and how many of its ticks are timed.
+void plan(const CaseResult& result, const Effort& effort, Run& run) {
+  const BenchScene& scene = *result.scene;
+  run.cell.scene = scene.name;
+  run.cell.fabric = result.fabric;
+  run.cell.n = result.n;
+  if (!result.reference.missing.empty()) {
+    run.cell.reason = result.reference.missing;
+    return;
+  }
+  const double seconds = expected_seconds(run.def, scene.ticks);
+  const double budget = scene.run_budget * effort.budget_factor;
+  if (seconds > budget) {
+    run.cell.reason = text("one run would take %.1f CPU s, more than %.1f", seconds, budget);
+    return;
+  }
+  run.timed_ticks = scene.ticks;
+  // Where nothing is met, each tick costs the same.
+  if (scene.forces_alone && seconds > effort.timed_seconds)
+    run.timed_ticks =
+        std::clamp(static_cast<int>(effort.timed_seconds / seconds * scene.ticks), 2, scene.ticks);
+  run.cell.outcome = Outcome::ran;
+}
+
+}  // namespace
+
+CaseResult run_case(const BenchScene& scene, const BenchFabric& fabric, int n,
+                    const Effort& effort) {
+  CaseResult result;
+  result.scene = &scene;
+  result.fabric = fabric.name;
+  result.n = n;
+  result.def = scene.make(n, fabric.fabric);
+  BenchScene within = scene;
+  within.reference_budget *= effort.budget_factor;
+  result.reference = make_reference(within, result.def);
+  World<float> probe(result.def);
+  const int stable = probe.step().substeps;
+  std::vector<Run> runs;
+  for (const Setting& setting : settings(effort.quick || !scene.all_settings)) {
+    Run run;
+    run.cell.setting = setting;
+    run.def = with_setting(result.def, setting, stable);
+    plan(result, effort, run);
+    if (run.cell.outcome == Outcome::ran) run_once(result, run);
+    runs.push_back(std::move(run));
+  }
+  for (int k = 1; k < effort.timed_runs; ++k) {
+    for (Run& run : runs) {
+      if (run.cell.outcome == Outcome::ran) time_again(run);
+    }
+  }
+  for (Run& run : runs) {
+    if (run.cell.outcome == Outcome::ran) {
+      run.cell.timed_runs = static_cast<int>(run.seconds.size());
+      run.cell.cpu_per_second = median(run.seconds) / (run.timed_ticks * probe.tick_seconds());
+    }
+    result.cells.push_back(run.cell);
+  }
+  return result;
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "tests/bench/tables.h"
+
+// Measures speed against error and writes tables; report.py makes the report of them.
+
+namespace {
+
+using namespace weft::bench;
+
+struct Options {
+  std::string out, commit = "unknown", meshes;
+  std::vector<std::string> parts, scenes, fabrics;
+  std::vector<int> sizes = {32, 64, 128, 256};
+  Effort effort;
+};
+
+bool wanted(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void measure_accuracy(const Options& options, Tables& tables) {
+  for (const BenchScene& scene : bench_scenes()) {
+    if (!wanted(options.scenes, scene.name)) continue;
+    for (const BenchFabric& fabric : bench_fabrics()) {
+      if (!wanted(options.fabrics, fabric.name)) continue;
+      std::optional<CaseResult> before;
+      for (const int n : options.sizes) {
+        std::cerr << "bench: " << scene.name << ", " << fabric.name << ", " << n << std::endl;
+        CaseResult result = run_case(scene, fabric, n, options.effort);
+        tables.add_case(result);
+        if (before && 2 * before->n == n) tables.add_spatial(*before, result);
+        before = std::move(result);
+      }
+    }
+  }
+}
+
+int measure(const Options& options) {
+  std::filesystem::create_directories(options.out);
+  Tables tables(options.out, options.commit);
+  tables.write_machine();
+  const bool quick = options.effort.quick;
+  if (wanted(options.parts, "kernels")) {
+    std::cerr << "bench: kernels" << std::endl;
+    tables.write_kernels(measure_kernels(quick));
+  }
+  if (wanted(options.parts, "parts")) {
+    std::cerr << "bench: parts of the built-in scenes" << std::endl;
+    tables.write_parts(measure_parts(quick, options.meshes));
+  }
+  if (wanted(options.parts, "shaking")) {
+    std::cerr << "bench: hard shaking" << std::endl;
+    tables.write_shaking(measure_shaking(quick));
+  }
+  if (wanted(options.parts, "accuracy")) measure_accuracy(options, tables);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Measures speed against error of Weft's solvers, in CPU time of one thread");
+  app.add_option("--out", options.out, "directory for the tables")->required();
+  app.add_option("--commit", options.commit, "written into each row");
+  app.add_option("--meshes", options.meshes, "directory of installed meshes");
+  app.add_option("--parts", options.parts, "kernels, parts, shaking, accuracy; default: all");
+  app.add_option("--scenes", options.scenes, "of the accuracy; default: all");
+  app.add_option("--fabrics", options.fabrics, "soft, stiff, cotton; default: all");
+  app.add_option("--sizes", options.sizes, "particles a side, ascending");
+  app.add_option("--runs", options.effort.timed_runs, "runs whose median is taken")
+      ->check(CLI::Range(1, 99));
+  app.add_option("--budget", options.effort.budget_factor, "times the CPU budget of each cell")
+      ->check(CLI::Range(0.0, 1e3));
+  app.add_flag("--quick", options.effort.quick, "fewer settings, shorter runs");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return measure(options);
+  } catch (const std::exception& error) {
+    std::cerr << "weft_bench: " << error.what() << std::endl;
+    return 1;
+  }
+}

@@ -1,0 +1,181 @@
+"""Makes the report of what weft_bench has measured: plots, REPORT.md and the README's table."""
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import tables  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+BEGIN, END = "<!-- report: begin -->", "<!-- report: end -->"
+COLOURS = {"verlet": "#1b6ca8", "xpbd": "#c4541b", "relaxation": "#5b8a3a"}
+MARKS = {"verlet": 7, "xpbd": 5, "relaxation": 9}
+SCENES = {"swing": "Swing from the horizontal", "static-rest": "Static rest",
+          "cantilever": "Cantilever", "hanging-strip": "Hanging strip", "flag": "Flag in wind",
+          "drape": "Drape on a sphere"}
+ABOUT = {
+    "swing": "1 m × 1 m, held by one edge, let go when level.",
+    "static-rest": "1 m × 1 m between two opposite edges; compared where it has come to rest.",
+    "cantilever": "A strip of 12 cm × 3 cm, clamped at one end, let go when level.",
+    "hanging-strip": "1 m × 12 cm, upright, let go when not stretched yet: the way is the stretch "
+                     "alone, so a solver with rigid springs is 100 % wrong.",
+    "flag": "1 m × 1 m, held by one edge, in a wind of 6 m/s.",
+    "drape": "1 m × 1 m, falls on a sphere of 0.3 m radius, with friction."}
+
+
+def data_block(name, cells):
+    """A gnuplot data block of runs, dearest last; failed ones apart."""
+    lines = [f"${name} << EOD"]
+    for cell in sorted(cells, key=lambda c: c["cpu_per_second"]):
+        lines.append(f"{cell['cpu_per_second']} {max(100 * min(cell['position'], 3), 1e-5)}")
+    return lines + ["EOD"]
+
+
+def panel(index, cells, scene, fabric, n):
+    """One diagram: error against CPU time, a line for each solver."""
+    blocks, curves = [], []
+    for solver in tables.SOLVERS:
+        mine = tables.of_case(cells, scene, fabric, n, solver)
+        ran = [cell for cell in mine if cell["outcome"] == "ran"]
+        failed = [cell for cell in mine if cell["outcome"] == "failed"]
+        style = f"lc rgb '{COLOURS[solver]}' lw 1.3 ps 0.45"
+        if ran:
+            blocks += data_block(f"ran{index}{solver}", ran)
+            curves.append(f"$ran{index}{solver} with points pt {MARKS[solver]} {style} notitle")
+            front = [c for c in ran if not any(
+                o["cpu_per_second"] < c["cpu_per_second"] and o["position"] <= c["position"] for o in ran)]
+            blocks += data_block(f"front{index}{solver}", front)
+            curves.append(f"$front{index}{solver} with lines {style} notitle")
+        if failed:
+            blocks += data_block(f"failed{index}{solver}", [{**c, "position": 3} for c in failed])
+            curves.append(f"$failed{index}{solver} with points pt 2 ps 0.9 lw 2 "
+                          f"lc rgb '{COLOURS[solver]}' notitle")
+    lines = blocks + [f"set title '{fabric}, {n} × {n}' offset 0,-0.7"]
+    if curves:
+        return lines + ["plot " + ", ".join(curves)]
+    reason = tables.why_not(tables.of_case(cells, scene, fabric, n)).replace("'", "")
+    words, wrapped = reason.split(), [""]
+    for word in words:
+        if len(wrapped[-1]) + len(word) > 34:
+            wrapped.append("")
+        wrapped[-1] = (wrapped[-1] + " " + word).strip()
+    text = "\\n".join(["not run:"] + wrapped)
+    return lines + [f'set label 1 "{text}" at graph 0.5,0.6 center font ",9"',
+                    "plot [0.001:10][1e-4:300] NaN notitle", "unset label 1"]
+
+
+def plot_scene(cells, scene, path):
+    sizes = tables.unique(cell["n"] for cell in cells if cell["scene"] == scene)
+    fabrics = [f for f in tables.FABRICS if any(
+        c["fabric"] == f for c in cells if c["scene"] == scene)]
+    mine = [c for c in cells if c["scene"] == scene and c["outcome"] != "not run"]
+    least = min([c["position"] for c in mine if c["position"] > 0], default=1e-4)
+    width, height = 300 * len(fabrics) + 20, 205 * len(sizes) + 60
+    lines = [
+        f"set terminal svg size {width},{height} enhanced font 'sans,10' background rgb 'white'",
+        f"set output '{path}'", "set encoding utf8", "set logscale xy",
+        "set format x '%g'", "set format y '%g'", "set grid lc rgb '#dddddd'", "set tics scale 0.5",
+        f"set yrange [{100 * max(least / 2, 1e-7)}:500]",
+        "set xlabel 'CPU s a simulated s' offset 0,0.6", "set ylabel 'position error [%]' offset 1.5,0",
+        f"set multiplot layout {len(sizes)},{len(fabrics)} margins 0.07,0.985,"
+        f"{52 / height},{1 - 48 / height} spacing 0.065,{64 / height}"]
+    for k, solver in enumerate(tables.SOLVERS):
+        lines.append(f"set label {10 + k} '● {tables.NAMES[solver]}' at screen {0.08 + 0.12 * k},"
+                     f"{1 - 14 / height} tc rgb '{COLOURS[solver]}' font ',11'")
+    lines.append(f"set label 20 'line: the best of its settings; × on top: failed' at screen 0.46,"
+                 f"{1 - 14 / height} tc rgb '#444444'")
+    lines += ["set arrow 1 from graph 0,first 1 to graph 1,first 1 nohead lc rgb '#999999' dt 2"]
+    for index, (n, fabric) in enumerate((n, f) for n in sizes for f in fabrics):
+        lines += panel(index, cells, scene, fabric, n)
+        if index == 0:
+            lines += [f"unset label {k}" for k in (10, 11, 12, 20)]
+    lines.append("unset multiplot")
+    subprocess.run(["gnuplot"], input="\n".join(lines) + "\n", text=True, check=True)
+
+
+def report_text(data):
+    cells = tables.read(data, "accuracy")
+    machine = {row["key"]: row["value"] for row in tables.read(data, "machine")}
+    references, spatial = tables.read(data, "references"), tables.read(data, "spatial")
+    parts = tables.read(data, "parts")
+    out = ["# Speed against error", "",
+           "Written by `./dev report`; not by hand. All times are CPU time of one thread, medians of "
+           "interleaved runs, and tell what one simulated second costs. They were taken on the "
+           "machine below, while other work ran on it.", "",
+           tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
+           "The tables as CSV, with every setting and the commit: " + ", ".join(
+               f"[{name}](data/{name}.csv)" for name in
+               ("accuracy", "references", "spatial", "kernels", "parts", "shaking", "machine")) + ".",
+           "", "## What an error costs", "",
+           "The cheapest setting of any solver whose positions stay within the error all the way of "
+           "the swing, in CPU seconds a simulated second.", "",
+           tables.cost_of_accuracy(cells), "",
+           "## verlet against XPBD at 1 %", "", tables.summary_of_rivals(cells), "",
+           "Both run the same springs, bending and drag in single precision, each with its own vector "
+           "kernel. The error of strains is beside that of positions because lengths may be far off "
+           "while the cloth is about where it should be.", "",
+           tables.verlet_against_xpbd(cells), "",
+           "## How errors are measured", "",
+           "The reference solves the same springs and masses in double precision, without dashpots: "
+           "these belong to verlet, and what they change counts as its error. Substeps are halved "
+           "until that changes the positions by less than 1e-8 or the budget is spent; what the last "
+           "halving changed is told. Beside it runs a start perturbed by 1 µm (rms): where that has "
+           "grown 10 times, nothing later is compared. Position: L2 of the distance over the longest "
+           "L2 way of the reference, the worst sample. Strain: L2 over all springs, over that of the "
+           "reference. Energy: over m g L. Momentum: over m √(g L). Penetration: the deepest at a "
+           "sample. verlet ×1 is the product; ×2 has twice the stable substeps; XPBD and the seed's "
+           "relaxation are given as substeps × sweeps; relaxation has rigid springs."]
+    for scene in tables.unique(cell["scene"] for cell in cells):
+        out += ["", f"## {SCENES[scene]}", "", ABOUT[scene], "",
+                f"![Error against CPU time: {SCENES[scene]}](plots/{scene}.svg)", "",
+                tables.references(references, spatial, scene), "",
+                "The cheapest setting within 1 % in position, or the best one where none is:", "",
+                tables.error_vectors(cells, scene)]
+    out += ["", "## Kernels", "", tables.kernels(tables.read(data, "kernels")), "",
+            "## Is an implicit solver needed?", "",
+            "It is built as soon as a built-in scene, or cotton at 128², costs more than a second of "
+            "CPU a simulated second with verlet.", "", tables.need_of_implicit(parts, cells), "",
+            "## What each part of the model costs", "",
+            "Each built-in scene as it is and with one part switched off, over its first second; how "
+            "far the particles end from where they were (rms).", "", tables.parts(parts), "",
+            "## Hard shaking", "",
+            "Cloths of 1 m × 1 m that hang by one edge. With drag 5/s, 5 s after the insult: rms "
+            "distance from the solver's own rest, over 1 m; at most 1 % is wanted. Without drag: what "
+            "the energy rose above that after the insult, over that start; at most 1 % is wanted.", "",
+            tables.shaking(tables.read(data, "shaking")), "",
+            "## Runs that failed", "", tables.without_figure(cells, "failed"), "",
+            "## Cells that were not run", "", tables.without_figure(cells, "not run"), ""]
+    return "\n".join(out)
+
+
+def readme_block(data):
+    return "\n".join([BEGIN, tables.cost_of_accuracy(tables.read(data, "accuracy")), END])
+
+
+def with_block(readme, data):
+    """The README with its table from the given data."""
+    before, rest = readme.split(BEGIN)
+    after = rest.split(END)[1]
+    return before + readme_block(data) + after
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", type=Path, help="holds data/; gets plots/ and REPORT.md")
+    parser.add_argument("--readme", type=Path, help="its table is written anew")
+    options = parser.parse_args()
+    data, plots = options.directory / "data", options.directory / "plots"
+    plots.mkdir(exist_ok=True)
+    cells = tables.read(data, "accuracy")
+    for scene in tables.unique(cell["scene"] for cell in cells):
+        plot_scene(cells, scene, plots / f"{scene}.svg")
+    (options.directory / "REPORT.md").write_text(report_text(data), encoding="utf-8")
+    if options.readme:
+        text = options.readme.read_text(encoding="utf-8")
+        options.readme.write_text(with_block(text, data), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+#include "tests/bench/shaking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/world/world.h"
+#include "tests/bench/cases.h"
+#include "tests/bench/measures.h"
+#include "tests/support/random.h"
+
+namespace weft::bench {
+namespace {
+
+constexpr int kTicks = 300;
+
+WorldDef hung(int n, const FabricDef& fabric, double drag) {
+  WorldDef def = bench_scenes().front().make(n, fabric);
+  def.cloths[0].v = -Vec3d::UnitY();
+  def.environment.drag = drag;
+  return def;
+}
+
+/// Runs and counts the ticks that were taken back.
+int run(World<float>& world, int ticks) {
+  int rescues = 0;
+  for (int k = 0; k < ticks; ++k) rescues += world.step().divergence ? 1 : 0;
+  return rescues;
+}
+
+void shake(World<float>& world) {
+  test::Random random(5);
+  for (std::size_t i = 0; i < world.state().v.size(); ++i) {
+    const Vec3d v = random.vector(1).normalized() * 20;
+    if (world.state().inverse_mass[i] > 0) world.state().v[i] = v.cast<float>();
+  }
+  world.accept_state();
+}
+
+void crush(World<float>& world) {
+  test::Random random(6);
+  for (std::size_t i = 0; i < world.state().x.size(); ++i) {
+    const Vec3d place = Vec3d(0.5, -0.5, 0) + random.vector(0.5e-3);
+    if (world.state().inverse_mass[i] > 0) world.state().x[i] = place.cast<float>();
+  }
+  world.accept_state();
+}
+
+void teleport_pin(World<float>& world, const Vec3f& by) {
+  world.state().x[0] += by;
+  world.accept_state();
+}
+
+/// Hurts a world and lets it run; returns the ticks that were taken back.
+int hurt(World<float>& world, const std::string& insult, int ticks, double& highest) {
+  int rescues = 0;
+  if (insult == "noise of 20 m/s") shake(world);
+  if (insult == "all in a ball of 1 mm") crush(world);
+  if (insult == "pin 3 m away and back") {
+    teleport_pin(world, Vec3f(0, 0, 3));
+    rescues += run(world, 6);
+    teleport_pin(world, Vec3f(0, 0, -3));
+  }
+  const double start = world.report().energies.total();
+  highest = 0;
+  for (int k = 0; k < ticks; ++k) {
+    rescues += run(world, 1);
+    const double gained = world.report().energies.total() - start;
+    if (!(gained <= highest)) highest = gained;
+  }
+  const double lowest = world.report().energies.gravity + world.report().energies.bending;
+  highest /= std::max(start - std::min(start, lowest), 0.2 * 9.81);
+  return rescues;
+}
+
+}  // namespace
+
+std::vector<ShakingFigure> measure_shaking(bool quick) {
+  const std::vector<Setting> solvers = {{"verlet", "x1", 1, 1, 1, 1},
+                                        {"xpbd", "32x1", 1, 1, 32, 1},
+                                        {"relaxation", "1x20", 1, 1, 1, 20}};
+  const std::vector<int> sizes = quick ? std::vector<int>{33} : std::vector<int>{33, 64};
+  std::vector<ShakingFigure> figures;
+  for (const int n : sizes) {
+    for (std::size_t f = 0; f < 2; ++f) {
+      const BenchFabric& fabric = bench_fabrics()[f];
+      for (const Setting& setting : solvers) {
+        const auto def = [&](double drag) {
+          return with_setting(hung(n, fabric.fabric, drag), setting, 1);
+        };
+        World<float> rest(def(5));
+        run(rest, kTicks);
+        for (const char* insult :
+             {"noise of 20 m/s", "all in a ball of 1 mm", "pin 3 m away and back"}) {
+          ShakingFigure figure{setting.solver, setting.name, fabric.name, insult, n, 0, 0, 0};
+          double unused = 0;
+          World<float> damped(def(5)), free(def(0));
+          figure.rescues += hurt(damped, insult, kTicks, unused);
+          figure.from_rest = rms_distance(snapshot(damped.state()), snapshot(rest.state()));
+          figure.rescues += hurt(free, insult, kTicks / 5, figure.gained_energy);
+          figures.push_back(figure);
+        }
+      }
+    }
+  }
+  return figures;
+}
+
+}  // namespace weft::bench

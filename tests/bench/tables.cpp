@@ -1,0 +1,150 @@
+#include "tests/bench/tables.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "core/forces/grid_pass.h"
+
+namespace weft::bench {
+namespace {
+
+const char* outcome_name(Outcome outcome) {
+  static constexpr const char* kNames[] = {"ran", "failed", "not run"};
+  return kNames[static_cast<int>(outcome)];
+}
+
+/// First value of a key of /proc/cpuinfo.
+std::string cpu_info(const std::string& key) {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+/// Those of the processor's features that decide how fast the kernels are.
+std::string cpu_features() {
+  const std::string all = cpu_info("flags").append(" ");
+  std::string found;
+  for (const char* name : {"sse2", "ssse3", "sse4_1", "avx", "avx2", "fma", "avx512f", "avx512bw"})
+    if (all.find(std::string(name).append(" ")) != std::string::npos)
+      found.append(found.empty() ? "" : " ").append(name);
+  return found;
+}
+
+}  // namespace
+
+Csv::Csv(const std::string& path, const std::vector<std::string>& columns)
+    : file_(path), columns_(columns.size()) {
+  if (!file_) throw std::runtime_error("cannot write " + path);
+  for (std::size_t n = 0; n < columns.size(); ++n) write(columns[n], n);
+  end_row(columns.size());
+}
+
+void Csv::write(const std::string& text, std::size_t n) {
+  if (n > 0) file_ << ',';
+  if (text.find_first_of(",\"") == std::string::npos) {
+    file_ << text;
+    return;
+  }
+  file_ << '"';
+  for (const char c : text) {
+    if (c == '"') file_ << c;
+    file_ << c;
+  }
+  file_ << '"';
+}
+
+void Csv::write(double value, std::size_t n) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  write(std::string(buffer), n);
+}
+
+void Csv::end_row(std::size_t count) {
+  if (count != columns_) throw std::logic_error("a row of the table has a column too many or few");
+  file_ << '\n' << std::flush;
+}
+
+Tables::Tables(const std::string& directory, const std::string& commit)
+    : directory_(directory), commit_(commit),
+      cells_(directory + "/accuracy.csv",
+             {"scene",          "fabric",         "n",        "solver",  "setting", "factor",
+              "damping_sweeps", "least_substeps", "sweeps",   "outcome", "reason",  "substeps",
+              "cpu_per_second", "timed_runs",     "position", "strain",  "energy",  "momentum",
+              "penetration_m",  "commit"}),
+      references_(
+          directory + "/references.csv",
+          {"scene", "fabric", "n", "how", "self_error", "growth_of_1um", "mean_shape_floor",
+           "compared_from_s", "compared_to_s", "horizon_s", "cpu_seconds", "missing", "commit"}),
+      spatial_(directory + "/spatial.csv",
+               {"scene", "fabric", "n", "against", "position", "commit"}) {}
+
+void Tables::write_machine() {
+  Csv csv(directory_ + "/machine.csv", {"key", "value"});
+  csv.row("commit", commit_);
+  csv.row("compiler", std::string("g++ or clang++ ") + __VERSION__);
+#ifdef NDEBUG
+  csv.row("build", "optimised, without assertions");
+#else
+  csv.row("build", "with assertions");
+#endif
+  csv.row("processor", cpu_info("model name"));
+  csv.row("features", cpu_features());
+  csv.row("kernels", std::string(simd_level()));
+  csv.row("clock", "CPU time of the thread");
+}
+
+void Tables::add_case(const CaseResult& result) {
+  const Reference& r = result.reference;
+  const double sample = result.scene->sample_every / result.def.tick_rate;
+  references_.row(result.scene->name, result.fabric, result.n, r.how, r.self_error, r.growth,
+                  r.mean_floor, static_cast<double>(r.first) * sample,
+                  static_cast<double>(r.last) * sample, result.scene->ticks / result.def.tick_rate,
+                  r.cpu_seconds, r.missing, commit_);
+  for (const Cell& c : result.cells) {
+    const ErrorVector& e = c.error;
+    const Setting& s = c.setting;
+    cells_.row(c.scene, c.fabric, c.n, s.solver, s.name, s.factor, s.damping_sweeps, s.substeps,
+               s.sweeps, outcome_name(c.outcome), c.reason, c.substeps, c.cpu_per_second,
+               c.timed_runs, e.position, e.strain, e.energy, e.momentum, e.mean_shape,
+               e.penetration, commit_);
+  }
+}
+
+void Tables::add_spatial(const CaseResult& coarse, const CaseResult& fine) {
+  if (!coarse.reference.missing.empty() || !fine.reference.missing.empty()) return;
+  const std::size_t first = std::max(coarse.reference.first, fine.reference.first);
+  const std::size_t last = std::min(coarse.reference.last, fine.reference.last);
+  if (last < first) return;
+  spatial_.row(coarse.scene->name, coarse.fabric, coarse.n, fine.n,
+               spatial_error(coarse.def.cloths[0], coarse.reference.path, fine.def.cloths[0],
+                             fine.reference.path, first, last),
+               commit_);
+}
+
+void Tables::write_kernels(const std::vector<KernelFigure>& figures) {
+  Csv csv(directory_ + "/kernels.csv", {"figure", "value", "unit", "bar", "runs", "commit"});
+  for (const KernelFigure& f : figures) csv.row(f.name, f.value, f.unit, f.bar, f.runs, commit_);
+}
+
+void Tables::write_parts(const std::vector<PartFigure>& figures) {
+  Csv csv(directory_ + "/parts.csv", {"scene", "solver", "off", "ticks", "cpu_per_second",
+                                      "slowest_second", "moved_m", "same_bits", "runs", "commit"});
+  for (const PartFigure& f : figures)
+    csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.slowest_second, f.moved,
+            f.same_bits ? "yes" : "no", f.runs, commit_);
+}
+
+void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {
+  Csv csv(directory_ + "/shaking.csv", {"solver", "setting", "fabric", "n", "insult", "from_rest",
+                                        "gained_energy", "rescues", "commit"});
+  for (const ShakingFigure& f : figures)
+    csv.row(f.solver, f.setting, f.fabric, f.n, f.insult, f.from_rest, f.gained_energy, f.rescues,
+            commit_);
+}
+
+}  // namespace weft::bench

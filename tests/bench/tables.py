@@ -1,0 +1,243 @@
+"""The figures of the report as tables of text, from the CSV files that weft_bench writes."""
+
+import csv
+from pathlib import Path
+
+FABRICS = ["soft", "stiff", "cotton"]
+BOUNDS = [(0.1, "10 %"), (0.01, "1 %"), (0.001, "0.1 %")]
+SOLVERS = ["verlet", "xpbd", "relaxation"]
+NAMES = {"verlet": "verlet", "xpbd": "XPBD", "relaxation": "seed"}
+ERRORS = ["position", "strain", "energy", "momentum"]
+
+
+def read(directory, name):
+    path = Path(directory, f"{name}.csv")
+    if not path.exists():
+        return []
+    with open(path, encoding="utf-8", newline="") as file:
+        return [{key: number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def number(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def unique(values):
+    return list(dict.fromkeys(values))
+
+
+def percent(value):
+    return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
+
+
+def seconds(value):
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"
+
+
+def setting_name(cell):
+    if cell["solver"] == "verlet":
+        return f"verlet {cell['setting']}"
+    return f"{NAMES[cell['solver']]} {cell['setting'].replace('x', '×')}"
+
+
+def of_case(cells, scene, fabric, n, solver=None):
+    return [cell for cell in cells if (cell["scene"], cell["fabric"], cell["n"]) == (scene, fabric, n)
+            and solver in (None, cell["solver"])]
+
+
+def cheapest(cells, bound, error="position"):
+    """The cheapest run whose error is at most `bound`, or None."""
+    good = [cell for cell in cells if cell["outcome"] == "ran" and cell[error] <= bound]
+    return min(good, key=lambda cell: cell["cpu_per_second"], default=None)
+
+
+def why_not(cells):
+    """Why a case has no figure: its most common reason."""
+    reasons = [cell["reason"] for cell in cells if cell["outcome"] == "not run"]
+    return max(set(reasons), key=reasons.count) if reasons else "no setting reaches it"
+
+
+def cost_of_accuracy(cells, scene="swing"):
+    """What 10 %, 1 % and 0.1 % cost at each N: the table of the README."""
+    rows = []
+    for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
+        for fabric in FABRICS:
+            case = of_case(cells, scene, fabric, n)
+            if not case:
+                continue
+            row = [f"{n}²", fabric]
+            for bound, _ in BOUNDS:
+                best = cheapest(case, bound)
+                row.append(f"{seconds(best['cpu_per_second'])} ({setting_name(best)})" if best
+                           else why_not(case))
+            rows.append(row)
+    return markdown(["N", "fabric"] + [f"error {name}" for _, name in BOUNDS], rows)
+
+
+def verlet_against_xpbd(cells):
+    rows = []
+    for scene in unique(cell["scene"] for cell in cells):
+        for fabric in FABRICS:
+            for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
+                for error in ("position", "strain"):
+                    ours = cheapest(of_case(cells, scene, fabric, n, "verlet"), 0.01, error)
+                    rival = cheapest(of_case(cells, scene, fabric, n, "xpbd"), 0.01, error)
+                    if not ours:
+                        continue
+                    row = [scene, fabric, f"{n}²", error, seconds(ours["cpu_per_second"])]
+                    if rival:
+                        ratio = rival["cpu_per_second"] / ours["cpu_per_second"]
+                        row += [f"{seconds(rival['cpu_per_second'])} ({setting_name(rival)})",
+                                f"{ratio:.1f}"]
+                    else:
+                        row += ["no setting that was run", "–"]
+                    rows.append(row)
+    return markdown(["scene", "fabric", "N", "error", "verlet [s]", "XPBD [s]", "XPBD / verlet"], rows)
+
+
+def summary_of_rivals(cells):
+    """One sentence on the wanted factor of 2 at 64² and 128², soft and stiff."""
+    parts, held = [], True
+    for fabric in ("soft", "stiff"):
+        for n in (64, 128):
+            for error in ("position", "strain"):
+                ours = cheapest(of_case(cells, "swing", fabric, n, "verlet"), 0.01, error)
+                rival = cheapest(of_case(cells, "swing", fabric, n, "xpbd"), 0.01, error)
+                if not ours or (not rival and error == "strain"):
+                    continue
+                ratio = rival["cpu_per_second"] / ours["cpu_per_second"] if rival else None
+                held = held and error != "position" or (ratio is not None and ratio >= 2)
+                shown = f"{ratio:.1f}" if ratio else "–"
+                parts.append(f"{fabric} {n}² {shown} ({error})")
+    verdict = ("verlet is at least 2 times cheaper in position everywhere" if held else
+               "verlet is **not** everywhere 2 times cheaper in position")
+    return f"Wanted is a factor of 2 at 1 % in the swing: {'; '.join(parts)}. So {verdict}."
+
+
+def references(rows, spatial, scene):
+    table = []
+    for row in rows:
+        if row["scene"] != scene:
+            continue
+        beside = [s for s in spatial if (s["scene"], s["fabric"], s["n"]) ==
+                  (scene, row["fabric"], row["n"])]
+        coarse = percent(beside[0]["position"]) if beside else "–"
+        if row["missing"]:
+            table.append([row["fabric"], f"{row['n']}²", "none: " + row["missing"], "–", "–", "–", coarse])
+            continue
+        span = f"{row['compared_from_s']:g} to {row['compared_to_s']:g} s"
+        if row["compared_from_s"] == row["compared_to_s"]:
+            span = f"at {row['compared_to_s']:g} s"
+        if row["compared_to_s"] < row["horizon_s"]:
+            span += f" of {row['horizon_s']:g}: later a perturbation has grown 10 times"
+        table.append([row["fabric"], f"{row['n']}²", row["how"], f"{row['self_error']:.1e}",
+                      f"{row['growth_of_1um']:.2g}", span, coarse])
+    return markdown(["fabric", "N", "reference", "its last halving changed", "growth of 1 µm",
+                     "compared", "spatial error, N against 2N"], table)
+
+
+def error_vectors(cells, scene):
+    contact = any(cell["penetration_m"] for cell in cells if cell["scene"] == scene)
+    rows = []
+    for fabric in FABRICS:
+        for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
+            for solver in SOLVERS:
+                ran = [c for c in of_case(cells, scene, fabric, n, solver) if c["outcome"] == "ran"]
+                best = cheapest(ran, 0.01) or min(ran, key=lambda c: c["position"], default=None)
+                if not best:
+                    continue
+                row = [fabric, f"{n}²", setting_name(best), seconds(best["cpu_per_second"])]
+                row += [percent(best[error]) for error in ERRORS]
+                if contact:
+                    row.append(f"{1e3 * best['penetration_m']:.2g} mm")
+                rows.append(row)
+    head = ["fabric", "N", "setting", "CPU s per s"] + ERRORS
+    return markdown(head + (["penetration"] if contact else []), rows)
+
+
+def without_figure(cells, outcome):
+    rows = []
+    groups = {}
+    for cell in cells:
+        if cell["outcome"] == outcome:
+            key = (cell["scene"], cell["fabric"], cell["n"], cell["solver"])
+            groups.setdefault(key, []).append(cell)
+    for (scene, fabric, n, solver), group in groups.items():
+        names = ", ".join(cell["setting"].replace("x", "×") for cell in group)
+        reasons = unique(cell["reason"] for cell in group)
+        more = f" (and {len(reasons) - 1} more like it)" if len(reasons) > 1 else ""
+        rows.append([scene, fabric, f"{n}²", NAMES[solver], names, reasons[0] + more])
+    if not rows:
+        return "None."
+    return markdown(["scene", "fabric", "N", "solver", "settings", "reason"], rows)
+
+
+def kernels(rows):
+    table = []
+    for row in rows:
+        bar = row["bar"]
+        value = f"{row['value']:.3g} {row['unit']}" if row["unit"] == "ns" else f"{row['value']:g}"
+        held = "–" if not bar else ("held" if row["value"] <= bar else "**missed**")
+        table.append([row["figure"], value, f"{bar:g} ns" if bar else "–", held])
+    return markdown(["figure", "measured", "at most", ""], table)
+
+
+def parts(rows):
+    table = []
+    for row in rows:
+        whole = next(r for r in rows if r["scene"] == row["scene"] and r["off"] == "nothing")
+        cost = seconds(row["cpu_per_second"])
+        if row["off"] == "nothing":
+            table.append([row["scene"], row["solver"], "–", cost, "", ""])
+            continue
+        change = row["cpu_per_second"] / whole["cpu_per_second"] - 1
+        moved = "not a bit" if row["same_bits"] == "yes" else f"{100 * row['moved_m']:.2g} cm"
+        table.append(["", "", row["off"], cost, f"{100 * change:+.0f} %", moved])
+    return markdown(["scene", "solver", "switched off", "CPU s per s", "time", "moves the cloth by"], table)
+
+
+def shaking(rows):
+    table = []
+    for row in rows:
+        back = row["from_rest"] <= 0.01
+        bounded = row["gained_energy"] <= 0.01
+        table.append([NAMES[row["solver"]] + " " + row["setting"].replace("x", "×"), row["fabric"],
+                      f"{row['n']}²", row["insult"],
+                      percent(row["from_rest"]) + ("" if back else " **missed**"),
+                      percent(row["gained_energy"]) + ("" if bounded else " **missed**"),
+                      row["rescues"]])
+    return markdown(["solver", "fabric", "N", "insult", "from rest, 5 s later",
+                     "energy above the start", "ticks taken back"], table)
+
+
+def need_of_implicit(part_rows, cells):
+    """Which built-in scenes or cotton at 128² verlet cannot hold in real time, by the figures."""
+    rows, slow = [], []
+    for row in part_rows:
+        if row["off"] != "nothing" or row["solver"] != "verlet":
+            continue
+        rows.append([row["scene"], seconds(row["slowest_second"])])
+        if row["slowest_second"] > 1:
+            slow.append(f"{row['scene']} ({seconds(row['slowest_second'])} CPU s per s)")
+    for cell in of_case(cells, "swing", "cotton", 128, "verlet"):
+        if cell["factor"] == 1 and cell["damping_sweeps"] == 1 and cell["outcome"] == "ran":
+            rows.append(["swing of cotton, 128²", seconds(cell["cpu_per_second"])])
+            if cell["cpu_per_second"] > 1:
+                slow.append(f"cotton at 128² ({seconds(cell['cpu_per_second'])} CPU s per s)")
+    if slow:
+        verdict = ("**Yes**, by these figures: on this machine, on one thread, verlet does not hold "
+                   + ", ".join(slow) + " in real time.")
+    else:
+        verdict = ("**No**, by these figures: on this machine, on one thread, verlet holds each of "
+                   "them in real time, so no implicit solver is built.")
+    return verdict + "\n\n" + markdown(["scene", "CPU s of its dearest second"], rows)
