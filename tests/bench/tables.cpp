@@ -75,7 +75,7 @@ Tables::Tables(const std::string& directory, const std::string& commit)
              {"scene",          "fabric",         "n",        "solver",  "setting", "factor",
               "damping_sweeps", "least_substeps", "sweeps",   "outcome", "reason",  "substeps",
               "cpu_per_second", "timed_runs",     "position", "strain",  "energy",  "momentum",
-              "penetration_m",  "commit"}),
+              "mean_shape",     "penetration_m",  "commit"}),
       references_(
           directory + "/references.csv",
           {"scene", "fabric", "n", "how", "self_error", "growth_of_1um", "mean_shape_floor",

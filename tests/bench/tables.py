@@ -7,7 +7,7 @@ FABRICS = ["soft", "stiff", "cotton"]
 BOUNDS = [(0.1, "10 %"), (0.01, "1 %"), (0.001, "0.1 %")]
 SOLVERS = ["verlet", "xpbd", "relaxation"]
 NAMES = {"verlet": "verlet", "xpbd": "XPBD", "relaxation": "seed"}
-ERRORS = ["position", "strain", "energy", "momentum"]
+ERRORS = ["position", "strain", "energy", "momentum", "mean_shape"]
 
 
 def read(directory, name):
@@ -15,7 +15,15 @@ def read(directory, name):
     if not path.exists():
         return []
     with open(path, encoding="utf-8", newline="") as file:
-        return [{key: number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        return [judged({key: number(value) for key, value in row.items()})
+                for row in csv.DictReader(file)]
+
+
+def judged(row):
+    """A run that ends farther off than the cloth has moved counts as failed, as one that blew up."""
+    if row.get("outcome") == "ran" and row["position"] > 1:
+        row["outcome"], row["reason"] = "failed", f"its positions are {percent(row['position'])} off"
+    return row
 
 
 def number(text):
@@ -133,7 +141,7 @@ def references(rows, spatial, scene):
                   (scene, row["fabric"], row["n"])]
         coarse = percent(beside[0]["position"]) if beside else "–"
         if row["missing"]:
-            table.append([row["fabric"], f"{row['n']}²", "none: " + row["missing"], "–", "–", "–", coarse])
+            table.append([row["fabric"], f"{row['n']}²", "none: " + row["missing"], "–", "–", "–", "–", coarse])
             continue
         span = f"{row['compared_from_s']:g} to {row['compared_to_s']:g} s"
         if row["compared_from_s"] == row["compared_to_s"]:
@@ -141,9 +149,9 @@ def references(rows, spatial, scene):
         if row["compared_to_s"] < row["horizon_s"]:
             span += f" of {row['horizon_s']:g}: later a perturbation has grown 10 times"
         table.append([row["fabric"], f"{row['n']}²", row["how"], f"{row['self_error']:.1e}",
-                      f"{row['growth_of_1um']:.2g}", span, coarse])
+                      f"{row['growth_of_1um']:.2g}", percent(row["mean_shape_floor"]), span, coarse])
     return markdown(["fabric", "N", "reference", "its last halving changed", "growth of 1 µm",
-                     "compared", "spatial error, N against 2N"], table)
+                     "1 µm changes the mean shape by", "compared", "spatial error, N against 2N"], table)
 
 
 def error_vectors(cells, scene):
@@ -161,7 +169,7 @@ def error_vectors(cells, scene):
                 if contact:
                     row.append(f"{1e3 * best['penetration_m']:.2g} mm")
                 rows.append(row)
-    head = ["fabric", "N", "setting", "CPU s per s"] + ERRORS
+    head = ["fabric", "N", "setting", "CPU s per s"] + [e.replace("_", " ") for e in ERRORS]
     return markdown(head + (["penetration"] if contact else []), rows)
 
 

@@ -224,10 +224,33 @@ class DevScript(unittest.TestCase):
         self.dev("build", script=link)
         self.assertIn(f"-C {self.tree}/build", self.calls("ninja")[0])
 
+    def test_the_report_measures_and_then_draws_and_the_short_one_leaves_the_tree_alone(self):
+        folder = self.tree / "tests" / "bench"
+        folder.mkdir(parents=True)
+        (folder / "report.py").write_text(
+            "import os, sys\n"
+            "open(os.environ['MACHINE'] + '/calls', 'a').write('report ' + ' '.join(sys.argv[1:]) + '\\n')\n")
+        executable(self.tree / "build" / "weft_bench", RECORD)
+        (self.machine / "missing").write_text("gnuplot-nox\n")
+        status, _, error = self.dev("report")
+        self.assertEqual(status, 0, error)
+        lines = (self.machine / "calls").read_text().splitlines()
+        order = [line for line in lines if line.split(" ")[0] in ("apt-get", "ninja", "weft_bench", "report")]
+        self.assertEqual([line.split(" ")[0] for line in order], ["apt-get", "ninja", "weft_bench", "report"])
+        self.assertTrue(order[0].endswith(" gnuplot-nox"))
+        self.assertIn(f"--out {folder}/data", order[2])
+        self.assertEqual(order[3], f"report --readme {self.tree}/README.md {folder}")
+        (self.machine / "calls").write_text("")
+        status, _, error = self.dev("report", "--short")
+        self.assertEqual(status, 0, error)
+        lines = (self.machine / "calls").read_text().splitlines()
+        self.assertIn(f"report {self.tree}/build/report", lines)
+        self.assertTrue(any(f"--out {self.tree}/build/report/data --quick" in line for line in lines))
+
     def test_unknown_words_are_refused_with_what_is_allowed(self):
         for words, allowed in (("deploy",), "usage"), (("build", "--fast"), "--sanitize"), \
                 (("test", "--fast"), "--full"), (("setup", "x"), "--test"), \
-                (("format", "x"), "--check"), (("tidy", "x"), "--all"):
+                (("report", "x"), "--short"), (("format", "x"), "--check"), (("tidy", "x"), "--all"):
             status, _, error = self.dev(*words)
             self.assertNotEqual(status, 0, words)
             self.assertIn(allowed, error)

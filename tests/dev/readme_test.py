@@ -93,6 +93,14 @@ class Readme(unittest.TestCase):
         for name in names:
             self.assertTrue((ROOT / name).exists(), name)
 
+    def test_the_table_of_speed_and_error_is_that_of_the_measured_figures(self):
+        sys.path.insert(0, str(ROOT / "tests/bench"))
+        import report
+        data = ROOT / "tests/bench/data"
+        self.assertEqual(report.with_block(README, data), README)
+        page = (ROOT / "tests/bench/REPORT.md").read_text(encoding="utf-8")
+        self.assertEqual(report.report_text(data), page)
+
     def test_every_test_that_the_tests_page_names_is_in_its_file(self):
         page = (ROOT / "tests/README.md").read_text(encoding="utf-8")
         names = re.findall(r"`([\w./]+)`|(?<=[ ;])\"([^\"]+)\"", page)

@@ -1,0 +1,84 @@
+"""Laws of the measuring program: a tiny report. No verdict depends on how long anything took."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import tables  # noqa: E402
+
+PROGRAM = os.environ["WEFT_BUILD_DIR"] + "/weft_bench"
+ENVELOPE = {"position", "strain", "energy", "momentum", "mean_shape", "penetration_m"}
+
+
+def measure(*options):
+    """The tables of a run, by name, and their directory."""
+    directory = tempfile.mkdtemp()
+    subprocess.run([PROGRAM, "--out", directory, "--quick", "--runs", "1", "--parts", "accuracy",
+                    "--fabrics", "soft", *options], check=True, capture_output=True, timeout=300)
+    return {name: tables.read(directory, name) for name in ("accuracy", "references", "machine")}
+
+
+class Bench(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # A budget that no machine exceeds here: what runs must not depend on its speed.
+        cls.swing = measure("--scenes", "swing", "--sizes", "16", "--budget", "100")
+        cls.rest = measure("--scenes", "static-rest", "--sizes", "32", "--budget", "100")
+
+    def test_the_reference_is_converged_and_a_perturbation_does_not_grow(self):
+        for row in self.swing["references"] + self.rest["references"]:
+            self.assertEqual(row["missing"], "")
+            self.assertLess(row["self_error"], 1e-7)
+            self.assertLess(row["growth_of_1um"], 10)
+
+    def test_every_cell_has_its_columns_and_every_solver_its_settings(self):
+        for solver in tables.SOLVERS:
+            cells = tables.of_case(self.swing["accuracy"], "swing", "soft", 16, solver)
+            self.assertGreaterEqual(len(cells), 3)
+            for cell in cells:
+                self.assertLessEqual(ENVELOPE, set(cell))
+                self.assertGreater(cell["cpu_per_second"], 0)
+                self.assertGreater(cell["substeps"], 0)
+        self.assertIn("compiler", [row["key"] for row in self.swing["machine"]])
+
+    def error(self, setting):
+        return next(c["position"] for c in self.rest["accuracy"] if c["setting"] == setting)
+
+    def test_the_error_of_xpbd_falls_with_the_square_of_its_substeps(self):
+        # At rest the false stretch is that of one substep's fall: 4 times the substeps, 16 times less.
+        self.assertAlmostEqual(self.error("24x1") / self.error("96x1"), 16, delta=4)
+
+    def test_verlet_is_within_a_thousandth_at_its_own_substeps(self):
+        for run in (self.swing, self.rest):
+            cell = next(c for c in run["accuracy"] if c["setting"] == "x1")
+            self.assertLess(cell["position"], 1e-3)
+
+    def test_a_run_off_by_more_than_the_way_counts_as_failed(self):
+        # Rigid springs cannot sag between two edges; few sweeps sag far too much.
+        failed = [c for c in self.rest["accuracy"] if c["outcome"] == "failed"]
+        for cell in self.rest["accuracy"]:
+            self.assertEqual(cell["outcome"] == "failed", cell["position"] > 1)
+        self.assertGreater(len(failed), 0)
+        self.assertTrue(all(cell["reason"] for cell in failed))
+
+    def test_what_is_above_the_budget_is_not_run_and_says_why(self):
+        cells = measure("--scenes", "swing", "--sizes", "16", "--budget", "0")["accuracy"]
+        self.assertGreater(len(cells), 6)
+        for cell in cells:
+            self.assertEqual(cell["outcome"], "not run")
+            self.assertIn("CPU s, more than", cell["reason"])
+        self.assertIn("CPU s, more than", tables.cost_of_accuracy(cells))
+
+    def test_the_same_run_has_the_same_errors(self):
+        again = measure("--scenes", "swing", "--sizes", "16", "--budget", "100")["accuracy"]
+        for before, now in zip(self.swing["accuracy"], again, strict=True):
+            for key in ENVELOPE:
+                self.assertEqual(before[key], now[key])
+
+
+if __name__ == "__main__":
+    unittest.main()
