@@ -55,7 +55,8 @@ def panel(index, cells, scene, fabric, n):
     lines = blocks + [f"set title '{fabric}, {n} × {n}' offset 0,-0.7"]
     if curves:
         return lines + ["plot " + ", ".join(curves)]
-    reason = tables.why_not(tables.of_case(cells, scene, fabric, n)).replace("'", "")
+    case = tables.of_case(cells, scene, fabric, n)
+    reason = tables.why_not(case) if case else "this run was not asked for it"
     words, wrapped = reason.split(), [""]
     for word in words:
         if len(wrapped[-1]) + len(word) > 34:
@@ -80,12 +81,12 @@ def plot_scene(cells, scene, path):
         "set mxtics 1", "set mytics 1",
         f"set yrange [{100 * max(least / 2, 1e-7)}:500]",
         "set xlabel 'CPU s a simulated s' offset 0,0.6", "set ylabel 'position error [%]' offset 1.5,0",
-        f"set multiplot layout {len(sizes)},{len(fabrics)} margins 0.07,0.985,"
-        f"{52 / height},{1 - 48 / height} spacing 0.065,{64 / height}"]
+        f"set multiplot layout {len(sizes)},{len(fabrics)} margins {64 / width},{1 - 14 / width},"
+        f"{52 / height},{1 - 48 / height} spacing {60 / width},{64 / height}"]
     for k, solver in enumerate(tables.SOLVERS):
-        lines.append(f"set label {10 + k} '● {tables.NAMES[solver]}' at screen {0.08 + 0.12 * k},"
+        lines.append(f"set label {10 + k} '● {tables.NAMES[solver]}' at screen {(20 + 75 * k) / width},"
                      f"{1 - 14 / height} tc rgb '{COLOURS[solver]}' font ',11'")
-    lines.append(f"set label 20 'line: the best of its settings; × on top: failed' at screen 0.46,"
+    lines.append(f"set label 20 '×: failed' at screen {250 / width},"
                  f"{1 - 14 / height} tc rgb '#444444'")
     lines += ["set arrow 1 from graph 0,first 1 to graph 1,first 1 nohead lc rgb '#999999' dt 2"]
     for index, (n, fabric) in enumerate((n, f) for n in sizes for f in fabrics):
