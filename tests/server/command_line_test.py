@@ -11,7 +11,7 @@ from foreign_client import PROGRAM, main
 
 
 def run(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60)
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=240)
 
 
 class CommandLine(unittest.TestCase):
