@@ -47,21 +47,12 @@ struct WholeGrid {
   double triangle_area() const { return 0.5 * width * height / ((rows - 1.0) * (columns - 1.0)); }
 };
 
-/// Whether all springs are those of `uniform_springs`.
-bool is_uniform(const ClothDef& def) {
-  return !def.direct_springs && def.skip_stiffness == 0;
-}
-
-GridStiffness uniform_springs(const ClothDef& def) {
-  return grid_stiffness(def.fabric, def.width / (def.columns - 1), def.height / (def.rows - 1));
-}
-
 /// The springs' numbers by kind, unless some of them follow no rule.
 template <class Real>
 void summarise_springs(const ClothDef& def, ClothPart<Real>& part) {
-  if (!is_uniform(def)) return;
+  if (def.direct_springs || def.skip_stiffness != 0) return;
   const double cell_u = def.width / (def.columns - 1), cell_v = def.height / (def.rows - 1);
-  const GridStiffness k = uniform_springs(def);
+  const GridStiffness k = grid_stiffness(def.fabric, cell_u, cell_v);
   GridSprings<Real> springs;
   springs.warp = static_cast<Real>(k.warp);
   springs.weft = static_cast<Real>(k.weft);
@@ -125,11 +116,6 @@ ClothModel<Real> build_grid_cloth(const ClothDef& def) {
   add_hinges(def, grid, model);
   complete_part(def, model);
   bound_frequencies(model, part);
-  if (is_uniform(def) && def.mass_lumping == MassLumping::area) {
-    const double cells = (def.rows - 1.0) * (def.columns - 1.0);
-    const double mass = def.fabric.areal_density * def.width * def.height / cells;
-    bound_grid_membrane(uniform_springs(def), mass, part);
-  }
   if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
   summarise_springs(def, part);
   choose_bending(def, model);

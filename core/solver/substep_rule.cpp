@@ -65,17 +65,6 @@ void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
 }
 
 template <class Real>
-void bound_grid_membrane(const GridStiffness& springs, double particle_mass,
-                         ClothPart<Real>& part) {
-  const auto [warp, weft, shear] = springs;
-  const double along_u = 4 * warp + 8 * shear, along_v = 4 * weft + 8 * shear;
-  part.bounds.membrane_omega2 = std::max({along_u, along_v, 4 * warp + 4 * weft}) / particle_mass;
-}
-
-template void bound_grid_membrane(const GridStiffness&, double, ClothPart<float>&);
-template void bound_grid_membrane(const GridStiffness&, double, ClothPart<double>&);
-
-template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part) {
   std::vector<double> row_sum(model.mass.size(), 0);
   visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {

@@ -63,42 +63,6 @@ TEST_CASE("leapfrog with lagged damping is stable up to the rule and unstable be
   CHECK(size_after(1.001 * limit) > 10);
 }
 
-TEST_CASE("where all springs lie in one line the highest frequency of a grid is its bound") {
-  const auto [rows, columns, height, shear] =
-      GENERATE(table<int, int, double, double>({{12, 13, 1.0, 0.0},
-                                                {12, 12, 1.0, 40},
-                                                {9, 17, 1.0, 40},
-                                                {14, 14, 1.0, 190},
-                                                {10, 10, 0.5, 30}}));
-  ClothDef def = test::flat_cloth(rows, columns, 1, height);
-  def.fabric.shear = shear;
-  const ClothModel<double> model = build_cloth<double>(def);
-  // Displacements along the one line of all springs: a net of numbers.
-  const auto pull = [&](const std::vector<double>& u) {
-    std::vector<double> a(u.size(), 0);
-    for (const Spring<double>& s : model.springs) {
-      const auto i = static_cast<std::size_t>(s.i), j = static_cast<std::size_t>(s.j);
-      const double force = s.stiffness * (u[j] - u[i]);
-      a[i] -= force / model.mass[i];
-      a[j] += force / model.mass[j];
-    }
-    return a;
-  };
-  Random random(5);
-  std::vector<double> u;
-  for (const Vec3d& p : test::random_velocities(model, 1, random)) u.push_back(p.x());
-  double omega2 = 0;
-  for (int iteration = 0; iteration < 3000; ++iteration) {
-    u = pull(u);
-    double square = 0;
-    for (const double value : u) square += value * value;
-    omega2 = std::sqrt(square);
-    for (double& value : u) value /= omega2;
-  }
-  CHECK(omega2 <= model.parts[0].bounds.membrane_omega2 * (1 + 1e-12));
-  CHECK(omega2 >= model.parts[0].bounds.membrane_omega2 * 0.985);
-}
-
 TEST_CASE("the model's bounds are above the highest frequencies and not more than twice them") {
   const auto [rows, columns, height] =
       GENERATE(table<int, int, double>({{12, 12, 1.0}, {9, 17, 1.0}, {10, 10, 0.5}}));
