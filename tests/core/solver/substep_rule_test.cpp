@@ -63,7 +63,9 @@ TEST_CASE("leapfrog with lagged damping is stable up to the rule and unstable be
   CHECK(size_after(1.001 * limit) > 10);
 }
 
-TEST_CASE("the model's bounds are above the highest frequencies and not more than twice them") {
+TEST_CASE(
+    "the model's bounds are above the highest frequencies, the membrane's with a margin, and not "
+    "more than twice that") {
   const auto [rows, columns, height] =
       GENERATE(table<int, int, double>({{12, 12, 1.0}, {9, 17, 1.0}, {10, 10, 0.5}}));
   ClothDef def = test::flat_cloth(rows, columns, 1, height);
@@ -77,8 +79,9 @@ TEST_CASE("the model's bounds are above the highest frequencies and not more tha
     add_hinge_forces(model, x, still, f);
     add_quadratic_bending_forces(model, x, f);
   });
-  CHECK(model.parts[0].bounds.membrane_omega2 >= stretch);
-  CHECK(model.parts[0].bounds.membrane_omega2 <= 2 * stretch);
+  constexpr double kMargin = 1.15;  // for what was crushed; see laws/shaking_test.cpp
+  CHECK(model.parts[0].bounds.membrane_omega2 >= kMargin * stretch);
+  CHECK(model.parts[0].bounds.membrane_omega2 <= kMargin * 2 * stretch);
   CHECK(model.parts[0].bounds.bending_omega2 >= bending);
   CHECK(model.parts[0].bounds.bending_omega2 <= 2 * bending);
 }
