@@ -67,6 +67,25 @@ struct QuadraticBending {
   Real twist = 0;    ///< (B_w + B_f) / (h_u h_v), times |cell difference|^2 / 2 [N/m]
 };
 
+/// The cells of a grid that are there, and the particles at their corners, which are numbered row
+/// by row. A whole grid has all cells.
+struct GridCells {
+  int rows = 0, columns = 0;     ///< of places for particles; 0 if the cloth is no grid
+  std::vector<char> kept;        ///< 1 for each cell that is there, row by row
+  std::vector<Index> particles;  ///< by place, counted from the part's first; kNone: nobody
+
+  bool has_cell(int r, int c) const {
+    return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&
+           kept[static_cast<std::size_t>(r * (columns - 1) + c)] != 0;
+  }
+  int cells_around(int r, int c) const {
+    return has_cell(r - 1, c - 1) + has_cell(r - 1, c) + has_cell(r, c - 1) + has_cell(r, c);
+  }
+  Index particle(int r, int c) const {
+    return particles[static_cast<std::size_t>(r * columns + c)];
+  }
+};
+
 /// A stretch of consecutive indices.
 struct IndexRange {
   Index first = 0, count = 0;
@@ -87,12 +106,14 @@ struct ClothPart {
   std::string name;
   FabricDef fabric;
   IndexRange particles, triangles, edges, springs, hinges;
-  int rows = 0, columns = 0;    ///< of a grid, whose particle (r, c) is particles.first +
-                                ///< r * columns + c; 0 if the cloth is no grid
+  int rows = 0, columns = 0;    ///< of a whole grid, whose particle (r, c) is particles.first +
+                                ///< r * columns + c; 0 if the cloth is none
   Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
   double longest_edge = 0;      ///< of the triangles at rest [m]
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;       ///< of a grid; the hinges are none then
+  std::size_t bending_stencils = 0;               ///< of the quadratic form; see bending_stencil.h
+  GridCells cells;                                ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
 

@@ -6,15 +6,23 @@
 
 namespace weft {
 
-// Cells of a grid as triangles and hinges, for whole grids and for those that are cut out. A Shape
-// has `rows` and `columns` of particles, `has_cell(r, c)`, `particle(r, c)` and `triangle_area()`
-// [m^2].
+// Cells of a grid as triangles and hinges, for whole grids and for those that are cut out.
+
+/// All cells of a rectangle.
+GridCells whole_grid(int rows, int columns);
+
+/// What is left to do for a model of one part whose lists are complete: frequency bounds, dashpots,
+/// `grid_springs` where the springs follow a rule, and the quadratic form in place of hinges where
+/// that was asked for or fits.
+template <class Real>
+void finish_grid(const ClothDef& def, ClothModel<Real>& model);
 
 /// Two triangles a cell with alternating diagonals: a grid split along one diagonal is three times
 /// too stiff against bending in one diagonal direction. Normals point along u x v.
+/// @param area   of a triangle [m^2]
 /// @param first  0 or 1: which of the two ways the first cell is split
-template <class Real, class Shape>
-void split_cells(const Shape& shape, int first, ClothModel<Real>& model) {
+template <class Real>
+void split_cells(const GridCells& shape, double area, int first, ClothModel<Real>& model) {
   for (int r = 0; r + 1 < shape.rows; ++r) {
     for (int c = 0; c + 1 < shape.columns; ++c) {
       if (!shape.has_cell(r, c)) continue;
@@ -29,14 +37,14 @@ void split_cells(const Shape& shape, int first, ClothModel<Real>& model) {
       }
     }
   }
-  model.triangle_area.assign(model.triangles.size(), static_cast<Real>(shape.triangle_area()));
+  model.triangle_area.assign(model.triangles.size(), static_cast<Real>(area));
 }
 
 /// Hinges over both ways to split the cells, with half the rigidity each. In one way alone every
 /// second particle is opposite to no edge along the axes: nothing resists its second difference,
 /// and a strip free to relax into that pattern bends up to a quarter too easily.
-template <class Real, class Shape>
-void add_hinges(const ClothDef& def, const Shape& shape, ClothModel<Real>& model) {
+template <class Real>
+void add_hinges(const ClothDef& def, const GridCells& shape, double area, ClothModel<Real>& model) {
   const HingeSettings settings{
       def.rest_angle, false, def.fabric.bending_damping,
       def.bending_model == BendingModel::sine_hinges,
@@ -44,7 +52,7 @@ void add_hinges(const ClothDef& def, const Shape& shape, ClothModel<Real>& model
   ClothModel<Real> other;
   other.rest_positions = model.rest_positions;
   other.material = model.material;
-  split_cells(shape, 1, other);
+  split_cells(shape, area, 1, other);
   connect_triangles(settings, other);
   connect_triangles(settings, model);
   model.hinges.insert(model.hinges.end(), other.hinges.begin(), other.hinges.end());

@@ -4,6 +4,7 @@
 
 #include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_springs.h"
+#include "core/forces/bending_stencil.h"
 #include "core/solver/substep_rule.h"
 
 namespace weft {
@@ -37,22 +38,21 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
-/// All cells of a rectangle.
-struct WholeGrid {
-  int rows, columns;
-  double width, height;  ///< [m]
+/// Whether all springs are those of `uniform_springs`.
+bool is_uniform(const ClothDef& def) {
+  return !def.direct_springs && def.skip_stiffness == 0;
+}
 
-  bool has_cell(int, int) const { return true; }
-  Index particle(int r, int c) const { return r * columns + c; }
-  double triangle_area() const { return 0.5 * width * height / ((rows - 1.0) * (columns - 1.0)); }
-};
+GridStiffness uniform_springs(const ClothDef& def) {
+  return grid_stiffness(def.fabric, def.width / (def.columns - 1), def.height / (def.rows - 1));
+}
 
 /// The springs' numbers by kind, unless some of them follow no rule.
 template <class Real>
 void summarise_springs(const ClothDef& def, ClothPart<Real>& part) {
-  if (def.direct_springs || def.skip_stiffness != 0) return;
+  if (!is_uniform(def)) return;
   const double cell_u = def.width / (def.columns - 1), cell_v = def.height / (def.rows - 1);
-  const GridStiffness k = grid_stiffness(def.fabric, cell_u, cell_v);
+  const GridStiffness k = uniform_springs(def);
   GridSprings<Real> springs;
   springs.warp = static_cast<Real>(k.warp);
   springs.weft = static_cast<Real>(k.weft);
@@ -82,10 +82,33 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
       static_cast<Real>((fabric.bending_warp + fabric.bending_weft) / (cell_u * cell_v))};
   model.hinges.clear();
   part.hinges = {};
+  visit_bending_stencils(part,
+                         [&](Real, const Index*, const double*, int) { ++part.bending_stencils; });
   bound_quadratic_bending(model, part);
 }
 
 }  // namespace
+
+GridCells whole_grid(int rows, int columns) {
+  GridCells cells;
+  cells.rows = rows;
+  cells.columns = columns;
+  cells.kept.assign(static_cast<std::size_t>(rows - 1) * static_cast<std::size_t>(columns - 1), 1);
+  for (Index i = 0; i < rows * columns; ++i) cells.particles.push_back(i);
+  return cells;
+}
+
+template <class Real>
+void finish_grid(const ClothDef& def, ClothModel<Real>& model) {
+  ClothPart<Real>& part = model.parts.front();
+  bound_frequencies(model, part);
+  if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
+  summarise_springs(def, part);
+  choose_bending(def, model);
+}
+
+template void finish_grid(const ClothDef&, ClothModel<float>&);
+template void finish_grid(const ClothDef&, ClothModel<double>&);
 
 // An edge along v bends with curvature along u. The diagonals resist twist alone, so their weight
 // is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
@@ -110,15 +133,13 @@ ClothModel<Real> build_grid_cloth(const ClothDef& def) {
       std::hypot(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v));
   place_particles(def, model);
   lump_masses(def, model);
-  const WholeGrid grid{def.rows, def.columns, def.width, def.height};
-  split_cells(grid, 0, model);
+  part.cells = whole_grid(def.rows, def.columns);
+  const double area = 0.5 * def.width * def.height / ((def.rows - 1.0) * (def.columns - 1.0));
+  split_cells(part.cells, area, 0, model);
   model.springs = grid_springs<Real>(def, model.spring_kinds);
-  add_hinges(def, grid, model);
+  add_hinges(def, part.cells, area, model);
   complete_part(def, model);
-  bound_frequencies(model, part);
-  if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
-  summarise_springs(def, part);
-  choose_bending(def, model);
+  finish_grid(def, model);
   return model;
 }
 

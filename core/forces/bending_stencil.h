@@ -4,30 +4,54 @@
 
 namespace weft {
 
+// The parts of full springs and stencils that the cells about them stand for, half for each cell
+// beside a line, in grids of which cells may be missing.
+
+/// Of the spring from place (r, c) along u to (r, c + 1).
+inline double share_along(const GridCells& g, int r, int c) {
+  return 0.5 * (g.has_cell(r - 1, c) + g.has_cell(r, c));
+}
+
+/// Of the spring along v to (r + 1, c).
+inline double share_down(const GridCells& g, int r, int c) {
+  return 0.5 * (g.has_cell(r, c - 1) + g.has_cell(r, c));
+}
+
+/// Of the second difference along u centred at (r, c).
+inline double share_bend_u(const GridCells& g, int r, int c) {
+  return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r - 1, c)) +
+                (g.has_cell(r, c - 1) && g.has_cell(r, c)));
+}
+
+/// Of the second difference along v centred at (r, c).
+inline double share_bend_v(const GridCells& g, int r, int c) {
+  return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
+                (g.has_cell(r - 1, c) && g.has_cell(r, c)));
+}
+
 /// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of the quadratic
 /// bending form of a part, whose energy is stiffness/2 |sum_k w_k x_k|^2: 1 -2 1 along each row and
-/// column (border lines stand for half a cell), and 1 -1 -1 1 over the corners of each cell.
+/// column (lines with a cell on one side alone stand for half), and 1 -1 -1 1 over the corners of
+/// each cell.
 template <class Real, class Visitor>
 void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
   static constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
   const QuadraticBending<Real>& q = part.quadratic_bending;
-  const Index rows = part.rows, columns = part.columns;
-  const auto share = [](Index k, Index count) {
-    return k == 0 || k == count - 1 ? Real(0.5) : Real(1);
-  };
-  for (Index r = 0; r < rows; ++r) {
-    for (Index c = 0; c < columns; ++c) {
-      const Index i = part.particles.first + r * columns + c;
-      if (c > 0 && c + 1 < columns) {
-        const Index corners[] = {i - 1, i, i + 1};
-        visit(q.along_u * share(r, rows), corners, kLine, 3);
+  const GridCells& g = part.cells;
+  const auto particle = [&](int r, int c) { return part.particles.first + g.particle(r, c); };
+  for (int r = 0; r < g.rows; ++r) {
+    for (int c = 0; c < g.columns; ++c) {
+      if (const double share = share_bend_u(g, r, c); share > 0) {
+        const Index corners[] = {particle(r, c - 1), particle(r, c), particle(r, c + 1)};
+        visit(q.along_u * static_cast<Real>(share), corners, kLine, 3);
       }
-      if (r > 0 && r + 1 < rows) {
-        const Index corners[] = {i - columns, i, i + columns};
-        visit(q.along_v * share(c, columns), corners, kLine, 3);
+      if (const double share = share_bend_v(g, r, c); share > 0) {
+        const Index corners[] = {particle(r - 1, c), particle(r, c), particle(r + 1, c)};
+        visit(q.along_v * static_cast<Real>(share), corners, kLine, 3);
       }
-      if (r + 1 < rows && c + 1 < columns) {
-        const Index corners[] = {i, i + 1, i + columns, i + columns + 1};
+      if (g.has_cell(r, c)) {
+        const Index corners[] = {particle(r, c), particle(r, c + 1), particle(r + 1, c),
+                                 particle(r + 1, c + 1)};
         visit(q.twist, corners, kTwist, 4);
       }
     }

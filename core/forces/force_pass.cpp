@@ -87,34 +87,38 @@ template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part) {
   const QuadraticBending<Real>& q = part.quadratic_bending;
   if (q.along_u == 0 && q.along_v == 0 && q.twist == 0) return 0;
-  const auto rows = static_cast<std::size_t>(part.rows);
-  const auto columns = static_cast<std::size_t>(part.columns);
-  return rows * (columns - 2) + (rows - 2) * columns + (rows - 1) * (columns - 1);
+  return part.bending_stencils;
+}
+
+void add(const ElasticEnergy& part, ElasticEnergy& sum) {
+  sum.stretch += part.stretch;
+  sum.bending += part.bending;
+  if (!(part.largest_strain <= sum.largest_strain)) sum.largest_strain = part.largest_strain;
 }
 
 template <class Real>
-ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x) {
+ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                             const Vec3Array<Real>& x) {
   ElasticEnergy energy;
-  for (std::size_t n = 0; n < model.springs.size(); ++n) {
-    const Spring<Real>& s = model.springs[n];
+  for (Index n = part.springs.first; n < part.springs.end(); ++n) {
+    const Spring<Real>& s = at(model.springs, n);
     const auto stretch = static_cast<double>((at(x, s.j) - at(x, s.i)).norm() - s.rest_length);
     energy.stretch += 0.5 * static_cast<double>(s.stiffness) * stretch * stretch;
-    if (model.spring_kinds[n] == SpringKind::skip) continue;
+    if (at(model.spring_kinds, n) == SpringKind::skip) continue;
     const double strain = std::abs(stretch) / static_cast<double>(s.rest_length);
     if (!(strain <= energy.largest_strain)) energy.largest_strain = strain;
   }
-  for (const Hinge<Real>& h : model.hinges) {
+  for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
+    const Hinge<Real>& h = at(model.hinges, n);
     const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
                                                      at(x, h.x[3]), h.smallest_normal2);
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
-  const auto add_stencil = [&](Real k, const Index* corners, const double* weights, int count) {
+  if (quadratic_stencil_count(part) == 0) return energy;
+  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
     energy.bending += 0.5 * static_cast<double>(k) *
                       static_cast<double>(stencil_value(x, corners, weights, count).squaredNorm());
-  };
-  for (const ClothPart<Real>& part : model.parts) {
-    if (quadratic_stencil_count(part) > 0) visit_bending_stencils(part, add_stencil);
-  }
+  });
   return energy;
 }
 
@@ -131,7 +135,8 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real
                                const Vec3Array<Real>&, double, const Vec3Array<Real>&,       \
                                const Vec3Array<Real>&, Vec3Array<Real>&);                    \
   template std::size_t quadratic_stencil_count(const ClothPart<Real>&);                      \
-  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const Vec3Array<Real>&);
+  template ElasticEnergy elastic_energy(const ClothModel<Real>&, const ClothPart<Real>&,     \
+                                        const Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

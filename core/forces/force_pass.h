@@ -44,9 +44,20 @@ void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
 template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part);
 
-/// Energies of springs and bending and the largest strain. NaN is kept and seen.
+/// Energies of springs and bending of a part and its largest strain. NaN is kept and seen.
 template <class Real>
-ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
+ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                             const Vec3Array<Real>& x);
+
+/// Adds up energies and keeps the larger strain; NaN is kept.
+void add(const ElasticEnergy& part, ElasticEnergy& sum);
+
+template <class Real>
+ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x) {
+  ElasticEnergy sum;
+  for (const ClothPart<Real>& part : model.parts) add(elastic_energy(model, part, x), sum);
+  return sum;
+}
 
 template <class Real>
 void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,

@@ -9,38 +9,44 @@
 #include "core/forces/grid_kernels-inl.h"
 
 #if HWY_ONCE
+#include "core/forces/grid_pass.h"
+
 namespace weft {
 
-HWY_EXPORT(take_apart_f32);
-HWY_EXPORT(take_apart_f64);
-HWY_EXPORT(internal_forces_f32);
-HWY_EXPORT(internal_forces_f64);
-HWY_EXPORT(air_forces_f32);
-HWY_EXPORT(air_forces_f64);
-
-void grid_take_apart(const GridView<float>& grid, const float* from, float* const (&to)[3]) {
-  HWY_DYNAMIC_DISPATCH(take_apart_f32)(grid, from, to);
-}
-
-void grid_take_apart(const GridView<double>& grid, const double* from, double* const (&to)[3]) {
-  HWY_DYNAMIC_DISPATCH(take_apart_f64)(grid, from, to);
-}
-
-void grid_internal_forces(const GridView<float>& grid, float* force) {
-  HWY_DYNAMIC_DISPATCH(internal_forces_f32)(grid, force);
-}
-
-void grid_internal_forces(const GridView<double>& grid, double* force) {
-  HWY_DYNAMIC_DISPATCH(internal_forces_f64)(grid, force);
-}
-
-void grid_air_forces(const GridView<float>& grid, float pressure, float skin, float* force) {
-  HWY_DYNAMIC_DISPATCH(air_forces_f32)(grid, pressure, skin, force);
-}
-
-void grid_air_forces(const GridView<double>& grid, double pressure, double skin, double* force) {
-  HWY_DYNAMIC_DISPATCH(air_forces_f64)(grid, pressure, skin, force);
-}
+#define WEFT_DISPATCH(Real, Kind)                                                               \
+  HWY_EXPORT(take_apart_##Kind);                                                                \
+  HWY_EXPORT(put_together_##Kind);                                                              \
+  HWY_EXPORT(internal_forces_##Kind);                                                           \
+  HWY_EXPORT(elastic_energy_##Kind);                                                            \
+  HWY_EXPORT(advance_##Kind);                                                                   \
+  HWY_EXPORT(drift_##Kind);                                                                     \
+  HWY_EXPORT(air_forces_##Kind);                                                                \
+  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                  \
+                       std::ptrdiff_t pitch) {                                                  \
+    HWY_DYNAMIC_DISPATCH(take_apart_##Kind)(grid, from, to, pitch);                             \
+  }                                                                                             \
+  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,    \
+                         Real* to) {                                                            \
+    HWY_DYNAMIC_DISPATCH(put_together_##Kind)(grid, from, pitch, to);                           \
+  }                                                                                             \
+  void grid_internal_forces(const GridView<Real>& grid) {                                       \
+    HWY_DYNAMIC_DISPATCH(internal_forces_##Kind)(grid);                                         \
+  }                                                                                             \
+  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid) {                               \
+    return HWY_DYNAMIC_DISPATCH(elastic_energy_##Kind)(grid);                                   \
+  }                                                                                             \
+  double grid_advance(const GridView<Real>& grid, const GridStep<Real>& step) {                 \
+    return HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step);                                    \
+  }                                                                                             \
+  double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x) { \
+    return HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, pulled, v, x);                          \
+  }                                                                                             \
+  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                  \
+    HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                              \
+  }
+WEFT_DISPATCH(float, f32)
+WEFT_DISPATCH(double, f64)
+#undef WEFT_DISPATCH
 
 const char* simd_level() {
   return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets());

@@ -1,84 +1,187 @@
 #include "core/forces/grid_pass.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "core/forces/bending_stencil.h"
 #include "core/forces/grid_kernels.h"
 
 namespace weft {
 
 template <class Real>
-const Real* GridPass<Real>::at_origin(const std::vector<Real>& array) const {
-  return array.data() + 2 * view_.stride + kGridMargin;
+void GridPass<Real>::lay_out(const ClothPart<Real>& part) {
+  const GridCells& cells = part.cells;
+  view_.rows = cells.rows;
+  view_.columns = cells.columns;
+  view_.line = (cells.columns + kGridLanes - 1) / kGridLanes * kGridLanes;
+  // Rows that lie a multiple of 4 KiB apart would compete for the same lines of the cache.
+  if (view_.line % 64 == 0) view_.line += kGridLanes;
+  rows_.assign(static_cast<std::size_t>(cells.rows), {});
+  for (int r = 0; r < cells.rows; ++r) {
+    GridRow<Real>& row = rows_[static_cast<std::size_t>(r)];
+    for (int c = 0; c < cells.columns; ++c) {
+      if (cells.particle(r, c) == kNone) continue;
+      if (row.count++ > 0) continue;
+      row.column = c;
+      row.particle = part.particles.first + cells.particle(r, c);
+    }
+  }
+  view_.row = rows_.data();
+}
+
+template <class Real>
+std::vector<Real> GridPass<Real>::coefficient_row(const ClothPart<Real>& part, int r) const {
+  const GridCells& g = part.cells;
+  const GridSprings<Real>& springs = *part.grid_springs;
+  const QuadraticBending<Real>& bending = part.quadratic_bending;
+  std::vector<Real> lines(static_cast<std::size_t>(kGridCoefficients * view_.line), Real(0));
+  for (int c = 0; c < g.columns; ++c) {
+    const auto set = [&](GridCoefficient k, Real full, double share) {
+      lines[static_cast<std::size_t>(k * view_.line + c)] = full * static_cast<Real>(share);
+    };
+    const double cell = g.has_cell(r, c);
+    set(kWarp, springs.warp, share_along(g, r, c));
+    set(kWeft, springs.weft, share_down(g, r, c));
+    set(kShear, springs.shear, cell);
+    set(kTwist, bending.twist, cell);
+    set(kBendU, bending.along_u, share_bend_u(g, r, c + 1));
+    set(kBendV, bending.along_v, share_bend_v(g, r + 1, c));
+    set(kHasCell, Real(1), cell);
+  }
+  return lines;
+}
+
+/// Rows that are alike, as nearly all of a whole grid are, share their lines.
+template <class Real>
+void GridPass<Real>::lay_out_coefficients(const ClothPart<Real>& part) {
+  coefficients_.clear();
+  std::vector<std::size_t> place;
+  std::vector<Real> last;
+  for (int r = 0; r < view_.rows; ++r) {
+    std::vector<Real> lines = coefficient_row(part, r);
+    if (lines != last) coefficients_.insert(coefficients_.end(), lines.begin(), lines.end());
+    place.push_back(coefficients_.size() - lines.size());
+    last = std::move(lines);
+  }
+  coefficients_.shrink_to_fit();
+  for (std::size_t r = 0; r < place.size(); ++r)
+    rows_[r].coefficients = coefficients_.data() + place[r];
 }
 
 template <class Real>
 void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_ = {};
   if (!part.grid_springs || part.hinges.count > 0) return;
-  first_ = static_cast<std::size_t>(part.particles.first);
-  view_.rows = part.rows;
-  view_.columns = part.columns;
-  view_.stride = part.columns + 2 * kGridMargin;
+  lay_out(part);
+  lay_out_coefficients(part);
   view_.springs = *part.grid_springs;
-  view_.bending = part.quadratic_bending;
   air_normal_ = static_cast<Real>(part.fabric.air_normal);
   air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
+  view_.motion = allocate(motion_, (view_.rows + 2) * GridView<Real>::kMotionLines);
+  external_.clear();
+  wind_.clear();
+  view_.scratch = allocate(scratch_, kGridScratchLines);
+  allocate(odd_, 1);
+  for (int c = 0; c < view_.columns; ++c)
+    odd_[static_cast<std::size_t>(c)] = static_cast<Real>(c % 2);
+  view_.odd = odd_.data();
+}
 
-  const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4));
-  for (Components* components : {&x_, &v_, &wind_}) {
-    for (std::vector<Real>& array : *components) array.assign(size, Real(0));
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    view_.x[k] = at_origin(x_[k]);
-    view_.v[k] = at_origin(v_[k]);
-    view_.wind[k] = at_origin(wind_[k]);
-  }
-  for (std::vector<Real>* table : {&cell_, &border_half_, &inner_, &odd_})
-    table->assign(static_cast<std::size_t>(view_.stride), Real(0));
-  for (int c = 0; c < view_.columns; ++c) {
-    const auto k = static_cast<std::size_t>(c + kGridMargin);
-    const bool border = c == 0 || c == view_.columns - 1;
-    cell_[k] = c + 1 < view_.columns ? Real(1) : Real(0);
-    border_half_[k] = border ? Real(0.5) : Real(1);
-    inner_[k] = border ? Real(0) : Real(1);
-    odd_[k] = static_cast<Real>(c % 2);
-  }
-  view_.cell = cell_.data() + kGridMargin;
-  view_.border_half = border_half_.data() + kGridMargin;
-  view_.inner = inner_.data() + kGridMargin;
-  view_.odd = odd_.data() + kGridMargin;
-  scratch_.assign(static_cast<std::size_t>(view_.stride * kGridScratchRows), Real(0));
-  view_.scratch = scratch_.data() + kGridMargin;
+/// Zeros follow for what the last rows and vectors read beyond them.
+template <class Real>
+Real* GridPass<Real>::allocate(std::vector<Real>& array, std::ptrdiff_t lines) const {
+  array.assign(static_cast<std::size_t>(lines * view_.line + kGridLanes), Real(0));
+  return array.data();
 }
 
 template <class Real>
-void GridPass<Real>::scatter(const Vec3Array<Real>& values, Components& components) const {
-  const std::ptrdiff_t origin = 2 * view_.stride + kGridMargin;
-  grid_take_apart(view_, (values.data() + first_)->data(),
-                  {components[0].data() + origin, components[1].data() + origin,
-                   components[2].data() + origin});
+void GridPass<Real>::make_room(bool air) {
+  if (external_.empty()) view_.external = allocate(external_, view_.rows * 3);
+  if (air && wind_.empty()) view_.wind = allocate(wind_, (view_.rows + 1) * 3);
+}
+
+template <class Real>
+void GridPass<Real>::load_velocities(const Vec3Array<Real>& v) {
+  grid_take_apart(view_, v.data()->data(),
+                  view_.motion + GridView<Real>::kVelocityLine * view_.line, view_.pitch());
 }
 
 template <class Real>
 void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
-  scatter(x, x_);
-  scatter(v, v_);
+  grid_take_apart(view_, x.data()->data(), view_.motion, view_.pitch());
+  load_velocities(v);
+}
+
+template <class Real>
+void GridPass<Real>::load_inverse_mass(const std::vector<Real>& inverse_mass) {
+  Real* to = view_.motion + GridView<Real>::kInverseMassLine * view_.line;
+  for (const GridRow<Real>& row : rows_) {
+    std::copy_n(inverse_mass.begin() + row.particle, row.count, to + row.column);
+    to += view_.pitch();
+  }
 }
 
 template <class Real>
 void GridPass<Real>::load_wind(const Vec3Array<Real>& wind) {
-  scatter(wind, wind_);
+  grid_take_apart(view_, wind.data()->data(), view_.wind, 3 * view_.line);
+}
+
+template <class Real>
+void GridPass<Real>::load_external(const Vec3Array<Real>& force) {
+  grid_take_apart(view_, force.data()->data(), view_.external, 3 * view_.line);
+}
+
+template <class Real>
+void GridPass<Real>::store_positions(Vec3Array<Real>& x) const {
+  grid_put_together(view_, view_.motion, view_.pitch(), x.data()->data());
+}
+
+template <class Real>
+void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
+  grid_put_together(view_, view_.motion + GridView<Real>::kVelocityLine * view_.line, view_.pitch(),
+                    v.data()->data());
+}
+
+template <class Real>
+void GridPass<Real>::store_external(Vec3Array<Real>& force) const {
+  grid_put_together(view_, view_.external, 3 * view_.line, force.data()->data());
+}
+
+template <class Real>
+double GridPass<Real>::advance(const GridStep<Real>& step) {
+  return grid_advance(view_, step);
+}
+
+template <class Real>
+double GridPass<Real>::drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x) {
+  return grid_drift(view_, dt, pulled, v.data()->data(), x.data()->data());
 }
 
 template <class Real>
 void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
-  grid_internal_forces(view_, force[first_].data());
+  make_room(false);
+  grid_internal_forces(view_);
+  store_external(force);
 }
 
 template <class Real>
-void GridPass<Real>::compute_air_forces(double density, Vec3Array<Real>& force) {
+void GridPass<Real>::compute_air_forces(double density) {
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
-  grid_air_forces(view_, pressure, air_tangential_, force[first_].data());
+  grid_air_forces(view_, pressure, density > 0 ? air_tangential_ : Real(0));
+}
+
+template <class Real>
+ElasticEnergy GridPass<Real>::elastic_energy() const {
+  return grid_elastic_energy(view_);
+}
+
+template <class Real>
+std::size_t GridPass<Real>::bytes() const {
+  std::size_t numbers = 0;
+  for (const std::vector<Real>* array :
+       {&motion_, &external_, &wind_, &coefficients_, &odd_, &scratch_})
+    numbers += array->capacity();
+  return numbers * sizeof(Real) + rows_.capacity() * sizeof(GridRow<Real>);
 }
 
 template class GridPass<float>;

@@ -53,6 +53,12 @@ HWY_INLINE Triple<V> select(M mask, const Triple<V>& yes, const Triple<V>& no) {
 }
 
 template <class M, class V>
+HWY_INLINE Triple<V> drop_if(M mask, const Triple<V>& a) {
+  return {hn::IfThenZeroElse(mask, a.x), hn::IfThenZeroElse(mask, a.y),
+          hn::IfThenZeroElse(mask, a.z)};
+}
+
+template <class M, class V>
 HWY_INLINE Triple<V> keep_if(M mask, const Triple<V>& a) {
   return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
           hn::IfThenElseZero(mask, a.z)};

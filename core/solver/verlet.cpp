@@ -39,14 +39,22 @@ struct Tick {
   ClothState<Real>& state;
   VerletWorkspace<Real>& work;
   Profile& profile;
+  bool hands, pulled;  // anybody pulls; hands or the air do
 
-  bool pulled() const { return surroundings.air || !idle(grabs); }
+  const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
+  GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }
+  bool by_rows(std::size_t p) const { return work.grids[p].fits(); }
+  std::size_t parts() const { return model.parts.size(); }
 };
 
-/// Zeroes the forces on the particles of a part.
-template <class Real>
-void clear_part(const ClothPart<Real>& part, Vec3Array<Real>& force) {
-  std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());
+std::size_t size_of(const IndexRange& range) {
+  return static_cast<std::size_t>(range.count);
+}
+
+/// The numbers of a range of particles, three each.
+template <class Array>
+auto* numbers(const IndexRange& range, Array& array) {
+  return (array.data() + range.first)->data();
 }
 
 /// Springs and bending of a part element by element.
@@ -55,14 +63,13 @@ void evaluate_elements(Tick<Real>& tick, const ClothPart<Real>& part,
                        const Vec3Array<Real>& velocity) {
   const ClothModel<Real>& model = tick.model;
   Vec3Array<Real>& force = tick.work.internal;
-  clear_part(part, force);
-  const auto count = [](const IndexRange& range) { return static_cast<std::size_t>(range.count); };
+  std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());
   if (part.springs.count > 0) {
-    const StageTimer timer(tick.profile, Stage::stretch, count(part.springs));
+    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
     add_spring_forces(model, part, tick.state.x, velocity, force);
   }
   if (part.hinges.count > 0) {
-    const StageTimer timer(tick.profile, Stage::bending, count(part.hinges));
+    const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
     add_hinge_forces(model, part, tick.state.x, velocity, force);
   }
   const std::size_t stencils = quadratic_stencil_count(part);
@@ -72,146 +79,280 @@ void evaluate_elements(Tick<Real>& tick, const ClothPart<Real>& part,
   }
 }
 
-/// Springs and quadratic bending of a part row by row, in one pass; its time is booked under
-/// stretch.
+/// Hands and air. A grid has them as its external forces; as numbers of the whole model they are
+/// there for all other parts, and for grids if `listed`.
 template <class Real>
-void evaluate_rows(Tick<Real>& tick, const ClothPart<Real>& part, GridPass<Real>& grid,
-                   const Vec3Array<Real>& velocity) {
-  const StageTimer timer(tick.profile, Stage::stretch,
-                         static_cast<std::size_t>(part.springs.count));
-  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
-  grid.load(tick.state.x, velocity);
-  grid.compute_internal_forces(tick.work.internal);
-}
-
-/// The air on each part; overwrites the external forces.
-template <class Real>
-void evaluate_air(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
-  const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
+void pull(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity, bool listed) {
+  if (!tick.pulled) return;
   const Surroundings<Real>& around = tick.surroundings;
   Vec3Array<Real>& force = tick.work.external;
-  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
-    const ClothPart<Real>& part = tick.model.parts[p];
-    if (tick.work.grids[p].fits()) {
-      tick.work.grids[p].compute_air_forces(around.air_density, force);
-      continue;
+  if (listed || !tick.work.all_grids) std::fill(force.begin(), force.end(), Vec3<Real>::Zero());
+  if (around.air) {
+    const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
+    for (std::size_t p = 0; p < tick.parts(); ++p) {
+      if (tick.by_rows(p)) {
+        tick.grid(p).compute_air_forces(around.air_density);
+        if (listed) tick.grid(p).store_external(force);
+      } else {
+        add_air_forces(tick.model, tick.part(p), around.wind, around.air_density, tick.state.x,
+                       velocity, force);
+      }
     }
-    clear_part(part, force);
-    add_air_forces(tick.model, part, around.wind, around.air_density, tick.state.x, velocity,
-                   force);
   }
-}
-
-/// All forces at the present positions, with `velocity` as seen by dashpots and air.
-template <class Real>
-void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
-  VerletWorkspace<Real>& work = tick.work;
-  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
-    if (work.grids[p].fits())
-      evaluate_rows(tick, tick.model.parts[p], work.grids[p], velocity);
-    else
-      evaluate_elements(tick, tick.model.parts[p], velocity);
-  }
-  if (!tick.pulled()) return;
-  if (tick.surroundings.air)
-    evaluate_air(tick, velocity);
-  else
-    std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
-  if (!idle(tick.grabs)) {
-    const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
-    const StageTimer timer(tick.profile, Stage::attachments, hands);
-    add_grab_forces(progress, tick.state, tick.grabs, work.external);
-  }
+  if (!tick.hands) return;
+  const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
+  const StageTimer timer(tick.profile, Stage::attachments, hands);
+  add_grab_forces(progress, tick.state, tick.grabs, force);
 }
 
 /// Spreads masses and gravity over the numbers of the cloth; pins change both.
 template <class Real>
 void spread_constants(Tick<Real>& tick) {
   const std::vector<Real>& inverse_mass = tick.state.inverse_mass;
-  for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+  for (GridPass<Real>& grid : tick.work.grids) {
+    if (grid.fits()) grid.load_inverse_mass(inverse_mass);
+  }
+  for (std::size_t i = 0; i < tick.work.inverse_mass.size(); ++i) {
     tick.work.inverse_mass[i].setConstant(inverse_mass[i]);
     tick.work.gravity[i] = inverse_mass[i] == 0 ? Vec3<Real>::Zero() : tick.surroundings.gravity;
   }
 }
 
 template <class Real>
-void kick(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from, Vec3Array<Real>& to) {
-  const StageTimer timer(tick.profile, Stage::integration, from.size());
+void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
+          const Vec3Array<Real>& from, Vec3Array<Real>& to) {
+  const StageTimer timer(tick.profile, Stage::integration, size_of(range));
   const VerletWorkspace<Real>& work = tick.work;
   KickPass<Real> pass;
-  pass.count = 3 * from.size();
-  pass.from = from.data()->data();
-  pass.to = to.data()->data();
-  pass.internal = work.internal.data()->data();
-  pass.external = tick.pulled() ? work.external.data()->data() : nullptr;
-  pass.inverse_mass = work.inverse_mass.data()->data();
-  pass.gravity = work.gravity.data()->data();
+  pass.count = 3 * size_of(range);
+  pass.from = numbers(range, from);
+  pass.to = numbers(range, to);
+  pass.internal = numbers(range, work.internal);
+  pass.external = tick.pulled ? numbers(range, work.external) : nullptr;
+  pass.inverse_mass = numbers(range, work.inverse_mass);
+  pass.gravity = numbers(range, work.gravity);
   pass.keep = k.keep;
   pass.push = k.push;
   run_kick(pass);
+}
+
+/// Springs, bending, kick and drift of a grid in one pass, all booked under stretch.
+/// @returns work of the external forces over the drift [J]
+template <class Real>
+double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real drift) {
+  const ClothPart<Real>& part = tick.part(p);
+  const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
+  tick.profile[Stage::integration].work += size_of(part.particles);
+  const Vec3<Real>& g = tick.surroundings.gravity;
+  const double power =
+      tick.grid(p).advance({k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.pulled});
+  return power * static_cast<double>(drift);
+}
+
+/// Forces and kick of all parts, with positions and velocities of the model up to date.
+template <class Real>
+void advance_kick(Tick<Real>& tick, const Kick<Real>& k, Real progress) {
+  Vec3Array<Real>& v = tick.state.v;
+  pull(tick, progress, v, tick.hands);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.by_rows(p)) {
+      if (tick.hands) tick.grid(p).load_external(tick.work.external);
+      advance_grid(tick, p, k, Real(0));
+      tick.grid(p).store_velocities(v);
+    } else {
+      evaluate_elements(tick, tick.part(p), v);
+      kick(tick, tick.part(p).particles, k, v, v);
+    }
+  }
+}
+
+/// All forces at the present positions as numbers of the whole model, with `velocity` as seen by
+/// dashpots and air.
+template <class Real>
+void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    const ClothPart<Real>& part = tick.part(p);
+    if (!tick.by_rows(p)) {
+      evaluate_elements(tick, part, velocity);
+      continue;
+    }
+    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+    tick.profile[Stage::bending].work += quadratic_stencil_count(part);
+    tick.grid(p).load(tick.state.x, velocity);
+    tick.grid(p).compute_internal_forces(tick.work.internal);
+  }
+  pull(tick, progress, velocity, true);
 }
 
 /// Kicks with the dashpots' velocity found by fixed-point sweeps.
 /// @param share  where between the old and the new velocity the instant of the forces lies
 template <class Real>
 void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress) {
-  Vec3Array<Real>& v = tick.state.v;
   if (tick.solver.damping_sweeps == 1) {
-    evaluate_forces(tick, progress, v);
-    kick(tick, k, v, v);
+    advance_kick(tick, k, progress);
     return;
   }
-  Vec3Array<Real>& estimate = tick.work.velocity;
+  Vec3Array<Real>&v = tick.state.v, &estimate = tick.work.velocity;
+  const IndexRange all{0, tick.model.particle_count()};
   estimate = v;
   for (int sweep = 1; sweep <= tick.solver.damping_sweeps; ++sweep) {
     evaluate_forces(tick, progress, estimate);
     if (sweep == tick.solver.damping_sweeps) break;
-    kick(tick, k, v, estimate);
+    kick(tick, all, k, v, estimate);
     for (std::size_t i = 0; i < v.size(); ++i)
       estimate[i] = v[i] * (Real(1) - share) + estimate[i] * share;
   }
-  kick(tick, k, v, v);
+  kick(tick, all, k, v, v);
 }
 
+/// Work of the external forces on some particles over the coming drift [J].
 template <class Real>
-void drift(Tick<Real>& tick) {
-  const StageTimer timer(tick.profile, Stage::integration, 0);
-  run_drift(3 * tick.state.x.size(), tick.state.v.data()->data(), tick.dt,
-            tick.state.x.data()->data());
-}
-
-/// Work of the external forces over the coming drift [J].
-template <class Real>
-double external_work(const Tick<Real>& tick) {
-  if (!tick.pulled()) return 0;
+double external_work(const Tick<Real>& tick, const IndexRange& range) {
+  if (!tick.pulled) return 0;
   // Four sums, so that the compiler may keep them in one vector.
   std::array<double, 4> sums{};
-  const Real *force = tick.work.external.data()->data(), *v = tick.state.v.data()->data();
-  const std::size_t numbers = 3 * tick.state.v.size(), whole = numbers / 4 * 4;
+  const Real *force = numbers(range, tick.work.external), *v = numbers(range, tick.state.v);
+  const std::size_t count = 3 * size_of(range), whole = count / 4 * 4;
   for (std::size_t n = 0; n < whole; n += 4) {
     for (std::size_t k = 0; k < 4; ++k) sums[k] += static_cast<double>(force[n + k] * v[n + k]);
   }
-  for (std::size_t n = whole; n < numbers; ++n) sums[0] += static_cast<double>(force[n] * v[n]);
+  for (std::size_t n = whole; n < count; ++n) sums[0] += static_cast<double>(force[n] * v[n]);
   const double power = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   return power * static_cast<double>(tick.dt);
+}
+
+/// Moves everybody. @returns work of the external forces [J]
+template <class Real>
+double drift(Tick<Real>& tick) {
+  const StageTimer timer(tick.profile, Stage::integration, 0);
+  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
+  double work = 0;
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    const IndexRange& range = tick.part(p).particles;
+    if (tick.by_rows(p) && tick.solver.damping_sweeps == 1) {
+      work += tick.grid(p).drift(tick.dt, tick.pulled, v, x) * static_cast<double>(tick.dt);
+    } else {
+      work += external_work(tick, range);
+      run_drift(3 * size_of(range), numbers(range, v), tick.dt, numbers(range, x));
+    }
+  }
+  return work;
+}
+
+template <class Real>
+void load_grids(Tick<Real>& tick) {
+  const StageTimer timer(tick.profile, Stage::integration, 0);
+  for (GridPass<Real>& grid : tick.work.grids) {
+    if (grid.fits()) grid.load(tick.state.x, tick.state.v);
+  }
+}
+
+/// The substeps of a tick where hands or contact see the particles between kick and drift.
+/// @returns work of hands and air [J]
+template <class Real>
+double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps) {
+  ClothState<Real>& state = tick.state;
+  const Collision<Real>& collision = tick.collision;
+  double work = 0;
+  if (tick.solver.damping_sweeps == 1) {
+    advance_kick(tick, kicks.opening, Real(0));
+  } else {
+    evaluate_forces(tick, Real(0), state.v);
+    kick(tick, {0, tick.model.particle_count()}, kicks.opening, state.v, state.v);
+  }
+  for (int s = 0; s < substeps; ++s) {
+    collision.before_drift(state, tick.dt, tick.profile);
+    work += drift(tick);
+    collision.after_drift(state, tick.dt, tick.profile);
+    if (collision.seed || collision.guard) load_grids(tick);
+    const bool last = s + 1 == substeps;
+    const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
+    swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
+  }
+  collision.settle(state, tick.dt, tick.profile);
+  return work;
+}
+
+/// All substeps of a grid that nobody else touches: the particles stay in its own arrays.
+/// @returns work of the air [J]
+template <class Real>
+double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
+  GridPass<Real>& grid = tick.grid(p);
+  double work = 0;
+  for (int s = 0; s <= substeps; ++s) {
+    if (tick.pulled) {
+      const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
+      grid.compute_air_forces(tick.surroundings.air_density);
+    }
+    const bool last = s == substeps;
+    work += advance_grid(tick, p,
+                         s == 0 ? kicks.opening
+                         : last ? kicks.closing
+                                : kicks.full,
+                         last ? Real(0) : tick.dt);
+  }
+  grid.store_positions(tick.state.x);
+  grid.store_velocities(tick.state.v);
+  return work;
+}
+
+/// Elastic energy at the present positions, of grids from their own arrays, which are up to date.
+template <class Real>
+ElasticEnergy present_energy(const Tick<Real>& tick) {
+  ElasticEnergy sum;
+  for (std::size_t p = 0; p < tick.parts(); ++p)
+    add(tick.by_rows(p) ? tick.grid(p).elastic_energy()
+                        : elastic_energy(tick.model, tick.part(p), tick.state.x),
+        sum);
+  return sum;
 }
 
 template <class Real>
 EnergyReading timed_energies(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
   std::optional<ElasticEnergy>& elastic = tick.work.elastic;
-  if (!elastic) elastic = elastic_energy(tick.model, tick.state.x);
+  if (!elastic) {
+    if (tick.solver.damping_sweeps > 1 || tick.collision.guard) load_grids(tick);
+    elastic = present_energy(tick);
+  }
   return read_energies(tick.model, tick.state, tick.surroundings.gravity, *elastic);
 }
 
 }  // namespace
 
 template <class Real>
-void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model) {
-  for (Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
-    array->assign(model.mass.size(), Vec3<Real>::Zero());
-  grids.assign(model.parts.size(), {});
-  for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
+void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverDef& solver) {
+  grids.clear();
+  grids.resize(model.parts.size());
+  all_grids = true;
+  for (std::size_t p = 0; p < grids.size(); ++p) {
+    grids[p].prepare(model.parts[p]);
+    all_grids = all_grids && grids[p].fits();
+  }
+  external.clear();
+  const std::size_t listed = all_grids && solver.damping_sweeps == 1 ? 0 : model.mass.size();
+  for (Vec3Array<Real>* array : {&internal, &velocity, &inverse_mass, &gravity})
+    array->assign(listed, Vec3<Real>::Zero());
+  if (solver.damping_sweeps > 1) make_room(model, false, true);
+}
+
+template <class Real>
+void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool hands) {
+  if (!air && !hands) return;
+  for (GridPass<Real>& grid : grids) {
+    if (grid.fits()) grid.make_room(air);
+  }
+  if (hands || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
+}
+
+template <class Real>
+std::size_t VerletWorkspace<Real>::bytes() const {
+  std::size_t sum = 0;
+  for (const Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
+    sum += array->capacity() * sizeof(Vec3<Real>);
+  for (const GridPass<Real>& grid : grids) sum += grid.bytes();
+  return sum;
 }
 
 template <class Real>
@@ -219,8 +360,9 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              const Collision<Real>& collision, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile) {
-  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
-                  state, work,         profile};
+  const bool hands = !idle(grabs);
+  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt),    grabs, collision, state,
+                  work,  profile,      hands,  hands || surroundings.air};
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air) {
     for (GridPass<Real>& grid : work.grids) {
@@ -229,19 +371,14 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   }
   AdvanceResult result;
   spread_constants(tick);
+  load_grids(tick);
   result.before = timed_energies(tick).energies;
-  evaluate_forces(tick, Real(0), state.v);
-  kick(tick, kicks.opening, state.v, state.v);
-  for (int s = 0; s < substeps; ++s) {
-    collision.before_drift(state, tick.dt, profile);
-    result.work += external_work(tick);
-    drift(tick);
-    collision.after_drift(state, tick.dt, profile);
-    const bool last = s + 1 == substeps;
-    const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
-    swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
+  if (collision.empty() && !hands && work.all_grids && solver.damping_sweeps == 1) {
+    for (std::size_t p = 0; p < tick.parts(); ++p)
+      result.work += advance_alone(tick, p, kicks, substeps);
+  } else {
+    result.work = advance_together(tick, kicks, substeps);
   }
-  collision.settle(state, tick.dt, profile);
   work.elastic.reset();
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;

@@ -59,6 +59,8 @@ struct AdvanceResult {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct VerletWorkspace {
+  // Where all parts are grids and there are no sweeps, these are empty, but for the external forces
+  // if there are hands.
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
   Vec3Array<Real> external;              ///< forces of hands and air [N]
   Vec3Array<Real> velocity;              ///< estimate of the velocity that the dashpots see [m/s]
@@ -66,10 +68,17 @@ struct VerletWorkspace {
   Vec3Array<Real> gravity;               ///< of each particle, 0 if it is fixed [m/s^2]
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< somebody else moves the cloth
-  std::vector<GridPass<Real>> grids;     ///< for each part the row-wise form of its forces
+  std::vector<GridPass<Real>> grids;     ///< for each part its row-wise form, if it fits
+  bool all_grids = false;                ///< every part fits
 
-  /// Sizes all arrays for a cloth.
-  void prepare(const ClothModel<Real>& model);
+  /// Sizes the arrays for a cloth on which neither air nor hands act.
+  void prepare(const ClothModel<Real>& model, const SolverDef& solver);
+
+  /// Sizes what air and hands need besides. To be called before a tick that has them.
+  void make_room(const ClothModel<Real>& model, bool air, bool hands);
+
+  /// What the arrays take [B].
+  std::size_t bytes() const;
 };
 
 /// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions

@@ -64,17 +64,16 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
-  const std::size_t n = model_.mass.size();
   const bool something_to_meet =
       !def_.colliders.empty() || def_.contact.seed.self != SelfContact::none;
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
   if (def_.contact.seed.self == SelfContact::guard) guard_.emplace(model_);
   if (solver_of(def_) == SolverKind::verlet)
-    verlet_.prepare(model_);
+    verlet_.prepare(model_, def_.solver);
   else
     relaxation_.prepare(model_);
-  surroundings_.wind.resize(n);
+  make_room();
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);
   pick_tree_.build(boxes);
@@ -132,6 +131,22 @@ const TickReport& World<Real>::step() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   return report_;
+}
+
+/// Arrays for air and hands, as soon as there are any: no tick allocates.
+template <class Real>
+void World<Real>::make_room() {
+  if (has_air(environment_)) surroundings_.wind.resize(model_.mass.size());
+  if (solver_of(def_) == SolverKind::verlet)
+    verlet_.make_room(model_, has_air(environment_), !idle(grabs_));
+}
+
+template <class Real>
+std::size_t World<Real>::solver_bytes() const {
+  std::size_t numbers = 0;
+  for (const ClothState<Real>* state : {&state_, &last_good_})
+    numbers += 3 * (state->x.capacity() + state->v.capacity()) + state->inverse_mass.capacity();
+  return (numbers + 3 * surroundings_.wind.capacity()) * sizeof(Real) + verlet_.bytes();
 }
 
 template <class Real>

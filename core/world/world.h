@@ -118,6 +118,10 @@ class World {
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;
 
+  /// What the state of the cloth, the copy to go back to and the arrays of `verlet` take [B]. Those
+  /// for air and hands count from their first use on.
+  std::size_t solver_bytes() const;
+
   /// Boxes of one level of one of the seed's trees around the present state; see debug_trees.h.
   /// Throws DefinitionError if there is no such tree or level.
   std::vector<Aabb<float>> debug_boxes(const std::string& tree, int level);
@@ -144,6 +148,7 @@ class World {
 
  private:
   int choose_substeps() const;
+  void make_room();
   StabilityBound stability_bound(const ClothPart<Real>& part) const;
   void blow_wind();
   void advance_or_recover(int substeps);

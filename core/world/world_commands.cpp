@@ -29,7 +29,9 @@ bool World<Real>::unpin(PinId id) {
 
 template <class Real>
 GrabId World<Real>::grab(const GrabDef& def) {
-  return add_grab(model_, state_, def, grabs_);
+  const GrabId id = add_grab(model_, state_, def, grabs_);
+  make_room();
+  return id;
 }
 
 template <class Real>
@@ -72,6 +74,7 @@ template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
+  make_room();
   report_present_state();
 }
 

@@ -71,6 +71,11 @@ TEST_CASE("a grid that is flat at rest has no hinge: its bending is the quadrati
   const std::uint64_t evaluations =
       report.profile[Stage::stretch].work / flat.model().springs.size();
   CHECK(report.profile[Stage::bending].work == evaluations * (2 * 9 * 7 + 64));
+  def.cloths[0].outline = Outline::ellipse;
+  World<float> round(def);
+  CHECK(round.model().hinges.empty());
+  CHECK(round.step().profile[Stage::bending].work > 0);
+  def.cloths[0].outline = Outline::rectangle;
   def.cloths[0].rest_angle = 0.1;
   World<float> bent(def);
   CHECK(bent.model().hinges.size() > 0);

@@ -1,0 +1,97 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_GRID_LAYOUT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_GRID_LAYOUT_INL_H
+#undef WEFT_GRID_LAYOUT_INL_H
+#else
+#define WEFT_GRID_LAYOUT_INL_H
+#endif
+
+#include <algorithm>
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "core/forces/grid_view.h"
+#include "core/math/triple-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class Real>
+using GridTag = hn::CappedTag<Real, kGridLanes>;
+
+/// Three components, a line each.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> load(D d, const Real* at, std::ptrdiff_t line) {
+  return {hn::LoadU(d, at), hn::LoadU(d, at + line), hn::LoadU(d, at + 2 * line)};
+}
+
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void store(D d, const Triple<hn::Vec<D>>& a, Real* at, std::ptrdiff_t line) {
+  hn::StoreU(a.x, d, at);
+  hn::StoreU(a.y, d, at + line);
+  hn::StoreU(a.z, d, at + 2 * line);
+}
+
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
+  Triple<hn::Vec<D>> a;
+  hn::LoadInterleaved3(d, from, a.x, a.y, a.z);
+  return a;
+}
+
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void store_particles(D d, const Triple<hn::Vec<D>>& a, Real* to) {
+  hn::StoreInterleaved3(a.x, a.y, a.z, d, to);
+}
+
+/// Sum of what a pass has added up by column, so that the width of a vector does not matter.
+template <class Real>
+HWY_INLINE double sum_of_columns(const GridView<Real>& g, const Real* values) {
+  double sum = 0;
+  for (std::ptrdiff_t c = 0; c < g.columns; ++c) sum += static_cast<double>(values[c]);
+  return sum;
+}
+
+/// Calls body(d, row, column, particle) for stretches of the grid's rows: `particle` is the place
+/// of their first number in arrays of x y z x y z. Whole vectors where a row has as many; the rest
+/// of it particle by particle, so that nobody is visited twice.
+template <class Real, class Body>
+HWY_INLINE void for_each_stretch(const GridView<Real>& g, Body&& body) {
+  const GridTag<Real> wide;
+  const hn::CappedTag<Real, 1> single;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(wide));
+  for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
+    const GridRow<Real>& row = g.row[r];
+    std::ptrdiff_t c = 0;
+    for (; c + lanes <= row.count; c += lanes)
+      body(wide, r, row.column + c, 3 * (row.particle + c));
+    for (; c < row.count; ++c) body(single, r, row.column + c, 3 * (row.particle + c));
+  }
+}
+
+/// Takes three numbers a particle apart into three lines of every row.
+/// @param pitch  from row to row
+template <class Real>
+HWY_INLINE void take_apart(const GridView<Real>& g, const Real* from, Real* to,
+                           std::ptrdiff_t pitch) {
+  for_each_stretch(
+      g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number)
+             HWY_ATTR { store(d, load_particles(d, from + number), to + r * pitch + c, g.line); });
+}
+
+template <class Real>
+HWY_INLINE void put_together(const GridView<Real>& g, const Real* from, std::ptrdiff_t pitch,
+                             Real* to) {
+  for_each_stretch(
+      g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number)
+             HWY_ATTR { store_particles(d, load(d, from + r * pitch + c, g.line), to + number); });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/cloth/cloth_model.h"
+
+namespace weft {
+
+/// One row of a grid: `count` particles from column `column` on, numbered from `particle` on in the
+/// arrays of the whole model.
+template <class Real>
+struct GridRow {
+  std::ptrdiff_t column = 0, count = 0, particle = 0;
+  const Real* coefficients = nullptr;  ///< kGridCoefficients lines, at column 0
+};
+
+/// Lines of coefficients, by the particle that springs and stencils start at.
+enum GridCoefficient : int {
+  kWarp,     ///< stiffness of the spring to (r, c + 1) [N/m]
+  kWeft,     ///< of the spring to (r + 1, c) [N/m]
+  kShear,    ///< of each diagonal of cell (r, c) [N/m]
+  kTwist,    ///< bending: cell difference of cell (r, c) [N/m]
+  kBendU,    ///< second difference along u centred at (r, c + 1) [N/m]
+  kBendV,    ///< second difference along v centred at (r + 1, c) [N/m]
+  kHasCell,  ///< 1 if there is a cell (r, c), else 0
+  kGridCoefficients
+};
+
+/// What the kernels of a grid read and write. Each row of the grid is a few lines of `line`
+/// numbers, a component of all its particles each, so that one pointer and the length of a line
+/// reach them all. Pointers are at (row 0, column 0); two rows of zeros follow the last. Places
+/// without a particle hold zeros.
+template <class Real>
+struct GridView {
+  int rows = 0, columns = 0;
+  std::ptrdiff_t line = 0;             ///< numbers a line, at least the columns in whole vectors
+  const GridRow<Real>* row = nullptr;  ///< of each row
+  Real* motion = nullptr;     ///< x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], unused
+  Real* external = nullptr;   ///< forces of air and hands, three lines a row [N]
+  Real* wind = nullptr;       ///< velocity of the air, three lines a row [m/s]
+  const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
+  GridSprings<Real> springs;
+  Real* scratch = nullptr;  ///< kGridScratchLines lines
+
+  std::ptrdiff_t pitch() const { return kMotionLines * line; }
+  static constexpr int kMotionLines = 8, kInverseMassLine = 3, kVelocityLine = 4;
+};
+
+inline constexpr int kGridLanes = 16;  ///< at least the widest vector, in numbers
+inline constexpr int kGridScratchLines = 8;
+
+/// What a pass over a grid does with the forces: v <- keep v + push (f/m + g), x <- x + dt v.
+/// Particles without inverse mass get velocity 0.
+template <class Real>
+struct GridStep {
+  Real keep = 0, push = 0;
+  Real gravity[3] = {};  ///< [m/s^2]
+  Real dt = 0;           ///< of the drift [s]; 0: none
+  bool pulled = false;   ///< add the external forces
+};
+
+}  // namespace weft

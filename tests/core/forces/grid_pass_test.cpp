@@ -1,0 +1,124 @@
+#include "core/forces/grid_pass.h"
+
+#include <catch2/catch.hpp>
+#include <hwy/targets.h>
+
+#include "core/cloth/cloth_model.h"
+#include "core/forces/force_pass.h"
+#include "core/world/world.h"
+#include "tests/support/cloths.h"
+#include "tests/support/worlds.h"
+
+using namespace weft;
+using test::Random;
+
+namespace {
+
+/// Lets the program use these instruction sets alone; 0 for all that there are.
+void use_targets(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+template <class Real>
+struct Moved {
+  Vec3Array<Real> x, v;
+  double power = 0;
+  ElasticEnergy energy;
+};
+
+/// A shaken cloth after some substeps in the wind, with two particles pinned.
+template <class Real>
+Moved<Real> moved(const ClothDef& def) {
+  const ClothModel<Real> model = build_cloth<Real>(def);
+  Random random(11);
+  Moved<Real> cloth;
+  cloth.x = test::shaken(model, 0.01, random);
+  cloth.v = test::random_velocities(model, 3, random);
+  const Vec3Array<Real> wind = test::random_velocities(model, 5, random);
+  std::vector<Real> inverse_mass;
+  for (const Real mass : model.mass) inverse_mass.push_back(1 / mass);
+  inverse_mass[0] = inverse_mass[inverse_mass.size() / 2] = 0;
+  GridPass<Real> grid;
+  grid.prepare(model.parts[0]);
+  grid.make_room(true);
+  grid.load(cloth.x, cloth.v);
+  grid.load_inverse_mass(inverse_mass);
+  grid.load_wind(wind);
+  GridStep<Real> step{Real(0.999), Real(1e-4), {0, Real(-9.81), 1}, Real(1e-4), true};
+  for (int k = 0; k < 5; ++k) {
+    grid.compute_air_forces(1.225);
+    cloth.power += grid.advance(step);
+  }
+  grid.store_positions(cloth.x);
+  grid.store_velocities(cloth.v);
+  cloth.power += grid.drift(Real(1e-4), true, cloth.v, cloth.x);
+  cloth.energy = grid.elastic_energy();
+  return cloth;
+}
+
+template <class Real>
+void check_all_targets(const ClothDef& def) {
+  use_targets(0);
+  const std::int64_t all = hwy::SupportedTargets();
+  const Moved<Real> best = moved<Real>(def);
+  int tried = 0;
+  for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
+    if (!(all & target)) continue;
+    use_targets(target);
+    INFO(hwy::TargetName(target));
+    const Moved<Real> other = moved<Real>(def);
+    CHECK(other.x == best.x);
+    CHECK(other.v == best.v);
+    CHECK(other.power == best.power);
+    CHECK(other.energy.stretch == best.energy.stretch);
+    CHECK(other.energy.bending == best.energy.bending);
+    CHECK(other.energy.largest_strain == best.energy.largest_strain);
+    ++tried;
+  }
+  use_targets(0);
+  CHECK(tried > 1);
+}
+
+}  // namespace
+
+TEST_CASE("every instruction set moves a grid to the same bits") {
+  const auto [rows, columns] = GENERATE(table<int, int>({{2, 2}, {3, 17}, {20, 33}}));
+  ClothDef def = test::flat_cloth(rows, columns, 1, 0.8);
+  def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
+  def.fabric.shear = 0.5;
+  def.fabric.bending_warp = 2e-3;
+  check_all_targets<float>(def);
+  check_all_targets<double>(def);
+}
+
+TEST_CASE("a pinned particle stays where it is, and what pulls it counts no power") {
+  ClothDef def = test::flat_cloth(5, 9);
+  const ClothModel<float> model = build_cloth<float>(def);
+  Random random(3);
+  Vec3Array<float> x = test::shaken(model, 0.05, random), v(x.size(), Vec3f::Zero()), pull = x;
+  const Vec3Array<float> before = x;
+  GridPass<float> grid;
+  grid.prepare(model.parts[0]);
+  grid.make_room(false);
+  grid.load(x, v);
+  grid.load_inverse_mass(std::vector<float>(x.size(), 0));
+  grid.load_external(pull);
+  CHECK(grid.advance({1, 1, {1, 2, 3}, 1, true}) == 0);
+  grid.store_positions(x);
+  grid.store_velocities(v);
+  CHECK(x == before);
+  CHECK(v == Vec3Array<float>(x.size(), Vec3f::Zero()));
+}
+
+TEST_CASE("verlet takes at most 100 bytes a particle of a large grid, until air or hands come") {
+  WorldDef def = test::empty_world(test::flat_cloth(128, 128));
+  World<float> world(def);
+  const double particles = 128 * 128;
+  CHECK(static_cast<double>(world.solver_bytes()) <= 100 * particles);
+  def.environment = world.environment();
+  def.environment.wind = Vec3d(1, 0, 0);
+  def.environment.air_density = 1.2;
+  world.set_environment(def.environment);
+  CHECK(static_cast<double>(world.solver_bytes()) > 100 * particles);
+}
