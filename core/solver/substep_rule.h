@@ -21,11 +21,6 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
 
 inline constexpr int kMostSubsteps = 20000;
 
-/// How many times the substeps of the bound the springs take. The bound is one of a linear theory;
-/// a cloth shaken until its springs point anywhere is pumped up a little below it. At 1.00 one in
-/// six of the hard cases of tests/laws/shaking_test.cpp stayed hot for ever, from 1.02 on none.
-inline constexpr double kSubstepMargin = 1.05;
-
 /// Fills a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
 /// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state
 /// matrix k g g^T, and the damping rates already in the elements.

@@ -151,12 +151,11 @@ std::size_t World<Real>::solver_bytes() const {
 
 template <class Real>
 int World<Real>::choose_substeps() const {
-  const bool relaxing = solver_of(def_) == SolverKind::relaxation;
-  const int fewest = relaxing ? def_.relaxation.substeps : def_.solver.min_substeps;
-  const double seconds = relaxing ? tick_seconds() : kSubstepMargin * tick_seconds();
+  const int fewest = solver_of(def_) == SolverKind::relaxation ? def_.relaxation.substeps
+                                                               : def_.solver.min_substeps;
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
-    count = std::max(count, substeps_for(stability_bound(part), seconds, fewest));
+    count = std::max(count, substeps_for(stability_bound(part), tick_seconds(), fewest));
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 

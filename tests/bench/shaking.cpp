@@ -6,7 +6,7 @@
 #include "core/world/world.h"
 #include "tests/bench/cases.h"
 #include "tests/bench/measures.h"
-#include "tests/support/random.h"
+#include "tests/support/insults.h"
 
 namespace weft::bench {
 namespace {
@@ -27,39 +27,9 @@ int run(World<float>& world, int ticks) {
   return rescues;
 }
 
-void shake(World<float>& world) {
-  test::Random random(5);
-  for (std::size_t i = 0; i < world.state().v.size(); ++i) {
-    const Vec3d v = random.vector(1).normalized() * 20;
-    if (world.state().inverse_mass[i] > 0) world.state().v[i] = v.cast<float>();
-  }
-  world.accept_state();
-}
-
-void crush(World<float>& world) {
-  test::Random random(6);
-  for (std::size_t i = 0; i < world.state().x.size(); ++i) {
-    const Vec3d place = Vec3d(0.5, -0.5, 0) + random.vector(0.5e-3);
-    if (world.state().inverse_mass[i] > 0) world.state().x[i] = place.cast<float>();
-  }
-  world.accept_state();
-}
-
-void teleport_pin(World<float>& world, const Vec3f& by) {
-  world.state().x[0] += by;
-  world.accept_state();
-}
-
 /// Hurts a world and lets it run; returns the ticks that were taken back.
-int hurt(World<float>& world, const std::string& insult, int ticks, double& highest) {
-  int rescues = 0;
-  if (insult == "noise of 20 m/s") shake(world);
-  if (insult == "all in a ball of 1 mm") crush(world);
-  if (insult == "pin 3 m away and back") {
-    teleport_pin(world, Vec3f(0, 0, 3));
-    rescues += run(world, 6);
-    teleport_pin(world, Vec3f(0, 0, -3));
-  }
+int hurt(World<float>& world, test::Insult kind, int ticks, double& highest) {
+  int rescues = test::insult(world, kind);
   const double start = world.report().energies.total();
   highest = 0;
   for (int k = 0; k < ticks; ++k) {
@@ -89,9 +59,9 @@ std::vector<ShakingFigure> measure_shaking(bool quick) {
         };
         World<float> rest(def(5));
         run(rest, kTicks);
-        for (const char* insult :
-             {"noise of 20 m/s", "all in a ball of 1 mm", "pin 3 m away and back"}) {
-          ShakingFigure figure{setting.solver, setting.name, fabric.name, insult, n, 0, 0, 0};
+        for (const test::Insult insult : test::kInsults) {
+          ShakingFigure figure{
+              setting.solver, setting.name, fabric.name, name_of(insult), n, 0, 0, 0};
           double unused = 0;
           World<float> damped(def(5)), free(def(0));
           figure.rescues += hurt(damped, insult, kTicks, unused);
