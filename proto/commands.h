@@ -180,7 +180,9 @@ enum class QueryWhat : std::uint8_t {
   trees,
   boxes,
   colliders,
-  measurements
+  measurements,
+  contacts,
+  reactions
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 
@@ -215,6 +217,7 @@ enum class Codec : std::uint8_t { f32 };
 struct View {
   std::optional<double> hz;  ///< most frames a second; 0: none
   std::optional<Codec> codec;
+  std::optional<bool> forces;  ///< contacts and reactions in the frames
   bool operator==(const View&) const = default;
 };
 

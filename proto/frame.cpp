@@ -32,29 +32,51 @@ bool is_finite(const PoseSample& pose) {
   return all_finite(pose.position) && all_finite(pose.rotation);
 }
 
+bool is_finite(const AppliedCommand&) {
+  return true;
+}
+
+bool is_finite(const ContactSample& c) {
+  return all_finite(c.point) && all_finite(c.normal) && all_finite(c.friction) &&
+         std::isfinite(c.gap) && std::isfinite(c.normal_force);
+}
+
+bool is_finite(const ReactionSample& reaction) {
+  return all_finite(reaction.force);
+}
+
+template <class Sample>
+bool read_samples(std::span<const std::byte> payload, std::vector<Sample>& samples) {
+  samples = read_array<Sample>(payload);
+  return payload.size() % sizeof(Sample) == 0 &&
+         std::all_of(samples.begin(), samples.end(),
+                     [](const Sample& sample) { return is_finite(sample); });
+}
+
 bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) {
-  const std::size_t size = section.payload.size();
   switch (section.kind) {
     case kPositions:
-      if (size != std::size_t{vertices} * sizeof(Vec3f)) return false;
+      if (section.payload.size() != std::size_t{vertices} * sizeof(Vec3f)) return false;
       frame.positions = read_array<float>(section.payload);
       return all_finite(frame.positions);
     case kGrabs:
-      frame.grabs = read_array<GrabSample>(section.payload);
-      return size % sizeof(GrabSample) == 0 &&
-             std::all_of(frame.grabs.begin(), frame.grabs.end(),
-                         [](const GrabSample& grab) { return is_finite(grab); });
+      return read_samples(section.payload, frame.grabs);
     case kApplied:
-      frame.applied = read_array<AppliedCommand>(section.payload);
-      return size % sizeof(AppliedCommand) == 0;
+      return read_samples(section.payload, frame.applied);
     case kPoses:
-      frame.poses = read_array<PoseSample>(section.payload);
-      return size % sizeof(PoseSample) == 0 &&
-             std::all_of(frame.poses.begin(), frame.poses.end(),
-                         [](const PoseSample& pose) { return is_finite(pose); });
+      return read_samples(section.payload, frame.poses);
+    case kContacts:
+      return read_samples(section.payload, frame.contacts);
+    case kReactions:
+      return read_samples(section.payload, frame.reactions);
     default:
       return true;
   }
+}
+
+template <class Sample>
+void put_samples(BinaryWriter& writer, SectionKind kind, std::span<const Sample> samples) {
+  if (!samples.empty()) writer.put_section(kind, 0, samples);
 }
 
 }  // namespace
@@ -62,14 +84,18 @@ bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) 
 void encode_frame(const FrameView& frame, Bytes& out) {
   const FrameHeader& h = frame.header;
   BinaryWriter writer(out, BinaryType::frame, 0, h.flags);
-  const std::uint32_t sections = 1U + (frame.grabs.empty() ? 0 : 1) +
-                                 (frame.applied.empty() ? 0 : 1) + (frame.poses.empty() ? 0 : 1);
+  std::uint32_t sections = 1;
+  for (const bool empty : {frame.grabs.empty(), frame.applied.empty(), frame.poses.empty(),
+                           frame.contacts.empty(), frame.reactions.empty()})
+    sections += empty ? 0 : 1;
   writer.put(FrameFields{h.tick, h.time, h.server_time, h.sequence, h.reference, h.epoch,
                          static_cast<std::uint32_t>(frame.positions.size() / 3), 0, sections});
   writer.put_section(kPositions, 0, frame.positions);
-  if (!frame.grabs.empty()) writer.put_section(kGrabs, 0, frame.grabs);
-  if (!frame.applied.empty()) writer.put_section(kApplied, 0, frame.applied);
-  if (!frame.poses.empty()) writer.put_section(kPoses, 0, frame.poses);
+  put_samples(writer, kGrabs, frame.grabs);
+  put_samples(writer, kApplied, frame.applied);
+  put_samples(writer, kPoses, frame.poses);
+  put_samples(writer, kContacts, frame.contacts);
+  put_samples(writer, kReactions, frame.reactions);
   writer.finish();
 }
 

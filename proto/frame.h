@@ -56,6 +56,33 @@ struct PoseSample {
 };
 static_assert(sizeof(PoseSample) == 32);
 
+/// A contact of the cloth.
+struct ContactSample {
+  std::uint32_t collider = 0;  ///< place of the object in the text message; kNoCollider: cloth
+  std::uint32_t particle = 0;  ///< of the cloth, that which has most to do with it
+  Vec3f point{}, normal{};     ///< of the mid-surface [m]; unit, out of the other side
+  float gap = 0;               ///< from the mid-surface to the other side [m]
+  float normal_force = 0;      ///< on the cloth, along the normal [N]
+  Vec3f friction{};            ///< on the cloth, across the normal [N]
+  bool operator==(const ContactSample&) const = default;
+};
+static_assert(sizeof(ContactSample) == 52);
+inline constexpr std::uint32_t kNoCollider = 0xffffffff;
+
+/// Who gives a force to the cloth, or gets one from it.
+enum class ReactionOf : std::uint32_t {
+  pin = 0,       ///< `id` names the pin; force on the cloth
+  collider = 1,  ///< `id` is its place in the text message; force of the cloth on it
+};
+
+struct ReactionSample {
+  ReactionOf of = ReactionOf::pin;
+  std::uint32_t id = 0;
+  Vec3f force{};  ///< [N]
+  bool operator==(const ReactionSample&) const = default;
+};
+static_assert(sizeof(ReactionSample) == 20);
+
 /// What is encoded; the arrays stay the caller's.
 struct FrameView {
   FrameHeader header;
@@ -63,6 +90,8 @@ struct FrameView {
   std::span<const GrabSample> grabs;
   std::span<const AppliedCommand> applied;
   std::span<const PoseSample> poses;
+  std::span<const ContactSample> contacts;
+  std::span<const ReactionSample> reactions;
 };
 
 /// Writes codec f32. `out` keeps its capacity from frame to frame, so a steady stream allocates
@@ -76,6 +105,8 @@ struct Frame {
   std::vector<GrabSample> grabs;
   std::vector<AppliedCommand> applied;
   std::vector<PoseSample> poses;
+  std::vector<ContactSample> contacts;
+  std::vector<ReactionSample> reactions;
 };
 
 /// Accepts exactly what README.md allows, with finite positions. Never reads outside `message`.

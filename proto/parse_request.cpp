@@ -291,7 +291,9 @@ Command read_view(FieldReader& in) {
   View view;
   in.read_if_there("hz", view.hz, kFrameRateRange);
   in.read_if_there("codec", view.codec, kCodecWords);
-  if (in.ok() && view == View{}) in.fail(ErrorCode::missing_field, "hz", "view needs hz or codec");
+  in.read_if_there("forces", view.forces);
+  if (in.ok() && view == View{})
+    in.fail(ErrorCode::missing_field, "hz", "view needs hz, codec or forces");
   return view;
 }
 

@@ -42,6 +42,39 @@ Json json_of(const Measurements& measurements) {
   return out;
 }
 
+Json json_of(const ContactInfo& c) {
+  Json out = Json::object();
+  put_if(out, "collider", c.collider);
+  out["particles"] = c.particles;
+  out["weights"] = c.weights;
+  out["point"] = c.point;
+  out["normal"] = c.normal;
+  out["gap"] = c.gap;
+  out["normal_force"] = c.normal_force;
+  out["friction"] = c.friction;
+  return out;
+}
+
+Json json_of(const PinForce& pin) {
+  return {{"pin", pin.pin}, {"force", pin.force}};
+}
+
+Json json_of(const GrabForce& grab) {
+  return {{"grab", grab.grab}, {"viewer", grab.viewer}, {"force", grab.force}};
+}
+
+Json json_of(const ColliderForce& collider) {
+  return {{"collider", collider.collider}, {"force", collider.force}};
+}
+
+Json json_of(const ReactionInfo& reactions) {
+  Json out = Json::object();
+  if (reactions.pins) out["pins"] = json_of(*reactions.pins);
+  out["grabs"] = json_of(reactions.grabs);
+  out["colliders"] = json_of(reactions.colliders);
+  return out;
+}
+
 namespace {
 
 struct DataName {
@@ -56,6 +89,8 @@ struct DataName {
   QueryWhat operator()(const std::vector<TreeInfo>&) const { return QueryWhat::trees; }
   QueryWhat operator()(const std::vector<ColliderPose>&) const { return QueryWhat::colliders; }
   QueryWhat operator()(const Measurements&) const { return QueryWhat::measurements; }
+  QueryWhat operator()(const std::vector<ContactInfo>&) const { return QueryWhat::contacts; }
+  QueryWhat operator()(const ReactionInfo&) const { return QueryWhat::reactions; }
 };
 
 struct ReplyWriter {
@@ -140,6 +175,7 @@ struct ReplyWriter {
     out["command"] = "view";
     out["hz"] = r.hz;
     out["codec"] = name_of(r.codec);
+    out["forces"] = r.forces;
   }
   void operator()(const VectorsReply& r) {  // its data is appended as text
     start("query", r.tick);

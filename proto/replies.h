@@ -100,6 +100,7 @@ struct LoadReply {
 struct ViewReply {
   double hz = 0;
   Codec codec = Codec::f32;
+  bool forces = false;
 };
 
 /// Positions, velocities or boxes as JSON, `components` values a row. The data is read by
@@ -145,6 +146,40 @@ struct ColliderPose {
   bool blocked = false;  ///< held back in the last tick by cloth that cannot give way
 };
 
+/// A contact of the cloth with an object, or with itself.
+struct ContactInfo {
+  std::optional<std::string> collider;   ///< absent: cloth on the other side too
+  std::vector<std::uint32_t> particles;  ///< 1 to 3; 4 of both sides if both are cloth
+  std::vector<double> weights;           ///< negative on the other side
+  Vec3 point{}, normal{};                ///< of the mid-surface [m]; unit, out of the other side
+  double gap = 0;                        ///< from the mid-surface to the other side [m]
+  double normal_force = 0;               ///< on the cloth, along the normal [N]
+  Vec3 friction{};                       ///< on the cloth, across the normal [N]
+};
+
+struct PinForce {
+  std::uint32_t pin = 0;
+  Vec3 force{};  ///< of the pin on the cloth [N]
+};
+
+struct GrabForce {
+  std::uint32_t grab = 0;
+  ViewerId viewer = 0;
+  Vec3 force{};  ///< of the hand on the cloth [N]
+};
+
+struct ColliderForce {
+  std::string collider;
+  Vec3 force{};  ///< of the cloth on it [N]
+};
+
+/// Forces between the cloth and what holds it.
+struct ReactionInfo {
+  std::optional<std::vector<PinForce>> pins;  ///< absent if the solver does not know them
+  std::vector<GrabForce> grabs;
+  std::vector<ColliderForce> colliders;
+};
+
 /// What the scene's test measures, by names that end in their unit; empty if it is no test.
 struct Measurements {
   std::vector<std::pair<std::string, double>> values;
@@ -155,7 +190,8 @@ struct QueryReply {
   std::uint64_t tick = 0;
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
-               std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements>
+               std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements,
+               std::vector<ContactInfo>, ReactionInfo>
       data;
 };
 

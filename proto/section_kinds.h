@@ -10,6 +10,8 @@ enum SectionKind : std::uint16_t {
   kGrabs = 2,
   kApplied = 3,
   kPoses = 4,
+  kContacts = 5,
+  kReactions = 6,
   kRestPositions = 16,
   kTriangles = 17,
   kUv = 18,

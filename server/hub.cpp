@@ -72,6 +72,13 @@ void Hub::set_most_frames(proto::ViewerId viewer, double hz) {
   count_takers();
 }
 
+void Hub::want_forces(proto::ViewerId viewer, bool wanted) {
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  found->second.channel->want_forces(wanted);
+  count_takers();
+}
+
 void Hub::poll() {
   for (auto& [id, viewer] : viewers_) {
     viewer.channel->poll();
@@ -91,9 +98,13 @@ SharedBytes Hub::find_mesh(std::uint64_t hash) const {
 }
 
 void Hub::count_takers() {
-  int takers = 0;
-  for (const auto& [id, viewer] : viewers_) takers += viewer.channel->wants_frames() ? 1 : 0;
+  int takers = 0, force_takers = 0;
+  for (const auto& [id, viewer] : viewers_) {
+    takers += viewer.channel->wants_frames() ? 1 : 0;
+    force_takers += viewer.channel->wants_forces() ? 1 : 0;
+  }
   frame_takers_.store(takers, std::memory_order_relaxed);
+  force_takers_.store(force_takers, std::memory_order_relaxed);
 }
 
 void Hub::count_frames(Viewer& viewer) {

@@ -15,7 +15,7 @@
 namespace weft::server {
 
 /// Hands what a room says to the channels of its viewers. Lives on the network thread; only
-/// `wants_frames` may be asked from elsewhere.
+/// `wants_frames` and `wants_forces` may be asked from elsewhere.
 class Hub {
  public:
   Hub(Clock clock, double frame_rate, const ChannelLimits& limits, Metrics& metrics);
@@ -32,6 +32,7 @@ class Hub {
   void offer_frame(const Frame& frame);
   void set_frame_rate(double frame_rate);
   void set_most_frames(proto::ViewerId viewer, double hz);
+  void want_forces(proto::ViewerId viewer, bool wanted);
 
   /// Sends what has become due, tells viewers of dropped frames, counts. Every 10 to 50 ms.
   void poll();
@@ -44,6 +45,8 @@ class Hub {
 
   /// Whether any viewer takes frames; no frame needs to be encoded otherwise.
   bool wants_frames() const { return frame_takers_.load(std::memory_order_relaxed) > 0; }
+  /// Whether any of them takes contacts and reactions with them.
+  bool wants_forces() const { return force_takers_.load(std::memory_order_relaxed) > 0; }
   std::size_t viewers() const { return viewers_.size(); }
   const Clock& clock() const { return clock_; }
 
@@ -66,7 +69,7 @@ class Hub {
   // Ordered, so that everybody is served in the same order in every run.
   std::map<proto::ViewerId, Viewer> viewers_;
   std::deque<std::pair<std::uint64_t, SharedBytes>> meshes_;
-  std::atomic<int> frame_takers_{0};
+  std::atomic<int> frame_takers_{0}, force_takers_{0};
 };
 
 }  // namespace weft::server

@@ -47,10 +47,11 @@ Message binary_message(Container bytes) {
   return {SharedBytes(std::move(bytes)), true};
 }
 
-/// An encoded frame; the same bytes for all viewers.
+/// An encoded frame; the same bytes for all viewers that ask for the same.
 struct Frame {
   SharedBytes bytes;
   std::uint32_t sequence = 0;
+  SharedBytes with_forces = {};  ///< the same with contacts and reactions; empty if nobody asked
 };
 
 }  // namespace weft::server

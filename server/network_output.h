@@ -31,6 +31,7 @@ class NetworkOutput : public RoomOutput {
     post([viewer](Hub& hub) { hub.welcome_done(viewer); });
   }
   bool wants_frames() const override { return hub_.wants_frames(); }
+  bool wants_forces() const override { return hub_.wants_forces(); }
   void offer_frame(Frame frame) override {
     post([frame = std::move(frame)](Hub& hub) { hub.offer_frame(frame); });
   }

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/translate_forces.h"
 
 namespace weft::server {
 namespace {
@@ -49,6 +50,7 @@ void Room::start_world(const WorldDef& def) {
   // Built before anything changes, because building may throw.
   auto world = std::make_unique<ServedWorld>(def, runtime);
   world_ = std::move(world);
+  measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
   tick_times_.clear();
@@ -142,6 +144,10 @@ void Room::leave(proto::ViewerId viewer) {
 }
 
 void Room::step_world() {
+  if (output_.wants_forces() != measures_forces_) {
+    measures_forces_ = !measures_forces_;
+    world_->measure_forces(measures_forces_);
+  }
   const double start = process_seconds();
   const TickReport& report = world_->step();
   const double seconds = process_seconds() - start;
@@ -272,9 +278,18 @@ void Room::publish() {
   view.applied = applied_;
   pose_samples(*world_, pose_samples_);
   view.poses = pose_samples_;
-  proto::Bytes bytes;
+  proto::Bytes bytes, with_forces;
   proto::encode_frame(view, bytes);
-  output_.offer_frame({SharedBytes(std::move(bytes)), sequence_});
+  Frame frame{SharedBytes(std::move(bytes)), sequence_};
+  if (world_->reactions()) {
+    contact_samples_ = contact_samples(*world_);
+    reaction_samples_ = reaction_samples(*world_);
+    view.contacts = contact_samples_;
+    view.reactions = reaction_samples_;
+    proto::encode_frame(view, with_forces);
+    frame.with_forces = SharedBytes(std::move(with_forces));
+  }
+  output_.offer_frame(std::move(frame));
   ++frames_encoded_;
   frame_wanted_ = jumped_ = false;
 }

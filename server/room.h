@@ -205,6 +205,9 @@ class Room {
   std::vector<proto::GrabSample> grab_samples_;
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
+  bool measures_forces_ = false;  // the world does
+  std::vector<proto::ContactSample> contact_samples_;
+  std::vector<proto::ReactionSample> reaction_samples_;
 };
 
 }  // namespace weft::server

@@ -31,6 +31,9 @@ class RoomOutput {
   /// Whether anybody wants to see a frame at all.
   virtual bool wants_frames() const = 0;
 
+  /// Whether somebody wants to see contacts and reactions in frames.
+  virtual bool wants_forces() const = 0;
+
   /// The newest frame, for everybody.
   virtual void offer_frame(Frame frame) = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "server/room.h"
 #include "server/translate.h"
+#include "server/translate_forces.h"
 
 // What a room tells of its cloth when it is asked.
 
@@ -90,6 +91,16 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
     case proto::QueryWhat::measurements:
       reply.data = measurements_of(*world_);
       break;
+    case proto::QueryWhat::contacts:
+      reply.data = contacts_of(*world_, world_->coming_reactions());
+      break;
+    case proto::QueryWhat::reactions: {
+      proto::ReactionInfo reactions = reactions_of(*world_, world_->coming_reactions());
+      for (const proto::GrabInfo& grab : grabs(true))
+        reactions.grabs.push_back({grab.id, grab.viewer, *grab.force});
+      reply.data = std::move(reactions);
+      break;
+    }
     case proto::QueryWhat::trees:
       reply.data = trees_of(*world_);
       break;

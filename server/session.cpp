@@ -183,7 +183,10 @@ void Session::on_request(const proto::Request& request, double received) {
   if (const auto* view = std::get_if<proto::View>(&request.command)) {
     context_.metrics.count_command("view");
     if (view->hz) context_.hub.set_most_frames(viewer_, *view->hz);
-    if (channel_) answer(request.id, proto::ViewReply{channel_->asked_frames(), proto::Codec::f32});
+    if (view->forces) context_.hub.want_forces(viewer_, *view->forces);
+    if (channel_)
+      answer(request.id, proto::ViewReply{channel_->asked_frames(), proto::Codec::f32,
+                                          channel_->asked_forces()});
     return note(true);
   }
   if (context_.mailbox.put({viewer_, number_, request})) return;

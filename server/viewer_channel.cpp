@@ -115,7 +115,7 @@ void ViewerChannel::pump() {
   // Due times follow one another without drift, but do not pile up behind a pause.
   const double interval = frame_interval();
   next_frame_time_ = (now - next_frame_time_ < interval ? next_frame_time_ : now) + interval;
-  start({frame.bytes, true});
+  start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true});
 }
 
 void ViewerChannel::start(const Message& message) {

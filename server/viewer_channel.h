@@ -68,6 +68,10 @@ class ViewerChannel {
   void set_most_frames(double hz);
   /// The `hz` in force [1/s]; 240, the most that may be asked for, if none was.
   double asked_frames() const { return std::min(most_frames_, 240.0); }
+  /// Whether its frames shall tell contacts and reactions.
+  void want_forces(bool wanted) { with_forces_ = wanted; }
+  bool wants_forces() const { return with_forces_ && wants_frames(); }
+  bool asked_forces() const { return with_forces_; }
   bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
 
   /// The room's rate of frames has changed [1/s].
@@ -98,6 +102,7 @@ class ViewerChannel {
   double frame_rate_;
   double most_frames_;  // as asked for; may be above the room's rate
   bool frames_allowed_ = false;
+  bool with_forces_ = false;
   bool writing_ = false;
   bool closing_ = false, closed_ = false;
   std::uint16_t close_code_ = 0;

@@ -11,6 +11,9 @@ namespace {
 /// of it before it needs pairs of its own.
 constexpr double kHiddenRise = 0.75;
 
+/// What is nearer than this part of the thickness touches, as others are told.
+constexpr double kTouching = 1.05;
+
 bool is_thinner(const ContactDef& a, const ContactDef& b) {
   return a.thickness < b.thickness;
 }
@@ -92,6 +95,7 @@ void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   tick_seconds_ = static_cast<Real>(tick_seconds);
   colliders_ = colliders;
   work_ = 0;
+  log_.clear();
   any_tracked_ = false;
   surface_speed_ = 0;
   if (!colliders) return;
@@ -140,6 +144,11 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   find_busy_rows();
   aim_rows(state, dt);
   solve_rows(state, profile);
+}
+
+template <class Real>
+std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) const {
+  return log_.contacts(rows_, x, kTouching, static_cast<double>(tick_seconds_));
 }
 
 /// Signed distance of a point from the nearest object; of meshes, only closed ones have an inside.

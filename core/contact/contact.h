@@ -7,6 +7,7 @@
 #include "core/cloth/cloth_state.h"
 #include "core/contact/cloth_patches.h"
 #include "core/contact/collider_frame.h"
+#include "core/contact/contact_log.h"
 #include "core/contact/feature_distance.h"
 #include "core/contact/mesh_shape.h"
 #include "core/executor.h"
@@ -47,6 +48,7 @@ struct ContactRow {
   Real thickness = 0;                      ///< that the cloth keeps [m]
   Index cloth = 0;                         ///< whose friction and restitution it has
   Index mover = kNone;                     ///< number among the rows with moving objects
+  Index collider = 0;                      ///< the object
   bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
@@ -116,6 +118,13 @@ class Contact {
   double deepest_penetration(const Vec3Array<Real>& x) const;
 
   const std::vector<ContactRow<Real>>& rows() const { return rows_; }
+
+  /// Notes the impulses of each tick from now on, or no longer.
+  void log_impulses(bool wanted) { log_.want(wanted); }
+
+  /// Contacts of the last tick with their mean forces over it, if impulses are noted [N]; without
+  /// forces if not. Those that pushed, and those that touch now.
+  std::vector<ContactPoint> contacts(const Vec3Array<Real>& x) const;
 
  private:
   struct Plane {
@@ -235,7 +244,9 @@ class Contact {
   void aim_rows(const ClothState<Real>& state, Real dt);
   void solve_rows(ClothState<Real>& state, Profile& profile);
   void certify(ClothState<Real>& state, Real dt);
-  bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt) const;
+  bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt);
+  void log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
+                const ClothState<Real>& state);
 
   // contact_movers.cpp
   void place_collider(std::size_t collider, const Pose& pose);
@@ -315,6 +326,7 @@ class Contact {
   std::vector<MovingRow<Real>> moving_rows_;
   Vec3Array<Real> x_unpushed_;  ///< before the push-out
   double work_ = 0;
+  ContactLog log_;
 };
 
 extern template class Contact<float>;

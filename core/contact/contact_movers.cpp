@@ -194,6 +194,7 @@ bool Contact<Real>::keep_off_mover(const ContactRow<Real>& row, ClothState<Real>
     state.v[i] += normal * ((least - end) / dt * Real(1.0001));
     const Real gained = (state.v[i].squaredNorm() - before.squaredNorm()) / 2;
     work_ += std::max(0.0, static_cast<double>(gained / state.inverse_mass[i]));
+    if (log_.wanted()) log_stop(row, k, before, state);
   }
   return kept;
 }
@@ -249,6 +250,7 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     if (moves) least = std::max(least, std::min(now, least_height(row, true)) - Real(kCarrySlack));
     if (end >= least) continue;
     const bool held = state.inverse_mass[i] == 0;
+    const Vec3<Real> before = state.v[i];
     if (moves && carry && !held) {
       state.v[i] = frames_[collider].velocity_at(state.x[i]);
     } else if (moves) {
@@ -258,6 +260,7 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     } else {
       continue;
     }
+    if (log_.wanted() && !held) log_stop(row, k, before, state);
     changed = true;
   }
   return changed;

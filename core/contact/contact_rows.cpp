@@ -109,6 +109,7 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
     row.least_height = std::min(
         row.least_height, normal.dot(state.x[static_cast<std::size_t>(i)]) - (height - distance));
   row.distance = distance;
+  row.collider = static_cast<Index>(collider);
   row.responds = responds && !held;
   row.cloth = cloth_of(row.particle[0]);
   row.thickness = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].thickness);

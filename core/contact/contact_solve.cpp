@@ -186,9 +186,22 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
       share_out(row, change, state.v);
       pushed_rows_.push_back(r);
       if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
+      if (log_.wanted()) log_.add(row, change, state);
     }
   }
   profile[Stage::friction].work += friction_evaluations;
+}
+
+/// Notes the impulse by which the certificate stopped particle k of a row.
+/// @param before  its velocity until then [m/s]
+template <class Real>
+void Contact<Real>::log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
+                             const ClothState<Real>& state) {
+  ContactRow<Real> single = row;
+  single.particle = {row.particle[k], 0, 0};
+  single.weight = {Real(1), 0, 0};
+  single.count = 1;
+  log_.add<Real>(single, state.v[static_cast<std::size_t>(row.particle[k])] - before, state);
 }
 
 /// Keeps each particle of a row on its side of the row's plane through the coming drift: as the
@@ -197,7 +210,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
 /// @return whether anybody had to be kept
 template <class Real>
 bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state,
-                             Real dt) const {
+                             Real dt) {
   bool kept = false;
   for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
     const auto i = static_cast<std::size_t>(row.particle[k]);
@@ -206,10 +219,12 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
     const Real least = std::min(now, Real(kSmallestGap));
     if (end >= least || state.inverse_mass[i] == 0) continue;
     kept = true;
+    const Vec3<Real> before = state.v[i];
     if (hold)
       state.v[i].setZero();
     else
       state.v[i] += row.normal * ((least - end) / dt * Real(1.0001));
+    if (log_.wanted()) log_stop(row, k, before, state);
   }
   return kept;
 }
@@ -251,18 +266,19 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   hold_within_reach(state, dt);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                  \
-  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);                      \
-  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real);               \
-  template void Contact<Real>::measure_rooms();                                                 \
-  template Real Contact<Real>::farthest2(const RowRoom&) const;                                 \
-  template void Contact<Real>::find_busy_rows();                                                \
-  template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                      \
-  template void Contact<Real>::push_out(ClothState<Real>&, Real);                               \
-  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                         \
-  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);                         \
-  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real) \
-      const;                                                                                    \
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);                       \
+  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real);                \
+  template void Contact<Real>::measure_rooms();                                                  \
+  template Real Contact<Real>::farthest2(const RowRoom&) const;                                  \
+  template void Contact<Real>::find_busy_rows();                                                 \
+  template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
+  template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
+  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);                          \
+  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \
+  template void Contact<Real>::log_stop(const ContactRow<Real>&, std::size_t, const Vec3<Real>&, \
+                                        const ClothState<Real>&);                                \
   template void Contact<Real>::certify(ClothState<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -69,15 +69,20 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
   if (def_.contact.seed.self == SelfContact::guard) guard_.emplace(model_);
+  prepare_solver();
+  std::vector<Aabb<Real>> boxes;
+  triangle_boxes(model_.rest_positions, model_.triangles, boxes);
+  pick_tree_.build(boxes);
+  reset();
+}
+
+template <class Real>
+void World<Real>::prepare_solver() {
   if (solver_of(def_) == SolverKind::verlet)
     verlet_.prepare(model_, def_.solver);
   else
     relaxation_.prepare(model_);
   make_room();
-  std::vector<Aabb<Real>> boxes;
-  triangle_boxes(model_.rest_positions, model_.triangles, boxes);
-  pick_tree_.build(boxes);
-  reset();
 }
 
 template <class Real>
@@ -108,6 +113,7 @@ void World<Real>::reset() {
 
 template <class Real>
 void World<Real>::accept_state() {
+  reactions_.reset();
   last_good_ = state_;
   verlet_.elastic.reset();
   account_.clear();
@@ -130,6 +136,7 @@ const TickReport& World<Real>::step() {
   finish_tick(grabs_);
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
+  if (measures_forces_) take_reactions();
   return report_;
 }
 

@@ -15,6 +15,7 @@
 #include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
 #include "core/world/profile.h"
+#include "core/world/reactions.h"
 #include "core/world/world_def.h"
 
 namespace weft {
@@ -118,6 +119,14 @@ class World {
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;
 
+  /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
+  void measure_forces(bool wanted);
+  /// Those of the last tick, if they were measured in it; null otherwise.
+  const Reactions* reactions() const { return reactions_ ? &*reactions_ : nullptr; }
+  /// Those that the coming tick would have, if nothing were changed until then. Works on a copy of
+  /// the world: costs a tick and more memory than the world itself, and changes nothing.
+  Reactions coming_reactions() const;
+
   /// What the state of the cloth, the copy to go back to and the arrays of `verlet` take [B]. Those
   /// for air and hands count from their first use on.
   std::size_t solver_bytes() const;
@@ -147,6 +156,10 @@ class World {
   double tick_seconds() const { return 1 / def_.tick_rate; }
 
  private:
+  World(const World&) = default;
+  World copy() const;
+  void prepare_solver();
+  void take_reactions();
   int choose_substeps() const;
   void make_room();
   StabilityBound stability_bound(const ClothPart<Real>& part) const;
@@ -178,6 +191,8 @@ class World {
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;
+  bool measures_forces_ = false;
+  std::optional<Reactions> reactions_;
 };
 
 extern template class World<float>;

@@ -142,7 +142,7 @@ export class WeftClient extends Session {
     return this.request('load', { scene });
   }
 
-  /** @param {{hz?: number, codec?: string}} options  kept over reconnections */
+  /** @param {{hz?: number, codec?: string, forces?: boolean}} options  kept over reconnections */
   view(options) {
     Object.assign(this.wantedView, options);
     return this.request('view', options);

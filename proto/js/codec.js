@@ -25,6 +25,11 @@ const DATA_BYTES = 40;
 const GRAB_BYTES = 36;
 const APPLIED_BYTES = 8;
 const POSE_BYTES = 32;
+const CONTACT_BYTES = 52;
+const REACTION_BYTES = 20;
+const NO_COLLIDER = 0xffffffff;
+/** @type {('pin' | 'collider')[]} */
+const REACTION_OF = ['pin', 'collider'];
 const MOST_COMPONENTS = 16;
 const FLAG_KEY = 1;
 const FLAG_JUMP = 2;
@@ -35,6 +40,8 @@ const KIND = {
   grabs: 2,
   applied: 3,
   poses: 4,
+  contacts: 5,
+  reactions: 6,
   restPositions: 16,
   triangles: 17,
   uv: 18,
@@ -115,6 +122,47 @@ function readPoses(view, section) {
 }
 
 /**
+ * @param {DataView} view
+ * @param {Section} section
+ */
+function readContacts(view, section) {
+  demand(section.length % CONTACT_BYTES === 0, 'a section does not fit');
+  const contacts = [];
+  for (let at = section.offset; at < section.offset + section.length; at += CONTACT_BYTES) {
+    const collider = view.getUint32(at, true);
+    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 11);
+    demandFinite(numbers);
+    const all = [...numbers];
+    contacts.push({
+      collider: collider === NO_COLLIDER ? null : collider,
+      particle: view.getUint32(at + 4, true),
+      point: all.slice(0, 3),
+      normal: all.slice(3, 6),
+      gap: numbers[6],
+      normalForce: numbers[7],
+      friction: all.slice(8, 11),
+    });
+  }
+  return contacts;
+}
+
+/**
+ * @param {DataView} view
+ * @param {Section} section
+ */
+function readReactions(view, section) {
+  demand(section.length % REACTION_BYTES === 0, 'a section does not fit');
+  const reactions = [];
+  for (let at = section.offset; at < section.offset + section.length; at += REACTION_BYTES) {
+    const of = view.getUint32(at, true);
+    const force = new Float32Array(view.buffer, view.byteOffset + at + 8, 3);
+    demandFinite(force);
+    reactions.push({ of: REACTION_OF[of] ?? of, id: view.getUint32(at + 4, true), force: [...force] });
+  }
+  return reactions;
+}
+
+/**
  * @param {Message} message
  * @returns {Frame}
  */
@@ -135,6 +183,8 @@ function readFrame({ codec, flags, view }) {
   const grabs = find(KIND.grabs);
   const applied = find(KIND.applied);
   const poses = find(KIND.poses);
+  const contacts = find(KIND.contacts);
+  const reactions = find(KIND.reactions);
   return {
     type: 'frame',
     flags,
@@ -150,6 +200,8 @@ function readFrame({ codec, flags, view }) {
     grabs: grabs ? readGrabs(view, grabs) : [],
     applied: applied ? readApplied(view, applied) : [],
     poses: poses ? readPoses(view, poses) : [],
+    contacts: contacts ? readContacts(view, contacts) : [],
+    reactions: reactions ? readReactions(view, reactions) : [],
   };
 }
 

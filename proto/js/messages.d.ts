@@ -282,6 +282,36 @@ export interface Frame {
   applied: { viewer: number; number: number }[];
   /** Colliders that are not as the message `mesh` tells them. */
   poses: PoseSample[];
+  /** Of the cloth, if `view` asked for `forces`. */
+  contacts: ContactSample[];
+  /** Forces of what holds the cloth, if `view` asked for `forces`. */
+  reactions: ReactionSample[];
+}
+
+export interface ContactSample {
+  /** Place in `MeshAnnouncement.colliders`; null: cloth on the other side too. */
+  collider: number | null;
+  /** Of the cloth, that which has most to do with it. */
+  particle: number;
+  /** Of the cloth's mid-surface [m]. */
+  point: number[];
+  /** Unit, out of the other side. */
+  normal: number[];
+  /** From the mid-surface to the other side [m]. */
+  gap: number;
+  /** On the cloth, along the normal [N]. */
+  normalForce: number;
+  /** On the cloth, across the normal [N]. */
+  friction: number[];
+}
+
+export interface ReactionSample {
+  /** A number, if this client does not know what it means. */
+  of: 'pin' | 'collider' | number;
+  /** Of the pin, or the collider's place in `MeshAnnouncement.colliders`. */
+  id: number;
+  /** Of a pin on the cloth, of the cloth on a collider [N]. */
+  force: number[];
 }
 
 /** A point p of the collider is at `position` + `rotation` (p - pivot). */

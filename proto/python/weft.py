@@ -89,7 +89,7 @@ class CommandError(WeftError):
 _FRAME, _MESH, _DATA, _ACK = 1, 2, 3, 4
 _VERSION = 1
 _KEY, _JUMP, _PAUSED = 1, 2, 4
-_POSITIONS, _GRABS, _APPLIED, _POSES = 1, 2, 3, 4
+_POSITIONS, _GRABS, _APPLIED, _POSES, _CONTACTS, _REACTIONS = 1, 2, 3, 4, 5, 6
 _REST, _TRIANGLES, _UV, _COLLIDER_POSITIONS, _COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
 _COMMON = struct.Struct("<BBBBIII")
 _FRAME_FIELDS = struct.Struct("<QddIIIIfI")
@@ -99,6 +99,10 @@ _SECTION = struct.Struct("<HHI")
 _GRAB = struct.Struct("<II7f")
 _APPLIED_ENTRY = struct.Struct("<II")
 _POSE = struct.Struct("<I7f")
+_CONTACT = struct.Struct("<II11f")
+_REACTION = struct.Struct("<II3f")
+_NO_COLLIDER = 2**32 - 1
+_REACTION_OF = {0: "pin", 1: "collider"}
 _ACK_FIELDS = struct.Struct("<BBHI")
 _TICK_END = 2**53
 
@@ -139,6 +143,28 @@ class Pose:
 
 
 @dataclass(frozen=True)
+class ContactSample:
+    """A contact of the cloth at the tick of a frame; forces are on the cloth [N]."""
+
+    collider: int | None  # its place in the list of the `mesh` message; None: cloth as well
+    particle: int
+    point: tuple[float, float, float]  # of the cloth's mid-surface [m]
+    normal: tuple[float, float, float]  # unit, out of the other side
+    gap: float  # from the mid-surface to the other side [m]
+    normal_force: float
+    friction: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class ReactionSample:
+    """A force of a pin on the cloth, or of the cloth on a collider [N]."""
+
+    of: str | int  # "pin" or "collider"; a number, if this client does not know it
+    id: int  # of the pin, or the collider's place in the list of the `mesh` message
+    force: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class Frame:
     """Where the vertices are at a tick."""
 
@@ -153,6 +179,8 @@ class Frame:
     grabs: tuple[GrabSample, ...]
     applied: dict[int, int]  # viewer to the number of its last message that is included
     poses: dict[int, Pose]  # by the collider's place in the list of the `mesh` message
+    contacts: tuple[ContactSample, ...]  # if `view` asked for forces
+    reactions: tuple[ReactionSample, ...]  # if `view` asked for forces
 
     @property
     def jump(self) -> bool:
@@ -292,6 +320,26 @@ def _pose(entry: tuple) -> tuple[int, Pose]:
     return collider, Pose(tuple(numbers[0:3]), tuple(numbers[3:7]))
 
 
+def _contact(entry: tuple) -> ContactSample:
+    collider, particle, *numbers = entry
+    _demand(all(map(math.isfinite, numbers)), "a number is not finite")
+    return ContactSample(
+        collider=None if collider == _NO_COLLIDER else collider,
+        particle=particle,
+        point=tuple(numbers[0:3]),
+        normal=tuple(numbers[3:6]),
+        gap=numbers[6],
+        normal_force=numbers[7],
+        friction=tuple(numbers[8:11]),
+    )
+
+
+def _reaction(entry: tuple) -> ReactionSample:
+    of, id_, *force = entry
+    _demand(all(map(math.isfinite, force)), "a number is not finite")
+    return ReactionSample(_REACTION_OF.get(of, of), id_, tuple(force))
+
+
 def decode_frame(message: bytes) -> Frame:
     start = _COMMON.size + _FRAME_FIELDS.size
     _, flags = _read_common(message, _FRAME, start, 0)
@@ -314,6 +362,8 @@ def decode_frame(message: bytes) -> Frame:
         grabs=tuple(map(_grab, _entries(sections.get((_GRABS, 0)), _GRAB))),
         applied=dict(_entries(sections.get((_APPLIED, 0)), _APPLIED_ENTRY)),
         poses=dict(map(_pose, _entries(sections.get((_POSES, 0)), _POSE))),
+        contacts=tuple(map(_contact, _entries(sections.get((_CONTACTS, 0)), _CONTACT))),
+        reactions=tuple(map(_reaction, _entries(sections.get((_REACTIONS, 0)), _REACTION))),
     )
 
 
@@ -575,8 +625,10 @@ class Client:
     async def load(self, scene: str | dict) -> dict:
         return await self.request("load", scene=scene)
 
-    async def view(self, *, hz: float | None = None, codec: str | None = None) -> dict:
-        fields = _without_none({"hz": hz, "codec": codec})
+    async def view(
+        self, *, hz: float | None = None, codec: str | None = None, forces: bool | None = None
+    ) -> dict:
+        fields = _without_none({"hz": hz, "codec": codec, "forces": forces})
         self._view.update(fields)
         return await self.request("view", **fields)
 

@@ -54,6 +54,27 @@ std::vector<PoseSample> poses_of(const json& content) {
   return poses;
 }
 
+std::vector<ContactSample> contacts_of(const json& content) {
+  std::vector<ContactSample> contacts;
+  for (const json& c : content["contacts"])
+    contacts.push_back({c["collider"].is_null() ? kNoCollider : c["collider"].get<std::uint32_t>(),
+                        c["particle"], vec3_of(c["point"]), vec3_of(c["normal"]), c["gap"],
+                        c["normal_force"], vec3_of(c["friction"])});
+  return contacts;
+}
+
+std::vector<ReactionSample> reactions_of(const json& content) {
+  std::vector<ReactionSample> reactions;
+  for (const json& r : content["reactions"]) {
+    const json& of = r["of"];
+    const auto kind = of == "pin"        ? ReactionOf::pin
+                      : of == "collider" ? ReactionOf::collider
+                                         : static_cast<ReactionOf>(of.get<std::uint32_t>());
+    reactions.push_back({kind, r["id"], vec3_of(r["force"])});
+  }
+  return reactions;
+}
+
 SceneMesh mesh_of(const json& content) {
   SceneMesh mesh;
   mesh.rest_positions = content["rest_positions"].get<std::vector<float>>();
@@ -104,9 +125,12 @@ TEST_CASE("Golden frames are read bit for bit and written byte for byte") {
     CHECK(frame->grabs == grabs_of(content));
     CHECK(frame->applied == applied_of(content));
     CHECK(frame->poses == poses_of(content));
+    CHECK(frame->contacts == contacts_of(content));
+    CHECK(frame->reactions == reactions_of(content));
     if (!content["encoder_writes_it"]) return;
     Bytes written(3);  // what is in the buffer before does not matter
-    encode_frame({frame->header, frame->positions, frame->grabs, frame->applied, frame->poses},
+    encode_frame({frame->header, frame->positions, frame->grabs, frame->applied, frame->poses,
+                  frame->contacts, frame->reactions},
                  written);
     CHECK(written == message);
   });
@@ -224,9 +248,9 @@ TEST_CASE("Bytes cut or changed behind a right checksum are survived") {
 TEST_CASE("A frame is written into the buffer that the last one used") {
   const std::vector<float> positions(300, 1.5F);
   Bytes buffer;
-  encode_frame({FrameHeader{}, positions, {}, {}, {}}, buffer);
+  encode_frame({FrameHeader{}, positions, {}, {}, {}, {}, {}}, buffer);
   const std::byte* storage = buffer.data();
-  encode_frame({FrameHeader{}, positions, {}, {}, {}}, buffer);
+  encode_frame({FrameHeader{}, positions, {}, {}, {}, {}, {}}, buffer);
   CHECK(buffer.data() == storage);
 }
 

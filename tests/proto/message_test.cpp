@@ -138,6 +138,27 @@ std::vector<std::string> events() {
 constexpr std::array<float, 12> kBoxes = {-0.5F, 0.4F, -0.2F, 0,    1.6F, 0.3F,
                                           0,     0.4F, -0.2F, 0.5F, 1.6F, 0.3F};
 
+ContactInfo contact() {
+  ContactInfo contact;
+  contact.collider = "ground";
+  contact.particles = {17};
+  contact.weights = {1};
+  contact.point = {0.1, 0.004, 0.2};
+  contact.normal = {0, 1, 0};
+  contact.gap = 0.004;
+  contact.normal_force = 0.0021;
+  contact.friction = {0.0003, 0, 0};
+  return contact;
+}
+
+ReactionInfo reactions() {
+  ReactionInfo reactions;
+  reactions.pins = {{1, {0.1, 0.49, 0}}, {2, {-0.1, 0.49, 0}}};
+  reactions.grabs = {{4, 3, {0, 0.2, 0}}};
+  reactions.colliders = {{"ground", {0, -0.31, 0}}};
+  return reactions;
+}
+
 std::vector<std::string> replies() {
   const ClothHit hit{{411, {0.2, 0.5, 0.3}}, {0, 1, 0.12}, 222, 2.88};
   return {
@@ -160,6 +181,8 @@ std::vector<std::string> replies() {
       encode_reply(20, QueryReply{600, kEnergy}),
       encode_reply(21, BinaryReply{600, QueryWhat::positions, QueryFormat::f64, 1, 600, 3}),
       encode_reply(23, VectorsReply{600, QueryWhat::boxes, std::span<const float>(kBoxes), 6}),
+      encode_reply(24, QueryReply{600, std::vector<ContactInfo>{contact()}}),
+      encode_reply(25, QueryReply{600, reactions()}),
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),
@@ -254,6 +277,17 @@ TEST_CASE("Every kind of query is answered with its name") {
   CHECK(cameras["what"] == "camera");
   CHECK(cameras["data"][0]["viewer"] == 4);
   CHECK(cameras["data"][0]["fov"] == 45);
+}
+
+TEST_CASE("Contacts of cloth with cloth name no object, unknown forces of pins are left out") {
+  ContactInfo cloth;
+  cloth.particles = {1, 2, 3, 4};
+  const json contacts =
+      json::parse(encode_reply(1, QueryReply{0, std::vector<ContactInfo>{cloth}}));
+  CHECK_FALSE(contacts["data"][0].contains("collider"));
+  ReactionInfo unknown = reactions();
+  unknown.pins.reset();
+  CHECK_FALSE(json::parse(encode_reply(1, QueryReply{0, unknown}))["data"].contains("pins"));
 }
 
 TEST_CASE("Vectors are written as rows of three and read back bit for bit") {

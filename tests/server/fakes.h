@@ -66,7 +66,8 @@ struct RecordingOutput : RoomOutput {
   std::vector<std::pair<proto::ViewerId, std::string>> sent;  ///< text; viewer 0: to all
   std::vector<std::string> binary;
   std::vector<std::string> frames;
-  bool viewers_want_frames = true;
+  bool viewers_want_frames = true, viewers_want_forces = false;
+  std::vector<std::string> frames_with_forces;
 
   void send(proto::ViewerId viewer, Message message) override {
     if (message.binary)
@@ -79,7 +80,11 @@ struct RecordingOutput : RoomOutput {
   void offer_mesh(std::uint64_t, SharedBytes) override {}
   void welcome_done(proto::ViewerId) override {}
   bool wants_frames() const override { return viewers_want_frames; }
-  void offer_frame(Frame frame) override { frames.push_back(text_of({frame.bytes, true})); }
+  bool wants_forces() const override { return viewers_want_forces; }
+  void offer_frame(Frame frame) override {
+    if (frame.with_forces) frames_with_forces.push_back(text_of({frame.with_forces, true}));
+    frames.push_back(text_of({frame.bytes, true}));
+  }
 
   /// The last message with this `op` (and, for results and errors, this id).
   nlohmann::json last(const std::string& op, const nlohmann::json& id = nullptr) const {

@@ -118,6 +118,8 @@ ACCEPTED = [
         '{"op":"query","what":"camera","viewer":4}',
         op="query", what="camera", format="json", viewer=4,
     ),
+    accepted('{"op":"query","what":"contacts"}', op="query", what="contacts", format="json"),
+    accepted('{"op":"query","what":"reactions"}', op="query", what="reactions", format="json"),
     accepted('{"op":"query","what":"trees"}', op="query", what="trees", format="json"),
     accepted(
         '{"op":"query","what":"boxes","tree":"object:form"}',
@@ -135,6 +137,7 @@ ACCEPTED = [
     ),
     accepted('{"op":"view","hz":0}', op="view", hz=0),
     accepted('{"op":"view","hz":59.94,"codec":"f32"}', op="view", hz=59.94, codec="f32"),
+    accepted('{"op":"view","forces":true}', op="view", forces=True),
 ]
 
 
@@ -303,6 +306,11 @@ def refused_fields():
                  field="format", value="f32")
     yield refuse('{"op":"query","what":"positions","format":"f16"}', "unknown_value",
                  field="format", limit={"allowed": ["json", "f32", "f64"]})
+    yield refuse('{"op":"query","what":"contacts","format":"f64"}', "conflicting_fields",
+                 field="format", value="f64")
+    yield refuse('{"op":"query","what":"reactions","viewer":1}', "conflicting_fields",
+                 field="viewer")
+    yield refuse('{"op":"view","forces":1}', "wrong_type", field="forces", value=1)
     yield refuse('{"op":"query","what":"pins","viewer":1}', "conflicting_fields", field="viewer")
     yield refuse('{"op":"query","what":"pins","tree":"triangles"}', "conflicting_fields", field="tree")
     yield refuse('{"op":"query","what":"trees","level":1}', "conflicting_fields", field="level")
@@ -370,5 +378,7 @@ CLIENT_CALLS = [
     call("query", "energies", sends={"op": "query", "what": "energies"}),
     call("hash", sends={"op": "hash"}),
     call("load", "flag", sends={"op": "load", "scene": "flag"}),
+    call("query", "contacts", sends={"op": "query", "what": "contacts"}),
     call("view", hz=0, sends={"op": "view", "hz": 0}),
+    call("view", forces=True, sends={"op": "view", "forces": True}),
 ]

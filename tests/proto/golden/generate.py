@@ -12,9 +12,24 @@ import sys
 from pathlib import Path
 
 import commands
+from samples import (
+    APPLIED_NUMBERS,
+    GRID,
+    HANDS,
+    MOVED,
+    REACTING,
+    TETRAHEDRON,
+    TOUCHING,
+    applied_bytes,
+    contact_bytes,
+    grab_bytes,
+    grid,
+    pose_bytes,
+    reaction_bytes,
+)
 
 FRAME, MESH, DATA, ACK = 1, 2, 3, 4
-POSITIONS, GRABS, APPLIED, POSES = 1, 2, 3, 4
+POSITIONS, GRABS, APPLIED, POSES, CONTACTS, REACTIONS = 1, 2, 3, 4, 5, 6
 REST, TRIANGLES, UV, COLLIDER_POSITIONS, COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
 KEY, JUMP, PAUSED = 1, 2, 4
 FLOAT32_MAX, FLOAT32_LEAST = 2.0**127 * (2 - 2.0**-23), 2.0**-149
@@ -58,23 +73,6 @@ def round_float(values):
     return list(struct.unpack(f"<{len(values)}f", floats(values)))
 
 
-def grab_bytes(grabs):
-    return b"".join(
-        struct.pack("<II7f", g["id"], g["viewer"], *g["held"], *g["target"], g["force"])
-        for g in grabs
-    )
-
-
-def applied_bytes(applied):
-    return b"".join(struct.pack("<II", a["viewer"], a["number"]) for a in applied)
-
-
-def pose_bytes(poses):
-    return b"".join(
-        struct.pack("<I7f", p["collider"], *p["position"], *p["rotation"]) for p in poses
-    )
-
-
 def frame_body(header, vertices, sections, step=0.0):
     fixed = struct.pack(
         "<QddIIIIfI",
@@ -91,7 +89,18 @@ def frame_body(header, vertices, sections, step=0.0):
     return fixed + b"".join(sections)
 
 
-def frame(name, header, positions, grabs=(), applied=(), poses=(), extra_before=(), extra_after=()):
+def frame(
+    name,
+    header,
+    positions,
+    grabs=(),
+    applied=(),
+    poses=(),
+    contacts=(),
+    reactions=(),
+    extra_before=(),
+    extra_after=(),
+):
     """A frame, and what must be read from it. Unknown sections may stand anywhere."""
     sections = list(extra_before) + [section(POSITIONS, 0, floats(positions))]
     if grabs:
@@ -100,6 +109,10 @@ def frame(name, header, positions, grabs=(), applied=(), poses=(), extra_before=
         sections.append(section(APPLIED, 0, applied_bytes(applied)))
     if poses:
         sections.append(section(POSES, 0, pose_bytes(poses)))
+    if contacts:
+        sections.append(section(CONTACTS, 0, contact_bytes(contacts)))
+    if reactions:
+        sections.append(section(REACTIONS, 0, reaction_bytes(reactions)))
     sections += extra_after
     body = frame_body(header, len(positions) // 3, sections)
     content = {
@@ -121,6 +134,18 @@ def frame(name, header, positions, grabs=(), applied=(), poses=(), extra_before=
             dict(p, position=round_float(p["position"]), rotation=round_float(p["rotation"]))
             for p in poses
         ],
+        "contacts": [
+            dict(
+                c,
+                point=round_float(c["point"]),
+                normal=round_float(c["normal"]),
+                gap=round_float([c["gap"]])[0],
+                normal_force=round_float([c["normal_force"]])[0],
+                friction=round_float(c["friction"]),
+            )
+            for c in contacts
+        ],
+        "reactions": [dict(r, force=round_float(r["force"])) for r in reactions],
     }
     return name, message(FRAME, body, flags=header["flags"]), content
 
@@ -176,36 +201,6 @@ def data(name, real, tick, transfer, components, values):
     return name, message(DATA, body, codec={"f": 0, "d": 1}[real]), content
 
 
-def grid(rows, columns):
-    """Rest positions, triangles and uv of a small grid."""
-    rest, uv, triangles = [], [], []
-    for r in range(rows):
-        for c in range(columns):
-            rest += [0.1 * c, 1.5 - 0.1 * r, 0.0]
-            uv += [c / (columns - 1), r / (rows - 1)]
-    for r in range(rows - 1):
-        for c in range(columns - 1):
-            i = r * columns + c
-            triangles += [i, i + columns, i + 1, i + 1, i + columns, i + columns + 1]
-    return rest, triangles, uv
-
-
-GRID = grid(2, 3)
-TETRAHEDRON = dict(
-    positions=[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-    triangles=[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3],
-)
-HANDS = [
-    dict(id=17, viewer=3, held=[0.1, 0.9, 0.2], target=[0.2, 1.1, 0.4], force=12.5),
-    dict(id=4294967295, viewer=4, held=[0.0, 0.0, 0.0], target=[-1e4, 1e4, 0.0], force=50.0),
-]
-MOVED = [
-    dict(collider=0, position=[0.1, -0.2, 0.3], rotation=[0.0, 0.6, 0.0, 0.8]),
-    dict(collider=65535, position=[-1000.0, 1000.0, 0.0], rotation=[0.5, -0.5, 0.5, -0.5]),
-]
-APPLIED_NUMBERS = [dict(viewer=3, number=41), dict(viewer=4, number=1), dict(viewer=9, number=7)]
-
-
 def accepted():
     yield frame("frame_one_vertex", frame_header(), [0.5, 1.25, -2.0])
     yield frame("frame_no_vertex", frame_header(sequence=0), [])
@@ -219,6 +214,9 @@ def accepted():
         APPLIED_NUMBERS,
     )
     yield frame("frame_poses", frame_header(tick=7), GRID[0], HANDS[:1], (), MOVED)
+    yield frame(
+        "frame_forces", frame_header(tick=8), GRID[0], (), (), (), TOUCHING, REACTING
+    )
     extremes = [FLOAT32_MAX, -FLOAT32_MAX, FLOAT32_LEAST, -0.0, 1.0 / 3.0, -1e-20]
     yield frame("frame_jump", frame_header(flags=KEY | JUMP, epoch=7, tick=2**53 - 1), extremes)
     yield frame(
@@ -293,6 +291,20 @@ def refused_frames(good):
     yield "a pose cut off", built(positions, section(POSES, 0, pose_bytes(MOVED)[:-4]))
     bad_pose = dict(MOVED[0], rotation=[0.0, 0.0, INFINITY, 1.0])
     yield "a pose is infinite", built(positions, section(POSES, 0, pose_bytes([bad_pose])))
+    touching = section(CONTACTS, 0, contact_bytes(TOUCHING)[:-4])
+    yield "a contact cut off", built(positions, touching)
+    bad_contact = dict(TOUCHING[0], gap=NAN)
+    yield "a gap is NaN", built(positions, section(CONTACTS, 0, contact_bytes([bad_contact])))
+    bad_contact = dict(TOUCHING[0], friction=[0.0, 0.0, INFINITY])
+    yield "a friction is infinite", built(
+        positions, section(CONTACTS, 0, contact_bytes([bad_contact]))
+    )
+    reacting = section(REACTIONS, 0, reaction_bytes(REACTING)[:-8])
+    yield "a reaction cut off", built(positions, reacting)
+    bad_reaction = dict(REACTING[0], force=[-INFINITY, 0.0, 0.0])
+    yield "a force is infinite", built(
+        positions, section(REACTIONS, 0, reaction_bytes([bad_reaction]))
+    )
     yield "applied cut off", built(positions, section(APPLIED, 0, b"\0" * 12))
 
 

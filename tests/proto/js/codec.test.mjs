@@ -41,6 +41,9 @@ test('golden frames are read bit for bit', () => {
     assert.deepEqual(frame.grabs, content.grabs);
     assert.deepEqual(frame.applied, content.applied);
     assert.deepEqual(frame.poses, content.poses);
+    const named = frame.contacts.map(({ normalForce, ...rest }) => ({ ...rest, normal_force: normalForce }));
+    assert.deepEqual(named, content.contacts);
+    assert.deepEqual(frame.reactions, content.reactions);
   }
 });
 

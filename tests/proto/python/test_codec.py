@@ -1,5 +1,6 @@
 """The Python decoders against the golden files, with numpy and without."""
 
+import dataclasses
 import random
 import struct
 import subprocess
@@ -34,6 +35,14 @@ def flat(rows):
 
 def float_bits(values):
     return struct.pack(f"<{len(values)}f", *values)
+
+
+def as_told(sample):
+    """A sample as the golden files have it."""
+    return {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in dataclasses.asdict(sample).items()
+    }
 
 
 class WithoutNumpy(unittest.TestCase):
@@ -71,6 +80,10 @@ class WithoutNumpy(unittest.TestCase):
                 pose = frame.poses[told["collider"]]
                 self.assertEqual(pose, weft.Pose(tuple(told["position"]), tuple(told["rotation"])))
             self.assertEqual(len(frame.poses), len(content["poses"]))
+            contacts = [as_told(contact) for contact in frame.contacts]
+            self.assertEqual(contacts, content["contacts"])
+            reactions = [as_told(reaction) for reaction in frame.reactions]
+            self.assertEqual(reactions, content["reactions"])
 
     def test_golden_meshes_are_read(self):
         for content, message in self.each("mesh"):

@@ -1,0 +1,46 @@
+#include "core/contact/guard_contacts.h"
+
+namespace weft {
+namespace {
+
+/// What is nearer than this part of the distance that a pair keeps touches.
+constexpr double kTouching = 1.05;
+
+template <class Real>
+bool is_edge_pair(const GuardRow<Real>& row) {
+  return (row.key >> 63) != 0;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x,
+                                      double dt) {
+  std::vector<ContactPoint> contacts;
+  for (const GuardRow<Real>& row : guard.rows()) {
+    ContactPoint c;
+    c.count = 4;
+    c.first_side = is_edge_pair(row) ? 2 : 1;
+    c.normal = row.normal.template cast<double>();
+    Vec3d other = Vec3d::Zero();
+    for (std::size_t k = 0; k < 4; ++k) {
+      c.particle[k] = row.particle[k];
+      c.weight[k] = static_cast<double>(row.weight[k]);
+      const Vec3d part =
+          x[static_cast<std::size_t>(row.particle[k])].template cast<double>() * c.weight[k];
+      (k < static_cast<std::size_t>(c.first_side) ? c.point : other) += part;
+    }
+    c.gap = c.normal.dot(c.point + other);
+    c.normal_force = static_cast<double>(row.push) / dt;
+    c.friction = row.push > 0 ? Vec3d(row.drag.template cast<double>() / dt) : Vec3d(Vec3d::Zero());
+    if (row.push > 0 || c.gap <= static_cast<double>(row.radius) * kTouching) contacts.push_back(c);
+  }
+  return contacts;
+}
+
+template std::vector<ContactPoint> contacts_of(const ClothGuard<float>&, const Vec3Array<float>&,
+                                               double);
+template std::vector<ContactPoint> contacts_of(const ClothGuard<double>&, const Vec3Array<double>&,
+                                               double);
+
+}  // namespace weft

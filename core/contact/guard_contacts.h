@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/cloth_guard.h"
+#include "core/contact/contact_log.h"
+
+namespace weft {
+
+/// Contacts of cloths with themselves and each other: the guard's rows that push, and those whose
+/// features touch. Forces are those of the last substep.
+/// @param x   positions now [m]
+/// @param dt  length of the last substep [s]
+template <class Real>
+std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x,
+                                      double dt);
+
+}  // namespace weft

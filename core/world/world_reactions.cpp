@@ -1,0 +1,70 @@
+// What holds the cloth, and with which forces: nothing is measured unless somebody asks.
+
+#include "core/contact/guard_contacts.h"
+#include "core/world/world.h"
+
+namespace weft {
+
+template <class Real>
+void World<Real>::measure_forces(bool wanted) {
+  measures_forces_ = wanted;
+  contact_.log_impulses(wanted);
+  if (!wanted) reactions_.reset();
+}
+
+template <class Real>
+void World<Real>::take_reactions() {
+  Reactions found;
+  found.tick = tick_;
+  found.colliders.assign(def_.colliders.size(), Vec3d::Zero());
+  if (collision().weft) found.contacts = contact_.contacts(state_.x);
+  for (const ContactPoint& contact : found.contacts)
+    found.colliders[static_cast<std::size_t>(contact.collider)] -= contact.force();
+  if (seed_contact_) {
+    for (std::size_t k = 0; k < colliders_.size(); ++k) found.colliders[k] = colliders_[k].force;
+  }
+  if (guard_ && report_.substeps > 0) {
+    const double dt = tick_seconds() / report_.substeps;
+    for (const ContactPoint& contact : contacts_of(*guard_, state_.x, dt))
+      found.contacts.push_back(contact);
+  }
+  if (solver_of(def_) == SolverKind::verlet) {
+    Vec3Array<Real> pulled;
+    if (!idle(grabs_)) {
+      pulled.assign(model_.mass.size(), Vec3<Real>::Zero());
+      add_grab_forces(Real(1), state_, grabs_, pulled);
+    }
+    add_pin_reactions(model_, state_, surroundings_, pulled, pins_, found);
+  }
+  reactions_ = std::move(found);
+}
+
+/// The arrays of solvers hold pointers into themselves; the copy gets its own.
+template <class Real>
+World<Real> World<Real>::copy() const {
+  World other(*this);
+  other.debug_trees_.reset();
+  other.verlet_ = {};
+  other.relaxation_ = {};
+  other.prepare_solver();
+  return other;
+}
+
+template <class Real>
+Reactions World<Real>::coming_reactions() const {
+  World trial = copy();
+  trial.measure_forces(true);
+  trial.step();
+  return *trial.reactions();
+}
+
+#define WEFT_INSTANTIATE(Real)                     \
+  template void World<Real>::measure_forces(bool); \
+  template void World<Real>::take_reactions();     \
+  template World<Real> World<Real>::copy() const;  \
+  template Reactions World<Real>::coming_reactions() const;
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "core/world/reactions.h"
+#include "proto/frame.h"
+#include "proto/replies.h"
+#include "server/translate.h"
+
+// Contacts and forces of the cloth, as the wire tells them.
+
+namespace weft::server {
+
+std::vector<proto::ContactInfo> contacts_of(const ServedWorld& world, const Reactions& reactions);
+
+/// Without hands, whose owners the room knows.
+proto::ReactionInfo reactions_of(const ServedWorld& world, const Reactions& reactions);
+
+/// Those that the world measured in its last tick.
+std::vector<proto::ContactSample> contact_samples(const ServedWorld& world);
+std::vector<proto::ReactionSample> reaction_samples(const ServedWorld& world);
+
+}  // namespace weft::server

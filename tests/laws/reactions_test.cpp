@@ -1,0 +1,160 @@
+#include <catch2/catch.hpp>
+
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/worlds.h"
+
+// What holds a cloth carries its weight.
+
+using namespace weft;
+
+namespace {
+
+constexpr double kGravity = 9.81;
+
+double weight_of(const World<float>& world) {
+  double mass = 0;
+  for (const float m : world.model().mass) mass += static_cast<double>(m);
+  return mass * kGravity;
+}
+
+/// A sheet of 12 x 14 particles in the plane y = `height`, with gravity and much drag.
+WorldDef sheet_at(double height) {
+  ClothDef cloth = test::flat_cloth(12, 14);
+  cloth.origin[1] = height;
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = Vec3d(0, -kGravity, 0);
+  def.environment.drag = 5;
+  return def;
+}
+
+Vec3d sum_of_pins(const Reactions& reactions) {
+  Vec3d sum = Vec3d::Zero();
+  for (const PinReaction& pin : reactions.pins) sum += pin.force;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the pins of a cloth that hangs at rest carry its weight, and nothing across") {
+  WorldDef def = sheet_at(1);
+  def.environment.drag = 8;
+  def.pins = {{Corner::top_left, 0.05}, {Corner::top_right, 0.05}, {0, 0}};
+  World<float> world(def);
+  test::advance(world, 12);
+  const Reactions reactions = world.coming_reactions();
+  REQUIRE(reactions.pins.size() == 3);
+  const Vec3d sum = sum_of_pins(reactions);
+  CHECK(sum[1] == Approx(weight_of(world)).epsilon(1e-3));
+  CHECK(std::hypot(sum[0], sum[2]) < weight_of(world) * 1e-3);
+  // Two corners alike, but for what the third pin shares with the first.
+  CHECK(reactions.pins[0].force[1] + reactions.pins[2].force[1] ==
+        Approx(reactions.pins[1].force[1]).epsilon(0.02));
+}
+
+TEST_CASE("the strip that holds a curtain carries its weight") {
+  WorldDef def = make_scene("default");
+  def.environment = EnvironmentDef{};
+  def.environment.drag = 8;
+  def.colliders.clear();
+  World<float> world(def);
+  test::advance(world, 12);
+  const Vec3d sum = sum_of_pins(world.coming_reactions());
+  CHECK(sum[1] == Approx(weight_of(world)).epsilon(1e-3));
+}
+
+TEST_CASE("what a sheet lies on carries its weight: ground, box, ball that moves or stands") {
+  const auto shape = GENERATE(as<ShapeDef>(), ShapeDef{PlaneDef{}},
+                              ShapeDef{BoxDef{Vec3d(0, -0.5, 0), Vec3d(2, 0.5, 2)}});
+  const bool moving = GENERATE(false, true);
+  CAPTURE(shape.index(), moving);
+  WorldDef def = sheet_at(0.01);
+  def.colliders = {{"table", shape}};
+  World<float> world(def);
+  if (moving) {
+    MoveDef up{rest_pose(shape), 0.02, 1};
+    up.target.position[1] += 0.2;
+    world.move_collider(0, up);
+  }
+  test::advance(world, 3);
+  const Reactions reactions = world.coming_reactions();
+  CHECK(-reactions.colliders[0][1] == Approx(weight_of(world)).epsilon(0.01));
+  double normal = 0;
+  for (const ContactPoint& contact : reactions.contacts) {
+    CHECK(contact.collider == 0);
+    CHECK(contact.normal[1] == Approx(1).epsilon(1e-4));
+    CHECK(contact.gap == Approx(def.cloths[0].fabric.thickness).epsilon(0.1));
+    normal += contact.normal_force;
+  }
+  CHECK(normal == Approx(weight_of(world)).epsilon(0.01));
+  CHECK(reactions.contacts.size() >= world.model().mass.size());
+}
+
+TEST_CASE("friction holds a sheet on a slope: its sum is the weight along it") {
+  WorldDef def = sheet_at(0.004);
+  def.cloths[0].fabric.friction = 1;
+  const double angle = 0.3;  // gravity leans instead of the ground
+  def.environment.gravity = kGravity * Vec3d(std::sin(angle), -std::cos(angle), 0);
+  def.colliders = {{"ground", PlaneDef{}}};
+  World<float> world(def);
+  test::advance(world, 2);
+  Vec3d friction = Vec3d::Zero();
+  for (const ContactPoint& contact : world.coming_reactions().contacts) {
+    friction += contact.friction;
+    CHECK(contact.friction.norm() <= contact.normal_force * 1.0001 + 1e-9);
+  }
+  CHECK(-friction[0] == Approx(weight_of(world) * std::sin(angle)).epsilon(0.01));
+}
+
+TEST_CASE("of two sheets that lie on each other the lower one carries the upper one's weight") {
+  WorldDef def = sheet_at(0.006);
+  def.cloths.push_back(def.cloths[0]);
+  def.cloths[1].name = "upper";
+  def.cloths[1].origin += Vec3d(0.013, 0.006, 0.017);
+  def.contact.seed.self = SelfContact::guard;
+  def.colliders = {{"ground", PlaneDef{}}};
+  World<float> world(def);
+  test::advance(world, 3);
+  // The forces between cloths are those of single substeps: their mean is looked at.
+  double between = 0;
+  world.measure_forces(true);
+  constexpr int kTicks = 60;
+  for (int t = 0; t < kTicks; ++t) {
+    world.step();
+    REQUIRE(world.reactions());
+    for (const ContactPoint& contact : world.reactions()->contacts) {
+      if (contact.collider != kNone) continue;
+      const bool up = contact.particle[0] >= world.model().parts[1].particles.first;
+      between += (up ? 1 : -1) * contact.force()[1] / kTicks;
+    }
+  }
+  CHECK(between == Approx(weight_of(world) / 2).epsilon(0.02));
+}
+
+TEST_CASE("to ask for forces changes nothing, and the coming forces are those that come") {
+  WorldDef def = sheet_at(0.05);
+  def.environment.wind = Vec3d(1, 0, 0);
+  def.pins = {{Corner::top_left, 0.1}};
+  def.colliders = {{"ground", PlaneDef{}}, {"ball", SphereDef{Vec3d(0, 0, 0), 0.04}}};
+  def.contact.seed.self = GENERATE(SelfContact::none, SelfContact::guard);
+  def.solver.kind = GENERATE(SolverKind::verlet, SolverKind::relaxation);
+  World<float> asked(def), left(def);
+  left.measure_forces(true);
+  asked.grab({30, {0.2, 0.3, 0.5}, 0.05, 100, 50, Vec3d(0, 0.3, 0)});
+  left.grab({30, {0.2, 0.3, 0.5}, 0.05, 100, 50, Vec3d(0, 0.3, 0)});
+  for (int t = 0; t < 40; ++t) {
+    const Reactions coming = asked.coming_reactions();
+    asked.step();
+    left.step();
+    REQUIRE(asked.hash() == left.hash());
+    REQUIRE_FALSE(asked.reactions());
+    const Reactions& now = *left.reactions();
+    REQUIRE(coming.tick == now.tick);
+    REQUIRE(coming.contacts.size() == now.contacts.size());
+    for (std::size_t k = 0; k < now.contacts.size(); ++k)
+      REQUIRE(coming.contacts[k].force() == now.contacts[k].force());
+    REQUIRE(coming.pins.size() == now.pins.size());
+    for (std::size_t k = 0; k < now.pins.size(); ++k)
+      REQUIRE(coming.pins[k].force == now.pins[k].force);
+  }
+}

@@ -1,0 +1,113 @@
+#include <span>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "proto/frame.h"
+#include "tests/server/fakes.h"
+
+// Contacts and forces, asked for once and in frames.
+
+namespace weft::server {
+namespace {
+
+using nlohmann::json;
+
+double weight_of(const Room& room) {
+  double mass = 0;
+  for (const float m : room.world().model().mass) mass += static_cast<double>(m);
+  return mass * 9.81;
+}
+
+proto::Frame decoded(const std::string& bytes) {
+  return *proto::decode_frame(std::as_bytes(std::span(bytes)));
+}
+
+TEST_CASE("a query tells the forces of pins, hands and objects, and changes nothing") {
+  TestRoom t;
+  t.join(1);
+  t.say(1, R"({"op":"set","drag":8})");
+  t.say(1, R"({"op":"advance","n":600})");
+  const std::string before = proto::hash_text(t.room->world().hash());
+  const json hanging = t.say(1, R"({"op":"query","id":1,"what":"reactions"})")["data"];
+  REQUIRE(hanging["pins"].size() == 2);
+  const double up =
+      hanging["pins"][0]["force"][1].get<double>() + hanging["pins"][1]["force"][1].get<double>();
+  CHECK(up == Approx(weight_of(*t.room)).epsilon(1e-3));
+  CHECK(hanging["colliders"][0]["collider"] == "floor");
+  CHECK(hanging["colliders"][0]["force"] == json({0, 0, 0}));
+  CHECK(t.say(1, R"({"op":"query","id":2,"what":"contacts"})")["data"].empty());
+  CHECK(proto::hash_text(t.room->world().hash()) == before);
+
+  t.say(1, R"({"op":"drag","phase":"start","particle":38,"target":[0,1,0.5]})");
+  t.say(1, R"({"op":"advance","n":300})");
+  const json held = t.say(1, R"({"op":"query","id":3,"what":"reactions"})")["data"];
+  REQUIRE(held["grabs"].size() == 1);
+  CHECK(held["grabs"][0]["viewer"] == 1);
+  CHECK(held["grabs"][0]["force"][2].get<double>() > 0);
+}
+
+TEST_CASE("a cloth that lies tells its contacts, and their sum carries it") {
+  TestRoom t;
+  t.join(1);
+  t.say(1, R"({"op":"release","all":true})");
+  t.say(1, R"({"op":"move","collider":"ball","position":[5,0,0],"speed":20})");
+  t.say(1, R"({"op":"set","drag":8})");
+  t.say(1, R"({"op":"advance","n":900})");
+  const json contacts = t.say(1, R"({"op":"query","id":1,"what":"contacts"})")["data"];
+  double normal = 0;
+  for (const json& contact : contacts) {
+    CHECK(contact["collider"] == "floor");
+    CHECK(contact["particles"].size() == contact["weights"].size());
+    normal += contact["normal_force"].get<double>();
+  }
+  CHECK(normal == Approx(weight_of(*t.room)).epsilon(0.02));
+}
+
+TEST_CASE("frames tell forces only to those who ask, and nothing is measured before") {
+  TestRoom t(false);
+  t.join(1);
+  t.tick(3);
+  CHECK(t.output.frames_with_forces.empty());
+  CHECK(t.room->world().reactions() == nullptr);
+  t.output.viewers_want_forces = true;
+  t.tick(2);
+  REQUIRE(t.output.frames_with_forces.size() >= 1);
+  const proto::Frame plain = decoded(t.output.frames.back());
+  const proto::Frame full = decoded(t.output.frames_with_forces.back());
+  CHECK(plain.reactions.empty());
+  CHECK(full.header == plain.header);
+  REQUIRE(full.reactions.size() == 4);  // two pins, two objects
+  CHECK(full.reactions[0].of == proto::ReactionOf::pin);
+  CHECK(full.reactions[0].force[1] > 0);
+  CHECK(full.reactions[3].of == proto::ReactionOf::collider);
+  CHECK(full.reactions[3].id == 1);
+  t.output.viewers_want_forces = false;
+  t.tick(1);
+  CHECK(t.room->world().reactions() == nullptr);
+}
+
+TEST_CASE("a viewer that asks for forces gets the frames that have them, the others do not") {
+  FakeClock clock;
+  const Clock now = clock.clock();
+  FakeStream stream;
+  ViewerChannel channel(stream, now, 60, {});
+  stream.channel = &channel;
+  channel.welcome_done();
+  Frame frame = fake_frame(1);
+  frame.with_forces = SharedBytes(std::string("frame with forces"));
+  channel.offer_frame(frame);
+  CHECK(stream.written.back() == "frame 1");
+  CHECK_FALSE(channel.wants_forces());
+  stream.drain();
+  channel.want_forces(true);
+  CHECK(channel.wants_forces());
+  frame.sequence = 2;
+  channel.offer_frame(frame);
+  CHECK(stream.written.back() == "frame with forces");
+  channel.set_most_frames(0);
+  CHECK_FALSE(channel.wants_forces());
+}
+
+}  // namespace
+}  // namespace weft::server
