@@ -148,6 +148,9 @@ struct MoveEnd {
   bool operator==(const MoveEnd&) const = default;
 };
 
+/// What a room does whose ticks take more time than they may.
+enum class OverBudget : std::uint8_t { slow, soften };
+
 /// At least one of them is set.
 struct Set {
   std::optional<Vec3> gravity;        ///< [m/s^2]
@@ -158,6 +161,9 @@ struct Set {
   std::optional<bool> still_air;
   std::optional<double> drag;            ///< [1/s]
   std::optional<std::vector<Fan>> fans;  ///< all of them, at most kMostFans
+  std::optional<double> softness;        ///< part of the springs' stiffness
+  std::optional<double> budget_ms;       ///< time for each tick that is due [ms]; 0: no bound
+  std::optional<OverBudget> over_budget;
   bool operator==(const Set&) const = default;
 };
 
@@ -231,6 +237,7 @@ const char* name_of(DragMode mode);
 const char* name_of(QueryWhat what);
 const char* name_of(QueryFormat format);
 const char* name_of(Codec codec);
+const char* name_of(OverBudget remedy);
 
 /// A command with its sender's id, if it had one.
 struct Request {

@@ -85,6 +85,9 @@ struct FieldWriter {
     put_if(out, "still_air", c.still_air);
     put_if(out, "drag", c.drag);
     if (c.fans) out["fans"] = json_of(*c.fans);
+    put_if(out, "softness", c.softness);
+    put_if(out, "budget_ms", c.budget_ms);
+    if (c.over_budget) out["over_budget"] = name_of(*c.over_budget);
   }
   void operator()(const Advance& c) { out["n"] = c.n; }
   void operator()(const Query& c) {
@@ -144,6 +147,9 @@ const char* name_of(const Command& command) {
 }
 const char* name_of(DragMode mode) {
   return kDragModeWords[static_cast<std::size_t>(mode)];
+}
+const char* name_of(OverBudget remedy) {
+  return kOverBudgetWords[static_cast<std::size_t>(remedy)];
 }
 const char* name_of(QueryWhat what) {
   return kQueryWhatWords[static_cast<std::size_t>(what)];

@@ -95,7 +95,9 @@ struct State {
   std::uint64_t tick = 0;
   double time = 0;  ///< simulated [s]
   bool paused = false;
-  double speed = 1;
+  double speed = 1, pace = 1, softness = 1;
+  double budget_ms = 0;
+  OverBudget over_budget = OverBudget::slow;
   std::string scene;
   double tick_rate = 60;
   Vec3 gravity{}, wind{};

@@ -50,6 +50,8 @@ inline constexpr Range kGustSpeedRange{0, 100};      ///< [m/s]
 inline constexpr Range kGustLengthRange{0.01, 100};  ///< [m]
 inline constexpr Range kAirDensityRange{0, 1000};    ///< [kg/m^3]
 inline constexpr Range kDragRange{0, 1000};          ///< [1/s]
+inline constexpr Range kSoftnessRange{0.01, 1};
+inline constexpr Range kBudgetRange{0, 1000};  ///< [ms]
 
 inline constexpr std::size_t kMostIdBytes = 64;
 inline constexpr std::size_t kMostNameCharacters = 32;

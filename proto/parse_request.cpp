@@ -217,13 +217,16 @@ Command read_set(FieldReader& in) {
   in.read_if_there("still_air", set.still_air);
   in.read_if_there("drag", set.drag, kDragRange);
   read_fans(in, set.fans);
+  in.read_if_there("softness", set.softness, kSoftnessRange);
+  in.read_if_there("budget_ms", set.budget_ms, kBudgetRange);
+  in.read_if_there("over_budget", set.over_budget, kOverBudgetWords);
   if (in.ok() && set == Set{}) {
     Error error = make_error(ErrorCode::missing_field, "set has nothing to set");
     error.limit = Limit{{},
                         {},
                         {},
                         {"gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air",
-                         "drag", "fans"}};
+                         "drag", "fans", "softness", "budget_ms", "over_budget"}};
     in.fail(std::move(error));
   }
   return set;

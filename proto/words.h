@@ -23,6 +23,7 @@ enum class DragPhase : std::uint8_t { start, move, end };
 inline constexpr std::array<const char*, 3> kDragPhaseWords = {"start", "move", "end"};
 
 inline constexpr std::array<const char*, 2> kDragModeWords = {"live", "sling"};
+inline constexpr std::array<const char*, 2> kOverBudgetWords = {"slow", "soften"};
 
 template <std::size_t N>
 std::vector<std::string> list_words(const std::array<const char*, N>& words) {

@@ -13,6 +13,7 @@ enum class CommandOrigin : std::uint8_t {
   viewer,  ///< a client sent it
   lease,   ///< a drag was not heard of for too long
   leave,   ///< its viewer has gone
+  budget,  ///< ticks took more time than they may, or less again
 };
 
 /// One accepted command at its place: after state `tick` and before the next one.

@@ -63,7 +63,9 @@ void Room::start_world(const WorldDef& def) {
   mesh_.bytes = bytes.size();
   mesh_bytes_ = SharedBytes(std::move(bytes));
   output_.offer_mesh(mesh_.hash, mesh_bytes_);
-  output_.set_frame_rate(world_->def().tick_rate * speed_);
+  wanted_softness_ = 1;
+  budget_.restart(world_->def().budget, {});
+  output_.set_frame_rate(world_->def().tick_rate * speed());
 }
 
 void Room::take(Inbound item) {
@@ -143,31 +145,70 @@ void Room::leave(proto::ViewerId viewer) {
   roster_changed_ = true;
 }
 
-void Room::step_world() {
+/// @returns what it took [s]
+double Room::step_world() {
   if (output_.wants_forces() != measures_forces_) {
     measures_forces_ = !measures_forces_;
     world_->measure_forces(measures_forces_);
   }
-  const double start = process_seconds();
+  const double start = clock_();
   const TickReport& report = world_->step();
-  const double seconds = process_seconds() - start;
+  last_tick_done_ = clock_();
+  const double seconds = last_tick_done_ - start;
   metrics_.count_tick(seconds);
   if (tick_times_.size() < kTickTimes) tick_times_.resize(tick_times_.size() + 1);
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
-  last_tick_done_ = clock_();
   frame_wanted_ = true;
-  if (!report.divergence) return;
+  if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);
   jumped_ = jumped_ || report.divergence->remedy == DivergenceRemedy::stopped_cloth;
   notify(proto::NoticeLevel::warning, "recovered", what);
+  return seconds;
 }
 
 void Room::tick() {
-  step_world();
+  const double seconds = step_world();
   meter_.add(world_->tick_seconds(), clock_());
+  keep_budget(seconds);
   if (paused_ && steps_left_ > 0 && --steps_left_ == 0) state_changed_ = true;
+}
+
+/// Changes what the budget asks for, as commands of the room's own. Ticks of `advance` pass without
+/// a clock and are not counted.
+void Room::keep_budget(double seconds) {
+  const BudgetKeeper::Setting before = budget_.setting();
+  const auto next = budget_.add(seconds, solver_of(world_->def()) == SolverKind::verlet);
+  if (!next) return;
+  std::string what;
+  char text[80];
+  if (next->softness != before.softness) {
+    world_->set_softness(next->softness);
+    proto::Set command;
+    command.softness = next->softness;
+    log_.add(world_->tick(), 0, CommandOrigin::budget, command);
+    std::snprintf(text, sizeof text, "springs have %g of their stiffness", next->softness);
+  } else {
+    log_.add(world_->tick(), 0, CommandOrigin::budget, proto::Speed{speed()});
+    meter_.restart(clock_());
+    output_.set_frame_rate(world_->def().tick_rate * speed());
+    std::snprintf(text, sizeof text, "time passes at %g of the wanted speed", next->pace);
+  }
+  const bool full = next->pace >= 1 && next->softness >= wanted_softness_;
+  state_changed_ = true;
+  notify(full ? proto::NoticeLevel::info : proto::NoticeLevel::warning,
+         full ? "within_budget" : "over_budget",
+         "a budget of " + number_text(budget_.budget().milliseconds) + " ms a tick: " + text, 0, {},
+         next->softness != before.softness ? next->softness : next->pace);
+}
+
+/// From now on; what an earlier budget has taken is given back.
+void Room::ask_for_budget(const BudgetDef& budget) {
+  if (world_->softness() != wanted_softness_) world_->set_softness(wanted_softness_);
+  budget_.restart(budget, {1, wanted_softness_}, wanted_softness_);
+  meter_.restart(clock_());
+  output_.set_frame_rate(world_->def().tick_rate * speed());
 }
 
 void Room::advance_until(double deadline) {
@@ -188,7 +229,7 @@ void Room::finish_advance() {
 }
 
 double Room::real_time_factor() const {
-  return ticking() ? meter_.factor(clock_(), speed_) : 0;
+  return ticking() ? meter_.factor(clock_(), speed()) : 0;
 }
 
 void Room::finish_turn() {
@@ -231,7 +272,7 @@ void Room::end_leases() {
 void Room::tell_slow_motion(double now) {
   const double factor = real_time_factor();
   metrics_.set_real_time_factor(factor);
-  if (factor >= kSlow * speed_) {
+  if (factor >= kSlow * speed()) {
     slow_since_ = -1;
     return;
   }
@@ -311,7 +352,11 @@ void Room::notify(proto::NoticeLevel level, const char* code, std::string messag
 proto::State Room::state() const {
   proto::State state = state_of(*world_);
   state.paused = paused_;
-  state.speed = speed_;
+  state.speed = wanted_speed_;
+  state.pace = budget_.setting().pace;
+  state.softness = world_->softness();
+  state.budget_ms = budget_.budget().milliseconds;
+  state.over_budget = to_wire(budget_.budget().remedy);
   state.real_time_factor = real_time_factor();
   if (!tick_times_.empty()) {
     std::vector<double> times = tick_times_;

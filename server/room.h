@@ -15,6 +15,7 @@
 #include "proto/events.h"
 #include "proto/frame.h"
 #include "proto/replies.h"
+#include "server/budget_keeper.h"
 #include "server/clock.h"
 #include "server/command_log.h"
 #include "server/inbound.h"
@@ -64,7 +65,7 @@ class Room {
 
   /// Whether ticks shall pass by the clock: it runs, or `step` asked for some.
   bool ticking() const { return !advance_ && (!paused_ || steps_left_ > 0); }
-  double tick_interval() const { return world_->tick_seconds() / speed_; }  ///< real time [s]
+  double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
   /// After ticks and commands: ends leases, tells what has changed, sends the newest frame.
@@ -75,7 +76,8 @@ class Room {
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return log_; }
   bool paused() const { return paused_; }
-  double speed() const { return speed_; }
+  /// Simulated per real time: what is asked for, less if a budget of time does not allow it.
+  double speed() const { return wanted_speed_ * budget_.setting().pace; }
   double real_time_factor() const;
   std::uint32_t epoch() const { return epoch_; }
   std::uint64_t frames_encoded() const { return frames_encoded_; }
@@ -109,7 +111,9 @@ class Room {
   void take_now(Inbound item);
   void take_deferred();
   void finish_advance();
-  void step_world();
+  double step_world();
+  void keep_budget(double seconds);
+  void ask_for_budget(const BudgetDef& budget);
   void end_leases();
   void tell_changes();
   void publish();
@@ -177,7 +181,8 @@ class Room {
   SharedBytes mesh_bytes_;
 
   bool paused_ = false;
-  double speed_ = 1;
+  double wanted_speed_ = 1, wanted_softness_ = 1;
+  BudgetKeeper budget_;
   std::uint32_t steps_left_ = 0;
   std::optional<Advance> advance_;
   std::deque<Inbound> deferred_;

@@ -257,11 +257,11 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
-  speed_ = command.speed;
+  wanted_speed_ = command.speed;
   meter_.restart(clock_());
-  output_.set_frame_rate(world_->def().tick_rate * speed_);
+  output_.set_frame_rate(world_->def().tick_rate * speed());
   state_changed_ = true;
-  return proto::Reply(proto::SpeedReply{world_->tick(), speed_});
+  return proto::Reply(proto::SpeedReply{world_->tick(), wanted_speed_});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Move& command) {
@@ -280,6 +280,12 @@ Room::Outcome Room::apply(ViewerId, const proto::MoveEnd& command) {
 
 Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   world_->set_environment(with_settings(world_->environment(), command));
+  if (command.softness) {
+    wanted_softness_ = *command.softness;
+    world_->set_softness(wanted_softness_);
+  }
+  if (command.softness || command.budget_ms || command.over_budget)
+    ask_for_budget(with_settings(budget_.budget(), command));
   state_changed_ = frame_wanted_ = true;
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }

@@ -172,6 +172,18 @@ EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set) 
   return environment;
 }
 
+BudgetDef with_settings(BudgetDef budget, const proto::Set& set) {
+  if (set.budget_ms) budget.milliseconds = *set.budget_ms;
+  if (set.over_budget)
+    budget.remedy =
+        *set.over_budget == proto::OverBudget::soften ? OverBudget::soften : OverBudget::slow;
+  return budget;
+}
+
+proto::OverBudget to_wire(OverBudget remedy) {
+  return remedy == OverBudget::soften ? proto::OverBudget::soften : proto::OverBudget::slow;
+}
+
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit) {
   if (!hit) return std::nullopt;
   proto::ClothHit out;

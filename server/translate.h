@@ -43,6 +43,10 @@ GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
 /// The environment with what the command sets.
 EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set);
 
+/// The budget with what the command sets.
+BudgetDef with_settings(BudgetDef budget, const proto::Set& set);
+proto::OverBudget to_wire(OverBudget remedy);
+
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
 proto::Energy to_wire(const Energies& energies);
 proto::State state_of(const ServedWorld& world);  ///< without what only the room knows

@@ -47,7 +47,10 @@ struct GridView {
 };
 
 inline constexpr int kGridLanes = 16;  ///< at least the widest vector, in numbers
-inline constexpr int kGridScratchLines = 8;
+
+/// Lines of scratch: three of carries and three of bending for the row below, powers by column,
+/// factors of a row's springs.
+inline constexpr int kPowerLine = 6, kFactorLine = 7, kGridScratchLines = 11;
 
 /// What a pass over a grid does with the forces: v <- keep v + push (f/m + g), x <- x + dt v.
 /// Particles without inverse mass get velocity 0.

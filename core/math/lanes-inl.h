@@ -87,8 +87,14 @@ class OneLaneUp {
   HWY_INLINE OneLaneUp() : indices_(turned()), first_(hn::FirstN(D(), 1)) {}
 
   /// @param before  what the previous vector left there; zero at the start of a row
+  HWY_INLINE V operator()(V& before, V a) const {
+    const V turned = hn::TableLookupLanes(a, indices_);
+    const V shifted = hn::IfThenElse(first_, before, turned);
+    before = turned;
+    return shifted;
+  }
   HWY_INLINE Triple<V> operator()(Triple<V>& before, const Triple<V>& a) const {
-    return {shift(before.x, a.x), shift(before.y, a.y), shift(before.z, a.z)};
+    return {(*this)(before.x, a.x), (*this)(before.y, a.y), (*this)(before.z, a.z)};
   }
 
  private:
@@ -97,12 +103,6 @@ class OneLaneUp {
     Int from[hn::MaxLanes(D())];
     for (std::size_t k = 0; k < lanes; ++k) from[k] = static_cast<Int>((k + lanes - 1) % lanes);
     return hn::SetTableIndices(D(), from);
-  }
-  HWY_INLINE V shift(V& before, V a) const {
-    const V turned = hn::TableLookupLanes(a, indices_);
-    const V shifted = hn::IfThenElse(first_, before, turned);
-    before = turned;
-    return shifted;
   }
 
   Indices indices_;

@@ -77,15 +77,6 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
 }
 
 template <class Real>
-void World<Real>::prepare_solver() {
-  if (solver_of(def_) == SolverKind::verlet)
-    verlet_.prepare(model_, def_.solver);
-  else
-    relaxation_.prepare(model_);
-  make_room();
-}
-
-template <class Real>
 void World<Real>::reset() {
   state_ = initial_state(model_);
   const PinId next_pin = pins_.next_id;
@@ -138,6 +129,16 @@ const TickReport& World<Real>::step() {
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (measures_forces_) take_reactions();
   return report_;
+}
+
+template <class Real>
+void World<Real>::prepare_solver() {
+  if (solver_of(def_) == SolverKind::verlet)
+    verlet_.prepare(model_, def_.solver);
+  else
+    relaxation_.prepare(model_);
+  verlet_.elastic.reset();
+  make_room();
 }
 
 /// Arrays for air and hands, as soon as there are any: no tick allocates.

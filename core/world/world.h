@@ -107,6 +107,12 @@ class World {
   /// Throws DefinitionError if a field is out of range; nothing changes then.
   void set_environment(const EnvironmentDef& environment);
 
+  /// Makes the springs of all cloths `softness` times as stiff as the definition says, openly: for
+  /// those who would rather have fewer substeps than the right stretch. Outlives a reset.
+  /// @param softness  kLeastSoftness to 1, else throws DefinitionError and nothing changes
+  void set_softness(double softness);
+  double softness() const { return softness_; }
+
   /// First triangle of the cloth that the ray meets, from either side.
   /// @param direction  need not be of unit length
   /// Throws DefinitionError if the ray is not finite or has no direction.
@@ -158,9 +164,9 @@ class World {
  private:
   World(const World&) = default;
   World copy() const;
-  void prepare_solver();
   void take_reactions();
   int choose_substeps() const;
+  void prepare_solver();
   void make_room();
   StabilityBound stability_bound(const ClothPart<Real>& part) const;
   void blow_wind();
@@ -175,6 +181,7 @@ class World {
   EnvironmentDef environment_;
   Runtime runtime_;
   ClothModel<Real> model_;
+  double softness_ = 1;
   ClothState<Real> state_;
   ClothState<Real> last_good_;
   Pins pins_;

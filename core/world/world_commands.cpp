@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cloth/softening.h"
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
 #include "core/world/state_hash.h"
@@ -75,6 +76,21 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
   make_room();
+  report_present_state();
+}
+
+template <class Real>
+void World<Real>::set_softness(double softness) {
+  check_field("", {"softness", kLeastSoftness, 1, "", "part of the springs' stiffness"}, softness);
+  ClothModel<Real> model = build_cloths<Real>(def_.cloths);
+  soften(softness, model);
+  softness_ = softness;
+  model_.springs = std::move(model.springs);
+  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+    model_.parts[p].grid_springs = model.parts[p].grid_springs;
+    model_.parts[p].bounds = model.parts[p].bounds;
+  }
+  prepare_solver();
   report_present_state();
 }
 
@@ -152,6 +168,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template bool World<Real>::move_collider(std::size_t, const MoveDef&);                \
   template bool World<Real>::release_collider(std::size_t);                             \
   template void World<Real>::set_environment(const EnvironmentDef&);                    \
+  template void World<Real>::set_softness(double);                                      \
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \
   template double World<Real>::deepest_penetration() const;                             \

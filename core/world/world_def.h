@@ -10,6 +10,7 @@
 #include "core/diagnostics/measurements.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
+#include "core/world/budget.h"
 #include "core/world/environment.h"
 
 namespace weft {
@@ -46,6 +47,7 @@ struct WorldDef {
   SolverDef solver;
   RelaxationDef relaxation;
   CollisionDef contact;
+  BudgetDef budget;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;  ///< made at the start
@@ -69,6 +71,7 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
                     def.contact.model);
   visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
+  visit_fields_of_budget(def.budget, below("budget."));
 }
 
 /// The same with the fields of all cloths.

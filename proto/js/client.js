@@ -123,7 +123,7 @@ export class WeftClient extends Session {
     return this.request('move', { collider, ...where });
   }
 
-  /** @param {Partial<import('./messages.js').Environment>} values */
+  /** @param {Partial<import('./messages.js').Settings>} values */
   set(values) {
     return this.request('set', values);
   }

@@ -104,6 +104,12 @@ export interface Fan {
 }
 
 /** What `set` sets. */
+export interface Settings extends Environment {
+  softness: number;
+  budget_ms: number;
+  over_budget: 'slow' | 'soften';
+}
+
 export interface Environment {
   gravity: Vec3;
   wind: Vec3;
@@ -115,12 +121,13 @@ export interface Environment {
   fans: Fan[];
 }
 
-export interface State extends Environment {
+export interface State extends Settings {
   op: 'state';
   tick: number;
   time: number;
   paused: boolean;
   speed: number;
+  pace: number;
   scene: string;
   tick_rate: number;
   fabric: string;

@@ -599,7 +599,8 @@ class Client:
         return await self.request("move", collider=collider, **_without_none(fields))
 
     async def set(self, **values) -> dict:
-        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans."""
+        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans, softness, budget_ms,
+        over_budget."""
         return await self.request("set", **values)
 
     async def advance(self, n: int) -> dict:

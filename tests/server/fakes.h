@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,8 +25,9 @@ namespace weft::server {
 
 struct FakeClock {
   double now = 100;
+  std::function<double()> between_reads;  ///< what passes from one look to the next [s]; null: none
   Clock clock() {
-    return [this] { return now; };
+    return [this] { return between_reads ? now += between_reads() : now; };
   }
 };
 

@@ -35,9 +35,17 @@ export class Panels {
   state(state: State): void {
     set_text('real-time', state.paused ? '0.00' : state.real_time_factor.toFixed(2));
     set_text('step-time', state.step_ms.toFixed(state.step_ms < 10 ? 2 : 0));
+    this.reduced('pace', state.pace);
+    this.reduced('softness', state.softness);
     if (!state.paused) return;
     this.ticks = [];
     set_text('tick-rate', '0');
+  }
+
+  /** What is less than the scene asks for is shown as long as it is. */
+  private reduced(id: string, part: number): void {
+    element(id).closest('div')!.hidden = part >= 1;
+    set_text(id, String(part));
   }
 
   /** Counts ticks against the server's clock [s], on which a slow page has no influence. */

@@ -98,6 +98,10 @@ ACCEPTED = [
         air_density=1.2, still_air=False, drag=1000,
     ),
     accepted('{"op":"set","fans":[]}', op="set", fans=[]),
+    accepted('{"op":"set","softness":0.01,"budget_ms":1000,"over_budget":"soften"}',
+             op="set", softness=0.01, budget_ms=1000, over_budget="soften"),
+    accepted('{"op":"set","budget_ms":0,"over_budget":"slow"}', op="set", budget_ms=0,
+             over_budget="slow"),
     accepted(
         '{"op":"set","fans":[{"position":[0,1,2],"direction":[0,0,-3]},{"position":[1,0,0],'
         '"direction":[1,0,0],"speed":50,"radius":0.01,"spread":0,"reach":100}]}',
@@ -280,7 +284,8 @@ def refused_fields():
     yield refuse('{"op":"move","collider":"ball","position":[0,1,0],"release":true}',
                  "conflicting_fields", field="position")
     yield refuse('{"op":"set"}', "missing_field", command="set", limit={"allowed": [
-        "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag", "fans"]})
+        "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag", "fans",
+        "softness", "budget_ms", "over_budget"]})
     yield refuse('{"op":"set","winds":[1,0,0]}', "missing_field")
     yield refuse('{"op":"set","fans":{}}', "wrong_type", field="fans", value={})
     yield refuse('{"op":"set","fans":[3]}', "wrong_type", field="fans[0]", value=3)
@@ -297,6 +302,12 @@ def refused_fields():
     yield refuse('{"op":"set","wind":[0,0,100.5]}', "out_of_range", field="wind[2]")
     yield refuse('{"op":"set","gust_length":0}', "out_of_range", field="gust_length")
     yield refuse('{"op":"set","still_air":1}', "wrong_type", field="still_air", value=1)
+    yield refuse('{"op":"set","softness":0}', "out_of_range", field="softness",
+                 limit=limits(0.01, 1))
+    yield refuse('{"op":"set","budget_ms":-1}', "out_of_range", field="budget_ms",
+                 limit=limits(0, 1000))
+    yield refuse('{"op":"set","over_budget":"stop"}', "unknown_value", field="over_budget",
+                 value="stop", limit={"allowed": ["slow", "soften"]})
     yield refuse('{"op":"set","drag":-1}', "out_of_range", field="drag", limit=limits(0, 1000))
     yield refuse('{"op":"advance"}', "missing_field", field="n")
     yield refuse('{"op":"advance","n":100001}', "out_of_range", field="n", limit=limits(1, 100000))

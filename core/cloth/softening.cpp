@@ -1,0 +1,31 @@
+#include "core/cloth/softening.h"
+
+#include <cmath>
+
+namespace weft {
+
+template <class Real>
+void soften(double softness, ClothModel<Real>& model) {
+  // c = 2 zeta k / omega, and omega falls with the root.
+  const double root = std::sqrt(softness);
+  const Real stiffness = static_cast<Real>(softness), damping = static_cast<Real>(root);
+  for (Spring<Real>& spring : model.springs) {
+    spring.stiffness *= stiffness;
+    spring.damping *= damping;
+  }
+  for (ClothPart<Real>& part : model.parts) {
+    part.bounds.membrane_omega2 *= softness;
+    part.bounds.membrane_damping_rate *= root;
+    if (!part.grid_springs) continue;
+    GridSprings<Real>& springs = *part.grid_springs;
+    springs.warp *= stiffness;
+    springs.weft *= stiffness;
+    springs.shear *= stiffness;
+    springs.damping_per_stiffness /= damping;
+  }
+}
+
+template void soften(double, ClothModel<float>&);
+template void soften(double, ClothModel<double>&);
+
+}  // namespace weft
