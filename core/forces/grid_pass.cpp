@@ -80,7 +80,8 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_.motion = allocate(motion_, (view_.rows + 2) * GridView<Real>::kMotionLines);
   external_.clear();
   wind_.clear();
-  view_.scratch = allocate(scratch_, kGridScratchLines);
+  scratch_.assign(static_cast<std::size_t>(kGridScratchLines * view_.scratch_line()), Real(0));
+  view_.scratch = scratch_.data();
   allocate(odd_, 1);
   for (int c = 0; c < view_.columns; ++c)
     odd_[static_cast<std::size_t>(c)] = static_cast<Real>(c % 2);
@@ -89,7 +90,7 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
 
 /// Zeros follow for what the last rows and vectors read beyond them.
 template <class Real>
-Real* GridPass<Real>::allocate(std::vector<Real>& array, std::ptrdiff_t lines) const {
+Real* GridPass<Real>::allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const {
   array.assign(static_cast<std::size_t>(lines * view_.line + kGridLanes), Real(0));
   return array.data();
 }
@@ -178,7 +179,7 @@ ElasticEnergy GridPass<Real>::elastic_energy() const {
 template <class Real>
 std::size_t GridPass<Real>::bytes() const {
   std::size_t numbers = 0;
-  for (const std::vector<Real>* array :
+  for (const AlignedVector<Real>* array :
        {&motion_, &external_, &wind_, &coefficients_, &odd_, &scratch_})
     numbers += array->capacity();
   return numbers * sizeof(Real) + rows_.capacity() * sizeof(GridRow<Real>);

@@ -6,6 +6,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_view.h"
+#include "core/math/aligned_vector.h"
 #include "core/types.h"
 
 namespace weft {
@@ -63,7 +64,7 @@ class GridPass {
   std::size_t bytes() const;
 
  private:
-  Real* allocate(std::vector<Real>& array, std::ptrdiff_t lines) const;
+  Real* allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const;
   void load_velocities(const Vec3Array<Real>& v);
   void lay_out(const ClothPart<Real>& part);
   void lay_out_coefficients(const ClothPart<Real>& part);
@@ -72,7 +73,7 @@ class GridPass {
   GridView<Real> view_;
   Real air_normal_ = 0, air_tangential_ = 0;
   std::vector<GridRow<Real>> rows_;
-  std::vector<Real> motion_, external_, wind_, coefficients_, odd_, scratch_;
+  AlignedVector<Real> motion_, external_, wind_, coefficients_, odd_, scratch_;
 };
 
 /// Name of the instruction set that the kernels use on this processor, e.g. "AVX2".

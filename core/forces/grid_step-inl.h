@@ -32,79 +32,89 @@ HWY_INLINE V spring(D tag, const SpringLaw<D>& law, V stiffness, const Triple<V>
   return hn::Mul(stiffness, fused(tag, law.damping, rate, elastic));
 }
 
-/// The springs of a whole grid.
+/// Factors of the springs of one kind that start on a row, into a line of scratch. A loop for each
+/// kind is short enough for the processor to work at several vectors at once, which hides the
+/// latency of roots and divisions.
+/// @param from, to  where a spring's ends are, counted from its place in the row
 template <class Real>
-struct SpringLaws {
+HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real rest_length,
+                                GridCoefficient stiffness, std::ptrdiff_t from, std::ptrdiff_t to,
+                                Real* factor) {
   using D = GridTag<Real>;
-  SpringLaw<D> warp, weft, shear;
-
-  explicit HWY_INLINE SpringLaws(const GridSprings<Real>& s)
-      : warp(law(s, s.rest_warp)), weft(law(s, s.rest_weft)), shear(law(s, s.rest_shear)) {}
-
- private:
-  static HWY_INLINE SpringLaw<D> law(const GridSprings<Real>& s, Real rest_length) {
-    const D d;
-    return {hn::Set(d, Real(1)), hn::Set(d, rest_length), hn::Set(d, s.damping_per_stiffness),
-            hn::Set(d, Real(kSmallestSquaredLength))};
-  }
-};
-
-/// Factors of the four springs that start at each place of a row, into four lines of scratch. A
-/// loop of its own: it is short enough for the processor to work at several vectors at once, which
-/// hides the latency of roots and divisions.
-template <class Real>
-HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
-                                const SpringLaws<Real>& laws) {
-  const GridTag<Real> d;
+  const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const std::ptrdiff_t line = g.line, pitch = g.pitch();
-  const Real* k = g.row[r].coefficients;
-  const Real* x = g.motion + r * pitch;
-  const Real* v = x + GridView<Real>::kVelocityLine * line;
-  Real* factor = g.scratch + kFactorLine * line;
+  const SpringLaw<D> law{hn::Set(d, Real(1)), hn::Set(d, rest_length),
+                         hn::Set(d, g.springs.damping_per_stiffness),
+                         hn::Set(d, Real(kSmallestSquaredLength))};
+  const Real* const x = g.motion + r * g.pitch();
+  const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
+  const Real* const k = g.row[r].coefficients + stiffness * g.line;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const auto x0 = load(d, x + c, line), xr = load(d, x + c + 1, line),
-               xd = load(d, x + c + pitch, line), xe = load(d, x + c + pitch + 1, line);
-    const auto v0 = load(d, v + c, line), vr = load(d, v + c + 1, line),
-               vd = load(d, v + c + pitch, line), ve = load(d, v + c + pitch + 1, line);
-    const auto k_shear = hn::LoadU(d, k + kShear * line + c);
-    const auto along = spring(d, laws.warp, hn::LoadU(d, k + kWarp * line + c), xr - x0, vr - v0);
-    hn::StoreU(along, d, factor + c);
-    const auto down = spring(d, laws.weft, hn::LoadU(d, k + kWeft * line + c), xd - x0, vd - v0);
-    hn::StoreU(down, d, factor + line + c);
-    hn::StoreU(spring(d, laws.shear, k_shear, xe - x0, ve - v0), d, factor + 2 * line + c);
-    hn::StoreU(spring(d, laws.shear, k_shear, xd - xr, vd - vr), d, factor + 3 * line + c);
+    const auto way = load(d, x + to + c, g.line) - load(d, x + from + c, g.line);
+    const auto speed = load(d, v + to + c, g.line) - load(d, v + from + c, g.line);
+    hn::StoreU(spring(d, law, hn::LoadU(d, k + c), way, speed), d, factor + c);
   }
 }
 
-/// One component of the forces on a row: springs and quadratic bending, each once, from left to
-/// right. What acts on a particle to the right is handed on in registers, what acts on the row
-/// below in lines of scratch (NUMERICS.md a). A component at a time, so that all of it stays in
-/// registers. sink(column, force) may move the row's component, because nobody reads it any more.
+/// The lines of scratch that the forces on a row go through. What acts on the next column or the
+/// one after it is stored so many places further, what acts on the row below is kept for that.
+template <class Real>
+struct ForceLines {
+  Real *along, *down, *falling, *rising;  ///< factors of the springs
+  Real *here, *right, *ahead;             ///< on this column, the next one, the one after it
+  Real* carry;                            ///< on the row below, by component
+  Real* bent;                             ///< bending stencils centred there, by component
+  Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
+  std::ptrdiff_t step;                    ///< from component to component
+
+  HWY_INLINE ForceLines(const GridView<Real>& g, std::ptrdiff_t r) : step(g.scratch_line()) {
+    Real* at = g.scratch;
+    for (Real** line : {&along, &down, &falling, &rising, &here, &right, &ahead}) {
+      *line = at;
+      at += step;
+    }
+    carry = at;
+    bent = at + 3 * step;
+    corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
+    corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
+  }
+};
+
+template <class Real>
+HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
+                                const ForceLines<Real>& to) {
+  const GridSprings<Real>& s = g.springs;
+  const std::ptrdiff_t below = g.pitch();
+  compute_factors(g, r, s.rest_warp, kWarp, 0, 1, to.along);
+  compute_factors(g, r, s.rest_weft, kWeft, 0, below, to.down);
+  compute_factors(g, r, s.rest_shear, kShear, 0, below + 1, to.falling);
+  compute_factors(g, r, s.rest_shear, kShear, 1, below, to.rising);
+}
+
+/// One component of the forces of springs and quadratic bending that start on a row, each once
+/// (NUMERICS.md a), with the factors at hand.
 /// @param component  0 to 2
-template <class Real, class Sink>
-HWY_INLINE void sum_forces(const GridView<Real>& g, std::ptrdiff_t r, int component, Sink&& sink) {
-  using D = GridTag<Real>;
-  const D d;
-  using V = hn::Vec<D>;
+template <class Real>
+HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int component,
+                              const ForceLines<Real>& to) {
+  const GridTag<Real> d;
+  using V = hn::Vec<GridTag<Real>>;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const OneLaneUp<D> up;
   const std::ptrdiff_t line = g.line, pitch = g.pitch();
   const V two = hn::Set(d, Real(2));
-  const Real* k = g.row[r].coefficients;
-  const Real* x = g.motion + r * pitch + component * line;
-  const Real* factor = g.scratch + kFactorLine * line;
-  Real* const carry = g.scratch + component * line;
-  Real* const bent = carry + 3 * line;
-  V right_before = hn::Zero(d), next_right_before = right_before, below_right_before = right_before;
+  const Real* const k = g.row[r].coefficients;
+  const Real* const x = g.motion + r * pitch + component * line;
+  const std::ptrdiff_t own = component * to.step;
+  Real *const carry = to.carry + own, *const bent = to.bent + own;
+  const Real* const corner_in = to.corner_in + own;
+  Real* const corner_out = to.corner_out + own;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
     const V x0 = hn::LoadU(d, x + c), xr = hn::LoadU(d, x + c + 1),
             xd = hn::LoadU(d, x + c + pitch), xe = hn::LoadU(d, x + c + pitch + 1);
     const V along = hn::Sub(xr, x0), down = hn::Sub(xd, x0);
     const V falling = hn::Sub(xe, x0), rising = hn::Sub(xd, xr);
-    const V f_along = hn::LoadU(d, factor + c), f_down = hn::LoadU(d, factor + line + c),
-            f_falling = hn::LoadU(d, factor + 2 * line + c),
-            f_rising = hn::LoadU(d, factor + 3 * line + c);
+    const V f_along = hn::LoadU(d, to.along + c), f_down = hn::LoadU(d, to.down + c),
+            f_falling = hn::LoadU(d, to.falling + c), f_rising = hn::LoadU(d, to.rising + c);
     const V twist = hn::Mul(hn::Sub(hn::Sub(xe, xd), along), hn::LoadU(d, k + kTwist * line + c));
     // The stencils centred one column to the right and one row below.
     const V bend_right = hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2), xr), along),
@@ -114,64 +124,72 @@ HWY_INLINE void sum_forces(const GridView<Real>& g, std::ptrdiff_t r, int compon
     const V bend_here = hn::LoadU(d, bent + c);
     hn::StoreU(bend_below, d, bent + c);
 
-    V here = hn::Sub(hn::LoadU(d, carry + c), hn::Add(hn::Add(twist, bend_right), bend_below));
+    V here = hn::Sub(hn::LoadU(d, carry + c), hn::LoadU(d, corner_in + c));
+    here = hn::Sub(here, hn::Add(hn::Add(twist, bend_right), bend_below));
     here = fused(d, along, f_along, here);
     here = fused(d, down, f_down, here);
-    here = fused(d, falling, f_falling, here);
-    const V next_right = up(next_right_before, bend_right);
-    V right = fused(d, bend_right, two, hn::Sub(twist, next_right));
+    hn::StoreU(fused(d, falling, f_falling, here), d, to.here + c);
+    V right = fused(d, bend_right, two, twist);
     right = fused_minus(d, along, f_along, right);
-    right = fused(d, rising, f_rising, right);
-    const V below_right = up(below_right_before, fused(d, falling, f_falling, twist));
-    V below = fused(d, bend_below, two, hn::Sub(hn::Sub(twist, bend_here), below_right));
+    hn::StoreU(fused(d, rising, f_rising, right), d, to.right + c + 1);
+    hn::StoreU(bend_right, d, to.ahead + c + 2);
+    V below = fused(d, bend_below, two, hn::Sub(twist, bend_here));
     below = fused_minus(d, down, f_down, below);
-    below = fused_minus(d, rising, f_rising, below);
-    hn::StoreU(below, d, carry + c);
-    sink(c, hn::Add(here, up(right_before, right)));
+    hn::StoreU(fused_minus(d, rising, f_rising, below), d, carry + c);
+    hn::StoreU(fused(d, falling, f_falling, twist), d, corner_out + c + 1);
   }
 }
 
-/// Nothing is carried into the first row.
-template <class Real>
-HWY_INLINE void clear_carries(const GridView<Real>& g) {
+/// Calls sink(column, force) for the vectors of a row, after `add_up_forces`.
+template <class Real, class Sink>
+HWY_INLINE void visit_forces(const GridView<Real>& g, const ForceLines<Real>& from, Sink&& sink) {
   const GridTag<Real> d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  for (std::ptrdiff_t c = 0; c < kPowerLine * g.line; c += lanes)
+  for (std::ptrdiff_t c = 0; c < g.columns; c += lanes)
+    sink(c, hn::Add(hn::LoadU(d, from.here + c),
+                    hn::Sub(hn::LoadU(d, from.right + c), hn::LoadU(d, from.ahead + c))));
+}
+
+/// Nothing is carried into the first row, nor over the left border.
+template <class Real>
+HWY_INLINE void clear_lines(const GridView<Real>& g) {
+  const GridTag<Real> d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  for (std::ptrdiff_t c = 0; c < kGridScratchLines * g.scratch_line(); c += lanes)
     hn::StoreU(hn::Zero(d), d, g.scratch + c);
 }
 
 /// Forces alone, into the arrays of external forces.
 template <class Real>
 HWY_INLINE void internal_forces(const GridView<Real>& g) {
-  clear_carries(g);
-  const SpringLaws<Real> laws(g.springs);
+  clear_lines(g);
   for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
-    compute_factors(g, r, laws);
+    const ForceLines<Real> lines(g, r);
+    compute_factors(g, r, lines);
     for (int component = 0; component < 3; ++component) {
+      add_up_forces(g, r, component, lines);
       Real* const to = g.external + (3 * r + component) * g.line;
-      sum_forces(g, r, component, [&](std::ptrdiff_t c, auto force) HWY_ATTR {
+      visit_forces(g, lines, [&](std::ptrdiff_t c, auto force) HWY_ATTR {
         hn::StoreU(force, GridTag<Real>(), to + c);
       });
     }
   }
 }
 
-/// Kick and drift of one component of a row, whose force is at hand.
-template <class Real, bool kPulled>
-HWY_INLINE void advance_component(const GridView<Real>& g, std::ptrdiff_t r, int component,
-                                  const GridStep<Real>& step) {
-  using D = GridTag<Real>;
-  const D d;
-  using V = hn::Vec<D>;
+/// Kick and drift of one component of a row, which nobody reads any more.
+template <bool kPulled, class Real>
+HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int component,
+                         const GridStep<Real>& step, const ForceLines<Real>& from, Real* power) {
+  const GridTag<Real> d;
+  using V = hn::Vec<GridTag<Real>>;
   const std::ptrdiff_t line = g.line;
   Real* const x = g.motion + r * g.pitch() + component * line;
   Real* const v = x + GridView<Real>::kVelocityLine * line;
   const Real* const inverse = x + (GridView<Real>::kInverseMassLine - component) * line;
   const Real* const external = kPulled ? g.external + (3 * r + component) * line : nullptr;
-  Real* const power = g.scratch + kPowerLine * line;
   const V keep = hn::Set(d, step.keep), push = hn::Set(d, step.push), dt = hn::Set(d, step.dt);
   const V fall = hn::Set(d, step.push * step.gravity[component]);
-  sum_forces(g, r, component, [&](std::ptrdiff_t c, V force) HWY_ATTR {
+  visit_forces(g, from, [&](std::ptrdiff_t c, V force) HWY_ATTR {
     V pull = force;
     if constexpr (kPulled) {
       pull = hn::LoadU(d, external + c);
@@ -187,36 +205,31 @@ HWY_INLINE void advance_component(const GridView<Real>& g, std::ptrdiff_t r, int
   });
 }
 
-template <class Real, bool kPulled>
-HWY_INLINE void advance_rows(const GridView<Real>& g, const GridStep<Real>& step) {
-  const SpringLaws<Real> laws(g.springs);
-  for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
-    compute_factors(g, r, laws);
-    for (int component = 2; component >= 0; --component)
-      advance_component<Real, kPulled>(g, r, component, step);
-  }
-}
-
 /// The whole substep.
 /// @returns power of the external forces at the new velocities [W]
 template <class Real>
 HWY_INLINE double advance(const GridView<Real>& g, const GridStep<Real>& step) {
-  clear_carries(g);
-  if (!step.pulled) {
-    advance_rows<Real, false>(g, step);
-    return 0;
+  clear_lines(g);
+  Real* const power = g.scratch + kPowerLine * g.scratch_line();
+  for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
+    const ForceLines<Real> lines(g, r);
+    compute_factors(g, r, lines);
+    for (int component = 0; component < 3; ++component) {
+      add_up_forces(g, r, component, lines);
+      if (step.pulled)
+        move_row<true>(g, r, component, step, lines, power);
+      else
+        move_row<false>(g, r, component, step, lines, power);
+    }
   }
-  Real* const power = g.scratch + kPowerLine * g.line;
-  for (std::ptrdiff_t c = 0; c < g.line; ++c) power[c] = 0;
-  advance_rows<Real, true>(g, step);
-  return sum_of_columns(g, power);
+  return step.pulled ? sum_of_columns(g, power) : 0;
 }
 
 /// Moves positions of the model by its velocities and takes both over.
 /// @returns power of the external forces [W]
 template <class Real>
 HWY_INLINE double drift(const GridView<Real>& g, Real dt, bool pulled, const Real* v, Real* x) {
-  Real* const power = g.scratch + kPowerLine * g.line;
+  Real* const power = g.scratch + kPowerLine * g.scratch_line();
   for (std::ptrdiff_t c = 0; c < g.columns; ++c) power[c] = 0;
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {

@@ -6,6 +6,8 @@
 
 namespace weft {
 
+inline constexpr int kGridLanes = 16;  ///< at least the widest vector, in numbers
+
 /// One row of a grid: `count` particles from column `column` on, numbered from `particle` on in the
 /// arrays of the whole model.
 template <class Real>
@@ -43,14 +45,14 @@ struct GridView {
   Real* scratch = nullptr;  ///< kGridScratchLines lines
 
   std::ptrdiff_t pitch() const { return kMotionLines * line; }
+  /// Longer, because some are written a few places further.
+  std::ptrdiff_t scratch_line() const { return line + kGridLanes; }
   static constexpr int kMotionLines = 8, kInverseMassLine = 3, kVelocityLine = 4;
 };
 
-inline constexpr int kGridLanes = 16;  ///< at least the widest vector, in numbers
-
-/// Lines of scratch: three of carries and three of bending for the row below, powers by column,
-/// factors of a row's springs.
-inline constexpr int kPowerLine = 6, kFactorLine = 7, kGridScratchLines = 11;
+/// Lines of scratch: factors of springs, forces on their way to other columns, what is carried to
+/// the row below (see grid_step-inl.h), powers by column.
+inline constexpr int kPowerLine = 19, kGridScratchLines = 20;
 
 /// What a pass over a grid does with the forces: v <- keep v + push (f/m + g), x <- x + dt v.
 /// Particles without inverse mass get velocity 0.

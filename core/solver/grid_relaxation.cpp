@@ -6,8 +6,6 @@
 namespace weft {
 namespace {
 
-constexpr std::uintptr_t kCacheLine = 64;  // [bytes]; vectors that cross it cost twice
-
 /// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
 /// the particle itself, of the one before and of the one behind. Two away it is 1.
 template <class Real>
@@ -23,19 +21,11 @@ Real cells_at(int k, int count) {
   return k == 0 || k + 1 == count ? Real(1) : Real(2);
 }
 
-/// The first number of an array that begins a cache line.
-template <class Real>
-Real* at_line(std::vector<Real>& array) {
-  const auto start = reinterpret_cast<std::uintptr_t>(array.data());
-  const std::uintptr_t to_line = (kCacheLine - start % kCacheLine) % kCacheLine;
-  return array.data() + to_line / sizeof(Real);
-}
-
 }  // namespace
 
 template <class Real>
 Real* GridRelaxation<Real>::at_origin(Array& array) const {
-  return at_line(array) + 2 * view_.stride + kSweepMargin;
+  return array.data() + 2 * view_.stride + kSweepMargin;
 }
 
 template <class Real>
@@ -70,7 +60,7 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   const auto row_size = static_cast<std::size_t>(view_.stride + 3 * kSweepMargin);
   for (Array* table : {&border_, &softer_, &bend_, &bend_left_, &bend_right_, &cells_})
     table->assign(row_size, Real(0));
-  const auto origin = [](Array& table) { return at_line(table) + kSweepMargin; };
+  const auto origin = [](Array& table) { return table.data() + kSweepMargin; };
   for (int c = 0; c < view_.columns; ++c) {
     const std::ptrdiff_t k = place(0, c);
     const std::array<Real, 3> line = bending_line<Real>(c, view_.columns);

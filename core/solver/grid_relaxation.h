@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/math/aligned_vector.h"
 #include "core/types.h"
 
 namespace weft {
@@ -86,7 +87,7 @@ class GridRelaxation {
   void store_way(Vec3Array<Real>& way) const;
 
  private:
-  using Array = std::vector<Real>;
+  using Array = AlignedVector<Real>;
   Real* at_origin(Array& array) const;
   std::ptrdiff_t place(int row, int column) const {
     return row * view_.stride + (column % 2) * view_.half + column / 2;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace weft {
+
+/// Places arrays at the start of a cache line, so that no vector in them crosses two.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kCacheLine{64};
+
+  CacheLineAllocator() = default;
+  template <class Other>
+  CacheLineAllocator(const CacheLineAllocator<Other>&) {}
+
+  T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new(count * sizeof(T), kCacheLine));
+  }
+  void deallocate(T* at, std::size_t) { ::operator delete(at, kCacheLine); }
+  bool operator==(const CacheLineAllocator&) const = default;
+};
+
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+}  // namespace weft
