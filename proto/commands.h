@@ -151,6 +151,18 @@ struct MoveEnd {
 /// What a room does whose ticks take more time than they may.
 enum class OverBudget : std::uint8_t { slow, soften };
 
+/// What a gripper shall do; what is not told stays as it is. At least one of them is set.
+struct Gripper {
+  std::string gripper;               ///< its name, 1 to 56 bytes
+  std::optional<double> opening;     ///< between its jaws [m]; 0 closes on what is there
+  std::optional<double> force;       ///< with which each jaw presses [N]
+  std::optional<Vec3> position;      ///< where its middle goes [m]
+  std::optional<Quat> rotation;      ///< from how it is defined
+  std::optional<double> speed;       ///< at most [m/s]
+  std::optional<double> turn_speed;  ///< at most [rad/s]
+  bool operator==(const Gripper&) const = default;
+};
+
 /// At least one of them is set.
 struct Set {
   std::optional<Vec3> gravity;        ///< [m/s^2]
@@ -188,7 +200,8 @@ enum class QueryWhat : std::uint8_t {
   colliders,
   measurements,
   contacts,
-  reactions
+  reactions,
+  grippers
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 
@@ -229,7 +242,7 @@ struct View {
 
 using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin,
                              ReleaseParticle, ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed,
-                             Move, MoveEnd, Set, Advance, Query, Hash, Ping, Load, View>;
+                             Move, MoveEnd, Gripper, Set, Advance, Query, Hash, Ping, Load, View>;
 
 /// The word in `op`, e.g. "drag".
 const char* name_of(const Command& command);

@@ -72,6 +72,15 @@ struct FieldWriter {
     out["speed"] = c.speed;
     out["turn_speed"] = c.turn_speed;
   }
+  void operator()(const Gripper& c) {
+    out["name"] = c.gripper;
+    put_if(out, "opening", c.opening);
+    put_if(out, "force", c.force);
+    put_if(out, "position", c.position);
+    put_if(out, "rotation", c.rotation);
+    put_if(out, "speed", c.speed);
+    put_if(out, "turn_speed", c.turn_speed);
+  }
   void operator()(const MoveEnd& c) {
     out["collider"] = c.collider;
     out["release"] = true;
@@ -131,6 +140,7 @@ struct Name {
   const char* operator()(const Speed&) const { return "speed"; }
   const char* operator()(const Move&) const { return "move"; }
   const char* operator()(const MoveEnd&) const { return "move"; }
+  const char* operator()(const Gripper&) const { return "gripper"; }
   const char* operator()(const Set&) const { return "set"; }
   const char* operator()(const Advance&) const { return "advance"; }
   const char* operator()(const Query&) const { return "query"; }

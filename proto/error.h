@@ -34,6 +34,7 @@ enum class ErrorCode : std::uint8_t {
   unknown_pin,
   unknown_viewer,
   unknown_collider,
+  unknown_gripper,
   drag_exists,
   held,
   not_paused,

@@ -23,6 +23,8 @@ inline constexpr Range kIdRange{0, 4294967295};              ///< viewers, pins
 inline constexpr Range kPositionRange{-1e4, 1e4};            ///< each component [m]
 inline constexpr double kLeastDirection = 1e-9;              ///< of its largest component
 inline constexpr Range kPivotRange{-1000, 1000};             ///< of a collider, each component [m]
+inline constexpr Range kOpeningRange{0, 1};                  ///< of a gripper [m]
+inline constexpr Range kGripRange{0, 1000};                  ///< of each of its jaws [N]
 inline constexpr Range kUnitRange{-1, 1};                    ///< components of a unit quaternion
 inline constexpr double kUnitTolerance = 1e-3;               ///< of its norm
 inline constexpr Range kMoveSpeedRange{1e-3, 20};            ///< of a collider [m/s]
@@ -57,6 +59,7 @@ inline constexpr std::size_t kMostIdBytes = 64;
 inline constexpr std::size_t kMostNameCharacters = 32;
 inline constexpr std::size_t kMostTokenBytes = 256;
 inline constexpr std::size_t kMostSceneBytes = 64;
+inline constexpr std::size_t kMostGripperBytes = 56;
 inline constexpr std::size_t kMostValueCharacters = 80;  ///< of a string quoted in an error
 
 }  // namespace weft::proto

@@ -178,6 +178,16 @@ void read_fans(FieldReader& in, std::optional<std::vector<Fan>>& fans) {
   in.read_objects("fans", kMostFans, [&fans](FieldReader& fan) { fans->push_back(read_fan(fan)); });
 }
 
+void read_rotation(FieldReader& in, std::optional<Quat>& rotation) {
+  in.read_if_there("rotation", rotation, kUnitRange);
+  if (!in.ok() || !rotation) return;
+  double norm2 = 0;
+  for (const double q : *rotation) norm2 += q * q;
+  if (!(std::abs(std::sqrt(norm2) - 1) <= kUnitTolerance))
+    in.fail(ErrorCode::out_of_range, "rotation", "rotation must have the norm 1",
+            "a unit quaternion [x, y, z, w]");
+}
+
 Command read_move(FieldReader& in) {
   Move move;
   in.read("collider", move.collider);
@@ -192,19 +202,34 @@ Command read_move(FieldReader& in) {
     return MoveEnd{move.collider};
   }
   in.read_if_there("position", move.position, kPivotRange);
-  in.read_if_there("rotation", move.rotation, kUnitRange);
-  if (in.ok() && move.rotation) {
-    double norm2 = 0;
-    for (const double q : *move.rotation) norm2 += q * q;
-    if (!(std::abs(std::sqrt(norm2) - 1) <= kUnitTolerance))
-      in.fail(ErrorCode::out_of_range, "rotation", "rotation must have the norm 1",
-              "a unit quaternion [x, y, z, w]");
-  }
+  read_rotation(in, move.rotation);
   in.read_if_there("speed", move.speed, kMoveSpeedRange);
   in.read_if_there("turn_speed", move.turn_speed, kTurnSpeedRange);
   if (in.ok() && !move.position && !move.rotation)
     in.fail(ErrorCode::missing_field, "position", "move needs position, rotation or release");
   return move;
+}
+
+Command read_gripper(FieldReader& in) {
+  Gripper gripper;
+  in.read("name", gripper.gripper);
+  if (in.ok() && (gripper.gripper.empty() || gripper.gripper.size() > kMostGripperBytes))
+    in.fail(ErrorCode::wrong_length, "name", "name must have 1 to 56 bytes");
+  in.read_if_there("opening", gripper.opening, kOpeningRange);
+  in.read_if_there("force", gripper.force, kGripRange);
+  in.read_if_there("position", gripper.position, kPivotRange);
+  read_rotation(in, gripper.rotation);
+  in.read_if_there("speed", gripper.speed, kMoveSpeedRange);
+  in.read_if_there("turn_speed", gripper.turn_speed, kTurnSpeedRange);
+  Gripper nothing;
+  nothing.gripper = gripper.gripper;
+  if (in.ok() && gripper == nothing) {
+    Error error = make_error(ErrorCode::missing_field, "gripper has nothing to do");
+    error.limit =
+        Limit{{}, {}, {}, {"opening", "force", "position", "rotation", "speed", "turn_speed"}};
+    in.fail(std::move(error));
+  }
+  return gripper;
 }
 
 Command read_set(FieldReader& in) {
@@ -320,7 +345,7 @@ constexpr std::array kOperations = {
     Operation{"advance", read_advance},    Operation{"query", read_query},
     Operation{"hash", read_plain<Hash>},   Operation{"ping", read_ping},
     Operation{"load", read_load},          Operation{"view", read_view},
-    Operation{"move", read_move},
+    Operation{"move", read_move},          Operation{"gripper", read_gripper},
 };
 
 const Operation* find_operation(const std::string& name) {

@@ -67,6 +67,13 @@ Json json_of(const ColliderForce& collider) {
   return {{"collider", collider.collider}, {"force", collider.force}};
 }
 
+Json json_of(const GripperInfo& gripper) {
+  return {{"name", gripper.name},         {"position", gripper.position},
+          {"rotation", gripper.rotation}, {"opening", gripper.opening},
+          {"force", gripper.force},       {"gripping", gripper.gripping},
+          {"reaction", gripper.reaction}};
+}
+
 Json json_of(const ReactionInfo& reactions) {
   Json out = Json::object();
   if (reactions.pins) out["pins"] = json_of(*reactions.pins);
@@ -91,6 +98,7 @@ struct DataName {
   QueryWhat operator()(const Measurements&) const { return QueryWhat::measurements; }
   QueryWhat operator()(const std::vector<ContactInfo>&) const { return QueryWhat::contacts; }
   QueryWhat operator()(const ReactionInfo&) const { return QueryWhat::reactions; }
+  QueryWhat operator()(const std::vector<GripperInfo>&) const { return QueryWhat::grippers; }
 };
 
 struct ReplyWriter {
@@ -151,6 +159,10 @@ struct ReplyWriter {
   void operator()(const MoveReply& r) {
     start("move", r.tick);
     out["collider"] = r.collider;
+  }
+  void operator()(const GripperReply& r) {
+    start("gripper", r.tick);
+    out["gripper"] = r.gripper;
   }
   void operator()(const AdvanceReply& r) {
     start("advance", r.tick);

@@ -77,6 +77,11 @@ struct MoveReply {
   std::string collider;
 };
 
+struct GripperReply {
+  std::uint64_t tick = 0;
+  std::string gripper;
+};
+
 struct AdvanceReply {
   std::uint64_t tick = 0, hash = 0;
 };
@@ -180,6 +185,17 @@ struct ReactionInfo {
   std::vector<ColliderForce> colliders;
 };
 
+/// A gripper as it is now.
+struct GripperInfo {
+  std::string name;
+  Vec3 position{};        ///< of its middle [m]
+  Quat rotation{};        ///< from how it is defined
+  double opening = 0;     ///< between its jaws [m]
+  double force = 0;       ///< with which each jaw may press [N]
+  bool gripping = false;  ///< stopped by what is between its jaws, and presses it
+  Vec3 reaction{};        ///< of the cloth on both jaws together, mean of the last tick [N]
+};
+
 /// What the scene's test measures, by names that end in their unit; empty if it is no test.
 struct Measurements {
   std::vector<std::pair<std::string, double>> values;
@@ -191,13 +207,14 @@ struct QueryReply {
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
                std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements,
-               std::vector<ContactInfo>, ReactionInfo>
+               std::vector<ContactInfo>, ReactionInfo, std::vector<GripperInfo>>
       data;
 };
 
-using Reply = std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply,
-                           PauseReply, StepReply, SpeedReply, MoveReply, AdvanceReply, HashReply,
-                           PingReply, LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+using Reply =
+    std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply, PauseReply,
+                 StepReply, SpeedReply, MoveReply, GripperReply, AdvanceReply, HashReply, PingReply,
+                 LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
 
 /// The `result` for a command with this id.
 std::string encode_reply(const Id& id, const Reply& reply);

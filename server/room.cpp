@@ -119,8 +119,8 @@ void Room::join(proto::ViewerId id, const Join& join) {
   welcome.tick_rate = world_->def().tick_rate;
   welcome.clock = clock_();
   welcome.limits = options_.limits;
-  welcome.capabilities = {"pick",    "drag",  "pin",  "camera", "step",
-                          "advance", "query", "move", "load"};
+  welcome.capabilities = {"pick",    "drag",  "pin",  "camera",  "step",
+                          "advance", "query", "move", "gripper", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
   output_.send(id, text_message(proto::encode_state(state())));

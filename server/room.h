@@ -152,6 +152,7 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
   Outcome apply(proto::ViewerId viewer, const proto::Move& command);
   Outcome apply(proto::ViewerId viewer, const proto::MoveEnd& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Gripper& command);
   Outcome apply(proto::ViewerId viewer, const proto::Set& command);
   Outcome apply(proto::ViewerId viewer, const proto::Advance& command);
   Outcome apply(proto::ViewerId viewer, const proto::Query& command);

@@ -278,6 +278,13 @@ Room::Outcome Room::apply(ViewerId, const proto::MoveEnd& command) {
   return proto::Reply(proto::MoveReply{world_->tick(), command.collider});
 }
 
+Room::Outcome Room::apply(ViewerId, const proto::Gripper& command) {
+  const auto gripper = find_gripper(*world_, command.gripper);
+  if (!gripper) return gripper.error();
+  world_->command_gripper(*gripper, gripper_command(command));
+  return proto::Reply(proto::GripperReply{world_->tick(), command.gripper});
+}
+
 Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   world_->set_environment(with_settings(world_->environment(), command));
   if (command.softness) {

@@ -101,6 +101,9 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       reply.data = std::move(reactions);
       break;
     }
+    case proto::QueryWhat::grippers:
+      reply.data = grippers_of(*world_);
+      break;
     case proto::QueryWhat::trees:
       reply.data = trees_of(*world_);
       break;

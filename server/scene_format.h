@@ -170,6 +170,19 @@ void describe_collider(Io& io, ColliderDef& collider) {
 }
 
 template <class Io>
+void describe_gripper(Io& io, GripperDef& gripper) {
+  io.text({"name", 1, 56, true, false, "its jaws are the objects NAME.left and NAME.right"},
+          gripper.name);
+  io.fields([&](auto&& visit) { visit_fields_of_gripper(gripper, visit); });
+  io.orientation("orientation", "how it is turned; its jaws close along its x axis",
+                 gripper.orientation);
+  io.list(ListInfo{"steps", 0, kMostGripperSteps, "what it does by itself, in order of time"},
+          gripper.steps, [](Io& in, GripperStep& step) {
+            in.fields([&](auto&& visit) { visit_fields_of_gripper_step(step, visit); });
+          });
+}
+
+template <class Io>
 void describe_pin(Io& io, PinDef& pin) {
   io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, pin.cloth);
   io.fields([&](auto&& visit) { visit_fields_of_pin(pin, visit); });
@@ -230,6 +243,8 @@ void describe_scene(Io& io, WorldDef& def) {
           [](Io& in, ColliderDef& collider) { describe_collider(in, collider); });
   io.list(ListInfo{"pins", 0, kMostScenePins, "what is held at the start"}, def.pins,
           [](Io& in, PinDef& pin) { describe_pin(in, pin); });
+  io.list(ListInfo{"grippers", 0, kMostGrippers, "pairs of jaws that close with bounded force"},
+          def.grippers, [](Io& in, GripperDef& gripper) { describe_gripper(in, gripper); });
 }
 
 }  // namespace weft::server

@@ -72,6 +72,11 @@ proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::st
 /// The command in full: what it does not tell stays as it is.
 MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move);
 
+/// The gripper of this name.
+proto::Result<std::size_t> find_gripper(const ServedWorld& world, const std::string& name);
+GripperCommand gripper_command(const proto::Gripper& command);
+std::vector<proto::GripperInfo> grippers_of(const ServedWorld& world);
+
 proto::SceneMesh scene_mesh(const ServedWorld& world);
 /// Without epoch, hash and bytes.
 proto::MeshAnnouncement mesh_announcement(const ServedWorld& world);

@@ -51,6 +51,48 @@ proto::ReactionInfo reactions_of(const ServedWorld& world, const Reactions& reac
   return info;
 }
 
+proto::Result<std::size_t> find_gripper(const ServedWorld& world, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < world.grippers().size(); ++k) {
+    if (world.grippers()[k].def.name == name) return k;
+    names.push_back(world.grippers()[k].def.name);
+  }
+  proto::Error error = proto::word_error("name", name, std::move(names));
+  error.code = proto::ErrorCode::unknown_gripper;
+  return error;
+}
+
+GripperCommand gripper_command(const proto::Gripper& command) {
+  GripperCommand out;
+  out.opening = command.opening;
+  out.force = command.force;
+  if (command.position) out.position = from_wire(*command.position);
+  if (command.rotation) {
+    const proto::Quat& q = *command.rotation;
+    out.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
+  }
+  out.speed = command.speed;
+  out.turn_speed = command.turn_speed;
+  return out;
+}
+
+std::vector<proto::GripperInfo> grippers_of(const ServedWorld& world) {
+  std::vector<proto::GripperInfo> list;
+  for (const Gripper& gripper : world.grippers()) {
+    const Eigen::Quaterniond& q = gripper.pose.rotation;
+    const Vec3d reaction =
+        world.colliders()[gripper.jaw[0]].force + world.colliders()[gripper.jaw[1]].force;
+    list.push_back({gripper.def.name,
+                    to_wire(gripper.pose.position),
+                    {q.x(), q.y(), q.z(), q.w()},
+                    gripper.opening,
+                    gripper.force,
+                    gripper.gripping,
+                    to_wire(reaction)});
+  }
+  return list;
+}
+
 std::vector<proto::ContactSample> contact_samples(const ServedWorld& world) {
   std::vector<proto::ContactSample> samples;
   for (const ContactPoint& contact : world.reactions()->contacts) {

@@ -137,7 +137,7 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
     state.force = -state.impulse / seconds;
-    if (!state.is_active()) continue;
+    if (state.wanted.is_zero()) continue;
     const double most = colliders[k].max_force;
     const double work =
         state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);

@@ -24,10 +24,16 @@ struct ColliderState {
   Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 
+  // Of a jaw of a gripper.
+  Vec3d press = Vec3d::Zero();  ///< unit direction in which it presses; zero: it is none
+  double squeeze = 0;           ///< with which it presses what is before it in this tick [N]
+  double facing = 0;            ///< thickness of the cloth that is before it; 0: there is none [m]
+
   Vec3d force = Vec3d::Zero();  ///< of the cloth on it, mean of the last tick [N]
 
   bool is_moving() const { return !twist.is_zero(); }
-  bool is_active() const { return !wanted.is_zero(); }  ///< it moves, or would like to
+  /// It moves, or would like to.
+  bool is_active() const { return !wanted.is_zero() || squeeze > 0; }
 };
 
 using ColliderStates = std::vector<ColliderState>;

@@ -96,7 +96,8 @@ void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   colliders_ = colliders;
   work_ = 0;
   log_.clear();
-  any_tracked_ = false;
+  any_tracked_ = any_jaw_ = false;
+  first_substep_ = true;
   surface_speed_ = 0;
   if (!colliders) return;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
@@ -106,6 +107,10 @@ void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
     if (tracked && !frame.tracked) rows_built_ = false;  // the old ones do not follow it
     frame.tracked = tracked;
     any_tracked_ = any_tracked_ || tracked;
+    any_jaw_ = any_jaw_ || !state.press.isZero(0);
+    (*colliders)[k].facing = 0;
+    // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
+    if (state.squeeze > 0) rows_built_ = false;
     const double turn = state.twist.angular.norm();
     const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
     surface_speed_ = std::max(surface_speed_, static_cast<Real>(speed));
@@ -130,9 +135,12 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) 
     find_busy_rows();
     push_out(state, dt);
     aim_rows(state, dt);
+    // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
+    if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
     solve_rows(state, profile);
     certify(state, dt);
   }
+  first_substep_ = false;
   move_colliders(dt);
 }
 
@@ -143,6 +151,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   measure_way(state, dt);
   find_busy_rows();
   aim_rows(state, dt);
+  if (any_jaw_) share_squeeze(state, dt / 2);
   solve_rows(state, profile);
 }
 

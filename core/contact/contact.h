@@ -61,6 +61,8 @@ struct MovingRow {
   double own_offset = 0;             ///< [m]
   Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
   Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
+  /// Friction that the squeeze of a jaw still allows in this step [m/s].
+  Real grip = 0;
 };
 
 /// Contact of cloths with objects, at rest or moving (CONTACT.md's recipe for objects).
@@ -248,6 +250,10 @@ class Contact {
   void log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
                 const ClothState<Real>& state);
 
+  // contact_grip.cpp
+  void share_squeeze(const ClothState<Real>& state, Real dt);
+  bool faces(const ContactRow<Real>& row, const ColliderState& jaw) const;
+
   // contact_movers.cpp
   void place_collider(std::size_t collider, const Pose& pose);
   void plan_colliders(Real dt);
@@ -318,6 +324,8 @@ class Contact {
   std::vector<ColliderFrame<Real>> frames_;  ///< of each collider
   ColliderStates* colliders_ = nullptr;      ///< of the tick under way
   bool any_tracked_ = false;                 ///< whether one of them moves in this tick
+  bool any_jaw_ = false;                     ///< whether one of them is a gripper's
+  bool first_substep_ = true;                ///< of the tick
   Real surface_speed_ = 0;                   ///< of the fastest [m/s]
   Real gone_ = 0;      ///< longest way of an object since the pairs were collected [m]
   Real way_rows_ = 0;  ///< since the rows were built, and in the coming substep [m]

@@ -162,7 +162,8 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
 }
 
 /// Projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at most
-/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
+/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
+/// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
 template <class Real>
 void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
   std::uint64_t friction_evaluations = 0;
@@ -172,16 +173,22 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
       Vec3<Real> v = weighted(row, state.v);
       if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
       const Real vn = row.normal.dot(v);
-      const Real push = row.least_speed - vn;
-      if (!(push > 0)) continue;
+      Real* grip =
+          row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
+      Real push = row.least_speed - vn;
+      if (!(push > 0)) {
+        if (!grip || *grip == 0) continue;
+        push = 0;
+      }
       Vec3<Real> change = row.normal * push;
       const Real friction =
           static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
       if (friction > 0) {
         ++friction_evaluations;
         const Vec3<Real> slip = v - row.normal * vn;
-        const Real speed = slip.norm(), most = friction * push;
+        const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
         change -= speed > most ? (slip * (most / speed)).eval() : slip;
+        if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
       }
       share_out(row, change, state.v);
       pushed_rows_.push_back(r);

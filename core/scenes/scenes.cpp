@@ -194,6 +194,25 @@ void build_lift_sphere(WorldDef& def, const std::string&) {
   def.environment.drag = 0.3;
 }
 
+/// A cloth lies on a table and hangs over its edge, where jaws take it, lift it and hold it.
+void build_gripper(WorldDef& def, const std::string&) {
+  constexpr double kTop = 0.3, kHalf = 0.25, kOver = 0.08;
+  def.cloths[0] = lying_cloth(33, 2 * kHalf, kTop + 0.01);
+  def.cloths[0].origin[0] += kOver;
+  def.cloths[0].fabric = make_fabric("denim");
+  GripperDef gripper;
+  gripper.centre = Vec3d(kHalf + 0.03, kTop + 0.002, 0);
+  constexpr double kHalfRoot = 0.70710678118654752;
+  gripper.orientation = Eigen::Quaterniond(kHalfRoot, 0, 0, kHalfRoot);  // closes along y
+  gripper.half_extents = Vec3d(0.006, 0.02, 0.025);
+  gripper.opening = 0.08;
+  gripper.steps = {{0, Vec3d::Zero(), 0.08}, {1, Vec3d::Zero(), 0}, {2.5, Vec3d(0, 0.6, 0), 0}};
+  def.grippers = {gripper};
+  def.colliders = {ground(),
+                   {"table", upright_box(Vec3d(0, kTop / 2, 0), Vec3d(kHalf, kTop / 2, kHalf))}};
+  def.environment.drag = 0.5;
+}
+
 std::vector<SceneEntry> own_scenes() {
   return {
       {{"default",
@@ -237,6 +256,11 @@ std::vector<SceneEntry> own_scenes() {
         "A ball rises under a silk sheet, holds it up and sinks: the sheet slides and never lets "
         "it through."},
        build_lift_sphere},
+      {{"gripper",
+        "A gripper closes on a cloth where it hangs over a table, lifts it and holds it: open it, "
+        "or "
+        "close it with less force, and see it slip."},
+       build_gripper},
       {{"drape-test",
         "Cusick's drape test, a round cloth of 30 cm on a disc of 18 cm: read its drape "
         "coefficient and count its folds."},

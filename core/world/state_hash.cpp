@@ -30,12 +30,22 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
   feed(hash, wanted.data(), wanted.size());
 }
 
+void feed(XXH64_state_t& hash, const Gripper& gripper) {
+  const auto pose = numbers_of(gripper.pose, gripper.opening, gripper.wanted);
+  const auto target = numbers_of(gripper.target, gripper.speed, gripper.turn_speed);
+  feed(hash, pose.data(), pose.size());
+  feed(hash, target.data(), target.size());
+  const std::array<double, 4> rest = {gripper.force, gripper.facing, gripper.commanded ? 1.0 : 0.0,
+                                      gripper.gripping ? 1.0 : 0.0};
+  feed(hash, rest.data(), rest.size());
+}
+
 }  // namespace
 
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
                          const std::vector<ColliderDef>& defs, const ColliderStates& colliders,
-                         std::uint64_t tick) {
+                         const std::vector<Gripper>& grippers, std::uint64_t tick) {
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(Real), "positions are hashed as plain numbers");
   XXH64_state_t hash;
   XXH64_reset(&hash, 0);
@@ -59,14 +69,15 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
     feed(hash, &shot.ticks_left, 1);
   }
   for (std::size_t k = 0; k < colliders.size(); ++k) feed(hash, k, defs[k], colliders[k]);
+  for (const Gripper& gripper : grippers) feed(hash, gripper);
   return XXH64_digest(&hash);
 }
 
 template std::uint64_t state_hash(const ClothState<float>&, const Pins&, const Grabs<float>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
-                                  std::uint64_t);
+                                  const std::vector<Gripper>&, std::uint64_t);
 template std::uint64_t state_hash(const ClothState<double>&, const Pins&, const Grabs<double>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
-                                  std::uint64_t);
+                                  const std::vector<Gripper>&, std::uint64_t);
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/attachments/grabs.h"
+#include "core/attachments/gripper.h"
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/collider_state.h"
@@ -11,10 +12,10 @@ namespace weft {
 
 /// XXH64 over the bits of all that decides the future of a world: positions, velocities, how often
 /// each particle is pinned, the grabs with their targets, colliders that are not as defined or have
-/// a command, and the tick.
+/// a command, grippers, and the tick.
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
                          const std::vector<ColliderDef>& defs, const ColliderStates& colliders,
-                         std::uint64_t tick);
+                         const std::vector<Gripper>& grippers, std::uint64_t tick);
 
 }  // namespace weft

@@ -35,9 +35,13 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                        longest_edge, runtime.executor);
 }
 
-/// The definition itself, once it is known to be valid; nothing is built from a wrong one.
-const WorldDef& validated(const WorldDef& def) {
+/// The definition, once it is known to be valid, with the jaws of grippers among its colliders;
+/// nothing is built from a wrong one.
+WorldDef validated(WorldDef def) {
   validate(def);
+  for (const GripperDef& gripper : def.grippers) {
+    for (const ColliderDef& jaw : jaws_of(gripper)) def.colliders.push_back(jaw);
+  }
   return def;
 }
 
@@ -57,9 +61,11 @@ std::string describe(const Divergence& d) {
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
-      model_(build_cloths<Real>(def.cloths)), contact_(make_contact(def, model_, runtime)),
+      model_(build_cloths<Real>(def.cloths)), contact_(make_contact(def_, model_, runtime)),
       account_(total_mass(model_)) {
   state_ = initial_state(model_);
+  for (const ClothPart<Real>& part : model_.parts)
+    thickest_ = std::max(thickest_, part.fabric.thickness);
   if (choose_substeps() > kMostSubsteps)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
@@ -85,6 +91,7 @@ void World<Real>::reset() {
   grabs_.list.clear();
   grabs_.shots.clear();
   colliders_ = initial_states(def_.colliders);
+  grippers_ = initial_grippers(def_.grippers, def_.colliders.size() - 2 * def_.grippers.size());
   for (std::size_t k = 0; k < def_.pins.size(); ++k) {
     try {
       pin(def_.pins[k]);
@@ -120,10 +127,13 @@ const TickReport& World<Real>::step() {
   report_.divergence.reset();
   const int substeps = choose_substeps();
   blow_wind();
+  plan_grippers(static_cast<double>(tick_) / def_.tick_rate, tick_seconds(), thickest_, grippers_,
+                colliders_);
   plan_motion(def_.colliders, static_cast<double>(tick_) / def_.tick_rate, tick_seconds(),
               colliders_);
   advance_or_recover(substeps);
   finish_motion(def_.colliders, tick_seconds(), colliders_);
+  finish_grippers(tick_seconds(), colliders_, grippers_);
   finish_tick(grabs_);
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/attachments/grabs.h"
+#include "core/attachments/gripper.h"
 #include "core/attachments/pins.h"
 #include "core/contact/collider_state.h"
 #include "core/executor.h"
@@ -104,6 +105,9 @@ class World {
   /// False if there is no such collider.
   bool release_collider(std::size_t collider);
 
+  /// Throws DefinitionError if a field is out of range. False if there is no such gripper.
+  bool command_gripper(std::size_t gripper, const GripperCommand& command);
+
   /// Throws DefinitionError if a field is out of range; nothing changes then.
   void set_environment(const EnvironmentDef& environment);
 
@@ -143,6 +147,7 @@ class World {
   std::vector<std::string> debug_tree_names();
   int debug_tree_levels(const std::string& tree);
 
+  /// As built: the jaws of grippers are the last of its colliders.
   const WorldDef& def() const { return def_; }
   const EnvironmentDef& environment() const { return environment_; }
   const ClothModel<Real>& model() const { return model_; }
@@ -154,6 +159,7 @@ class World {
   const Pins& pins() const { return pins_; }
   const Grabs<Real>& grabs() const { return grabs_; }
   const ColliderStates& colliders() const { return colliders_; }
+  const std::vector<Gripper>& grippers() const { return grippers_; }
   const TickReport& report() const { return report_; }
   const Contact<Real>& contact() const { return contact_; }
   /// Contact of cloths with themselves and each other; null if there is none.
@@ -187,6 +193,8 @@ class World {
   Pins pins_;
   Grabs<Real> grabs_;
   ColliderStates colliders_;
+  std::vector<Gripper> grippers_;
+  double thickest_ = 0;  ///< cloth [m]
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
   std::optional<SeedContact<Real>> seed_contact_;  ///< if it was chosen

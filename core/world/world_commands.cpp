@@ -56,11 +56,22 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
 template <class Real>
 bool World<Real>::move_collider(std::size_t collider, const MoveDef& move) {
   if (collider >= colliders_.size()) return false;
+  if (collider >= colliders_.size() - 2 * grippers_.size())
+    throw DefinitionError("collider", def_.colliders[collider].name, "an object that is no jaw",
+                          "a gripper moves its jaws: command the gripper");
   validate(move, "");
   check_may_turn(def_.colliders[collider], move.target, "");
   MoveDef wanted = move;
   wanted.target.rotation.normalize();
   colliders_[collider].move = wanted;
+  return true;
+}
+
+template <class Real>
+bool World<Real>::command_gripper(std::size_t gripper, const GripperCommand& command) {
+  if (gripper >= grippers_.size()) return false;
+  validate(command, "");
+  weft::command_gripper(command, grippers_[gripper]);
   return true;
 }
 
@@ -132,7 +143,7 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 
 template <class Real>
 std::uint64_t World<Real>::hash() const {
-  return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, tick_);
+  return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, tick_);
 }
 
 template <class Real>
@@ -166,6 +177,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template bool World<Real>::release(GrabId);                                           \
   template std::optional<Vec3d> World<Real>::fire(GrabId);                              \
   template bool World<Real>::move_collider(std::size_t, const MoveDef&);                \
+  template bool World<Real>::command_gripper(std::size_t, const GripperCommand&);       \
   template bool World<Real>::release_collider(std::size_t);                             \
   template void World<Real>::set_environment(const EnvironmentDef&);                    \
   template void World<Real>::set_softness(double);                                      \

@@ -73,6 +73,26 @@ void validate(const EnvironmentDef& def) {
   }
 }
 
+void validate_grippers(const WorldDef& def) {
+  check_field("", {"grippers", 0, kMostGrippers, "", "number of grippers"},
+              static_cast<double>(def.grippers.size()));
+  std::vector<std::string> names;
+  for (const ColliderDef& collider : def.colliders) names.push_back(collider.name);
+  for (std::size_t k = 0; k < def.grippers.size(); ++k) {
+    const std::string path = "grippers[" + std::to_string(k) + "].";
+    validate(def.grippers[k], path);
+    for (const ColliderDef& jaw : jaws_of(def.grippers[k])) {
+      if (std::find(names.begin(), names.end(), jaw.name) != names.end())
+        throw DefinitionError(path + "name", def.grippers[k].name,
+                              "a name whose jaws no other object is called like");
+      names.push_back(jaw.name);
+    }
+  }
+  if (!def.grippers.empty() && contact_of(def) != ContactModel::weft)
+    throw DefinitionError("grippers", std::to_string(def.grippers.size()), "none with this contact",
+                          "set contact.model to weft");
+}
+
 void validate(const WorldDef& def) {
   check_field("", {"cloths", 1, kMostCloths, "", "number of cloths"},
               static_cast<double>(def.cloths.size()));
@@ -105,6 +125,7 @@ void validate(const WorldDef& def) {
     }
   }
   validate(def.environment);
+  validate_grippers(def);
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {

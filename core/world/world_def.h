@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/attachments/gripper.h"
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_def.h"
 #include "core/contact/collider.h"
@@ -50,7 +51,8 @@ struct WorldDef {
   BudgetDef budget;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
-  std::vector<PinDef> pins;  ///< made at the start
+  std::vector<PinDef> pins;          ///< made at the start
+  std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need the contact weft
 };
 
 /// Describes every field that is not a cloth's, a collider's or a pin's to `visit(path, info,

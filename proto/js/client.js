@@ -123,6 +123,16 @@ export class WeftClient extends Session {
     return this.request('move', { collider, ...where });
   }
 
+  /**
+   * Opens, closes (opening 0) or moves a gripper; what is not told stays as it is.
+   * @param {string} name
+   * @param {{opening?: number, force?: number, position?: Vec3, rotation?: number[], speed?: number,
+   *   turn_speed?: number}} wanted
+   */
+  gripper(name, wanted) {
+    return this.request('gripper', { name, ...wanted });
+  }
+
   /** @param {Partial<import('./messages.js').Settings>} values */
   set(values) {
     return this.request('set', values);

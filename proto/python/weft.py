@@ -598,6 +598,16 @@ class Client:
         fields["rotation"] = None if rotation is None else list(rotation)
         return await self.request("move", collider=collider, **_without_none(fields))
 
+    async def gripper(
+        self, name: str, *, opening=None, force=None, position=None, rotation=None, speed=None,
+        turn_speed=None,
+    ) -> dict:  # fmt: skip
+        """Opens, closes (opening=0) or moves a gripper; what is not told stays as it is."""
+        fields = {"opening": opening, "force": force, "speed": speed, "turn_speed": turn_speed}
+        fields["position"] = None if position is None else list(position)
+        fields["rotation"] = None if rotation is None else list(rotation)
+        return await self.request("gripper", name=name, **_without_none(fields))
+
     async def set(self, **values) -> dict:
         """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans, softness, budget_ms,
         over_budget."""
@@ -1056,8 +1066,8 @@ def _blocking(method):
 
 
 for _name in (
-    "request post hello pick pin release camera pause resume step reset speed move set advance query "
-    "hash load view ping next_frame frame_at"
+    "request post hello pick pin release camera pause resume step reset speed move gripper set advance "
+    "query hash load view ping next_frame frame_at"
 ).split():
     setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
 

@@ -64,6 +64,17 @@ class Readme(unittest.TestCase):
 
     def test_the_script_works(self):
         (script,) = blocks("python")
+        self.assertIn("'tick': 60", self.output_of(script))
+
+    def test_the_script_of_the_specification_grips_lifts_and_lets_go(self):
+        text = (ROOT / "proto" / "README.md").read_text(encoding="utf-8")
+        (script,) = re.findall(r"^```python\n(.*?)^```\n", text, re.MULTILINE | re.DOTALL)
+        closed, carried, opened = self.output_of(script).splitlines()
+        self.assertEqual((closed, opened), ("gripping: True", "gripping: False"))
+        self.assertGreater(float(carried.split()[-1]), 0.5)
+
+    def output_of(self, script):
+        """What a script prints, with a server of its own."""
         server = subprocess.Popen([PROGRAM, "serve", "--port", "0", "--max-seconds", "100"],
                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         try:
@@ -73,7 +84,7 @@ class Readme(unittest.TestCase):
             result = subprocess.run([sys.executable, "-B", "-c", script], cwd=ROOT, timeout=60,
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertIn("'tick': 60", result.stdout)
+            return result.stdout
         finally:
             server.terminate()
             server.wait(timeout=20)

@@ -38,7 +38,8 @@ Welcome welcome() {
   w.role = "operator";
   w.scene = "default";
   w.clock = 86.500125;
-  w.capabilities = {"pick", "drag", "pin", "camera", "step", "advance", "query", "move", "load"};
+  w.capabilities = {"pick",    "drag",  "pin",  "camera",  "step",
+                    "advance", "query", "move", "gripper", "load"};
   return w;
 }
 
@@ -176,6 +177,12 @@ std::vector<std::string> replies() {
       encode_reply(16, DoneReply{"reset", 0}),
       encode_reply(17, SpeedReply{8, 0.25}),
       encode_reply(27, MoveReply{30, "ball"}),
+      encode_reply(29, GripperReply{30, "gripper"}),
+      encode_reply(
+          30,
+          QueryReply{600,
+                     std::vector<GripperInfo>{
+                         {"gripper", {0.28, 0.9, 0}, {0, 0, 0, 1}, 0.008, 5, true, {0, -0.8, 0}}}}),
       encode_reply(18, DoneReply{"set", 30}),
       encode_reply(19, AdvanceReply{600, kHash}),
       encode_reply(20, QueryReply{600, kEnergy}),
@@ -238,7 +245,7 @@ TEST_CASE("Each example of a command in the specification is a command") {
     REQUIRE(request.has_value());
     operations.insert(name_of(request->command));
   }
-  CHECK(operations.size() == 19);  // one at least for each
+  CHECK(operations.size() == 20);  // one at least for each
 }
 
 TEST_CASE("Each example of a server's message in the specification is what the server writes") {

@@ -122,6 +122,17 @@ ACCEPTED = [
         '{"op":"query","what":"camera","viewer":4}',
         op="query", what="camera", format="json", viewer=4,
     ),
+    accepted(
+        '{"op":"gripper","name":"g","opening":0,"force":2.5}',
+        op="gripper", name="g", opening=0, force=2.5,
+    ),
+    accepted(
+        '{"op":"gripper","name":"g","position":[0,1,0],"rotation":[0,0,0.6,0.8],"speed":1,'
+        '"turn_speed":2,"id":9}',
+        op="gripper", name="g", position=[0, 1, 0], rotation=[0, 0, 0.6, 0.8], speed=1,
+        turn_speed=2, id=9,
+    ),
+    accepted('{"op":"query","what":"grippers"}', op="query", what="grippers", format="json"),
     accepted('{"op":"query","what":"contacts"}', op="query", what="contacts", format="json"),
     accepted('{"op":"query","what":"reactions"}', op="query", what="reactions", format="json"),
     accepted('{"op":"query","what":"trees"}', op="query", what="trees", format="json"),
@@ -317,6 +328,21 @@ def refused_fields():
                  field="format", value="f32")
     yield refuse('{"op":"query","what":"positions","format":"f16"}', "unknown_value",
                  field="format", limit={"allowed": ["json", "f32", "f64"]})
+    yield refuse('{"op":"gripper","opening":0}', "missing_field", field="name")
+    yield refuse('{"op":"gripper","name":"g"}', "missing_field")
+    yield refuse('{"op":"gripper","name":"","opening":0}', "wrong_length", field="name")
+    yield refuse('{"op":"gripper","name":"' + "g" * 57 + '","opening":0}', "wrong_length",
+                 field="name", value="g" * 57)
+    yield refuse('{"op":"gripper","name":"g","opening":-0.1}', "out_of_range", field="opening",
+                 value=-0.1, limit=limits(0, 1))
+    yield refuse('{"op":"gripper","name":"g","force":1001}', "out_of_range", field="force",
+                 value=1001, limit=limits(0, 1000))
+    yield refuse('{"op":"gripper","name":"g","rotation":[0,0,0,2]}', "out_of_range",
+                 field="rotation[3]", value=2, limit=limits(-1, 1))
+    yield refuse('{"op":"gripper","name":"g","rotation":[0,0,0.5,0.5]}', "out_of_range",
+                 field="rotation")
+    yield refuse('{"op":"gripper","name":"g","position":[0,"1",0]}', "wrong_type",
+                 field="position[1]", value="1")
     yield refuse('{"op":"query","what":"contacts","format":"f64"}', "conflicting_fields",
                  field="format", value="f64")
     yield refuse('{"op":"query","what":"reactions","viewer":1}', "conflicting_fields",
@@ -349,47 +375,3 @@ def refused_fields():
 
 def refused():
     return [*refused_texts(), *refused_bytes(), *refused_fields()]
-
-
-def call(method, *args, sends, **options):
-    return {"method": method, "args": list(args), "options": options, "sends": sends}
-
-
-# What the clients must send (without the id) when a method is called.
-CLIENT_CALLS = [
-    call("hello", name="Ada", color="#e4572e",
-         sends={"op": "hello", "name": "Ada", "color": "#e4572e"}),
-    call("pick", [0, 1, 3], [0, 0, -1],
-         sends={"op": "pick", "origin": [0, 1, 3], "direction": [0, 0, -1]}),
-    call("pin", {"particle": 299}, radius=0.05,
-         sends={"op": "pin", "particle": 299, "radius": 0.05}),
-    call("pin", {**HIT, "position": [0, 1, 0], "particle": 222, "distance": 2.88},
-         sends={"op": "pin", **HIT}),
-    call("release", pin=9, sends={"op": "release", "pin": 9}),
-    call("release", particle=299, sends={"op": "release", "particle": 299}),
-    call("release", all=True, sends={"op": "release", "all": True}),
-    call("camera", [0, 1.25, 3], [0, 1, 0], fov=50,
-         sends={"op": "camera", "position": [0, 1.25, 3], "target": [0, 1, 0], "fov": 50}),
-    call("pause", sends={"op": "pause"}),
-    call("resume", sends={"op": "resume"}),
-    call("step", sends={"op": "step", "n": 1}),
-    call("step", 5, sends={"op": "step", "n": 5}),
-    call("reset", sends={"op": "reset"}),
-    call("speed", 0.25, sends={"op": "speed", "speed": 0.25}),
-    call("move", "ball", position=[0, 1, 0], speed=2,
-         sends={"op": "move", "collider": "ball", "position": [0, 1, 0], "speed": 2}),
-    call("move", "ball", release=True,
-         sends={"op": "move", "collider": "ball", "release": True}),
-    call("set", wind=[3, 0, 0], still_air=True,
-         sends={"op": "set", "wind": [3, 0, 0], "still_air": True}),
-    call("advance", 600, sends={"op": "advance", "n": 600}),
-    call("query", "camera", viewer=4, sends={"op": "query", "what": "camera", "viewer": 4}),
-    call("query", "boxes", tree="edges", level=3, sends={
-        "op": "query", "what": "boxes", "tree": "edges", "level": 3}),
-    call("query", "energies", sends={"op": "query", "what": "energies"}),
-    call("hash", sends={"op": "hash"}),
-    call("load", "flag", sends={"op": "load", "scene": "flag"}),
-    call("query", "contacts", sends={"op": "query", "what": "contacts"}),
-    call("view", hz=0, sends={"op": "view", "hz": 0}),
-    call("view", forces=True, sends={"op": "view", "forces": True}),
-]

@@ -11,6 +11,7 @@ import struct
 import sys
 from pathlib import Path
 
+import calls
 import commands
 from samples import (
     APPLIED_NUMBERS,
@@ -388,7 +389,7 @@ def main(folder):
     write_json(folder / "refused_binary.json", list(refused(messages)))
     write_json(folder / "accepted_commands.json", commands.ACCEPTED)
     write_json(folder / "refused_commands.json", commands.refused())
-    write_json(folder / "client_calls.json", commands.CLIENT_CALLS)
+    write_json(folder / "client_calls.json", calls.CLIENT_CALLS)
 
 
 if __name__ == "__main__":

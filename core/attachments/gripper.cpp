@@ -1,0 +1,180 @@
+#include "core/attachments/gripper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// Near this many thicknesses of cloth between its faces, jaws close no faster than this part of
+/// the thickness a tick, so that they stop at what is between them and not in it.
+constexpr double kNearOpening = 6, kNearStep = 0.25;
+
+/// What a gripper's middle has left to go that does not count [m].
+constexpr double kThere = 1e-9;
+
+Eigen::Quaterniond turned(const Gripper& gripper, const Eigen::Quaterniond& rotation) {
+  return rotation * gripper.def.orientation;
+}
+
+/// Where a jaw's middle is from the gripper's, as defined [m].
+Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
+  const double x = opening / 2 + def.half_extents[0];
+  return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
+}
+
+/// Where the gripper's middle goes in a tick, straight and by the shortest turn.
+Pose next_pose(const Gripper& gripper, double seconds) {
+  const Vec3d way = gripper.target.position - gripper.pose.position;
+  const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
+  double part = 1;
+  if (way.norm() > gripper.speed * seconds) part = gripper.speed * seconds / way.norm();
+  if (turn.norm() * part > gripper.turn_speed * seconds)
+    part = gripper.turn_speed * seconds / turn.norm();
+  if (part == 1) return gripper.target;
+  return moved(gripper.pose, {way * part, turn * part}, 1);
+}
+
+/// How far open the jaws are at the end of the tick [m].
+double next_opening(const Gripper& gripper, double seconds, double thickest) {
+  double step = 2 * gripper.def.closing_speed * seconds;
+  if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
+  if (gripper.gripping) return gripper.opening;
+  if (gripper.opening < kNearOpening * thickest) step = std::min(step, kNearStep * thickest);
+  double least = gripper.wanted;
+  // Between two faces with cloth before both there is room for it, and for no less.
+  least = std::max(least, 2 * gripper.facing);
+  return std::max(std::min(least, gripper.opening), gripper.opening - step);
+}
+
+}  // namespace
+
+std::array<ColliderDef, 2> jaws_of(const GripperDef& def) {
+  std::array<ColliderDef, 2> jaws;
+  for (std::size_t k = 0; k < 2; ++k) {
+    jaws[k].name = def.name + (k == 0 ? ".left" : ".right");
+    jaws[k].shape =
+        BoxDef{def.centre + offset_of_jaw(def, k, def.opening), def.half_extents, def.orientation};
+    jaws[k].max_force = 1e6;  // it is the gripper that gives way
+  }
+  return jaws;
+}
+
+std::vector<Gripper> initial_grippers(const std::vector<GripperDef>& defs, std::size_t first_jaw) {
+  std::vector<Gripper> grippers;
+  for (const GripperDef& def : defs) {
+    Gripper gripper;
+    gripper.def = def;
+    gripper.jaw = {first_jaw, first_jaw + 1};
+    first_jaw += 2;
+    gripper.pose.position = gripper.target.position = def.centre;
+    gripper.opening = gripper.wanted = def.opening;
+    gripper.speed = def.speed;
+    gripper.force = def.force;
+    grippers.push_back(gripper);
+  }
+  return grippers;
+}
+
+void validate(const GripperDef& def, const std::string& path) {
+  visit_fields_of_gripper(
+      def, [&path](const FieldInfo& info, const auto& value) { check_field(path, info, value); });
+  if (def.name.empty() || def.name.size() > 56)
+    throw DefinitionError(path + "name", def.name, "1 to 56 characters");
+  if (!(std::abs(def.orientation.norm() - 1) < 1e-3))
+    throw DefinitionError(path + "orientation", "of norm " + number_text(def.orientation.norm()),
+                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
+  check_field(path, {"steps", 0, kMostGripperSteps, "", "number of steps"},
+              static_cast<double>(def.steps.size()));
+  for (std::size_t k = 0; k < def.steps.size(); ++k) {
+    const std::string at = path + "steps[" + std::to_string(k) + "].";
+    visit_fields_of_gripper_step(def.steps[k], [&at](const FieldInfo& info, const auto& value) {
+      check_field(at, info, value);
+    });
+    if (k > 0 && !(def.steps[k].time > def.steps[k - 1].time))
+      throw DefinitionError(at + "time", number_text(def.steps[k].time),
+                            "more than that of the step before");
+  }
+}
+
+void validate(const GripperCommand& command, const std::string& path) {
+  const auto check = [&path](const FieldInfo& info, const auto& value) {
+    if (value) check_field(path, info, *value);
+  };
+  check({"opening", 0, 1, "m", "between the jaws"}, command.opening);
+  check({"force", 0, 1000, "N", "with which each jaw presses"}, command.force);
+  check({"position", -1000, 1000, "m", "of its middle"}, command.position);
+  check({"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle"}, command.speed);
+  check({"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "at most"}, command.turn_speed);
+  if (command.rotation && !(std::abs(command.rotation->norm() - 1) < 1e-3))
+    throw DefinitionError(path + "rotation", "of norm " + number_text(command.rotation->norm()),
+                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
+}
+
+void command_gripper(const GripperCommand& command, Gripper& gripper) {
+  if (!gripper.commanded)
+    gripper.target = gripper.pose;  // it stays where its steps have brought it
+  gripper.commanded = true;
+  if (command.opening) gripper.wanted = *command.opening;
+  if (command.force) gripper.force = *command.force;
+  if (command.position) gripper.target.position = *command.position;
+  if (command.rotation) gripper.target.rotation = command.rotation->normalized();
+  if (command.speed) gripper.speed = *command.speed;
+  if (command.turn_speed) gripper.turn_speed = *command.turn_speed;
+}
+
+void plan_grippers(double time, double seconds, double thickest, std::vector<Gripper>& grippers,
+                   ColliderStates& colliders) {
+  for (Gripper& gripper : grippers) {
+    for (const GripperStep& step : gripper.def.steps) {
+      if (gripper.commanded || step.time > time) break;
+      gripper.target.position = gripper.def.centre + step.offset;
+      gripper.wanted = step.opening;
+    }
+    if (gripper.wanted >= gripper.opening) gripper.gripping = false;
+    const Pose middle = next_pose(gripper, seconds);
+    const double opening = next_opening(gripper, seconds, thickest);
+    for (std::size_t k = 0; k < 2; ++k) {
+      ColliderState& jaw = colliders[gripper.jaw[k]];
+      const Vec3d offset = middle.rotation * offset_of_jaw(gripper.def, k, opening);
+      jaw.move = MoveDef{
+          {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
+      jaw.pace = 1;
+      jaw.press = press_of(gripper, k);
+      jaw.squeeze = gripper.gripping ? gripper.force : 0;
+    }
+  }
+}
+
+void finish_grippers(double seconds, const ColliderStates& colliders,
+                     std::vector<Gripper>& grippers) {
+  for (Gripper& gripper : grippers) {
+    const ColliderState &left = colliders[gripper.jaw[0]], &right = colliders[gripper.jaw[1]];
+    const Vec3d axis = left.pose.rotation * (gripper.def.orientation * Vec3d::UnitX());
+    const Vec3d between = right.pose.position - left.pose.position;
+    // A jaw that was held back holds the other one back half.
+    gripper.pose.position = (left.pose.position + right.pose.position) / 2;
+    gripper.pose.rotation = left.pose.rotation;
+    if ((gripper.pose.position - gripper.target.position).norm() < kThere)
+      gripper.pose.position = gripper.target.position;
+    gripper.opening = std::max(0.0, axis.dot(between) - 2 * gripper.def.half_extents[0]);
+    gripper.facing = std::min(left.facing, right.facing);
+    if (gripper.wanted >= gripper.opening) continue;
+    const double room = 2 * gripper.facing * (1 + 1e-6);
+    const double resistance =
+        std::min(left.impulse.dot(press_of(gripper, 0)), right.impulse.dot(press_of(gripper, 1))) /
+        seconds;
+    const bool stopped =
+        gripper.opening <= room || left.blocked || right.blocked || resistance > gripper.force;
+    gripper.gripping = gripper.facing > 0 && (gripper.gripping || stopped);
+  }
+}
+
+Vec3d press_of(const Gripper& gripper, std::size_t jaw) {
+  const Vec3d axis = turned(gripper, gripper.pose.rotation) * Vec3d::UnitX();
+  return jaw == 0 ? axis : Vec3d(-axis);
+}
+
+}  // namespace weft

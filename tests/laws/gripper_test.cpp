@@ -1,0 +1,193 @@
+#include <catch2/catch.hpp>
+
+#include "core/diagnostics/crossings.h"
+#include "core/error.h"
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/worlds.h"
+
+// A gripper holds as much as friction allows: twice its coefficient times the force.
+
+using namespace weft;
+
+namespace {
+
+constexpr double kGravity = 9.81;
+
+double weight_of(const World<float>& world) {
+  double mass = 0;
+  for (const float m : world.model().mass) mass += static_cast<double>(m);
+  return mass * kGravity;
+}
+
+/// A cloth that hangs in the plane z = 0 by its upper strip, between open jaws.
+WorldDef hung_between_jaws() {
+  ClothDef cloth = test::flat_cloth(17, 17);
+  cloth.width = cloth.height = 0.2;
+  cloth.origin = Vec3d(-0.1, 1.2, 0);
+  cloth.u = Vec3d::UnitX();
+  cloth.v = -Vec3d::UnitY();
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = Vec3d(0, -kGravity, 0);
+  def.environment.drag = 4;
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
+  GripperDef gripper;
+  gripper.centre = Vec3d(0, 1.15, 0);
+  gripper.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(-1.5707963267948966, Vec3d::UnitY()));
+  gripper.half_extents = Vec3d(0.005, 0.03, 0.06);
+  gripper.opening = 0.04;
+  def.grippers = {gripper};
+  return def;
+}
+
+void free_pins(World<float>& world) {
+  while (!world.pins().list.empty()) world.unpin(world.pins().list.front().id);
+}
+
+void command(World<float>& world, double opening, double force) {
+  GripperCommand command;
+  command.opening = opening;
+  command.force = force;
+  REQUIRE(world.command_gripper(0, command));
+}
+
+/// Particles between the faces of the jaws.
+std::vector<std::size_t> pinched(const World<float>& world) {
+  std::vector<std::size_t> found;
+  const Gripper& gripper = world.grippers()[0];
+  for (std::size_t i = 0; i < world.state().x.size(); ++i) {
+    const Vec3d p = world.state().x[i].cast<double>() - gripper.pose.position;
+    if (std::abs(p[0]) < 0.055 && std::abs(p[1]) < 0.025) found.push_back(i);
+  }
+  return found;
+}
+
+/// Largest way of any of them against the jaws over some seconds [m].
+double creep(World<float>& world, double seconds) {
+  const std::vector<std::size_t> held = pinched(world);
+  REQUIRE(held.size() > 10);
+  const Vec3Array<float> before = world.state().x;
+  const Vec3d jaws = world.grippers()[0].pose.position;
+  test::advance(world, seconds);
+  const Vec3d way = world.grippers()[0].pose.position - jaws;
+  double most = 0;
+  for (const std::size_t i : held)
+    most = std::max(most, ((world.state().x[i] - before[i]).cast<double>() - way).norm());
+  return most;
+}
+
+std::size_t crossings(const World<float>& world) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
+    const auto* box = std::get_if<BoxDef>(&world.def().colliders[k].shape);
+    if (!box) continue;
+    TriangleMesh mesh = world_mesh(*box);
+    const Pose& pose = world.colliders()[k].pose;
+    for (Vec3d& p : mesh.positions)
+      p = pose.position + pose.rotation * (p - pivot_of(world.def().colliders[k].shape));
+    count +=
+        count_crossings(world.state().x, world.model().edges, world.model().triangles, mesh).proper;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("jaws close on a cloth, stop at its two thicknesses, lift it, and it does not creep") {
+  World<float> world(hung_between_jaws());
+  const double weight = weight_of(world), friction = world.def().cloths[0].fabric.friction;
+  const double least = weight / (2 * friction);
+  command(world, 0, 1.25 * least);
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  CHECK(world.grippers()[0].opening ==
+        Approx(2 * world.def().cloths[0].fabric.thickness).epsilon(1e-3));
+  free_pins(world);
+  GripperCommand lift;
+  lift.position = Vec3d(0.1, 1.6, 0);
+  world.command_gripper(0, lift);
+  for (int t = 0; t < 180; ++t) {
+    world.step();
+    REQUIRE(crossings(world) == 0);
+  }
+  CHECK(world.grippers()[0].pose.position == *lift.position);
+  CHECK(creep(world, 10) < 1e-4);
+  // The jaws carry it together.
+  Vec3d carried = Vec3d::Zero();
+  for (const Vec3d& force : world.coming_reactions().colliders) carried -= force;
+  CHECK(carried[1] == Approx(weight).epsilon(0.01));
+
+  command(world, 0.04, least);
+  test::advance(world, 0.5);
+  CHECK_FALSE(world.grippers()[0].gripping);
+  CHECK(pinched(world).empty());
+}
+
+TEST_CASE("jaws whose friction is less than the weight let the cloth slip") {
+  World<float> world(hung_between_jaws());
+  const double least = weight_of(world) / (2 * world.def().cloths[0].fabric.friction);
+  command(world, 0, 0.9 * least);
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  free_pins(world);
+  CHECK(creep(world, 2) > 0.01);
+}
+
+TEST_CASE("jaws with nothing between them meet, and open again") {
+  WorldDef def = hung_between_jaws();
+  def.grippers[0].centre[1] = 3;
+  World<float> world(def);
+  command(world, 0, 5);
+  test::advance(world, 1);
+  CHECK(world.grippers()[0].opening == Approx(0).margin(1e-9));
+  CHECK_FALSE(world.grippers()[0].gripping);
+  command(world, 0.03, 5);
+  test::advance(world, 1);
+  CHECK(world.grippers()[0].opening == Approx(0.03));
+}
+
+TEST_CASE("a gripper turns with its jaws, and a world with one is repeated bit for bit") {
+  WorldDef def = hung_between_jaws();
+  World<float> first(def), second(def);
+  GripperCommand turn;
+  turn.opening = 0.0;
+  turn.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vec3d::UnitZ()));
+  for (World<float>* world : {&first, &second}) {
+    world->command_gripper(0, turn);
+    test::advance(*world, 1);
+  }
+  CHECK(first.hash() == second.hash());
+  CHECK(first.grippers()[0].pose.rotation.angularDistance(*turn.rotation) < 1e-9);
+  first.reset();
+  CHECK(first.hash() == World<float>(def).hash());
+  CHECK(first.grippers()[0].opening == def.grippers[0].opening);
+}
+
+TEST_CASE("the scene of the gripper lifts its cloth off the table and holds it") {
+  World<float> world(make_scene("gripper"));
+  test::advance(world, 6);
+  CHECK(world.grippers()[0].gripping);
+  CHECK(test::centre_of_mass(world)[1] > 0.4);
+  const double height = test::centre_of_mass(world)[1];
+  test::advance(world, 3);
+  CHECK(test::centre_of_mass(world)[1] == Approx(height).margin(0.01));
+  CHECK(crossings(world) == 0);
+}
+
+TEST_CASE("a wrong gripper and a wrong command are refused by name") {
+  WorldDef def = hung_between_jaws();
+  def.grippers[0].force = -1;
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+  def = hung_between_jaws();
+  def.grippers.push_back(def.grippers[0]);  // the same name twice
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+  def = hung_between_jaws();
+  def.contact.model = ContactModel::seed;
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+  World<float> world(hung_between_jaws());
+  GripperCommand wrong;
+  wrong.opening = std::nan("");
+  CHECK_THROWS_AS(world.command_gripper(0, wrong), DefinitionError);
+  CHECK_FALSE(world.command_gripper(1, GripperCommand{}));
+  CHECK_THROWS_AS(world.move_collider(0, MoveDef{}), DefinitionError);
+}
