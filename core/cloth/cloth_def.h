@@ -110,10 +110,10 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
 
-/// Whether the quadratic form may stand for the hinges: a grid, flat at rest and without bending
-/// damping.
+/// Whether the quadratic form may stand for the hinges: a cloth that is flat at rest, which a mesh
+/// has yet to show, and without bending damping.
 inline bool quadratic_bending_fits(const ClothDef& def) {
-  return !def.mesh && def.rest_angle == 0 && def.fabric.bending_damping == 0;
+  return def.rest_angle == 0 && def.fabric.bending_damping == 0;
 }
 
 /// Checks every range and the combination (u and v independent, direct springs finite).

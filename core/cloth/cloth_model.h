@@ -67,6 +67,17 @@ struct QuadraticBending {
   Real twist = 0;    ///< (B_w + B_f) / (h_u h_v), times |cell difference|^2 / 2 [N/m]
 };
 
+/// Two triangles of a mesh that is flat at rest, with the energy 1/2 stiffness |sum_a weight_a
+/// x_a|^2. The sum is the angle of their hinge times its normal while it is small, and the length
+/// of the mean curvature vector for any bending without stretch (Bergou, Wardetzky, Harmon, Zorin,
+/// Grinspun 2006, "A quadratic bending model for inextensible surfaces").
+template <class Real>
+struct HingeStencil {
+  Index x[4] = {0, 0, 0, 0};      ///< as of a hinge, counted from the part's first particle
+  Real weight[4] = {0, 0, 0, 0};  ///< derivative of the angle along the normal [1/m], sum 0
+  Real stiffness = 0;             ///< B l^2 / (A1 + A2) [N m]
+};
+
 /// The cells of a grid that are there, and the particles at their corners, which are numbered row
 /// by row. A whole grid has all cells.
 struct GridCells {
@@ -110,10 +121,11 @@ struct ClothPart {
                                 ///< r * columns + c; 0 if the cloth is none
   Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
   double longest_edge = 0;      ///< of the triangles at rest [m]
-  std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
-  QuadraticBending<Real> quadratic_bending;       ///< of a grid; the hinges are none then
-  std::size_t bending_stencils = 0;               ///< of the quadratic form; see bending_stencil.h
-  GridCells cells;                                ///< of a grid, whole or cut
+  std::optional<GridSprings<Real>> grid_springs;   ///< the same springs, if they are regular
+  QuadraticBending<Real> quadratic_bending;        ///< of a grid; the hinges are none then
+  std::vector<HingeStencil<Real>> hinge_stencils;  ///< of a mesh that is flat at rest
+  std::size_t bending_stencils = 0;                ///< of the quadratic form; see bending_stencil.h
+  GridCells cells;                                 ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
 

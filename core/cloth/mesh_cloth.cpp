@@ -7,6 +7,7 @@
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
 #include "core/error.h"
+#include "core/forces/hinge.h"
 #include "core/solver/substep_rule.h"
 
 namespace weft {
@@ -198,6 +199,48 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   }
 }
 
+/// Weights of a hinge: its angle's derivative at rest, which is along the normal.
+template <class Real>
+HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& model) {
+  const auto at = [&](int corner) {
+    return model.rest_positions[static_cast<std::size_t>(hinge.x[corner])]
+        .template cast<double>()
+        .eval();
+  };
+  const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));
+  const Vec3d normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+  HingeStencil<Real> stencil;
+  stencil.stiffness = hinge.stiffness;
+  for (int corner = 0; corner < 4; ++corner) {
+    stencil.x[corner] = hinge.x[corner];
+    stencil.weight[corner] =
+        static_cast<Real>(angle.gradient[static_cast<std::size_t>(corner)].dot(normal));
+  }
+  return stencil;
+}
+
+/// Keeps the hinges or replaces them by the quadratic form.
+template <class Real>
+void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
+  constexpr double kFlat = 1e-5;  // rest angles below it are rounding [rad]
+  double most = 0;
+  for (const Hinge<Real>& hinge : model.hinges)
+    most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));
+  const bool wanted = def.bending_model == BendingModel::quadratic;
+  if (wanted && most > kFlat)
+    throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
+                          "this mesh is not flat at rest");
+  const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
+  if (model.hinges.empty() || !(wanted || (may && most <= kFlat))) return;
+  ClothPart<Real>& part = model.parts.front();
+  for (const Hinge<Real>& hinge : model.hinges)
+    part.hinge_stencils.push_back(stencil_of(hinge, model));
+  model.hinges.clear();
+  part.hinges = {};
+  part.bending_stencils = part.hinge_stencils.size();
+  bound_quadratic_bending(model, part);
+}
+
 }  // namespace
 
 std::vector<Index> breadth_first_order(std::size_t vertices,
@@ -255,6 +298,7 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   complete_part(def, model);
   bound_frequencies(model, part);
   add_spring_damping(model, part, fabric.damping_ratio);
+  choose_bending(def, model);
   return model;
 }
 

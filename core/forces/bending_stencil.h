@@ -30,15 +30,24 @@ inline double share_bend_v(const GridCells& g, int r, int c) {
 }
 
 /// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of the quadratic
-/// bending form of a part, whose energy is stiffness/2 |sum_k w_k x_k|^2: 1 -2 1 along each row and
-/// column (lines with a cell on one side alone stand for half), and 1 -1 -1 1 over the corners of
-/// each cell.
+/// bending form of a part, whose energy is stiffness/2 |sum_k w_k x_k|^2: of a grid 1 -2 1 along
+/// each row and column (lines with a cell on one side alone stand for half), and 1 -1 -1 1 over the
+/// corners of each cell; of a mesh one for each inner edge.
 template <class Real, class Visitor>
 void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
   static constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
   const QuadraticBending<Real>& q = part.quadratic_bending;
   const GridCells& g = part.cells;
   const auto particle = [&](int r, int c) { return part.particles.first + g.particle(r, c); };
+  for (const HingeStencil<Real>& hinge : part.hinge_stencils) {
+    Index corners[4];
+    double weights[4];
+    for (int k = 0; k < 4; ++k) {
+      corners[k] = part.particles.first + hinge.x[k];
+      weights[k] = static_cast<double>(hinge.weight[k]);
+    }
+    visit(hinge.stiffness, corners, weights, 4);
+  }
   for (int r = 0; r < g.rows; ++r) {
     for (int c = 0; c < g.columns; ++c) {
       if (const double share = share_bend_u(g, r, c); share > 0) {

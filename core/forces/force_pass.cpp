@@ -86,6 +86,7 @@ void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
 template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part) {
   const QuadraticBending<Real>& q = part.quadratic_bending;
+  if (!part.hinge_stencils.empty()) return part.hinge_stencils.size();
   if (q.along_u == 0 && q.along_v == 0 && q.twist == 0) return 0;
   return part.bending_stencils;
 }

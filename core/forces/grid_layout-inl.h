@@ -35,18 +35,6 @@ HWY_INLINE void store(D d, const Triple<hn::Vec<D>>& a, Real* at, std::ptrdiff_t
   hn::StoreU(a.z, d, at + 2 * line);
 }
 
-template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
-  Triple<hn::Vec<D>> a;
-  hn::LoadInterleaved3(d, from, a.x, a.y, a.z);
-  return a;
-}
-
-template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE void store_particles(D d, const Triple<hn::Vec<D>>& a, Real* to) {
-  hn::StoreInterleaved3(a.x, a.y, a.z, d, to);
-}
-
 /// Sum of what a pass has added up by column, so that the width of a vector does not matter.
 template <class Real>
 HWY_INLINE double sum_of_columns(const GridView<Real>& g, const Real* values) {

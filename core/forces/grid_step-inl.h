@@ -7,30 +7,12 @@
 #endif
 
 #include "core/forces/grid_layout-inl.h"
-#include "core/forces/spring.h"
-#include "core/math/lanes-inl.h"
+#include "core/forces/spring_law-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// One kind of spring: rest length, dashpot per stiffness.
-template <class D>
-struct SpringLaw {
-  hn::Vec<D> one, rest_length, damping, smallest;
-};
-
-/// Force on the start of springs from their start to their end, as a factor of that way; the
-/// formula of spring.h.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V spring(D tag, const SpringLaw<D>& law, V stiffness, const Triple<V>& d,
-                    const Triple<V>& dv) {
-  const V per_l = inverse_root(tag, fused_dot(tag, d, d, law.smallest));
-  const V elastic = fused_minus(tag, law.rest_length, per_l, law.one);
-  const V rate = hn::Mul(fused_dot(tag, d, dv), hn::Mul(per_l, per_l));
-  return hn::Mul(stiffness, fused(tag, law.damping, rate, elastic));
-}
 
 /// Factors of the springs of one kind that start on a row, into a line of scratch. A loop for each
 /// kind is short enough for the processor to work at several vectors at once, which hides the

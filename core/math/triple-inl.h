@@ -64,6 +64,19 @@ HWY_INLINE Triple<V> keep_if(M mask, const Triple<V>& a) {
           hn::IfThenElseZero(mask, a.z)};
 }
 
+/// Particles one behind the other, x y z each.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
+  Triple<hn::Vec<D>> a;
+  hn::LoadInterleaved3(d, from, a.x, a.y, a.z);
+  return a;
+}
+
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void store_particles(D d, const Triple<hn::Vec<D>>& a, Real* to) {
+  hn::StoreInterleaved3(a.x, a.y, a.z, d, to);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace weft
 HWY_AFTER_NAMESPACE();

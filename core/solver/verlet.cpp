@@ -57,26 +57,38 @@ auto* numbers(const IndexRange& range, Array& array) {
   return (array.data() + range.first)->data();
 }
 
-/// Springs and bending of a part element by element.
+/// Springs and quadratic bending of a part by gathering, booked under stretch, or element by
+/// element.
 template <class Real>
-void evaluate_elements(Tick<Real>& tick, const ClothPart<Real>& part,
-                       const Vec3Array<Real>& velocity) {
-  const ClothModel<Real>& model = tick.model;
+void evaluate_springs(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
+  const ClothPart<Real>& part = tick.part(p);
   Vec3Array<Real>& force = tick.work.internal;
+  const std::size_t stencils = quadratic_stencil_count(part);
+  if (tick.work.meshes[p].fits()) {
+    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+    tick.profile[Stage::bending].work += stencils;
+    tick.work.meshes[p].compute_forces(tick.state.x, velocity, force);
+    return;
+  }
   std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());
   if (part.springs.count > 0) {
     const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
-    add_spring_forces(model, part, tick.state.x, velocity, force);
+    add_spring_forces(tick.model, part, tick.state.x, velocity, force);
   }
-  if (part.hinges.count > 0) {
-    const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
-    add_hinge_forces(model, part, tick.state.x, velocity, force);
-  }
-  const std::size_t stencils = quadratic_stencil_count(part);
   if (stencils > 0) {
     const StageTimer timer(tick.profile, Stage::bending, stencils);
     add_quadratic_bending_forces(part, tick.state.x, force);
   }
+}
+
+/// Springs and bending of a part that is no grid.
+template <class Real>
+void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
+  const ClothPart<Real>& part = tick.part(p);
+  evaluate_springs(tick, p, velocity);
+  if (part.hinges.count == 0) return;
+  const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
+  add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
 }
 
 /// Hands and air. A grid has them as its external forces; as numbers of the whole model they are
@@ -161,7 +173,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k, Real progress) {
       advance_grid(tick, p, k, Real(0));
       tick.grid(p).store_velocities(v);
     } else {
-      evaluate_elements(tick, tick.part(p), v);
+      evaluate_elements(tick, p, v);
       kick(tick, tick.part(p).particles, k, v, v);
     }
   }
@@ -174,7 +186,7 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const ClothPart<Real>& part = tick.part(p);
     if (!tick.by_rows(p)) {
-      evaluate_elements(tick, part, velocity);
+      evaluate_elements(tick, p, velocity);
       continue;
     }
     const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
@@ -322,40 +334,6 @@ EnergyReading timed_energies(Tick<Real>& tick) {
 }  // namespace
 
 template <class Real>
-void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverDef& solver) {
-  grids.clear();
-  grids.resize(model.parts.size());
-  all_grids = true;
-  for (std::size_t p = 0; p < grids.size(); ++p) {
-    grids[p].prepare(model.parts[p]);
-    all_grids = all_grids && grids[p].fits();
-  }
-  external.clear();
-  const std::size_t listed = all_grids && solver.damping_sweeps == 1 ? 0 : model.mass.size();
-  for (Vec3Array<Real>* array : {&internal, &velocity, &inverse_mass, &gravity})
-    array->assign(listed, Vec3<Real>::Zero());
-  if (solver.damping_sweeps > 1) make_room(model, false, true);
-}
-
-template <class Real>
-void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool hands) {
-  if (!air && !hands) return;
-  for (GridPass<Real>& grid : grids) {
-    if (grid.fits()) grid.make_room(air);
-  }
-  if (hands || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
-}
-
-template <class Real>
-std::size_t VerletWorkspace<Real>::bytes() const {
-  std::size_t sum = 0;
-  for (const Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
-    sum += array->capacity() * sizeof(Vec3<Real>);
-  for (const GridPass<Real>& grid : grids) sum += grid.bytes();
-  return sum;
-}
-
-template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              const Collision<Real>& collision, ClothState<Real>& state,
@@ -387,7 +365,6 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
 }
 
 #define WEFT_INSTANTIATE(Real)                                                           \
-  template struct VerletWorkspace<Real>;                                                 \
   template AdvanceResult advance_verlet(                                                 \
       const ClothModel<Real>&, const Surroundings<Real>&, const SolverDef&, double, int, \
       Grabs<Real>&, const Collision<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, Profile&);

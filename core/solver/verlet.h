@@ -10,6 +10,7 @@
 #include "core/diagnostics/energies.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
+#include "core/forces/mesh_pass.h"
 #include "core/world/profile.h"
 
 namespace weft {
@@ -69,7 +70,8 @@ struct VerletWorkspace {
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< somebody else moves the cloth
   std::vector<GridPass<Real>> grids;     ///< for each part its row-wise form, if it fits
-  bool all_grids = false;                ///< every part fits
+  std::vector<MeshPass<Real>> meshes;    ///< for each other part its form by gathering, likewise
+  bool all_grids = false;                ///< every part fits as a grid
 
   /// Sizes the arrays for a cloth on which neither air nor hands act.
   void prepare(const ClothModel<Real>& model, const SolverDef& solver);

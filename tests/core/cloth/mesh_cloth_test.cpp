@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/error.h"
+#include "core/forces/bending_stencil.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/hinge.h"
 #include "core/world/world.h"
@@ -123,10 +124,30 @@ TEST_CASE("equilateral springs stretch like the isotropic fabric with a third fo
   CHECK(density(0, 0, kStrain) == Approx(0.5 * 3.0 / 8 * 300).epsilon(0.01));
 }
 
-TEST_CASE("hinges of equilateral triangles bend with rigidity B in every direction") {
+/// Energy of each hinge or stencil and its corners.
+template <class Visitor>
+void visit_bending_energies(const ClothModel<double>& model, const Vec3Array<double>& x,
+                            Visitor&& visit) {
+  const auto at = [&](Index i) { return x[static_cast<std::size_t>(i)]; };
+  for (const Hinge<double>& h : model.hinges) {
+    const double theta = hinge_angle<double>(at(h.x[0]), at(h.x[1]), at(h.x[2]), at(h.x[3])).theta;
+    visit(h.x, hinge_energy(h, theta));
+  }
+  visit_bending_stencils(model.parts[0],
+                         [&](double k, const Index* corners, const double* weights, int count) {
+                           REQUIRE(count == 4);
+                           Vec3d sum = Vec3d::Zero();
+                           for (int n = 0; n < 4; ++n) sum += weights[n] * at(corners[n]);
+                           visit(corners, 0.5 * k * sum.squaredNorm());
+                         });
+}
+
+TEST_CASE("equilateral triangles bend with rigidity B in every direction, by hinges or quadratic") {
   ClothDef def = sheet_cloth(31, 31, 0.02);
   def.fabric.bending_warp = def.fabric.bending_weft = 1e-3;
+  def.bending_model = GENERATE(BendingModel::hinges, BendingModel::quadratic);
   const ClothModel<double> model = build_cloth<double>(def);
+  CHECK(model.hinges.empty() == (def.bending_model == BendingModel::quadratic));
   const double angle = GENERATE(0.0, 0.4, 1.0, 1.5);
   constexpr double kCurvature = 1e-3;
   Vec3Array<double> x = model.rest_positions;
@@ -136,29 +157,43 @@ TEST_CASE("hinges of equilateral triangles bend with rigidity B in every directi
   }
   double energy = 0;
   std::size_t counted = 0;
-  const auto inside = [&](const Hinge<double>& h) {
-    return std::all_of(std::begin(h.x), std::end(h.x), [&](Index i) {
-      const Vec3d& p = model.rest_positions[static_cast<std::size_t>(i)];
-      return p[0] > 0.1 && p[0] < 0.5 && p[1] < -0.1 && p[1] > -0.4;
-    });
-  };
   // Sum each of the three families of edges on its own, so that their numbers need not agree.
   std::array<double, 3> sum = {}, number = {};
-  for (const Hinge<double>& h : model.hinges) {
-    if (!inside(h)) continue;
-    const auto at = [&](int k) { return x[static_cast<std::size_t>(h.x[k])]; };
-    const double theta = hinge_angle<double>(at(0), at(1), at(2), at(3)).theta;
-    const Vec3d e = model.rest_positions[static_cast<std::size_t>(h.x[1])] -
-                    model.rest_positions[static_cast<std::size_t>(h.x[0])];
+  visit_bending_energies(model, x, [&](const Index* corners, double of_one) {
+    const auto rest = [&](int k) {
+      return model.rest_positions[static_cast<std::size_t>(corners[k])];
+    };
+    for (int k = 0; k < 4; ++k) {
+      const Vec3d p = rest(k);
+      if (!(p[0] > 0.1 && p[0] < 0.5 && p[1] < -0.1 && p[1] > -0.4)) return;
+    }
+    const Vec3d e = rest(1) - rest(0);
     const std::size_t family = std::abs(e[1]) < 1e-9 ? 0 : (e[0] * e[1] > 0 ? 1 : 2);
-    sum[family] += hinge_energy(h, theta);
+    sum[family] += of_one;
     ++number[family];
     ++counted;
-  }
+  });
   REQUIRE(counted > 500);
   const double area_per_hinge = 2 * 0.02 * 0.02 * kSin60 / 2;  // one of each family
   for (std::size_t f = 0; f < 3; ++f) energy += sum[f] / number[f];
   CHECK(energy / area_per_hinge == Approx(0.5 * 1e-3 * kCurvature * kCurvature).epsilon(0.01));
+}
+
+TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hinges") {
+  ClothDef flat = sheet_cloth(7, 8, 0.1);
+  CHECK(build_cloth<float>(flat).hinges.empty());
+  for (const auto& change : std::vector<void (*)(ClothDef&)>{
+           [](ClothDef& d) { d.mesh->mesh.positions[20][2] += 0.001; },
+           [](ClothDef& d) { d.rest_angle = 0.1; },
+           [](ClothDef& d) { d.fabric.bending_damping = 1e-6; },
+           [](ClothDef& d) { d.bending_model = BendingModel::hinges; },
+           [](ClothDef& d) { d.bending_model = BendingModel::sine_hinges; }}) {
+    ClothDef def = flat;
+    change(def);
+    const ClothModel<float> model = build_cloth<float>(def);
+    CHECK(!model.hinges.empty());
+    CHECK(model.parts[0].hinge_stencils.empty());
+  }
 }
 
 TEST_CASE("a curved mesh is at rest as it lies") {
@@ -280,5 +315,7 @@ TEST_CASE("degenerate meshes are refused with the name of what is wrong") {
   CHECK(refused(skip) == "cloth.skip_stiffness");
   ClothDef quadratic = good;
   quadratic.bending_model = BendingModel::quadratic;
+  CHECK(refused(quadratic) == "nothing");
+  quadratic.mesh->mesh.positions[5][2] += 0.01;
   CHECK(refused(quadratic) == "cloth.bending_model");
 }

@@ -1,0 +1,28 @@
+#include "core/forces/mesh_kernels.h"
+
+#include <algorithm>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/forces/mesh_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/forces/mesh_kernels-inl.h"
+
+#if HWY_ONCE
+namespace weft {
+
+HWY_EXPORT(mesh_forces_f32);
+HWY_EXPORT(mesh_forces_f64);
+
+void mesh_forces(const MeshView<float>& mesh, const float* x, const float* v, float* force) {
+  HWY_DYNAMIC_DISPATCH(mesh_forces_f32)(mesh, x, v, force);
+}
+void mesh_forces(const MeshView<double>& mesh, const double* x, const double* v, double* force) {
+  HWY_DYNAMIC_DISPATCH(mesh_forces_f64)(mesh, x, v, force);
+}
+
+}  // namespace weft
+#endif

@@ -1,0 +1,45 @@
+#include "core/solver/verlet.h"
+
+namespace weft {
+
+template <class Real>
+void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverDef& solver) {
+  grids.clear();
+  grids.resize(model.parts.size());
+  meshes.assign(model.parts.size(), {});
+  all_grids = true;
+  for (std::size_t p = 0; p < grids.size(); ++p) {
+    grids[p].prepare(model.parts[p]);
+    if (!grids[p].fits()) meshes[p].prepare(model, model.parts[p]);
+    all_grids = all_grids && grids[p].fits();
+  }
+  external.clear();
+  const std::size_t listed = all_grids && solver.damping_sweeps == 1 ? 0 : model.mass.size();
+  for (Vec3Array<Real>* array : {&internal, &velocity, &inverse_mass, &gravity})
+    array->assign(listed, Vec3<Real>::Zero());
+  if (solver.damping_sweeps > 1) make_room(model, false, true);
+}
+
+template <class Real>
+void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool hands) {
+  if (!air && !hands) return;
+  for (GridPass<Real>& grid : grids) {
+    if (grid.fits()) grid.make_room(air);
+  }
+  if (hands || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
+}
+
+template <class Real>
+std::size_t VerletWorkspace<Real>::bytes() const {
+  std::size_t sum = 0;
+  for (const Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
+    sum += array->capacity() * sizeof(Vec3<Real>);
+  for (const GridPass<Real>& grid : grids) sum += grid.bytes();
+  for (const MeshPass<Real>& mesh : meshes) sum += mesh.bytes();
+  return sum;
+}
+
+template struct VerletWorkspace<float>;
+template struct VerletWorkspace<double>;
+
+}  // namespace weft

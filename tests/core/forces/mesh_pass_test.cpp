@@ -1,0 +1,134 @@
+#include "core/forces/mesh_pass.h"
+
+#include <catch2/catch.hpp>
+#include <hwy/targets.h>
+
+#include "core/cloth/cloth_model.h"
+#include "core/forces/force_pass.h"
+#include "tests/support/cloths.h"
+#include "tests/support/worlds.h"
+
+using namespace weft;
+using test::Random;
+
+namespace {
+
+/// A flat mesh of about so many vertices, with some of its triangles missing.
+ClothDef ragged_mesh(int vertices, Random& random) {
+  ClothDef def = test::flat_cloth(2, 2);
+  ClothMesh mesh;
+  const int columns = 9, rows = (vertices + columns - 1) / columns;
+  for (int i = 0; i < rows * columns; ++i)
+    mesh.mesh.positions.emplace_back(0.05 * (i % columns) + 0.01 * random.uniform(0, 1),
+                                     0.05 * (i / columns) + 0.01 * random.uniform(0, 1), 0);
+  for (int r = 0; r + 1 < rows; ++r) {
+    for (int c = 0; c + 1 < columns; ++c) {
+      const Index a = r * columns + c, b = a + 1, e = a + columns, f = e + 1;
+      mesh.mesh.triangles.push_back({a, b, f});
+      // Every vertex keeps a triangle.
+      if (c == 0 || r + 2 == rows || random.uniform(0, 1) > 0.3)
+        mesh.mesh.triangles.push_back({a, f, e});
+    }
+  }
+  def.mesh = mesh;
+  def.fabric.bending_warp = 2e-5;
+  def.fabric.bending_weft = 1e-5;
+  return def;
+}
+
+template <class Real>
+struct Shaken {
+  ClothModel<Real> model;
+  Vec3Array<Real> x, v, gathered, element_wise;
+};
+
+template <class Real>
+Shaken<Real> forces_on(const ClothDef& def) {
+  Shaken<Real> s;
+  s.model = build_cloth<Real>(def);
+  Random random(4);
+  s.x = test::shaken(s.model, 0.01, random);
+  s.v = test::random_velocities(s.model, 3, random);
+  s.gathered.assign(s.x.size(), Vec3<Real>::Constant(99));
+  MeshPass<Real> pass;
+  pass.prepare(s.model, s.model.parts[0]);
+  REQUIRE(pass.fits());
+  pass.compute_forces(s.x, s.v, s.gathered);
+  s.element_wise.assign(s.x.size(), Vec3<Real>::Zero());
+  add_spring_forces(s.model, s.x, s.v, s.element_wise);
+  add_quadratic_bending_forces(s.model, s.x, s.element_wise);
+  return s;
+}
+
+template <class Real>
+double largest(const Vec3Array<Real>& forces) {
+  double most = 0;
+  for (const Vec3<Real>& f : forces) most = std::max(most, static_cast<double>(f.norm()));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("forces gathered by particle are those of the elements, to 1e-12 of the largest") {
+  Random random(7);
+  const ClothDef def = ragged_mesh(GENERATE(18, 63, 64, 65, 200, 700), random);
+  const Shaken<double> s = forces_on<double>(def);
+  CHECK(s.model.hinges.empty());
+  const double scale = largest(s.element_wise);
+  for (std::size_t i = 0; i < s.x.size(); ++i)
+    CHECK((s.gathered[i] - s.element_wise[i]).norm() < 1e-12 * scale);
+  const Shaken<float> single = forces_on<float>(def);
+  for (std::size_t i = 0; i < s.x.size(); ++i)
+    CHECK((single.gathered[i] - single.element_wise[i]).norm() < 2e-5F * static_cast<float>(scale));
+}
+
+TEST_CASE("gathered forces add up to nothing: no momentum is made") {
+  Random random(8);
+  const Shaken<double> s = forces_on<double>(ragged_mesh(300, random));
+  Vec3d sum = Vec3d::Zero(), turn = Vec3d::Zero();
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    sum += s.gathered[i];
+    turn += s.x[i].cross(s.gathered[i]);
+  }
+  CHECK(sum.norm() < 1e-11 * largest(s.gathered));
+  CHECK(turn.norm() < 1e-11 * largest(s.gathered));
+}
+
+TEST_CASE("a mesh moved far from the origin bends and stretches with the same forces") {
+  Random random(9);
+  const Shaken<float> s = forces_on<float>(ragged_mesh(200, random));
+  MeshPass<float> pass;
+  pass.prepare(s.model, s.model.parts[0]);
+  // By a power of two the places keep their bits but the last three.
+  Vec3Array<float> far = s.x, force = s.x;
+  for (Vec3f& p : far) p += Vec3f(8, 0, 0);
+  pass.compute_forces(far, s.v, force);
+  for (std::size_t i = 0; i < far.size(); ++i)
+    CHECK((force[i] - s.gathered[i]).norm() < 1e-3 * largest(s.gathered));
+}
+
+TEST_CASE("every instruction set gathers the same bits") {
+  Random random(10);
+  const ClothDef def = ragged_mesh(200, random);
+  const auto best = forces_on<float>(def).gathered;
+  const std::int64_t supported = hwy::SupportedTargets();
+  int tried = 0;
+  for (std::int64_t left = supported; left != 0; left &= left - 1) {
+    hwy::SetSupportedTargetsForTest(left & -left);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    CHECK(forces_on<float>(def).gathered == best);
+    ++tried;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  CHECK(tried > 1);
+}
+
+TEST_CASE("springs whose damping does not go with their stiffness stay element-wise") {
+  Random random(11);
+  ClothModel<float> model = build_cloth<float>(ragged_mesh(100, random));
+  model.springs[3].damping *= 2;
+  MeshPass<float> pass;
+  pass.prepare(model, model.parts[0]);
+  CHECK(!pass.fits());
+}
