@@ -139,6 +139,7 @@ struct Move {
   std::optional<Quat> rotation;  ///< from how the mesh message tells it
   double speed = 0.5;            ///< at most [m/s]
   double turn_speed = 2;         ///< at most [rad/s]
+  bool force = false;            ///< go on where cloth cannot give way
   bool operator==(const Move&) const = default;
 };
 

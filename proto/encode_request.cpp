@@ -71,6 +71,7 @@ struct FieldWriter {
     put_if(out, "rotation", c.rotation);
     out["speed"] = c.speed;
     out["turn_speed"] = c.turn_speed;
+    if (c.force) out["force"] = true;
   }
   void operator()(const Gripper& c) {
     out["name"] = c.gripper;

@@ -196,7 +196,7 @@ Command read_move(FieldReader& in) {
   bool release = false;
   in.read_if_there("release", release);
   if (release) {
-    for (const char* key : {"position", "rotation", "speed", "turn_speed"})
+    for (const char* key : {"position", "rotation", "speed", "turn_speed", "force"})
       if (in.ok() && in.has(key))
         in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " does not go with release");
     return MoveEnd{move.collider};
@@ -205,6 +205,7 @@ Command read_move(FieldReader& in) {
   read_rotation(in, move.rotation);
   in.read_if_there("speed", move.speed, kMoveSpeedRange);
   in.read_if_there("turn_speed", move.turn_speed, kTurnSpeedRange);
+  in.read_if_there("force", move.force);
   if (in.ok() && !move.position && !move.rotation)
     in.fail(ErrorCode::missing_field, "position", "move needs position, rotation or release");
   return move;

@@ -29,11 +29,9 @@ Json json_of(const TreeInfo& tree) {
 }
 
 Json json_of(const ColliderPose& collider) {
-  return {{"name", collider.name},
-          {"position", collider.position},
-          {"rotation", collider.rotation},
-          {"force", collider.force},
-          {"blocked", collider.blocked}};
+  return {{"name", collider.name},         {"position", collider.position},
+          {"rotation", collider.rotation}, {"force", collider.force},
+          {"blocked", collider.blocked},   {"voided", collider.voided}};
 }
 
 Json json_of(const Measurements& measurements) {

@@ -149,6 +149,7 @@ struct ColliderPose {
   Quat rotation{};       ///< from how the mesh message tells it
   Vec3 force{};          ///< of the cloth on it while it moves, mean of the last tick [N]
   bool blocked = false;  ///< held back in the last tick by cloth that cannot give way
+  bool voided = false;   ///< has gone on through cloth since the start
 };
 
 /// A contact of the cloth with an object, or with itself.

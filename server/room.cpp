@@ -160,6 +160,7 @@ double Room::step_world() {
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
   frame_wanted_ = true;
+  tell_voided();
   if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);

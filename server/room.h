@@ -112,6 +112,7 @@ class Room {
   void take_deferred();
   void finish_advance();
   double step_world();
+  void tell_voided();  // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
   void end_leases();
@@ -212,6 +213,7 @@ class Room {
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
   bool measures_forces_ = false;  // the world does
+  std::vector<bool> voided_;      // of each collider, as told
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };

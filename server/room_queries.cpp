@@ -122,4 +122,17 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   return proto::Reply(std::move(reply));
 }
 
+/// Says once of each object that it has gone through the cloth.
+void Room::tell_voided() {
+  voided_.resize(world_->colliders().size(), false);
+  for (std::size_t k = 0; k < voided_.size(); ++k) {
+    const bool voided = world_->colliders()[k].voided;
+    if (voided && !voided_[k])
+      notify(proto::NoticeLevel::warning, "guarantee_void",
+             world_->def().colliders[k].name +
+                 " was forced through the cloth: that nothing crosses is no longer promised");
+    voided_[k] = voided;
+  }
+}
+
 }  // namespace weft::server

@@ -170,6 +170,16 @@ void describe_collider(Io& io, ColliderDef& collider) {
 }
 
 template <class Io>
+void describe_hand(Io& io, HandDef& hand) {
+  io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, hand.cloth);
+  io.fields([&](auto&& visit) { visit_fields_of_hand(hand, visit); });
+  io.list(ListInfo{"path", 1, kMostHandKeys, "where it pulls to, in order of time"}, hand.path,
+          [](Io& in, HandKey& key) {
+            in.fields([&](auto&& visit) { visit_fields_of_hand_key(key, visit); });
+          });
+}
+
+template <class Io>
 void describe_gripper(Io& io, GripperDef& gripper) {
   io.text({"name", 1, 56, true, false, "its jaws are the objects NAME.left and NAME.right"},
           gripper.name);
@@ -207,6 +217,7 @@ inline const char* meaning_of_group(const std::string& path) {
   if (path == "environment.") return "gravity and air";
   if (path == "solver.") return "how the cloths are moved from tick to tick";
   if (path == "contact.") return "what keeps the cloths off objects and themselves";
+  if (path == "verdict.") return "what a hard case must keep to";
   if (path == "relaxation.") return "settings of the solver relaxation";
   return "see the fields";
 }
@@ -243,6 +254,12 @@ void describe_scene(Io& io, WorldDef& def) {
           [](Io& in, ColliderDef& collider) { describe_collider(in, collider); });
   io.list(ListInfo{"pins", 0, kMostScenePins, "what is held at the start"}, def.pins,
           [](Io& in, PinDef& pin) { describe_pin(in, pin); });
+  io.list(ListInfo{"hands", 0, kMostSceneHands, "hands that the scene has itself"}, def.hands,
+          [](Io& in, HandDef& hand) { describe_hand(in, hand); });
+  io.list(ListInfo{"insults", 0, kMostInsults, "what is done to it at once"}, def.insults,
+          [](Io& in, InsultDef& insult) {
+            in.fields([&](auto&& visit) { visit_fields_of_insult(insult, visit); });
+          });
   io.list(ListInfo{"grippers", 0, kMostGrippers, "pairs of jaws that close with bounded force"},
           def.grippers, [](Io& in, GripperDef& gripper) { describe_gripper(in, gripper); });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
+#include "core/world/verdict.h"
 #include "core/world/world.h"
 #include "server/clock.h"
 #include "server/options.h"
@@ -46,6 +48,7 @@ struct Measurement {
   double largest_strain = 0;  ///< over the whole run
   std::size_t crossings = 0;  ///< of the cloths with themselves and each other, over all checks
   std::size_t crossed_ticks = 0;
+  Verdict<float> verdict;  // of a hard case
 };
 
 void measure_tick(World<float>& world, Measurement& m) {
@@ -72,6 +75,7 @@ Measurement run(World<float>& world, int ticks) {
   Bvh<double> tree;
   for (int i = 1; i <= ticks; ++i) {
     measure_tick(world, m);
+    if (world.def().verdict.strain > 0) m.verdict.look(world);
     if (i % kTicksBetweenChecks != 0 && i != ticks) continue;
     ++m.checks;
     m.deepest = std::max(m.deepest, world.deepest_penetration());
@@ -100,6 +104,28 @@ Json guard_summary(const World<float>& world) {
           {"particles_anchored", counts.anchored},
           {"steps_certified", counts.critical},
           {"open_pairs", world.guard()->open_pairs()}};
+}
+
+/// What a hard case has come to; null for other scenes.
+Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
+  if (!(world.def().verdict.strain > 0)) return nullptr;
+  const std::vector<std::string> failures = verdict.failures(world.def().verdict);
+  return {
+      {"passed", failures.empty()},
+      {"failures", failures},
+      {"ticks", verdict.ticks},
+      {"crossings", verdict.crossings},
+      {"ticks_with_crossings", verdict.crossed_ticks},
+      {"crossings_before", verdict.early_crossings},
+      {"deepest_penetration", verdict.deepest},
+      {"smallest_gap", std::isfinite(verdict.smallest_gap) ? Json(verdict.smallest_gap) : Json()},
+      {"largest_strain", verdict.largest_strain},
+      {"lost_motion", verdict.lost_motion},
+      {"recoveries", verdict.recoveries},
+      {"allowed",
+       {{"strain", world.def().verdict.strain},
+        {"lost_motion", world.def().verdict.lost_motion},
+        {"clear_after", world.def().verdict.clear_after}}}};
 }
 
 Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {
@@ -144,6 +170,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"self_crossings", m.crossings},
       {"ticks_with_self_crossings", m.crossed_ticks},
       {"guard", guard_summary(world)},
+      {"verdict", verdict_summary(world, m.verdict)},
       {"hash", proto::hash_text(world.hash())},
       {"solver", solver_name(world.def())},
       {"substeps", world.report().substeps},

@@ -305,7 +305,8 @@ std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world) {
                      to_wire(state.pose.position),
                      {q.x(), q.y(), q.z(), q.w()},
                      to_wire(state.force),
-                     state.blocked});
+                     state.blocked,
+                     state.voided});
   }
   return poses;
 }
@@ -324,7 +325,7 @@ proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::st
 }
 
 MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move) {
-  MoveDef def{world.colliders()[collider].pose, move.speed, move.turn_speed};
+  MoveDef def{world.colliders()[collider].pose, move.speed, move.turn_speed, move.force};
   if (move.position) def.target.position = from_wire(*move.position);
   if (move.rotation) {
     const proto::Quat& q = *move.rotation;

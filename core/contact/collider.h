@@ -53,6 +53,7 @@ struct ColliderDef {
   ShapeDef shape;
   MotionDef motion = {};   ///< keyframes, if it moves by itself
   double max_force = 100;  ///< beyond which it lags [N], 0.01 to 1e6
+  bool force = false;      ///< follows its keyframes where cloth cannot give way; see MoveDef
 };
 
 /// Describes each field of a collider, but for shape and motion, to `visit(info, value)`.
@@ -60,6 +61,8 @@ template <class Def, class Visitor>
 void visit_fields_of_collider(Def& collider, Visitor&& visit) {
   visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which a moving one lags"},
         collider.max_force);
+  visit(FieldInfo{"force", 0, 1, "", "it goes on where cloth cannot give way, through it"},
+        collider.force);
 }
 
 // Describe each field of a shape to `visit(info, value)`; orientations, unit quaternions, apart.

@@ -39,6 +39,7 @@ struct MoveDef {
   Pose target;            ///< position within 1000 m, rotation unit
   double speed = 0.5;     ///< of the pivot [m/s], 0.001 to kMostColliderSpeed
   double turn_speed = 2;  ///< [rad/s], 0.001 to kMostColliderTurnSpeed
+  bool force = false;     ///< go on where cloth cannot give way; what it promised is void then
 };
 
 /// Throws DefinitionError, with `path` before the field's name, if a keyframe is out of range, not

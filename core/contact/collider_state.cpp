@@ -95,6 +95,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.wanted = state.twist = {};
     state.progress = 0;
     state.blocked = false;
+    state.forced = state.move ? state.move->force : colliders[k].force;
     state.impulse.setZero();
     state.angular_impulse.setZero();
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
@@ -105,7 +106,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     double part = allowed_part(step.norm(), wish->speed * seconds);
     part = std::min(part, allowed_part(turn.norm(), wish->turn_speed * seconds));
     state.wanted = {step * (part / seconds), turn * (part / seconds)};
-    if (state.wanted.is_zero()) state.pace = 1;
+    if (state.wanted.is_zero() || state.forced) state.pace = 1;
     part *= state.pace;
     state.twist = {step * (part / seconds), turn * (part / seconds)};
     if (part == 1)

@@ -21,6 +21,8 @@ struct ColliderState {
   Twist twist;           ///< from start to goal
   double progress = 0;   ///< of the twist [s]
   bool blocked = false;  ///< held back, because cloth could not give way
+  bool forced = false;   ///< is not held back in this tick
+  bool voided = false;   ///< has gone on through cloth since the start: nothing is promised
   Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 

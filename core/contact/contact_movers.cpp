@@ -253,6 +253,9 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     const Vec3<Real> before = state.v[i];
     if (moves && carry && !held) {
       state.v[i] = frames_[collider].velocity_at(state.x[i]);
+    } else if (moves && (*colliders_)[collider].forced) {
+      (*colliders_)[collider].voided = true;
+      continue;
     } else if (moves) {
       block(collider);
     } else if (!held && !state.v[i].isZero(0)) {

@@ -4,6 +4,7 @@
 
 #include "core/cloth/fabric_presets.h"
 #include "core/error.h"
+#include "core/scenes/hard_cases.h"
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/seed_scenes.h"
 #include "core/scenes/textile_scenes.h"
@@ -274,6 +275,7 @@ std::vector<SceneEntry> own_scenes() {
 const std::vector<SceneEntry>& entries() {
   static const std::vector<SceneEntry> list = [] {
     std::vector<SceneEntry> all = own_scenes();
+    for (const SceneEntry& entry : hard_cases()) all.push_back(entry);
     for (const SceneEntry& entry : seed_scenes()) all.push_back(entry);
     return all;
   }();

@@ -88,6 +88,7 @@ void World<Real>::reset() {
   const PinId next_pin = pins_.next_id;
   pins_ = make_pins(model_);
   pins_.next_id = next_pin;
+  scene_hands_.assign(def_.hands.size(), {});
   grabs_.list.clear();
   grabs_.shots.clear();
   colliders_ = initial_states(def_.colliders);
@@ -123,6 +124,7 @@ void World<Real>::accept_state() {
 
 template <class Real>
 const TickReport& World<Real>::step() {
+  run_script();
   report_.profile.clear();
   report_.divergence.reset();
   const int substeps = choose_substeps();

@@ -168,9 +168,17 @@ class World {
   double tick_seconds() const { return 1 / def_.tick_rate; }
 
  private:
+  /// A hand of the scene while it holds.
+  struct SceneHand {
+    GrabId grab = 0;  ///< 0: it holds nothing
+    Vec3d start = Vec3d::Zero();
+  };
+
   World(const World&) = default;
   World copy() const;
   void take_reactions();
+  void insult(const InsultDef& insult, std::uint64_t seed);
+  void run_script();
   int choose_substeps() const;
   void prepare_solver();
   void make_room();
@@ -194,6 +202,7 @@ class World {
   Grabs<Real> grabs_;
   ColliderStates colliders_;
   std::vector<Gripper> grippers_;
+  std::vector<SceneHand> scene_hands_;
   double thickest_ = 0;  ///< cloth [m]
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;

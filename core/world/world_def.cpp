@@ -73,6 +73,22 @@ void validate(const EnvironmentDef& def) {
   }
 }
 
+void validate_script(const WorldDef& def) {
+  check_field("", {"hands", 0, kMostSceneHands, "", "number of hands"},
+              static_cast<double>(def.hands.size()));
+  check_field("", {"insults", 0, kMostInsults, "", "number of insults"},
+              static_cast<double>(def.insults.size()));
+  for (std::size_t k = 0; k < def.hands.size(); ++k) {
+    validate(def.hands[k], "hands[" + std::to_string(k) + "].");
+    const auto has_name = [&](const ClothDef& cloth) { return cloth.name == def.hands[k].cloth; };
+    if (!def.hands[k].cloth.empty() && std::none_of(def.cloths.begin(), def.cloths.end(), has_name))
+      throw DefinitionError("hands[" + std::to_string(k) + "].cloth", def.hands[k].cloth,
+                            "the name of a cloth");
+  }
+  for (std::size_t k = 0; k < def.insults.size(); ++k)
+    validate(def.insults[k], "insults[" + std::to_string(k) + "].");
+}
+
 void validate_grippers(const WorldDef& def) {
   check_field("", {"grippers", 0, kMostGrippers, "", "number of grippers"},
               static_cast<double>(def.grippers.size()));
@@ -126,6 +142,7 @@ void validate(const WorldDef& def) {
   }
   validate(def.environment);
   validate_grippers(def);
+  validate_script(def);
 }
 
 void set_field(WorldDef& def, const std::string& key, const std::string& text) {

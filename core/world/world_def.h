@@ -13,6 +13,7 @@
 #include "core/solver/verlet.h"
 #include "core/world/budget.h"
 #include "core/world/environment.h"
+#include "core/world/script.h"
 
 namespace weft {
 
@@ -52,6 +53,9 @@ struct WorldDef {
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;          ///< made at the start
+  std::vector<HandDef> hands;        ///< of the scene itself, at most kMostSceneHands
+  std::vector<InsultDef> insults;    ///< what is done to it, at most kMostInsults
+  VerdictDef verdict;                ///< what it must keep to
   std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need the contact weft
 };
 
@@ -74,6 +78,7 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
   visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
   visit_fields_of_budget(def.budget, below("budget."));
+  visit_fields_of_verdict(def.verdict, below("verdict."));
 }
 
 /// The same with the fields of all cloths.

@@ -116,8 +116,8 @@ export class WeftClient extends Session {
   /**
    * Sends a collider to a pose at bounded speed, or gives it back to its keyframes.
    * @param {string} collider  its name
-   * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number}
-   *   | {release: true}} where
+   * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number,
+   *   force?: boolean} | {release: true}} where
    */
   move(collider, where) {
     return this.request('move', { collider, ...where });

@@ -590,10 +590,10 @@ class Client:
 
     async def move(
         self, collider: str, position=None, rotation=None, *, speed=None, turn_speed=None,
-        release=None,
+        force=None, release=None,
     ) -> dict:  # fmt: skip
         """Sends a collider to a pose at bounded speed, or back to its keyframes (release=True)."""
-        fields = {"speed": speed, "turn_speed": turn_speed, "release": release}
+        fields = {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
         return await self.request("move", collider=collider, **_without_none(fields))

@@ -17,6 +17,33 @@ std::string hash_of(const Room& room) {
   return proto::hash_text(room.world().hash());
 }
 
+TEST_CASE("an object that is forced through the cloth is told of once") {
+  TestRoom t;
+  t.join(1);
+  for (int i = 0; i < 42; ++i) t.say(1, json{{"op", "pin"}, {"particle", i}}.dump());
+  const auto told = [&t] {
+    int count = 0;
+    for (const auto& [viewer, text] : t.output.sent)
+      count += json::parse(text).value("code", "") == "guarantee_void" ? 1 : 0;
+    return count;
+  };
+  t.say(1, R"({"op":"move","collider":"ball","position":[0,1.2,0],"speed":5})");
+  t.say(1, R"({"op":"advance","n":60})");
+  CHECK(told() == 0);
+  const auto ball = [&t] {
+    return t.say(1, R"({"op":"query","id":4,"what":"colliders"})")["data"][1];
+  };
+  CHECK(ball()["voided"] == false);
+  CHECK(ball()["position"][1].get<double>() < 1);
+  t.say(1, R"({"op":"move","collider":"ball","position":[0,1.2,0],"speed":5,"force":true})");
+  t.say(1, R"({"op":"advance","n":60})");
+  CHECK(told() == 1);
+  CHECK(ball()["voided"] == true);
+  CHECK(ball()["position"][1].get<double>() == Approx(1.2));
+  t.say(1, R"({"op":"reset"})");
+  CHECK(ball()["voided"] == false);
+}
+
 TEST_CASE("a collider is moved by name, seen in frames and queries, and told wrong names") {
   TestRoom t;
   t.join(1);

@@ -265,6 +265,22 @@ TEST_CASE("an object stops at pinned cloth") {
   CHECK(world.colliders()[0].blocked);
 }
 
+TEST_CASE("an object that is told to move regardless goes through, and says so") {
+  WorldDef def = test::empty_world(test::flat_cloth(5, 5, 0.4, 0.4));
+  for (Index i = 0; i < 25; ++i) def.pins.push_back({i, 0});
+  def.colliders = {{"ball", SphereDef{Vec3d(0.2, -0.3, 0.2), 0.1}}};
+  World<float> world(def);
+  MoveDef up{pose(Vec3d(0.2, 0.3, 0.2)), 0.5, 1, true};
+  world.move_collider(0, up);
+  test::advance(world, 0.3);
+  CHECK_FALSE(world.colliders()[0].voided);
+  test::advance(world, 1.2);
+  CHECK(world.colliders()[0].pose.position == up.target.position);
+  CHECK(world.colliders()[0].voided);
+  world.reset();
+  CHECK_FALSE(world.colliders()[0].voided);
+}
+
 TEST_CASE("a command moves a collider at its speed; what is out of bounds is refused") {
   WorldDef def = test::empty_world(test::flat_cloth(5, 5, 0.2, 0.2));
   def.colliders = {{"ground", PlaneDef{Vec3d(0, -1, 0), Vec3d::UnitY()}},

@@ -328,6 +328,8 @@ def refused_fields():
                  field="format", value="f32")
     yield refuse('{"op":"query","what":"positions","format":"f16"}', "unknown_value",
                  field="format", limit={"allowed": ["json", "f32", "f64"]})
+    yield refuse('{"op":"move","collider":"c","position":[0,0,0],"force":1}', "wrong_type",
+                 field="force", value=1)
     yield refuse('{"op":"gripper","opening":0}', "missing_field", field="name")
     yield refuse('{"op":"gripper","name":"g"}', "missing_field")
     yield refuse('{"op":"gripper","name":"","opening":0}', "wrong_length", field="name")

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "core/scenes/scene_parts.h"
+
+namespace weft {
+
+/// Scenes that are hard to keep free of crossings, each with what it must keep to.
+std::vector<SceneEntry> hard_cases();
+
+}  // namespace weft

@@ -1,0 +1,99 @@
+#include "core/world/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/diagnostics/crossings.h"
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// A collider's triangles where it is; none if it has no triangles.
+TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
+  TriangleMesh mesh;
+  if (const auto* box = std::get_if<BoxDef>(&def.shape)) mesh = world_mesh(*box);
+  if (const auto* given = std::get_if<MeshDef>(&def.shape)) mesh = given->mesh;
+  const Vec3d pivot = pivot_of(def.shape);
+  for (Vec3d& p : mesh.positions) p = pose.position + pose.rotation * (p - pivot);
+  return mesh;
+}
+
+template <class Row, class Real>
+double gap_of(const Row& row, std::size_t count, const Vec3Array<Real>& x) {
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    sum += static_cast<double>(row.weight[k]) *
+           static_cast<double>(row.normal.dot(x[static_cast<std::size_t>(row.particle[k])]));
+  return sum;
+}
+
+}  // namespace
+
+template <class Real>
+std::uint64_t Verdict<Real>::count_crossings_of(const World<Real>& world) {
+  const ClothModel<Real>& model = world.model();
+  const Vec3Array<Real>& x = world.state().x;
+  const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
+  std::uint64_t count = self.proper + self.touching;
+  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
+    const TriangleMesh mesh = mesh_now(world.def().colliders[k], world.colliders()[k].pose);
+    if (mesh.triangles.empty()) continue;
+    const Crossings with = count_crossings(x, model.edges, model.triangles, mesh);
+    count += with.proper + with.touching;
+  }
+  return count;
+}
+
+template <class Real>
+void Verdict<Real>::look(const World<Real>& world) {
+  ++ticks;
+  const Vec3Array<Real>& x = world.state().x;
+  finite =
+      finite && std::all_of(x.begin(), x.end(), [](const Vec3<Real>& p) { return p.allFinite(); });
+  recoveries += world.report().divergence ? 1U : 0U;
+  largest_strain = std::max(largest_strain, world.report().largest_strain);
+  if (!finite) return;
+  const std::uint64_t found = count_crossings_of(world);
+  if (world.report().time <= world.def().verdict.clear_after) {
+    early_crossings += found;
+  } else {
+    crossings += found;
+    crossed_ticks += found > 0 ? 1 : 0;
+    deepest = std::max(deepest, world.deepest_penetration());
+    for (const ContactRow<Real>& row : world.contact().rows()) {
+      if (!row.responds) continue;
+      smallest_gap = std::min(smallest_gap, gap_of(row, static_cast<std::size_t>(row.count), x) -
+                                                static_cast<double>(row.offset));
+    }
+    if (world.guard()) {
+      for (const GuardRow<Real>& row : world.guard()->rows())
+        smallest_gap = std::min(smallest_gap, gap_of(row, 4, x));
+    }
+  }
+  if (!world.guard()) return;
+  const GuardCounts& counts = world.guard()->counts();
+  lost_motion = counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
+}
+
+template <class Real>
+std::vector<std::string> Verdict<Real>::failures(const VerdictDef& def) const {
+  std::vector<std::string> list;
+  if (!finite) list.push_back("a position is not finite");
+  if (crossings > 0)
+    list.push_back(std::to_string(crossings) + " crossings in " + std::to_string(crossed_ticks) +
+                   " ticks");
+  if (deepest > 0) list.push_back(number_text(deepest) + " m inside an object");
+  if (largest_strain > def.strain)
+    list.push_back("a strain of " + number_text(largest_strain) + ", more than " +
+                   number_text(def.strain));
+  if (lost_motion > def.lost_motion)
+    list.push_back("lost motion of " + number_text(lost_motion) + ", more than " +
+                   number_text(def.lost_motion));
+  return list;
+}
+
+template class Verdict<float>;
+template class Verdict<double>;
+
+}  // namespace weft

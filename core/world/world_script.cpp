@@ -1,0 +1,87 @@
+// What a scene does by itself: hands of its own, and what is done to it at once.
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/world/world.h"
+
+namespace weft {
+namespace {
+
+/// A triangle with a particle as a corner, and the weights of that corner alone.
+template <class Real>
+GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
+  GrabDef def;
+  PinDef place;
+  place.place = MaterialPoint{hand.u, hand.v};
+  place.cloth = hand.cloth;
+  const Index particle = find_pinned(model, place).centre;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (model.triangles[t][k] != particle) continue;
+      def.triangle = static_cast<Index>(t);
+      def.barycentric = {0, 0, 0};
+      def.barycentric[k] = 1;
+    }
+  }
+  def.radius = hand.radius;
+  def.stiffness = hand.stiffness;
+  def.max_force = hand.max_force;
+  return def;
+}
+
+}  // namespace
+
+template <class Real>
+void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
+  for (std::size_t i = 0; i < state_.x.size(); ++i) {
+    if (pins_.pin_count[i] > 0) {
+      state_.x[i] += insult.pinned.template cast<Real>();
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      state_.v[i][axis] +=
+          static_cast<Real>(insult.noise * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
+  }
+  accept_state();
+}
+
+template <class Real>
+void World<Real>::run_script() {
+  const auto tick_of = [this](double time) {
+    return static_cast<std::uint64_t>(std::llround(time * def_.tick_rate));
+  };
+  for (std::size_t k = 0; k < def_.insults.size(); ++k) {
+    if (tick_of(def_.insults[k].time) == tick_) insult(def_.insults[k], k);
+  }
+  for (std::size_t k = 0; k < def_.hands.size(); ++k) {
+    const HandDef& hand = def_.hands[k];
+    SceneHand& held = scene_hands_[k];
+    if (tick_of(hand.path.front().time) == tick_ && grabs_.list.size() < kMostGrabs) {
+      GrabDef def = hold_of(model_, hand);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Index corner = model_.triangles[static_cast<std::size_t>(def.triangle)][c];
+        def.target +=
+            def.barycentric[c] * state_.x[static_cast<std::size_t>(corner)].template cast<double>();
+      }
+      held = {grab(def), def.target};
+    }
+    if (held.grab == 0) continue;
+    if (tick_ > tick_of(hand.path.back().time)) {
+      release(held.grab);
+      held.grab = 0;
+      continue;
+    }
+    move_grab(held.grab,
+              held.start + offset_at(hand, static_cast<double>(tick_ + 1) / def_.tick_rate));
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                        \
+  template void World<Real>::insult(const InsultDef&, std::uint64_t); \
+  template void World<Real>::run_script();
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
