@@ -5,6 +5,7 @@ Usage: WEFT_PROGRAM=build/weft stability.py [--ticks N] [--write]
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import subprocess
@@ -105,12 +106,16 @@ def report(results, ticks):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ticks", type=int, default=TICKS)
+    parser.add_argument("--jobs", type=int, default=1, help="cases at the same time")
     parser.add_argument("--write", action="store_true", help="write README.md")
     options = parser.parse_args()
     results = {}
-    for name in cases():
-        results[name] = run(name, options.ticks)
-        print(row(name, results[name]), flush=True)
+    names = cases()
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        runs = pool.map(lambda name: run(name, options.ticks), names)
+        for name, result in zip(names, runs):
+            results[name] = result
+            print(row(name, result), flush=True)
     if options.write:
         (HERE / "README.md").write_text(report(results, options.ticks), encoding="utf-8")
 
