@@ -134,7 +134,7 @@ void build_twist(WorldDef& def, const std::string&) {
   def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}};
   for (const double v : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const double z = (v - 0.5) * kWidth;
-    HandDef hand = hand_at(1, v, {});
+    HandDef hand = hand_at(1, v, {{0, Vec3d::Zero()}});
     for (int k = 0; k <= kKeys; ++k) {
       const double angle = 2 * kPi * kTurns * k / kKeys;
       hand.path.push_back(
