@@ -241,7 +241,7 @@ int list_scenes(const ScenesOptions& options) {
   }
   if (!options.name.empty()) {
     if (!options.json) throw OptionError("NAME", options.name, "a name together with --json");
-    std::fputs(write_scene(SceneLibrary(beside_program("meshes")).named(options.name)).c_str(),
+    std::fputs(write_scene(SceneLibrary(beside_program("meshes")).opened(options.name)).c_str(),
                stdout);
     return 0;
   }
