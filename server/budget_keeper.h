@@ -62,8 +62,9 @@ class BudgetKeeper {
 
   /// Two digits, so that people can read what holds.
   static double rounded(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return std::floor(value / unit + 1e-9) * unit;
+    // Divided and not multiplied: 70 / 1000 is 0.07, and 70 * 0.001 is not.
+    const double per_unit = std::pow(10.0, 1 - std::floor(std::log10(value)));
+    return std::floor(value * per_unit + 1e-9) / per_unit;
   }
 
   Setting decide(double milliseconds, bool may_soften) const {

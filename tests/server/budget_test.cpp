@@ -69,6 +69,14 @@ TEST_CASE("slow: the pace is budget over need, and comes back to 1 when there is
   CHECK(keeper.setting().pace == BudgetKeeper::kLeastPace);
 }
 
+TEST_CASE("what a budget leaves has two digits and prints as such") {
+  const int hundredths = GENERATE(range(1, 100));
+  BudgetKeeper keeper;
+  keeper.restart({hundredths * 0.01, OverBudget::slow}, {});
+  run(keeper, 30, [](const Setting&) { return 1.0; });
+  CHECK(number_text(keeper.setting().pace).size() <= 5);
+}
+
 TEST_CASE("soften: a cost that falls with the root of the stiffness comes within the budget") {
   const double budget = GENERATE(2.0, 5.0, 9.0);
   const auto cost = [](const Setting& s) { return 1 + 9 * std::sqrt(s.softness); };
