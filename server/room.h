@@ -115,6 +115,7 @@ class Room {
   void tell_voided();  // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
+  void follow_speed();
   void end_leases();
   void tell_changes();
   void publish();

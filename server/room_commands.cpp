@@ -258,8 +258,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
 
 Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
   wanted_speed_ = command.speed;
-  meter_.restart(clock_());
-  output_.set_frame_rate(world_->def().tick_rate * speed());
+  follow_speed();
   state_changed_ = true;
   return proto::Reply(proto::SpeedReply{world_->tick(), wanted_speed_});
 }

@@ -48,45 +48,42 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Links& links) 
 
 template <class Real>
 void MeshPass<Real>::lay_out(const Links& links, Index first) {
+  const auto is_spring = [](const Link& link) { return link.is_spring; };
   const std::size_t blocks = (links.size() + kMeshBlock - 1) / kMeshBlock;
   std::vector<std::size_t> slot_starts, near_starts;
-  int most_near = 0, most_slots = 0;
+  int most_numbers = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t begin = b * kMeshBlock, end = std::min(begin + kMeshBlock, links.size());
     MeshBlock<Real> block;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto springs = static_cast<int>(std::count_if(
-          links[i].begin(), links[i].end(), [](const Link& link) { return link.is_spring; }));
+      const auto springs =
+          static_cast<int>(std::count_if(links[i].begin(), links[i].end(), is_spring));
       block.near = std::max(block.near, springs);
       block.far = std::max(block.far, static_cast<int>(links[i].size()) - springs);
     }
-    slot_starts.push_back(neighbour_.size());
-    near_starts.push_back(stiffness_.size());
+    const std::size_t slot_start = neighbour_.size(), near_start = stiffness_.size();
     const auto slots = static_cast<std::size_t>(block.near + block.far);
-    const std::size_t near = static_cast<std::size_t>(block.near) * kMeshBlock;
-    neighbour_.resize(neighbour_.size() + slots * kMeshBlock, first + static_cast<Index>(begin));
+    // Lanes behind the last particle lead to it, as free slots lead to their own particle.
+    for (std::size_t k = 0; k < slots * kMeshBlock; ++k)
+      neighbour_.push_back(first + static_cast<Index>(std::min(begin + k % kMeshBlock, end - 1)));
     bending_weight_.resize(neighbour_.size(), Real(0));
-    rest_length_.resize(rest_length_.size() + near, Real(0));
+    rest_length_.resize(near_start + static_cast<std::size_t>(block.near) * kMeshBlock, Real(0));
     stiffness_.resize(rest_length_.size(), Real(0));
-    for (std::size_t i = begin; i < begin + kMeshBlock; ++i) {
-      const std::size_t lane = i - begin;
-      // Free slots lead to the particle itself, those behind the last particle to the first one.
-      for (std::size_t s = 0; s < slots && i < end; ++s)
-        neighbour_[slot_starts[b] + s * kMeshBlock + lane] = first + static_cast<Index>(i);
-      if (i >= end) continue;
+    for (std::size_t i = begin; i < end; ++i) {
       std::size_t near_slot = 0, far_slot = static_cast<std::size_t>(block.near);
       for (const Link& link : links[i]) {
         const std::size_t slot = link.is_spring ? near_slot++ : far_slot++;
-        const std::size_t at = slot_starts[b] + slot * kMeshBlock + lane;
-        neighbour_[at] = link.neighbour;
-        bending_weight_[at] = static_cast<Real>(link.bending_weight);
+        const std::size_t place = slot * kMeshBlock + (i - begin);
+        neighbour_[slot_start + place] = link.neighbour;
+        bending_weight_[slot_start + place] = static_cast<Real>(link.bending_weight);
         if (!link.is_spring) continue;
-        rest_length_[near_starts[b] + slot * kMeshBlock + lane] = link.rest_length;
-        stiffness_[near_starts[b] + slot * kMeshBlock + lane] = link.stiffness;
+        rest_length_[near_start + place] = link.rest_length;
+        stiffness_[near_start + place] = link.stiffness;
       }
     }
-    most_near = std::max(most_near, block.near);
-    most_slots = std::max(most_slots, block.near + block.far);
+    most_numbers = std::max(most_numbers, 2 * block.near + block.far);
+    slot_starts.push_back(slot_start);
+    near_starts.push_back(near_start);
     blocks_.push_back(block);
   }
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -95,7 +92,8 @@ void MeshPass<Real>::lay_out(const Links& links, Index first) {
     blocks_[b].rest_length = rest_length_.data() + near_starts[b];
     blocks_[b].stiffness = stiffness_.data() + near_starts[b];
   }
-  gathered_.assign(static_cast<std::size_t>(most_near + most_slots + 3) * 3 * kMeshBlock, Real(0));
+  // Positions of all slots, velocities of the near ones; own positions, velocities and forces.
+  gathered_.assign(static_cast<std::size_t>(most_numbers + 3) * 3 * kMeshBlock, Real(0));
 }
 
 template <class Real>
@@ -118,7 +116,7 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
 
 template <class Real>
 void MeshPass<Real>::compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v,
-                                    Vec3Array<Real>& force) const {
+                                    Vec3Array<Real>& force) {
   mesh_forces(view_, x.data()->data(), v.data()->data(), force.data()->data());
 }
 

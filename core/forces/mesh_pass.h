@@ -23,8 +23,7 @@ class MeshPass {
 
   /// Overwrites the part's stretch of `force` [N].
   /// @param x,v  of all particles [m], [m/s]
-  void compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v,
-                      Vec3Array<Real>& force) const;
+  void compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
   /// What the arrays take [B].
   std::size_t bytes() const;
@@ -47,7 +46,7 @@ class MeshPass {
   std::vector<MeshBlock<Real>> blocks_;
   std::vector<Index> neighbour_;
   std::vector<Real> rest_length_, stiffness_, bending_weight_;
-  mutable AlignedVector<Real> gathered_;
+  AlignedVector<Real> gathered_;
 };
 
 }  // namespace weft

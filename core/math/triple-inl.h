@@ -58,12 +58,6 @@ HWY_INLINE Triple<V> drop_if(M mask, const Triple<V>& a) {
           hn::IfThenZeroElse(mask, a.z)};
 }
 
-template <class M, class V>
-HWY_INLINE Triple<V> keep_if(M mask, const Triple<V>& a) {
-  return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
-          hn::IfThenElseZero(mask, a.z)};
-}
-
 /// Particles one behind the other, x y z each.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
