@@ -176,46 +176,6 @@ void Room::tick() {
   if (paused_ && steps_left_ > 0 && --steps_left_ == 0) state_changed_ = true;
 }
 
-/// Changes what the budget asks for, as commands of the room's own. Ticks of `advance` pass without
-/// a clock and are not counted.
-void Room::keep_budget(double seconds) {
-  const BudgetKeeper::Setting before = budget_.setting();
-  const auto next = budget_.add(seconds, solver_of(world_->def()) == SolverKind::verlet);
-  if (!next) return;
-  const bool softened = next->softness != before.softness;
-  std::string what;
-  if (softened) {
-    world_->set_softness(next->softness);
-    proto::Set command;
-    command.softness = next->softness;
-    log_.add(world_->tick(), 0, CommandOrigin::budget, command);
-    what = "springs have " + number_text(next->softness) + " of their stiffness";
-  } else {
-    log_.add(world_->tick(), 0, CommandOrigin::budget, proto::Speed{speed()});
-    follow_speed();
-    what = "time passes at " + number_text(next->pace) + " of the wanted speed";
-  }
-  const bool full = next->pace >= 1 && next->softness >= wanted_softness_;
-  state_changed_ = true;
-  notify(full ? proto::NoticeLevel::info : proto::NoticeLevel::warning,
-         full ? "within_budget" : "over_budget",
-         "a budget of " + number_text(budget_.budget().milliseconds) + " ms a tick: " + what, 0, {},
-         softened ? next->softness : next->pace);
-}
-
-/// From now on; what an earlier budget has taken is given back.
-void Room::ask_for_budget(const BudgetDef& budget) {
-  if (world_->softness() != wanted_softness_) world_->set_softness(wanted_softness_);
-  budget_.restart(budget, {1, wanted_softness_}, wanted_softness_);
-  follow_speed();
-}
-
-/// Time passes at another speed from now on.
-void Room::follow_speed() {
-  meter_.restart(clock_());
-  output_.set_frame_rate(world_->def().tick_rate * speed());
-}
-
 void Room::advance_until(double deadline) {
   while (advance_ && advance_->left > 0) {
     step_world();
