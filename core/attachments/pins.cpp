@@ -6,6 +6,20 @@
 #include "core/error.h"
 
 namespace weft {
+namespace {
+
+/// Whether a pin that stays where it is holds a particle.
+bool is_fixed(const Pins& pins, Index particle) {
+  return std::any_of(pins.list.begin(), pins.list.end(), [particle](const Pin& pin) {
+    return !pin.path && std::binary_search(pin.particles.begin(), pin.particles.end(), particle);
+  });
+}
+
+}  // namespace
+
+bool Pins::any_on_way() const {
+  return std::any_of(list.begin(), list.end(), [](const Pin& pin) { return pin.path.has_value(); });
+}
 
 template <class Real>
 Pins make_pins(const ClothModel<Real>& model) {
@@ -21,7 +35,7 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
   if (pins.list.size() >= kMostPins)
     throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
                           "at most " + std::to_string(kMostPins) + " pins", "release some first");
-  Pin pin{pins.next_id++, def, held.centre, std::move(held.particles)};
+  Pin pin{pins.next_id++, def, held.centre, std::move(held.particles), {}, Vec3d::Zero()};
   for (const Index i : pin.particles) {
     const auto p = static_cast<std::size_t>(i);
     ++pins.pin_count[p];
@@ -33,21 +47,50 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
 }
 
 template <class Real>
+bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins& pins,
+              ClothState<Real>& state) {
+  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
+                                  [id](const Pin& pin) { return pin.id == id; });
+  if (found == pins.list.end()) return false;
+  visit_fields_of_pin_move(
+      move, [](const FieldInfo& info, const auto& value) { check_field("move.", info, value); });
+  if (found->path) {
+    found->path->move = move;
+    return true;
+  }
+  PinPath path;
+  path.move = move;
+  for (const Index i : found->particles)
+    path.start.push_back(state.x[static_cast<std::size_t>(i)].template cast<double>());
+  found->path = std::move(path);
+  for (const Index i : found->particles) {
+    const auto p = static_cast<std::size_t>(i);
+    if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
+  }
+  return true;
+}
+
+template <class Real>
 bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<Real>& state) {
   const auto found = std::find_if(pins.list.begin(), pins.list.end(),
                                   [id](const Pin& pin) { return pin.id == id; });
   if (found == pins.list.end()) return false;
-  for (const Index i : found->particles) {
-    const auto p = static_cast<std::size_t>(i);
-    if (--pins.pin_count[p] == 0) state.inverse_mass[p] = Real(1) / model.mass[p];
-  }
+  const std::vector<Index> particles = std::move(found->particles);
   pins.list.erase(found);
+  for (const Index i : particles) {
+    const auto p = static_cast<std::size_t>(i);
+    --pins.pin_count[p];
+    if (pins.pin_count[p] == 0 || !is_fixed(pins, i))
+      state.inverse_mass[p] = Real(1) / model.mass[p];
+  }
   return true;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                              \
   template Pins make_pins(const ClothModel<Real>&);                                         \
   template PinId add_pin(const ClothModel<Real>&, const PinDef&, Pins&, ClothState<Real>&); \
+  template bool move_pin(const ClothModel<Real>&, PinId, const PinMove&, Pins&,             \
+                         ClothState<Real>&);                                                \
   template bool remove_pin(const ClothModel<Real>&, PinId, Pins&, ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/attachments/pin_place.h"
@@ -12,11 +13,31 @@ namespace weft {
 /// Names a pin for its whole life; never used again for another.
 using PinId = std::uint32_t;
 
+/// Where a pin is to go. It goes there in a straight line and is a target that lags when blocked:
+/// its particles follow as fast as the bound of its force and what is in their way let them.
+struct PinMove {
+  Vec3d target = Vec3d::Zero();  ///< of its middle particle [m], components within 1e4
+  double speed = 2;              ///< at most [m/s], 0.001 to 20
+  double max_force = 50;         ///< of the pin on the cloth while it is on its way [N], 0 to 1e6
+};
+
+/// The way of a pin until it has arrived. See pin_drive.h.
+struct PinPath {
+  PinMove move;
+  std::vector<Vec3d> start;       ///< of its particles when it was first told to go [m]
+  Vec3d offset = Vec3d::Zero();   ///< from there to where they shall be now [m]
+  Vec3d step = Vec3d::Zero();     ///< by which it grows in the coming tick [m]
+  double pace = 0;                ///< in the last tick [m/s]
+  Vec3d impulse = Vec3d::Zero();  ///< given to the cloth in this tick [N s]
+};
+
 struct Pin {
   PinId id = 0;
   PinDef def;
   Index centre = 0;              ///< a particle in the middle of those held
   std::vector<Index> particles;  ///< ascending
+  std::optional<PinPath> path;   ///< while it is on its way; else its particles are fixed
+  Vec3d drive = Vec3d::Zero();   ///< mean force on the cloth in the last tick on its way [N]
 };
 
 /// All pins of a cloth. Overlapping pins count: a particle is free when the last of its pins goes.
@@ -24,6 +45,9 @@ struct Pins {
   std::vector<Pin> list;       ///< in the order of their making
   std::vector<int> pin_count;  ///< for each particle
   PinId next_id = 1;
+
+  /// Whether one of them is on its way.
+  bool any_on_way() const;
 };
 
 inline constexpr std::size_t kMostPins = 4096;
@@ -38,8 +62,23 @@ template <class Real>
 PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state);
 
+/// Tells a pin to go somewhere. Its particles are then no longer fixed, but driven, until they are
+/// there. Throws DefinitionError if a field is out of range. False if there is no such pin.
+template <class Real>
+bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins& pins,
+              ClothState<Real>& state);
+
 /// Frees the particles of a pin that no other pin holds. False if there is no such pin.
 template <class Real>
 bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<Real>& state);
+
+/// Describes each field of a move to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_pin_move(Def& move, Visitor&& visit) {
+  visit(FieldInfo{"position", -1e4, 1e4, "m", "where the middle of the pin goes"}, move.target);
+  visit(FieldInfo{"speed", 1e-3, 20, "m/s", "of the pin, at most"}, move.speed);
+  visit(FieldInfo{"max_force", 0, 1e6, "N", "of the pin on its way; beyond it the pin lags"},
+        move.max_force);
+}
 
 }  // namespace weft

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/attachments/pin_drive.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/cloth_guard.h"
 #include "core/contact/contact.h"
@@ -10,16 +11,19 @@ namespace weft {
 
 /// What keeps the cloth off objects and itself while a solver moves it: one of the two models of
 /// contact, the other is null; or none. The guard of cloths against each other goes with `weft`.
+/// Pins that are on their way stand beside, because they too act between kick and drift.
 template <class Real>
 struct Collision {
   Contact<Real>* weft = nullptr;
   SeedContact<Real>* seed = nullptr;
   ClothGuard<Real>* guard = nullptr;
+  PinDrive<Real>* pins = nullptr;
 
-  bool empty() const { return !weft && !seed && !guard; }
+  bool empty() const { return !weft && !seed && !guard && !pins; }
 
   /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+    if (pins) pins->before_drift(state, dt);
     if (guard) guard->solve(state, dt, profile);
     if (weft) weft->resolve(state, dt, profile);
     if (seed) seed->separate(state, profile);
@@ -32,6 +36,7 @@ struct Collision {
   }
   /// At the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
+    if (pins) pins->settle(state, dt);
     if (guard) guard->settle(state, dt, profile);
     if (weft) weft->settle(state, dt, profile);
   }

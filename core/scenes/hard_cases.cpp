@@ -42,7 +42,7 @@ void build_noise(WorldDef& def, const std::string&) {
 void build_teleport(WorldDef& def, const std::string&) {
   hang(def);
   def.insults = {{1, 0, Vec3d(0, 0, 3)}, {3, 0, Vec3d(0, 0, -3)}};
-  judge(def, 30);
+  judge(def, 1);
 }
 
 void build_squeeze(WorldDef& def, const std::string&) {

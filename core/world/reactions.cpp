@@ -24,6 +24,11 @@ void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& st
   }
   for (const Pin& pin : pins.list) {
     PinReaction reaction{pin.id, Vec3d::Zero()};
+    if (pin.path) {
+      reaction.force = pin.drive;
+      reactions.pins.push_back(reaction);
+      continue;
+    }
     for (const Index k : pin.particles) {
       const auto i = static_cast<std::size_t>(k);
       const Vec3<Real> all = force[i] + surroundings.gravity * model.mass[i];

@@ -25,8 +25,8 @@ struct Reactions {
   std::vector<ContactPoint> contacts;
 
   /// Of each pin, in their order: what keeps its particles where they are, at the end of the tick.
-  /// A particle that several pins hold is shared evenly. Empty if the solver has no forces
-  /// (relaxation).
+  /// Of a pin on its way, the mean over the tick. A particle that several pins hold is shared
+  /// evenly. Empty if the solver has no forces (relaxation).
   std::vector<PinReaction> pins;
 
   /// Of the cloth on each collider, mean over the tick [N].

@@ -28,7 +28,7 @@ struct HandDef {
 struct InsultDef {
   double time = 0;               ///< [s], 0 to 3600
   double noise = 0;              ///< added to each component of all velocities, at most [m/s]
-  Vec3d pinned = Vec3d::Zero();  ///< by which all pinned particles are moved [m], within 100
+  Vec3d pinned = Vec3d::Zero();  ///< by which the targets of all pins jump [m], within 100
 };
 
 inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostInsults = 100;
@@ -70,7 +70,8 @@ void visit_fields_of_insult(Def& insult, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "when it is done"}, insult.time);
   visit(FieldInfo{"noise", 0, 1000, "m/s", "added to all velocities, at most, by component"},
         insult.noise);
-  visit(FieldInfo{"pinned", -100, 100, "m", "by which all that is pinned is moved"}, insult.pinned);
+  visit(FieldInfo{"pinned", -100, 100, "m", "by which the targets of all pins jump"},
+        insult.pinned);
 }
 template <class Def, class Visitor>
 void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {

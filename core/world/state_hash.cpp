@@ -40,6 +40,18 @@ void feed(XXH64_state_t& hash, const Gripper& gripper) {
   feed(hash, rest.data(), rest.size());
 }
 
+/// A pin that stays where it is adds nothing.
+void feed(XXH64_state_t& hash, const Pin& pin) {
+  if (!pin.path) return;
+  const PinPath& path = *pin.path;
+  feed(hash, path.start.data(), path.start.size());
+  feed(hash, &path.offset, 1);
+  feed(hash, &path.move.target, 1);
+  const std::array<double, 4> rest = {path.move.speed, path.move.max_force, path.pace,
+                                      static_cast<double>(pin.id)};
+  feed(hash, rest.data(), rest.size());
+}
+
 }  // namespace
 
 template <class Real>
@@ -53,6 +65,7 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
   feed(hash, state.x.data(), state.x.size());
   feed(hash, state.v.data(), state.v.size());
   feed(hash, pins.pin_count.data(), pins.pin_count.size());
+  for (const Pin& pin : pins.list) feed(hash, pin);
   for (const Grab<Real>& grab : grabs.list) {
     feed(hash, grab.particles.data(), grab.particles.size());
     feed(hash, grab.weights.data(), grab.weights.size());

@@ -133,10 +133,12 @@ const TickReport& World<Real>::step() {
                 colliders_);
   plan_motion(def_.colliders, static_cast<double>(tick_) / def_.tick_rate, tick_seconds(),
               colliders_);
+  PinDrive<Real>::plan(tick_seconds(), state_, pins_);
   advance_or_recover(substeps);
   finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_grippers(tick_seconds(), colliders_, grippers_);
   finish_tick(grabs_);
+  finish_pins();
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (measures_forces_) take_reactions();
@@ -252,9 +254,10 @@ void World<Real>::advance_or_recover(int substeps) {
 /// The contact that was chosen; none where there is nothing to meet.
 template <class Real>
 Collision<Real> World<Real>::collision() {
-  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr};
+  PinDrive<Real>* pins = pins_.any_on_way() ? &pin_drive_ : nullptr;
+  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins};
   const bool weft = contact_of(def_) == ContactModel::weft && !def_.colliders.empty();
-  return {weft ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr};
+  return {weft ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins};
 }
 
 /// One tick of the chosen solver.
@@ -263,13 +266,14 @@ AdvanceResult World<Real>::advance(int substeps) {
   const double dt = tick_seconds() / substeps;
   contact_.begin_tick(tick_seconds(), &colliders_);
   if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
+  pin_drive_.begin_tick(tick_seconds(), model_, pins_);
   AdvanceResult result =
       solver_of(def_) == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
                            state_, verlet_, report_.profile)
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
                                collision(), state_, relaxation_, report_.profile);
-  result.work += contact_.work();
+  result.work += contact_.work() + pin_drive_.work();
   return result;
 }
 
@@ -310,7 +314,7 @@ void World<Real>::restore_last_good() {
   contact_.place(colliders_);
   if (guard_) guard_->reset();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
-    if (pins_.pin_count[i] > 0) state_.v[i].setZero();  // pinned since that state was kept
+    if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was kept
   }
 }
 

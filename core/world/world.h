@@ -6,6 +6,7 @@
 
 #include "core/attachments/grabs.h"
 #include "core/attachments/gripper.h"
+#include "core/attachments/pin_drive.h"
 #include "core/attachments/pins.h"
 #include "core/contact/collider_state.h"
 #include "core/executor.h"
@@ -88,6 +89,11 @@ class World {
 
   PinId pin(const PinDef& def);
   bool unpin(PinId id);
+
+  /// Sends a pin somewhere, with bounded speed and force.
+  /// Throws DefinitionError if a field is out of range. False if there is no such pin.
+  bool move_pin(PinId id, const PinMove& move);
+
   GrabId grab(const GrabDef& def);
   bool move_grab(GrabId id, const Vec3d& target);
   bool release(GrabId id);
@@ -179,6 +185,7 @@ class World {
   void take_reactions();
   void insult(const InsultDef& insult, std::uint64_t seed);
   void run_script();
+  void finish_pins();
   int choose_substeps() const;
   void prepare_solver();
   void make_room();
@@ -199,6 +206,7 @@ class World {
   ClothState<Real> state_;
   ClothState<Real> last_good_;
   Pins pins_;
+  PinDrive<Real> pin_drive_;
   Grabs<Real> grabs_;
   ColliderStates colliders_;
   std::vector<Gripper> grippers_;

@@ -29,6 +29,21 @@ bool World<Real>::unpin(PinId id) {
 }
 
 template <class Real>
+bool World<Real>::move_pin(PinId id, const PinMove& move) {
+  contact_.invalidate_rows();
+  if (guard_) guard_->invalidate_rows();
+  return weft::move_pin(model_, id, move, pins_, state_);
+}
+
+/// What has arrived is fixed again.
+template <class Real>
+void World<Real>::finish_pins() {
+  if (!PinDrive<Real>::finish(tick_seconds(), state_, pins_)) return;
+  contact_.invalidate_rows();
+  if (guard_) guard_->invalidate_rows();
+}
+
+template <class Real>
 GrabId World<Real>::grab(const GrabDef& def) {
   const GrabId id = add_grab(model_, state_, def, grabs_);
   make_room();
@@ -172,6 +187,8 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
 #define WEFT_INSTANTIATE(Real)                                                          \
   template PinId World<Real>::pin(const PinDef&);                                       \
   template bool World<Real>::unpin(PinId);                                              \
+  template bool World<Real>::move_pin(PinId, const PinMove&);                           \
+  template void World<Real>::finish_pins();                                             \
   template GrabId World<Real>::grab(const GrabDef&);                                    \
   template bool World<Real>::move_grab(GrabId, const Vec3d&);                           \
   template bool World<Real>::release(GrabId);                                           \

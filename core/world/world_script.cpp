@@ -35,15 +35,20 @@ GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
 template <class Real>
 void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
   for (std::size_t i = 0; i < state_.x.size(); ++i) {
-    if (pins_.pin_count[i] > 0) {
-      state_.x[i] += insult.pinned.template cast<Real>();
-      continue;
-    }
+    if (pins_.pin_count[i] > 0) continue;
     for (int axis = 0; axis < 3; ++axis)
       state_.v[i][axis] +=
           static_cast<Real>(insult.noise * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
   }
-  accept_state();
+  if (insult.noise > 0) accept_state();
+  if (insult.pinned.isZero(0)) return;
+  for (const Pin& pin : pins_.list) {
+    PinMove move;
+    move.target = pin.path ? pin.path->move.target
+                           : state_.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
+    move.target += insult.pinned;
+    move_pin(pin.id, move);
+  }
 }
 
 template <class Real>

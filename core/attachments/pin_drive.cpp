@@ -1,0 +1,184 @@
+#include "core/attachments/pin_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace weft {
+namespace {
+
+/// Of the way when it starts and before it ends [m/s^2].
+constexpr double kAcceleration = 40;
+
+/// A pin whose particle is farther than this from its place goes on from where they are, and leads
+/// them by as much [m].
+constexpr double kSlack = 0.005;
+
+/// Who is so near has arrived [m, and in units of rounding].
+constexpr double kArrived = 1e-5, kRoundings = 4;
+
+/// So little of a way is rounding [m].
+constexpr double kThere = 1e-9;
+
+/// What is behind comes after with at most so many times the pin's speed.
+constexpr double kCatchUp = 1.5;
+
+/// Longest distance of a particle from its place.
+template <class Real>
+double farthest(const Pin& pin, const ClothState<Real>& state) {
+  double most2 = 0;
+  for (std::size_t n = 0; n < pin.particles.size(); ++n) {
+    const auto& x = state.x[static_cast<std::size_t>(pin.particles[n])];
+    const Vec3d off = pin.path->start[n] + pin.path->offset - x.template cast<double>();
+    most2 = std::max(most2, off.squaredNorm());
+  }
+  return std::sqrt(most2);
+}
+
+/// What is left of the way [m].
+Vec3d rest_of(const Pin& pin) {
+  const auto centre = static_cast<std::size_t>(
+      std::lower_bound(pin.particles.begin(), pin.particles.end(), pin.centre) -
+      pin.particles.begin());
+  return pin.path->move.target - (pin.path->start[centre] + pin.path->offset);
+}
+
+/// Puts the places of a pin's particles a little before where these are, towards the target: it
+/// leads what lags, around what is in the way if friction lets it.
+template <class Real>
+void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path) {
+  Vec3d sum = Vec3d::Zero();
+  for (std::size_t n = 0; n < pin.particles.size(); ++n)
+    sum +=
+        state.x[static_cast<std::size_t>(pin.particles[n])].template cast<double>() - path.start[n];
+  path.offset = sum / static_cast<double>(pin.particles.size());
+  const Vec3d rest = rest_of(pin);
+  const double way = rest.norm();
+  path.offset += way > kSlack ? (rest * (kSlack / way)).eval() : rest;
+  path.pace = 0;
+}
+
+}  // namespace
+
+template <class Real>
+void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pins& pins) {
+  for (Pin& pin : pins.list) {
+    if (!pin.path) continue;
+    PinPath& path = *pin.path;
+    path.step.setZero();
+    const bool behind = farthest(pin, state) > kSlack;
+    if (behind) lead_from_here(pin, state, path);
+    const Vec3d rest = rest_of(pin);
+    const double way = rest.norm();
+    if (behind || way < kThere) continue;
+    path.pace = std::min({path.move.speed, path.pace + kAcceleration * tick_seconds,
+                          std::sqrt(2 * kAcceleration * way)});
+    path.step =
+        path.pace * tick_seconds < way ? (rest * (path.pace * tick_seconds / way)).eval() : rest;
+  }
+}
+
+template <class Real>
+void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& model, Pins& pins) {
+  model_ = &model;
+  pins_ = &pins;
+  tick_seconds_ = tick_seconds;
+  elapsed_ = work_ = 0;
+  for (Pin& pin : pins.list) {
+    if (pin.path) pin.path->impulse.setZero();
+  }
+}
+
+template <class Real>
+void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
+  // The first kick of a tick is half of one, and so is what the pins may give.
+  const bool first = elapsed_ == 0;
+  elapsed_ += static_cast<double>(dt);
+  drive(state, dt, static_cast<double>(dt) * (first ? 0.5 : 1));
+}
+
+template <class Real>
+void PinDrive<Real>::settle(ClothState<Real>& state, Real dt) {
+  elapsed_ += static_cast<double>(dt);
+  drive(state, dt, static_cast<double>(dt) / 2);
+}
+
+template <class Real>
+void PinDrive<Real>::drive(ClothState<Real>& state, Real dt, double seconds) {
+  for (Pin& pin : pins_->list) {
+    if (pin.path) drive(pin, *pin.path, state, dt, seconds);
+  }
+}
+
+/// The impulse is that of the particles as a whole, and what keeps them in their places to each
+/// other; either is bounded.
+template <class Real>
+void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt,
+                           double seconds) {
+  const Vec3d offset = path.offset + path.step * (elapsed_ / tick_seconds_);
+  const double fastest = path.move.speed * kCatchUp;
+  const auto is_free = [&](std::size_t i) { return state.inverse_mass[i] > 0; };
+  const auto change = [&](std::size_t n, std::size_t i) -> Vec3d {
+    Vec3d wanted =
+        (path.start[n] + offset - state.x[i].template cast<double>()) / static_cast<double>(dt);
+    const double speed = wanted.norm();
+    if (speed > fastest) wanted *= fastest / speed;
+    return wanted - state.v[i].template cast<double>();
+  };
+  double mass = 0;
+  Vec3d sum = Vec3d::Zero();
+  for (std::size_t n = 0; n < pin.particles.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pin.particles[n]);
+    if (!is_free(i)) continue;
+    const auto m = static_cast<double>(model_->mass[i]);
+    mass += m;
+    sum += change(n, i) * m;
+  }
+  if (mass == 0) return;
+  const Vec3d mean = sum / mass;
+  double apart = 0;
+  for (std::size_t n = 0; n < pin.particles.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pin.particles[n]);
+    if (is_free(i)) apart += (change(n, i) - mean).norm() * static_cast<double>(model_->mass[i]);
+  }
+  const double most = path.move.max_force * seconds;
+  const double whole = sum.norm() > most ? most / sum.norm() : 1;
+  const double own = apart > most ? most / apart : 1;
+  for (std::size_t n = 0; n < pin.particles.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pin.particles[n]);
+    if (!is_free(i)) continue;
+    const Vec3d before = state.v[i].template cast<double>();
+    const Vec3d given = mean * whole + (change(n, i) - mean) * own;
+    state.v[i] = (before + given).template cast<Real>();
+    work_ += static_cast<double>(model_->mass[i]) * given.dot(before + given / 2);
+  }
+  path.impulse += sum * whole;
+}
+
+template <class Real>
+bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& pins) {
+  bool changed = false;
+  for (Pin& pin : pins.list) {
+    if (!pin.path) continue;
+    PinPath& path = *pin.path;
+    pin.drive = path.impulse / tick_seconds;
+    const bool stood = path.step.isZero(0);
+    path.offset += path.step;
+    if (!stood || !(rest_of(pin).norm() < kThere)) continue;
+    const double rounding = state.x[static_cast<std::size_t>(pin.centre)].norm() * kRoundings *
+                            static_cast<double>(std::numeric_limits<Real>::epsilon());
+    if (farthest(pin, state) > std::max(kArrived, rounding)) continue;
+    for (const Index i : pin.particles) {
+      state.inverse_mass[static_cast<std::size_t>(i)] = 0;
+      state.v[static_cast<std::size_t>(i)].setZero();
+    }
+    pin.path.reset();
+    changed = true;
+  }
+  return changed;
+}
+
+template class PinDrive<float>;
+template class PinDrive<double>;
+
+}  // namespace weft

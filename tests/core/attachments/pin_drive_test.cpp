@@ -1,0 +1,180 @@
+#include <catch2/catch.hpp>
+
+#include "core/diagnostics/crossings.h"
+#include "core/error.h"
+#include "core/world/world.h"
+
+// Pins that are told to go somewhere: targets that lag when blocked, with bounded force.
+
+using namespace weft;
+
+namespace {
+
+/// A cloth that hangs by two discs at its upper corners.
+WorldDef hung_cloth() {
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = 21;
+  cloth.width = cloth.height = 0.6;
+  cloth.origin = Vec3d(-0.3, 1.5, 0);
+  cloth.v = -Vec3d::UnitY();
+  def.pins = {{Corner::top_left, 0.05, {}}, {Corner::top_right, 0.05, {}}};
+  def.environment.drag = 2;
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+template <class Real>
+Vec3d centre_of(const World<Real>& world, std::size_t pin) {
+  const Index i = world.pins().list[pin].centre;
+  return world.state().x[static_cast<std::size_t>(i)].template cast<double>();
+}
+
+template <class Real>
+void send_all(World<Real>& world, const Vec3d& way, double speed = 2, double max_force = 50) {
+  for (std::size_t k = 0; k < world.pins().list.size(); ++k)
+    REQUIRE(world.move_pin(world.pins().list[k].id, {centre_of(world, k) + way, speed, max_force}));
+}
+
+template <class Real>
+std::size_t crossings_of(const World<Real>& world) {
+  const Crossings c =
+      count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
+  return c.proper + c.touching;
+}
+
+}  // namespace
+
+TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and nothing crosses") {
+  World<float> world(hung_cloth());
+  for (int k = 0; k < 30; ++k) world.step();
+  const Vec3d left = centre_of(world, 0), right = centre_of(world, 1), way(0, 0, 3);
+  send_all(world, way);
+  double largest_strain = 0;
+  std::size_t crossed = 0;
+  for (int k = 0; k < 180; ++k) {
+    REQUIRE_FALSE(world.step().divergence);
+    largest_strain = std::max(largest_strain, world.report().largest_strain);
+    crossed += crossings_of(world);
+  }
+  CHECK(crossed == 0);
+  CHECK(largest_strain < 0.5);
+  CHECK((centre_of(world, 0) - left - way).norm() < 1e-5);
+  CHECK((centre_of(world, 1) - right - way).norm() < 1e-5);
+  CHECK_FALSE(world.pins().any_on_way());
+  for (const Pin& pin : world.pins().list) {
+    for (const Index i : pin.particles)
+      CHECK(world.state().inverse_mass[static_cast<std::size_t>(i)] == 0);
+  }
+}
+
+TEST_CASE("a pin that is led at 0.1 m/s is at its target after each tick, to 1e-9 m") {
+  WorldDef def = hung_cloth();
+  World<double> world(def);
+  const Vec3d left = centre_of(world, 0), right = centre_of(world, 1);
+  const Vec3d step = Vec3d(0.06, 0, 0.08) / def.tick_rate;
+  for (int k = 1; k <= 60; ++k) {
+    world.move_pin(world.pins().list[0].id, {left + step * k});
+    world.move_pin(world.pins().list[1].id, {right + step * k});
+    world.step();
+    CHECK((centre_of(world, 0) - left - step * k).norm() < 1e-9);
+    CHECK((centre_of(world, 1) - right - step * k).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("pins keep the shape of what they hold while they carry it, to 1e-6 m") {
+  World<double> world(hung_cloth());
+  const Pin pin = world.pins().list[0];
+  const Vec3Array<double> before = world.state().x;
+  send_all(world, Vec3d(0, 0.5, 1));
+  for (int k = 0; k < 20; ++k) world.step();
+  REQUIRE(world.pins().any_on_way());
+  const auto centre = static_cast<std::size_t>(pin.centre);
+  for (const Index n : pin.particles) {
+    const auto i = static_cast<std::size_t>(n);
+    const Vec3d was = before[i] - before[centre];
+    CHECK((world.state().x[i] - world.state().x[centre] - was).norm() < 1e-6);
+  }
+}
+
+TEST_CASE("the force of a pin on its way never exceeds its bound, and the cloth comes after") {
+  WorldDef def = hung_cloth();
+  World<float> world(def);
+  const double weight = 0.36 * def.cloths[0].fabric.areal_density * 9.81;
+  const double bound = weight;  // each of two: enough to hold, not to follow at once
+  for (int k = 0; k < 60; ++k) world.step();
+  world.measure_forces(true);
+  send_all(world, Vec3d(0, 1, 2), 4, bound);
+  double largest = 0;
+  for (int k = 0; k < 300; ++k) {
+    world.step();
+    if (!world.pins().any_on_way()) break;
+    REQUIRE(world.reactions());
+    for (std::size_t p = 0; p < 2; ++p) {
+      if (world.pins().list[p].path)
+        largest = std::max(largest, world.reactions()->pins[p].force.norm());
+    }
+  }
+  CHECK(largest <= bound * (1 + 1e-6));
+  CHECK(largest > bound * 0.8);
+  CHECK_FALSE(world.pins().any_on_way());
+}
+
+TEST_CASE("pins pulled through a plate stop at it and press with no more than their force") {
+  WorldDef def = hung_cloth();
+  // Behind the cloth, wider than it is.
+  def.colliders = {{"plate", BoxDef{Vec3d(0, 1.2, 0.3), Vec3d(0.8, 0.8, 0.01)}}};
+  World<float> world(def);
+  for (int k = 0; k < 30; ++k) world.step();
+  world.measure_forces(true);
+  send_all(world, Vec3d(0, 0, 3));
+  const ColliderDef& plate = def.colliders[0];
+  const TriangleMesh mesh = world_mesh(std::get<BoxDef>(plate.shape));
+  std::size_t crossed = 0;
+  double largest = 0;
+  for (int k = 0; k < 240; ++k) {
+    REQUIRE_FALSE(world.step().divergence);
+    const Crossings c =
+        count_crossings(world.state().x, world.model().edges, world.model().triangles, mesh);
+    crossed += c.proper + c.touching + crossings_of(world);
+    for (const PinReaction& pin : world.reactions()->pins)
+      largest = std::max(largest, pin.force.norm());
+  }
+  CHECK(crossed == 0);
+  CHECK(world.deepest_penetration() == 0);
+  CHECK(largest <= 50 * (1 + 1e-6));
+  CHECK(world.pins().any_on_way());
+  for (std::size_t p = 0; p < 2; ++p) {
+    CHECK(centre_of(world, p)[2] < 0.29);
+    CHECK(centre_of(world, p)[2] > 0.27);
+  }
+  // Told to come back, they come.
+  send_all(world, Vec3d(0, 0, -0.2));
+  for (int k = 0; k < 60; ++k) world.step();
+  CHECK_FALSE(world.pins().any_on_way());
+}
+
+TEST_CASE("a particle that another pin holds too stays where it is") {
+  World<double> world(hung_cloth());
+  const PinId second = world.pin({Corner::top_left, 0, {}});
+  const Index corner = world.pins().list.back().centre;
+  const Vec3d before = world.state().x[static_cast<std::size_t>(corner)];
+  world.move_pin(world.pins().list[0].id, {before + Vec3d(0, 0, 0.1)});
+  for (int k = 0; k < 10; ++k) world.step();
+  CHECK(world.state().x[static_cast<std::size_t>(corner)] == before);
+  world.unpin(second);
+  for (int k = 0; k < 120; ++k) world.step();
+  CHECK((centre_of(world, 0) - before - Vec3d(0, 0, 0.1)).norm() < 1e-5);
+  CHECK_FALSE(world.pins().any_on_way());
+}
+
+TEST_CASE("what is wrong in a move is refused by name, and nothing changes") {
+  World<double> world(hung_cloth());
+  const PinId id = world.pins().list[0].id;
+  const std::uint64_t before = world.hash();
+  CHECK_FALSE(world.move_pin(id + 100, {}));
+  CHECK_THROWS_AS(world.move_pin(id, {Vec3d(0, 2e4, 0)}), DefinitionError);
+  CHECK_THROWS_AS(world.move_pin(id, {Vec3d::Zero(), 0}), DefinitionError);
+  CHECK_THROWS_AS(world.move_pin(id, {Vec3d::Zero(), 2, -1}), DefinitionError);
+  CHECK(world.hash() == before);
+}
