@@ -91,6 +91,10 @@ class ClothGuard {
   /// moves them in the coming drift without giving them velocity.
   void solve(ClothState<Real>& state, Real dt, Profile& profile);
 
+  /// One more sweep over the rows, after other contact changed velocities.
+  /// @return largest change of a normal velocity [m/s]
+  Real sweep_again(ClothState<Real>& state);
+
   /// After all other contact and right before the drift of `dt` [s]: lets nobody leave his region.
   /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.
   void certify(ClothState<Real>& state, Real dt, Profile& profile);
@@ -176,7 +180,7 @@ class ClothGuard {
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   void remember(GuardRow<Real>& row) const;
   void aim(GuardRow<Real>& row, const ClothState<Real>& state, Real dt) const;
-  void solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const;
+  Real solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const;
   void find_busy_rows(const ClothState<Real>& state, Real dt);
   void sweep_rows(ClothState<Real>& state, Real dt);
   void push_apart(ClothState<Real>& state);

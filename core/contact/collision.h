@@ -25,7 +25,7 @@ struct Collision {
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
     if (guard) guard->solve(state, dt, profile);
-    if (weft) weft->resolve(state, dt, profile);
+    if (weft) weft->resolve(state, dt, profile, guard);
     if (seed) seed->separate(state, profile);
     if (guard) guard->certify(state, dt, profile);
   }

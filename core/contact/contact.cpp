@@ -118,7 +118,8 @@ void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
 }
 
 template <class Real>
-void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) {
+void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
+                            ClothGuard<Real>* guard) {
   if (empty()) return;
   plan_colliders(dt);
   bool holds;
@@ -137,7 +138,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile) 
     aim_rows(state, dt);
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
     if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
-    solve_rows(state, profile);
+    solve_rows(state, dt, profile, guard);
     certify(state, dt);
   }
   first_substep_ = false;
@@ -152,7 +153,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   find_busy_rows();
   aim_rows(state, dt);
   if (any_jaw_) share_squeeze(state, dt / 2);
-  solve_rows(state, profile);
+  solve_rows(state, dt, profile, nullptr);
 }
 
 template <class Real>

@@ -65,6 +65,9 @@ struct MovingRow {
   Real grip = 0;
 };
 
+template <class Real>
+class ClothGuard;
+
 /// Contact of cloths with objects, at rest or moving (CONTACT.md's recipe for objects).
 ///
 /// Three nested lists keep the work small, each valid while no particle has moved farther than its
@@ -110,7 +113,10 @@ class Contact {
 
   /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
   /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
-  void resolve(ClothState<Real>& state, Real dt, Profile& profile);
+  /// @param guard  of the cloths, whose rows are swept in turn with these while either still
+  ///               changes velocities much; null: none
+  void resolve(ClothState<Real>& state, Real dt, Profile& profile,
+               ClothGuard<Real>* guard = nullptr);
 
   /// Makes the velocities at the end of a tick admissible.
   void settle(ClothState<Real>& state, Real dt, Profile& profile);
@@ -244,7 +250,8 @@ class Contact {
   void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
   void aim_rows(const ClothState<Real>& state, Real dt);
-  void solve_rows(ClothState<Real>& state, Profile& profile);
+  Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations);
+  void solve_rows(ClothState<Real>& state, Real dt, Profile& profile, ClothGuard<Real>* guard);
   void certify(ClothState<Real>& state, Real dt);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt);
   void log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,

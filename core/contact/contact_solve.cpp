@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/cloth_guard.h"
 #include "core/contact/contact.h"
 #include "core/contact/travel.h"
 
@@ -13,6 +14,11 @@ namespace {
 
 /// Sweeps of projected Gauss-Seidel over the rows.
 constexpr int kSweeps = 2;
+
+/// Further ones, each after one over the rows of cloths with each other, while each changes what
+/// something moves in the substep by more than this part of the thickness.
+constexpr int kMoreSweeps = 8;
+constexpr double kResidual = 0.01;
 
 /// A gap this much wider than the thickness still counts as touching, so that rounding of positions
 /// does not let a resting particle fall for a substep, and its friction with it [m].
@@ -161,39 +167,59 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
   }
 }
 
-/// Projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at most
-/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
-/// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
+/// A sweep of projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at
+/// most friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
+/// What jaws squeeze has besides the normal impulses that cancel there, and their friction does
+/// not.
+/// @return largest change of a normal velocity [m/s]
 template <class Real>
-void Contact<Real>::solve_rows(ClothState<Real>& state, Profile& profile) {
+Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations) {
+  Real largest = 0;
+  for (const std::size_t r : busy_rows_) {
+    const ContactRow<Real>& row = rows_[r];
+    Vec3<Real> v = weighted(row, state.v);
+    if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
+    const Real vn = row.normal.dot(v);
+    Real* grip =
+        row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
+    Real push = row.least_speed - vn;
+    if (!(push > 0)) {
+      if (!grip || *grip == 0) continue;
+      push = 0;
+    }
+    largest = std::max(largest, push);
+    Vec3<Real> change = row.normal * push;
+    const Real friction = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
+    if (friction > 0) {
+      ++friction_evaluations;
+      const Vec3<Real> slip = v - row.normal * vn;
+      const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
+      change -= speed > most ? (slip * (most / speed)).eval() : slip;
+      if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
+    }
+    share_out(row, change, state.v);
+    pushed_rows_.push_back(r);
+    if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
+    if (log_.wanted()) log_.add(row, change, state);
+  }
+  return largest;
+}
+
+/// Cloth that is pressed on an object in layers, or led by hands against it, needs more than the
+/// usual sweeps, and those of its own rows in between: without, what the rows leave is stopped by
+/// the certificates.
+template <class Real>
+void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profile,
+                               ClothGuard<Real>* guard) {
   std::uint64_t friction_evaluations = 0;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const std::size_t r : busy_rows_) {
-      const ContactRow<Real>& row = rows_[r];
-      Vec3<Real> v = weighted(row, state.v);
-      if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
-      const Real vn = row.normal.dot(v);
-      Real* grip =
-          row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
-      Real push = row.least_speed - vn;
-      if (!(push > 0)) {
-        if (!grip || *grip == 0) continue;
-        push = 0;
-      }
-      Vec3<Real> change = row.normal * push;
-      const Real friction =
-          static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
-      if (friction > 0) {
-        ++friction_evaluations;
-        const Vec3<Real> slip = v - row.normal * vn;
-        const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
-        change -= speed > most ? (slip * (most / speed)).eval() : slip;
-        if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
-      }
-      share_out(row, change, state.v);
-      pushed_rows_.push_back(r);
-      if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
-      if (log_.wanted()) log_.add(row, change, state);
+  Real left = 0;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    left = std::max(left, sweep_rows(state, friction_evaluations));
+  if (guard) {
+    const Real enough = thickness_ * Real(kResidual) / dt;
+    for (int sweep = 0; sweep < kMoreSweeps && left > enough; ++sweep) {
+      if (!(guard->sweep_again(state) > enough)) break;
+      left = sweep_rows(state, friction_evaluations);
     }
   }
   profile[Stage::friction].work += friction_evaluations;
@@ -282,7 +308,8 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
   template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
-  template void Contact<Real>::solve_rows(ClothState<Real>&, Profile&);                          \
+  template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&);                    \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&, ClothGuard<Real>*); \
   template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \
   template void Contact<Real>::log_stop(const ContactRow<Real>&, std::size_t, const Vec3<Real>&, \
                                         const ClothState<Real>&);                                \

@@ -221,13 +221,15 @@ void ClothGuard<Real>::aim(GuardRow<Real>& row, const ClothState<Real>& state, R
 
 /// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
 /// takes more than Coulomb's bound.
+/// @return change of the normal velocity [m/s]
 template <class Real>
-void ClothGuard<Real>::solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const {
+Real ClothGuard<Real>::solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const {
   const Vec3<Real> v = weighted(row, velocities);
   const Real speed = row.normal.dot(v);
-  if (row.push == 0 && speed >= row.least_speed) return;
+  if (row.push == 0 && speed >= row.least_speed) return 0;
   const Real push = std::max(Real(0), row.push + (row.least_speed - speed) * row.inertia);
-  Vec3<Real> change = row.normal * (push - row.push);
+  const Real more = push - row.push;
+  Vec3<Real> change = row.normal * more;
   row.push = push;
   if (row.friction > 0) {
     const Vec3<Real> slide = v - row.normal * speed;
@@ -240,6 +242,15 @@ void ClothGuard<Real>::solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocitie
     row.drag = drag;
   }
   share_out(row, change, velocities);
+  return std::abs(more) / row.inertia;
+}
+
+template <class Real>
+Real ClothGuard<Real>::sweep_again(ClothState<Real>& state) {
+  Real largest = 0;
+  for (const Index k : busy_rows_)
+    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(k)], state.v));
+  return largest;
 }
 
 /// Lists the rows that push somebody or may have to before the next look.
@@ -366,7 +377,8 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;   \
   template void ClothGuard<Real>::remember(GuardRow<Real>&) const;                           \
   template void ClothGuard<Real>::aim(GuardRow<Real>&, const ClothState<Real>&, Real) const; \
-  template void ClothGuard<Real>::solve_row(GuardRow<Real>&, Vec3Array<Real>&) const;        \
+  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&, Vec3Array<Real>&) const;        \
+  template Real ClothGuard<Real>::sweep_again(ClothState<Real>&);                            \
   template void ClothGuard<Real>::find_busy_rows(const ClothState<Real>&, Real);             \
   template void ClothGuard<Real>::sweep_rows(ClothState<Real>&, Real);                       \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);

@@ -190,6 +190,7 @@ void build_tablecloth(WorldDef& def, const std::string&) {
 
 void build_ten_hands(WorldDef& def, const std::string&) {
   constexpr int kHands = 10;
+  constexpr double kPalm = 0.06;  // 50 N on one particle would be a singularity
   def.cloths[0] = lying_cloth(33, 0.8, 0.62);
   def.cloths[0].fabric = make_fabric("cotton");
   def.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.4, 0), 0.2}}};
@@ -199,6 +200,7 @@ void build_ten_hands(WorldDef& def, const std::string&) {
     HandDef hand = hand_at(0.5 + 0.4 * std::cos(angle), 0.5 + 0.4 * std::sin(angle), {});
     hand.path = {{1.5, Vec3d::Zero()}, {1.7, out},  {2.2, out},
                  {2.6, -out},          {3.2, -out}, {3.4, Vec3d::Zero()}};
+    hand.radius = kPalm;
     def.hands.push_back(hand);
   }
   def.environment.drag = 0.5;

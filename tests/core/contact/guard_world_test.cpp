@@ -244,3 +244,30 @@ TEST_CASE("the guard is chosen by name and goes with the contact of weft alone")
   set_field(def, "contact.self", "particles");
   CHECK_THROWS_AS(validate(def), DefinitionError);
 }
+
+TEST_CASE("layers that a hand presses on a ball with 50 N lose at most 5 % of their motion") {
+  WorldDef def;
+  def.cloths.clear();
+  for (int k = 0; k < 4; ++k) {
+    ClothDef sheet;
+    sheet.name = "sheet" + std::to_string(k);
+    sheet.rows = sheet.columns = 13;
+    sheet.width = sheet.height = 0.3;
+    sheet.origin = Vec3d(-0.15 + 0.003 * k, 0.406 + 0.006 * k, -0.15);
+    sheet.v = Vec3d::UnitZ();
+    def.cloths.push_back(sheet);
+  }
+  def.colliders = {{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.2}}};
+  def.contact.seed.self = SelfContact::guard;
+  def.environment.drag = 1;
+  World<float> world(def);
+  CHECK(crossings_over(world, 20) == 0);
+  GrabDef hand;
+  hand.triangle = static_cast<Index>(3 * 288 + 6 * 24 + 12);
+  hand.radius = 0.06;
+  hand.target = Vec3d(0, -1, 0);
+  world.grab(hand);
+  CHECK(crossings_over(world, 60) == 0);
+  CHECK(world.grabs().list[0].force.norm() > 49.9);
+  CHECK(lost_part(world) < 0.05);
+}
