@@ -7,6 +7,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/feature_pair.h"
+#include "core/contact/guard_row.h"
 #include "core/contact/pair_separation.h"
 #include "core/contact/patch_tree.h"
 #include "core/world/profile.h"
@@ -31,24 +32,6 @@ std::uint64_t key_of(const GuardedPair<Real>& pair) {
   return (static_cast<std::uint64_t>(pair.kind == PairKind::edge_edge) << 63) |
          (static_cast<std::uint64_t>(pair.a) << 31) | static_cast<std::uint64_t>(pair.b);
 }
-
-/// A contact of two features of cloths, frozen for a few substeps: gap = n . sum w x.
-template <class Real>
-struct GuardRow {
-  std::array<Index, 4> particle = {0, 0, 0, 0};
-  std::array<Real, 4> weight = {0, 0, 0, 0};
-  std::array<Real, 4> share = {0, 0, 0, 0};  ///< change of velocity by a unit impulse [1/kg]
-  Vec3<Real> normal = Vec3<Real>::Zero();    ///< from the second feature to the first
-  Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
-  Real radius = 0;                           ///< that the gap shall keep [m]
-  Real friction = 0;
-  Real room = 0;                         ///< of the gap above the radius, now [m]
-  Real least_speed = 0;                  ///< that the normal velocity must reach now [m/s]
-  Real push = 0;                         ///< impulse along the normal in a substep [N s]
-  Vec3<Real> drag = Vec3<Real>::Zero();  ///< friction's impulse in a substep [N s]
-  Vec3<Real> slip = Vec3<Real>::Zero();  ///< displacement since it sticks [m]
-  std::uint64_t key = 0;                 ///< of the pair
-};
 
 /// What the guard did since it was reset; sums of lengths of single particles' motions.
 struct GuardCounts {
@@ -179,11 +162,15 @@ class ClothGuard {
                const PairSeparation<Real>& s);
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   void remember(GuardRow<Real>& row) const;
-  void aim(GuardRow<Real>& row, const ClothState<Real>& state, Real dt) const;
-  Real solve_row(GuardRow<Real>& row, Vec3Array<Real>& velocities) const;
-  void find_busy_rows(const ClothState<Real>& state, Real dt);
-  void sweep_rows(ClothState<Real>& state, Real dt);
-  void push_apart(ClothState<Real>& state);
+
+  // guard_solve.cpp
+  void load_rows(const ClothState<Real>& state);
+  void store_rows(ClothState<Real>& state) const;
+  void aim(GuardRow<Real>& row, Real dt) const;
+  Real solve_row(GuardRow<Real>& row);
+  void find_busy_rows(Real dt);
+  void sweep_rows(Real dt);
+  void push_apart();
 
   Index part_of(Index particle) const;
 
@@ -241,8 +228,11 @@ class ClothGuard {
   std::vector<GuardRow<Real>> rows_, old_rows_;
   std::vector<std::pair<std::uint64_t, Index>> old_keys_;
   std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
-  Vec3Array<Real> extra_;                   ///< velocity of the push [m/s]
-  std::vector<Index> busy_rows_;            ///< that push or soon may
+  std::vector<Index> row_particles_;        ///< of all rows
+  std::vector<char> in_rows_;
+  QuadArray<Real> quad_x_, quad_v_;  ///< their positions and velocities while rows are solved
+  QuadArray<Real> extra_;            ///< velocity of the push [m/s]
+  std::vector<Index> busy_rows_;     ///< that push or soon may
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it

@@ -21,7 +21,7 @@ std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3A
     ContactPoint c;
     c.count = 4;
     c.first_side = is_edge_pair(row) ? 2 : 1;
-    c.normal = row.normal.template cast<double>();
+    c.normal = to_vector(row.normal).template cast<double>();
     Vec3d other = Vec3d::Zero();
     for (std::size_t k = 0; k < 4; ++k) {
       c.particle[k] = row.particle[k];
@@ -32,7 +32,8 @@ std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3A
     }
     c.gap = c.normal.dot(c.point + other);
     c.normal_force = static_cast<double>(row.push) / dt;
-    c.friction = row.push > 0 ? Vec3d(row.drag.template cast<double>() / dt) : Vec3d(Vec3d::Zero());
+    c.friction = row.push > 0 ? Vec3d(to_vector(row.drag).template cast<double>() / dt)
+                              : Vec3d(Vec3d::Zero());
     if (row.push > 0 || c.gap <= static_cast<double>(row.radius) * kTouching) contacts.push_back(c);
   }
   return contacts;

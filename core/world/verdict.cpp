@@ -20,11 +20,12 @@ TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
 }
 
 template <class Row, class Real>
-double gap_of(const Row& row, std::size_t count, const Vec3Array<Real>& x) {
+double gap_of(const Row& row, const Vec3<Real>& normal, std::size_t count,
+              const Vec3Array<Real>& x) {
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k)
     sum += static_cast<double>(row.weight[k]) *
-           static_cast<double>(row.normal.dot(x[static_cast<std::size_t>(row.particle[k])]));
+           static_cast<double>(normal.dot(x[static_cast<std::size_t>(row.particle[k])]));
   return sum;
 }
 
@@ -63,12 +64,13 @@ void Verdict<Real>::look(const World<Real>& world) {
     deepest = std::max(deepest, world.deepest_penetration());
     for (const ContactRow<Real>& row : world.contact().rows()) {
       if (!row.responds) continue;
-      smallest_gap = std::min(smallest_gap, gap_of(row, static_cast<std::size_t>(row.count), x) -
-                                                static_cast<double>(row.offset));
+      smallest_gap =
+          std::min(smallest_gap, gap_of(row, row.normal, static_cast<std::size_t>(row.count), x) -
+                                     static_cast<double>(row.offset));
     }
     if (world.guard()) {
       for (const GuardRow<Real>& row : world.guard()->rows())
-        smallest_gap = std::min(smallest_gap, gap_of(row, 4, x));
+        smallest_gap = std::min(smallest_gap, gap_of(row, to_vector(row.normal), 4, x));
     }
   }
   if (!world.guard()) return;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/math/quad.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// A contact of two features of cloths, frozen for a few substeps: gap = n . sum w x.
+template <class Real>
+struct GuardRow {
+  std::array<Index, 4> particle = {0, 0, 0, 0};
+  std::array<Real, 4> weight = {0, 0, 0, 0};
+  std::array<Real, 4> share = {0, 0, 0, 0};  ///< change of velocity by a unit impulse [1/kg]
+  Quad<Real> normal;                         ///< from the second feature to the first
+  Quad<Real> drag;                           ///< friction's impulse in a substep [N s]
+  Quad<Real> slip;                           ///< displacement since it sticks [m]
+  Quad<Real> apart;                          ///< sum w x when it was last aimed [m]
+  Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
+  Real radius = 0;                           ///< that the gap shall keep [m]
+  Real friction = 0;
+  Real room = 0;          ///< of the gap above the radius, now [m]
+  Real least_speed = 0;   ///< that the normal velocity must reach now [m/s]
+  Real push = 0;          ///< impulse along the normal in a substep [N s]
+  std::uint64_t key = 0;  ///< of the pair
+};
+
+/// sum w of what the particles of a row have.
+template <class Real>
+Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
+  Quad<Real> sum = values[static_cast<std::size_t>(row.particle[0])] * row.weight[0];
+  for (std::size_t k = 1; k < 4; ++k)
+    sum += values[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
+  return sum;
+}
+
+/// Gives an impulse [N s] to the particles of a row, or what else is shared out like that.
+template <class Real>
+void share_out(const GuardRow<Real>& row, const Quad<Real>& impulse, QuadArray<Real>& velocities) {
+  for (std::size_t k = 0; k < 4; ++k)
+    velocities[static_cast<std::size_t>(row.particle[k])] += impulse * row.share[k];
+}
+
+}  // namespace weft

@@ -1,0 +1,239 @@
+// The contact solver of ClothGuard: projected Gauss-Seidel on the velocities of its rows.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/contact/cloth_guard.h"
+
+namespace weft {
+namespace {
+
+/// Rows that push nobody rest until the next look, so many steps later, unless their room is less
+/// than this part of the radius and so many times what it shrinks by until then.
+constexpr int kStepsBetweenLooks = 4;
+constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
+
+/// Time in which a contact that sticks goes back to its anchor [s].
+constexpr double kStickTime = 0.02;
+
+/// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
+constexpr double kPushRate = 60, kPushSpeed = 0.1;
+
+/// A lack of this part of the radius is let be.
+constexpr double kPushSlack = 0.01;
+
+}  // namespace
+
+template <class Real>
+void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
+  legal_ = state.x;
+  if (pairs_.empty()) {
+    rows_.clear();
+    busy_rows_.clear();
+    return;
+  }
+  rows_time_ += dt;
+  ++rows_steps_;
+  if (!rows_built_ || !rows_hold(state)) build_rows(state, profile);
+  if (!arrived_.empty()) add_arrived(state, profile);
+  if (rows_.empty()) return;
+  const StageTimer timer(profile, Stage::contact, rows_.size());
+  load_rows(state);
+  if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
+  sweep_rows(dt);
+  push_apart();
+  store_rows(state);
+  for (const Index k : pushed_) {
+    const auto i = static_cast<std::size_t>(k);
+    state.v[i] += to_vector(extra_[i]);
+    pushed_v_.push_back(state.v[i]);
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
+  for (const Index k : row_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    quad_x_[i] = to_quad(state.x[i]);
+    quad_v_[i] = to_quad(state.v[i]);
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
+  for (const Index k : row_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    state.v[i] = to_vector(quad_v_[i]);
+  }
+}
+
+/// Normal velocity that a row must reach: no nearer than its radius within the step. Adds to the
+/// slip of what stuck in the last step how far it really went.
+template <class Real>
+void ClothGuard<Real>::aim(GuardRow<Real>& row, Real dt) const {
+  const Quad<Real> apart = weighted(row, quad_x_);
+  if (row.push == 0) {
+    row.slip = {};
+  } else if (row.friction > 0) {
+    const Quad<Real> moved = apart - row.apart;
+    row.slip += moved - row.normal * dot(row.normal, moved);
+  }
+  row.apart = apart;
+  row.room = dot(row.normal, apart) - row.radius;
+  row.least_speed = row.room > 0 ? -row.room / dt : Real(0);
+}
+
+/// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
+/// takes more than Coulomb's bound.
+/// @return change of the normal velocity [m/s]
+template <class Real>
+Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
+  const Quad<Real> v = weighted(row, quad_v_);
+  const Real speed = dot(row.normal, v);
+  if (row.push == 0 && speed >= row.least_speed) return 0;
+  const Real push = std::max(Real(0), row.push + (row.least_speed - speed) * row.inertia);
+  const Real more = push - row.push;
+  Quad<Real> change = row.normal * more;
+  row.push = push;
+  if (row.friction > 0) {
+    const Quad<Real> slide = v - row.normal * speed;
+    const Quad<Real> wanted = row.drag - (slide + row.slip * Real(1 / kStickTime)) * row.inertia;
+    const Real most = row.friction * push, size2 = dot(wanted, wanted);
+    const bool slides = size2 > most * most;
+    const Quad<Real> drag = slides ? wanted * (most / std::sqrt(size2)) : wanted;
+    if (slides) row.slip = {};
+    change += drag - row.drag;
+    row.drag = drag;
+  }
+  share_out(row, change, quad_v_);
+  return std::abs(more) / row.inertia;
+}
+
+template <class Real>
+Real ClothGuard<Real>::sweep_again(ClothState<Real>& state) {
+  load_rows(state);
+  Real largest = 0;
+  for (const Index k : busy_rows_)
+    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(k)]));
+  // What only the rows changed still has its whole push.
+  for (std::size_t n = 0; n < pushed_.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pushed_[n]);
+    if (state.v[i] == pushed_v_[n]) pushed_v_[n] = to_vector(quad_v_[i]);
+  }
+  store_rows(state);
+  return largest;
+}
+
+/// Lists the rows that push somebody or may have to before the next look.
+template <class Real>
+void ClothGuard<Real>::find_busy_rows(Real dt) {
+  const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
+  busy_rows_.clear();
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const GuardRow<Real>& row = rows_[k];
+    if (row.push == 0) {
+      const Real room = dot(row.normal, weighted(row, quad_x_)) - row.radius;
+      const Real approach = -dot(row.normal, weighted(row, quad_v_));
+      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) continue;
+    }
+    busy_rows_.push_back(static_cast<Index>(k));
+  }
+}
+
+/// A sweep of projected Gauss-Seidel that starts from the impulses of the last step, and goes over
+/// the rows from either end in turn.
+template <class Real>
+void ClothGuard<Real>::sweep_rows(Real dt) {
+  const Real warm = warm_dt_ > 0 ? dt / warm_dt_ : Real(0);
+  warm_dt_ = dt;
+  for (const Index k : busy_rows_) {
+    GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    aim(row, dt);
+    if (row.push == 0) continue;
+    row.push *= warm;
+    row.drag = row.drag * warm;
+    share_out(row, row.normal * row.push + row.drag, quad_v_);
+  }
+  if (rows_steps_ % 2 == 0) {
+    for (std::size_t k = 0; k < busy_rows_.size(); ++k)
+      solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]);
+  } else {
+    for (std::size_t k = busy_rows_.size(); k-- > 0;)
+      solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]);
+  }
+}
+
+/// Velocities of the coming drift alone that push apart what is nearer than its radius.
+template <class Real>
+void ClothGuard<Real>::push_apart() {
+  for (const Index k : busy_rows_) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    const Real lack = -row.room;
+    if (!(lack > row.radius * Real(kPushSlack))) continue;
+    const Real wanted = std::min(lack * Real(kPushRate), static_cast<Real>(kPushSpeed));
+    const Real more = wanted - dot(row.normal, weighted(row, extra_));
+    if (!(more > 0)) continue;
+    share_out(row, row.normal * (more * row.inertia), extra_);
+    for (const Index i : row.particle) {
+      if (!std::exchange(is_pushed_[static_cast<std::size_t>(i)], 1)) pushed_.push_back(i);
+    }
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::finish(ClothState<Real>& state) {
+  for (std::size_t n = 0; n < pushed_.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pushed_[n]);
+    Vec3<Real>& v = state.v[i];
+    const Vec3<Real> extra = to_vector(extra_[i]);
+    // What was stopped keeps no more of the push than it had, and gets no velocity against it.
+    Real part = 1;
+    if (v != pushed_v_[n]) {
+      const Real size = extra.squaredNorm();
+      part = size > 0 ? std::clamp(v.dot(extra) / size, Real(0), Real(1)) : Real(0);
+    }
+    v -= extra * part;
+    extra_[i] = {};
+    is_pushed_[i] = 0;
+  }
+  pushed_.clear();
+  pushed_v_.clear();
+}
+
+template <class Real>
+void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
+  if (rows_.empty()) return;
+  const StageTimer timer(profile, Stage::contact, rows_.size());
+  load_rows(state);
+  for (GuardRow<Real>& row : rows_) {
+    aim(row, dt);
+    const Quad<Real> v = weighted(row, quad_v_);
+    const Real speed = dot(row.normal, v);
+    const Real push = (row.least_speed - speed) * row.inertia;
+    if (!(push > 0)) continue;
+    const Quad<Real> drag = (v - row.normal * speed) * -row.inertia;
+    const Real most = row.friction * push, size = std::sqrt(dot(drag, drag));
+    share_out(row, row.normal * push + (size > most ? drag * (most / size) : drag), quad_v_);
+  }
+  store_rows(state);
+  warm_dt_ *= 2;  // the next step's first kick is half of one
+}
+
+#define WEFT_INSTANTIATE(Real)                                               \
+  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);  \
+  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);        \
+  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;       \
+  template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
+  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
+  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
+  template Real ClothGuard<Real>::sweep_again(ClothState<Real>&);            \
+  template void ClothGuard<Real>::find_busy_rows(Real);                      \
+  template void ClothGuard<Real>::sweep_rows(Real);                          \
+  template void ClothGuard<Real>::push_apart();
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

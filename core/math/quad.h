@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/math/aligned_vector.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Four numbers that are worked on at once, in registers of any instruction set with the same bits.
+/// A vector in space has 0 as its fourth.
+template <class Real>
+struct Quad {
+  using Lanes [[gnu::vector_size(4 * sizeof(Real))]] = Real;
+  Lanes lanes = {0, 0, 0, 0};
+
+  Real operator[](int k) const { return lanes[k]; }
+  Quad& operator+=(const Quad& o) {
+    lanes += o.lanes;
+    return *this;
+  }
+  Quad& operator-=(const Quad& o) {
+    lanes -= o.lanes;
+    return *this;
+  }
+  friend Quad operator+(Quad a, const Quad& b) { return a += b; }
+  friend Quad operator-(Quad a, const Quad& b) { return a -= b; }
+  friend Quad operator*(const Quad& a, Real s) { return {a.lanes * s}; }
+};
+
+/// x a + y b + z c of vectors in space, added in that order.
+template <class Real>
+Real dot(const Quad<Real>& a, const Quad<Real>& b) {
+  const Quad<Real> product{a.lanes * b.lanes};
+  return product[0] + product[1] + product[2];
+}
+
+template <class Real>
+Quad<Real> to_quad(const Vec3<Real>& v) {
+  Quad<Real> q;
+  q.lanes[0] = v[0];
+  q.lanes[1] = v[1];
+  q.lanes[2] = v[2];
+  return q;
+}
+
+template <class Real>
+Vec3<Real> to_vector(const Quad<Real>& q) {
+  return {q[0], q[1], q[2]};
+}
+
+template <class Real>
+using QuadArray = AlignedVector<Quad<Real>>;
+
+}  // namespace weft
