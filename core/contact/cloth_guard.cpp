@@ -39,11 +39,12 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   reach_ = std::max(reach_, finest_ * Real(0.1));
   const std::size_t n = model.mass.size();
   for (Vec3Array<Real>* array :
-       {&motion_.start, &motion_.end, &velocity_, &legal_, &step_, &anchor_, &x_rows_})
+       {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_, &anchor_, &x_rows_})
     array->assign(n, Vec3<Real>::Zero());
   for (QuadArray<Real>* array : {&quad_x_, &quad_v_, &extra_}) array->assign(n, {});
   in_rows_.assign(n, 0);
-  for (std::vector<Real>* array : {&room_, &moved_}) array->assign(n, Real(0));
+  is_active_.assign(n, 0);
+  for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));
   fraction_.assign(n, Real(1));
   wave_of_.assign(n, 0);
   anchored_at_.assign(n, 0);

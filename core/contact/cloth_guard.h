@@ -19,11 +19,14 @@ template <class Real>
 struct GuardedPair {
   PairKind kind = PairKind::vertex_triangle;
   bool open = false;  ///< not apart when collected: nothing is promised about it
+  bool gone = false;  ///< looked at again since, as one of its particles left its path
   std::array<Index, 4> particle = {0, 0, 0, 0};
   Index a = 0, b = 0;          ///< particle and triangle, or two edges, the lower one first
   Real bound = 0;              ///< the features at their anchors are at least so far apart [m]
   std::uint32_t measured = 0;  ///< wave in which the bound was measured last
   std::uint32_t listed = 0;    ///< search for critical pairs that met it last
+  /// Of each particle its next pair, if it came after all were collected: number x 4 + place.
+  std::array<Index, 4> next = {kNone, kNone, kNone, kNone};
 };
 
 /// Names a pair.
@@ -113,23 +116,36 @@ class ClothGuard {
   // guard_pairs.cpp
   void collect(Real dt, Profile& profile);
   void collect_strays(Real dt, Profile& profile);
+  void drop_pairs_of_strays();
   void admit_pairs(std::size_t first);
-  std::uint64_t test_patches(Index p, Index q, bool all);
-  void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
-  void keep_near(PairColumns<Real>& columns);
+  void list_pairs(std::size_t first);
+  Vec3<Real> on_path(std::size_t particle, Real time) const;
+  void predict(Real past);
   PairColumns<Real>& columns_of(PairKind kind) { return columns_[static_cast<std::size_t>(kind)]; }
   Vec3<Real> path_velocity(std::size_t particle, Real dt) const;
-  Vec3<Real> steady(const Vec3<Real>& v, std::size_t particle) const;
-  void box_patch(Index p);
+  Vec3<Real> steady(const Vec3<Real>& v, std::size_t particle, Real dt) const;
   void join_pairs();
   void share_all_gaps();
   PairPoints<Real> points(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) const;
   template <class Visit>
   void for_pairs_of(std::size_t particle, Visit&& visit) {
-    const auto end = static_cast<std::size_t>(pairs_begin_[particle + 1]);
-    for (auto k = static_cast<std::size_t>(pairs_begin_[particle]); k < end; ++k)
-      visit(pairs_[static_cast<std::size_t>(pairs_of_[k])]);
+    const auto end = static_cast<std::size_t>(pairs_end_[particle]);
+    for (auto k = static_cast<std::size_t>(pairs_begin_[particle]); k < end; ++k) {
+      GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(pairs_of_[k])];
+      if (!pair.gone) visit(pair);
+    }
+    for (Index link = later_[particle]; link != kNone;) {
+      GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(link / 4)];
+      link = pair.next[static_cast<std::size_t>(link % 4)];
+      if (!pair.gone) visit(pair);
+    }
   }
+
+  // guard_patches.cpp
+  void box_patch(Index p);
+  std::uint64_t test_patches(Index p, Index q, bool all);
+  void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
+  void keep_near(PairColumns<Real>& columns);
 
   // guard_regions.cpp
   struct Speeds {
@@ -184,26 +200,30 @@ class ClothGuard {
 
   // Collection.
   bool collected_ = false;
-  PredictedMotion<Real> motion_;
+  PredictedMotion<Real> motion_;              ///< less the common motion
+  Vec3Array<Real> from_;                      ///< where each one's predicted path begins [m]
+  std::vector<Real> since_;                   ///< and when, after all pairs were collected [s]
   Vec3Array<Real> velocity_;                  ///< along the predicted paths [m/s]
   Vec3<Real> off_path_ = Vec3<Real>::Zero();  ///< mean way off the paths after the last step [m]
   Vec3<Real> off_path_now_ = Vec3<Real>::Zero();     ///< with which this step was looked at [m]
   Vec3<Real> off_path_before_ = Vec3<Real>::Zero();  ///< and the step before [m]
   Vec3<Real> common_velocity_ = Vec3<Real>::Zero();  ///< of all when pairs were collected [m/s]
   std::vector<Index> strays_;  ///< particles that leave the balls around their paths
-  std::vector<char> changed_, was_active_;
+  std::vector<char> changed_, is_active_;
   std::vector<std::uint64_t> dropped_keys_;
   Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
   Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
   std::vector<Aabb<Real>> vertex_boxes_, edge_boxes_, triangle_boxes_;
   std::vector<std::uint32_t> boxed_;  ///< collection in which a patch's features were boxed
-  std::uint32_t collection_ = 0;
+  std::uint32_t collection_ = 0, full_collection_ = 0;
   std::array<NearFeatures, 6> near_;  ///< vertices, edges and triangles of either of two patches
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
-  std::vector<Index> pairs_begin_, pairs_of_;  ///< for each particle its pairs
-  std::vector<Index> active_;                  ///< particles in pairs
+  std::size_t most_pairs_ = 0;  ///< with those that are gone, until all are collected anew
+  std::vector<Index> pairs_begin_, pairs_end_, pairs_of_;  ///< for each particle its pairs
+  std::vector<Index> later_;   ///< for each the last that came later, as GuardedPair::next
+  std::vector<Index> active_;  ///< particles in pairs
 
   // Regions.
   Vec3Array<Real> legal_, step_;  ///< certified positions before the drift, and the motion wanted

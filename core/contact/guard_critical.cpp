@@ -36,7 +36,8 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   bool collected = collected_ && elapsed_ <= horizon_;
   if (collected) find_strays();
   for (int attempt = 0;; ++attempt) {
-    collected = collected && strays_.size() <= step_.size() / kManyStrays;
+    collected =
+        collected && strays_.size() <= step_.size() / kManyStrays && pairs_.size() <= most_pairs_;
     if (!collected)
       collect(dt, profile);
     else if (!strays_.empty())
@@ -203,8 +204,7 @@ void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
     const Vec3<Real> allowed = step_[i] * fraction_[i];
     lost_ += static_cast<double>((step_[i] - allowed).norm());
     fraction_[i] = 1;
-    const Vec3<Real> off =
-        legal_[i] + allowed - (motion_.start[i] + velocity_[i] * elapsed_) - off_path_now_;
+    const Vec3<Real> off = legal_[i] + allowed - on_path(i, elapsed_) - off_path_now_;
     const bool off_path = !(off.squaredNorm() <= reach_ * reach_);
     if (off_path && !halt) strays_.push_back(k);
     step_[i] = off_path && halt ? Vec3<Real>(Vec3<Real>::Zero()) : allowed;

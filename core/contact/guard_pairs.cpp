@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "core/contact/cloth_guard.h"
 
@@ -17,14 +17,6 @@ constexpr double kSmallestGap = 1e-5, kRoundings = 64;
 /// Pairs are to hold while the mean particle moves by this part of an edge, but neither longer than
 /// these seconds nor shorter than these substeps.
 constexpr double kHorizonPart = 0.2, kLongestHorizon = 0.25, kFewestSubsteps = 4;
-
-/// Pairs that are tested together.
-constexpr std::size_t kPairsAtOnce = 1024;
-
-bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
-  if (kind == PairKind::vertex_triangle) return p[0] == p[1] || p[0] == p[2] || p[0] == p[3];
-  return p[0] == p[2] || p[0] == p[3] || p[1] == p[2] || p[1] == p[3];
-}
 
 }  // namespace
 
@@ -50,15 +42,14 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   horizon_ = std::clamp(finest_ * Real(kHorizonPart) / std::max(speed, Real(1e-6)), shortest,
                         std::max(static_cast<Real>(kLongestHorizon), shortest));
   motion_.radius = reach_ + smallest_gap_;
-  for (std::size_t i = 0; i < n; ++i) {
-    velocity_[i] = path_velocity(i, dt);
-    motion_.start[i] = legal_[i];
-    motion_.end[i] = legal_[i] + (velocity_[i] - common_velocity_) * horizon_;
-  }
+  for (std::size_t i = 0; i < n; ++i) velocity_[i] = path_velocity(i, dt);
+  from_ = legal_;
+  since_.assign(n, 0);
+  predict(0);
   off_path_.setZero();
   off_path_now_.setZero();
   off_path_before_.setZero();
-  ++collection_;
+  full_collection_ = ++collection_;
   ++counts_.collections;
   tree_.refit(motion_, true);
   pairs_.clear();
@@ -69,6 +60,7 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   for (PairColumns<Real>& columns : columns_) keep_near(columns);
   profile[Stage::broad_phase].work += tests;
   join_pairs();
+  most_pairs_ = 2 * pairs_.size() + legal_.size();
   for (const Index i : active_) {
     anchor_[static_cast<std::size_t>(i)] = legal_[static_cast<std::size_t>(i)];
     anchored_at_[static_cast<std::size_t>(i)] = 0;
@@ -79,55 +71,82 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   rows_built_ = false;
 }
 
+/// Where a particle's predicted path is at a time after all pairs were collected.
+template <class Real>
+Vec3<Real> ClothGuard<Real>::on_path(std::size_t i, Real time) const {
+  return from_[i] + velocity_[i] * (time - since_[i]);
+}
+
+/// Motion along the paths until pairs are collected anew, without the common one.
+/// @param past  time of its start [s]
+template <class Real>
+void ClothGuard<Real>::predict(Real past) {
+  const Vec3<Real> gone = common_velocity_ * past, common = common_velocity_ * horizon_;
+  for (std::size_t i = 0; i < legal_.size(); ++i) {
+    motion_.start[i] = on_path(i, past) - gone;
+    motion_.end[i] = on_path(i, horizon_) - common;
+  }
+}
+
 /// Gives particles that leave their paths new ones, and collects their pairs anew; the others go
-/// on.
+/// on. What was made for them when they began holds for the rest of their paths.
 template <class Real>
 void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   const Real past = elapsed_ - dt;
-  horizon_ -= past;
   changed_.assign(legal_.size(), 0);
   for (const Index k : strays_) {
     const auto i = static_cast<std::size_t>(k);
     changed_[i] = 1;
     velocity_[i] = path_velocity(i, dt);
+    from_[i] = legal_[i] - off_path_before_;
+    since_[i] = past;
   }
-  for (std::size_t i = 0; i < legal_.size(); ++i) {
-    if (changed_[i])
-      motion_.start[i] = legal_[i] - off_path_before_;
-    else
-      motion_.start[i] += velocity_[i] * past;
-    motion_.end[i] = motion_.start[i] + (velocity_[i] - common_velocity_) * horizon_;
-  }
-  elapsed_ = dt;
+  predict(past);
   ++collection_;
   ++counts_.renewals;
-  const auto is_old = [&](const GuardedPair<Real>& pair) {
-    return std::any_of(pair.particle.begin(), pair.particle.end(),
-                       [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; });
-  };
-  const auto gone = std::stable_partition(pairs_.begin(), pairs_.end(), std::not_fn(is_old));
-  dropped_keys_.clear();
-  for (auto pair = gone; pair != pairs_.end(); ++pair) dropped_keys_.push_back(key_of(*pair));
-  std::sort(dropped_keys_.begin(), dropped_keys_.end());
-  pairs_.erase(gone, pairs_.end());
-  open_pairs_ = static_cast<std::size_t>(
-      std::count_if(pairs_.begin(), pairs_.end(), [](const auto& pair) { return pair.open; }));
+  drop_pairs_of_strays();
   const std::size_t kept = pairs_.size();
   tree_.refit_changed(motion_, changed_);
+  for (std::size_t p = 0; p < boxed_.size(); ++p) {
+    if (tree_.is_marked(static_cast<Index>(p))) boxed_[p] = 0;
+  }
   std::uint64_t tests = 0;
   tree_.for_each_changed_pair([&](Index p, Index q) { tests += test_patches(p, q, false); });
   for (PairColumns<Real>& columns : columns_) keep_near(columns);
   profile[Stage::broad_phase].work += tests;
-  was_active_.assign(legal_.size(), 0);
-  for (const Index i : active_) was_active_[static_cast<std::size_t>(i)] = 1;
-  join_pairs();
   admit_pairs(kept);
+  list_pairs(kept);
   // The rows of pairs that were found again hold as before.
   for (std::size_t k = kept; k < pairs_.size(); ++k) {
     const bool known =
         std::binary_search(dropped_keys_.begin(), dropped_keys_.end(), key_of(pairs_[k]));
     if (!known && !pairs_[k].open) arrived_.push_back(pairs_[k]);
+  }
+}
+
+/// Drops the pairs of all particles that get new paths, and notes which these were.
+template <class Real>
+void ClothGuard<Real>::drop_pairs_of_strays() {
+  dropped_keys_.clear();
+  for (const Index k : strays_) {
+    const auto i = static_cast<std::size_t>(k);
+    if (!is_active_[i]) continue;
+    for_pairs_of(i, [&](GuardedPair<Real>& pair) {
+      pair.gone = true;
+      dropped_keys_.push_back(key_of(pair));
+    });
+    pairs_end_[i] = pairs_begin_[i];
+    later_[i] = kNone;
+  }
+  std::sort(dropped_keys_.begin(), dropped_keys_.end());
+  if (open_pairs_ == 0) return;
+  // Nobody lists the open ones.
+  for (GuardedPair<Real>& pair : pairs_) {
+    if (!pair.open || pair.gone) continue;
+    pair.gone = std::any_of(pair.particle.begin(), pair.particle.end(),
+                            [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; });
+    open_pairs_ -= pair.gone ? 1 : 0;
   }
 }
 
@@ -144,8 +163,9 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
   for_new([&](const GuardedPair<Real>& pair) {
     for (const Index k : pair.particle) {
       const auto i = static_cast<std::size_t>(k);
-      if (was_active_[i]) continue;
+      if (is_active_[i]) continue;
       anchor_[i] = legal_[i];
+      x_rows_[i] = legal_[i];
       room_[i] = std::numeric_limits<Real>::infinity();
     }
   });
@@ -163,7 +183,7 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
     const Real share = one / (one + other);
     for (std::size_t k = 0; k < 4; ++k) {
       const auto i = static_cast<std::size_t>(pair.particle[k]);
-      if (was_active_[i]) continue;
+      if (is_active_[i]) continue;
       room_[i] = std::min(room_[i], room * (k < first_side(pair.kind) ? share : 1 - share));
     }
   });
@@ -181,144 +201,22 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
 /// Velocity of a predicted path, which has to hold at least for the coming step [m/s].
 template <class Real>
 Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t i, Real dt) const {
-  const Vec3<Real> now = step_[i] / dt, v = steady(now, i);
+  const Vec3<Real> now = step_[i] / dt, v = steady(now, i, dt);
   return (step_[i] - v * dt).squaredNorm() > reach_ * reach_ / 4 ? now : v;
 }
 
-/// What of a velocity is not jitter: the smaller of it and of the mean velocity since the last
-/// collection, by components, and nothing where they disagree.
+/// What of a velocity is not jitter: the smaller of it and of the mean velocity since the path
+/// began, by components, and nothing where they disagree.
 template <class Real>
-Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>& v, std::size_t i) const {
-  if (!collected_ || !(elapsed_ > 0)) return v;
-  const Vec3<Real> mean = (legal_[i] - motion_.start[i]) / elapsed_;
+Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>& v, std::size_t i, Real dt) const {
+  const Real time = elapsed_ - dt - since_[i];
+  if (!collected_ || !(time > 0)) return v;
+  const Vec3<Real> mean = (legal_[i] - from_[i]) / time;
   Vec3<Real> result = Vec3<Real>::Zero();
   for (int k = 0; k < 3; ++k) {
     if (v[k] * mean[k] > 0) result[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
   }
   return result;
-}
-
-/// Boxes around the features of a patch, once a collection.
-template <class Real>
-void ClothGuard<Real>::box_patch(Index p) {
-  if (boxed_[static_cast<std::size_t>(p)] == collection_) return;
-  boxed_[static_cast<std::size_t>(p)] = collection_;
-  const auto box_of = [&](const auto& particles) {
-    Aabb<Real> box;
-    for (const Index i : particles) {
-      box.add(motion_.start[static_cast<std::size_t>(i)]);
-      box.add(motion_.end[static_cast<std::size_t>(i)]);
-    }
-    return box.grown(motion_.radius);
-  };
-  const auto& patch = tree_.patch(p);
-  for (const Index i : patch.vertices)
-    vertex_boxes_[static_cast<std::size_t>(i)] = box_of(std::array<Index, 1>{i});
-  for (const Index e : patch.edges)
-    edge_boxes_[static_cast<std::size_t>(e)] = box_of(edges_[static_cast<std::size_t>(e)]);
-  for (const Index t : patch.triangles)
-    triangle_boxes_[static_cast<std::size_t>(t)] = box_of(triangles_[static_cast<std::size_t>(t)]);
-}
-
-/// Tests the features of two patches against each other.
-/// @param all  or only pairs that have a changed particle
-template <class Real>
-std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
-  box_patch(p);
-  box_patch(q);
-  const auto& first = tree_.patch(p);
-  const auto& second = tree_.patch(q);
-  const auto vertex_changed = [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; };
-  const auto any_changed = [&](const auto& particles) {
-    return std::any_of(particles.begin(), particles.end(), vertex_changed);
-  };
-  const auto edge_changed = [&](Index e) {
-    return any_changed(edges_[static_cast<std::size_t>(e)]);
-  };
-  const auto triangle_changed = [&](Index t) {
-    return any_changed(triangles_[static_cast<std::size_t>(t)]);
-  };
-  // The changed ones first; where the other patch has nothing changed these alone matter.
-  const auto pick = [&](const std::vector<Index>& from, const std::vector<Aabb<Real>>& boxes,
-                        const Aabb<Real>& box, bool others, auto&& is_changed, NearFeatures& into) {
-    into.list.clear();
-    into.rest.clear();
-    for (const Index f : from) {
-      if (!boxes[static_cast<std::size_t>(f)].overlaps(box)) continue;
-      if (all || is_changed(f))
-        into.list.push_back(f);
-      else if (others)
-        into.rest.push_back(f);
-    }
-    into.changed = into.list.size();
-    into.list.insert(into.list.end(), into.rest.begin(), into.rest.end());
-  };
-  const bool first_rest = all || tree_.is_marked(q), second_rest = all || tree_.is_marked(p);
-  auto& [vertices_a, edges_a, triangles_a, vertices_b, edges_b, triangles_b] = near_;
-  pick(first.vertices, vertex_boxes_, tree_.box(q), first_rest, vertex_changed, vertices_a);
-  pick(first.edges, edge_boxes_, tree_.box(q), first_rest, edge_changed, edges_a);
-  pick(first.triangles, triangle_boxes_, tree_.box(q), first_rest, triangle_changed, triangles_a);
-  pick(second.vertices, vertex_boxes_, tree_.box(p), second_rest, vertex_changed, vertices_b);
-  pick(second.edges, edge_boxes_, tree_.box(p), second_rest, edge_changed, edges_b);
-  pick(second.triangles, triangle_boxes_, tree_.box(p), second_rest, triangle_changed, triangles_b);
-  std::uint64_t tests = 0;
-  // Of each pair at least one has changed.
-  const auto for_pairs = [&](const NearFeatures& a, const std::vector<Aabb<Real>>& boxes_a,
-                             const NearFeatures& b, const std::vector<Aabb<Real>>& boxes_b,
-                             auto&& visit) {
-    for (std::size_t m = 0; m < a.list.size(); ++m) {
-      const Aabb<Real>& box = boxes_a[static_cast<std::size_t>(a.list[m])];
-      const std::size_t end = m < a.changed ? b.list.size() : b.changed;
-      for (std::size_t n = 0; n < end; ++n) {
-        if (box.overlaps(boxes_b[static_cast<std::size_t>(b.list[n])])) visit(a.list[m], b.list[n]);
-      }
-      tests += end;
-    }
-  };
-  const auto test_vertex = [&](Index v, Index t) {
-    const Triangle& c = triangles_[static_cast<std::size_t>(t)];
-    test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
-  };
-  for_pairs(vertices_a, vertex_boxes_, triangles_b, triangle_boxes_, test_vertex);
-  if (p != q) for_pairs(vertices_b, vertex_boxes_, triangles_a, triangle_boxes_, test_vertex);
-  for_pairs(edges_a, edge_boxes_, edges_b, edge_boxes_, [&](Index e, Index f) {
-    if (p == q && f <= e) return;
-    const Edge &c = edges_[static_cast<std::size_t>(std::min(e, f))],
-               &d = edges_[static_cast<std::size_t>(std::max(e, f))];
-    test_pair(PairKind::edge_edge, std::min(e, f), std::max(e, f), {c[0], c[1], d[0], d[1]});
-  });
-  return tests;
-}
-
-/// Puts a pair among those that are to be tested.
-template <class Real>
-void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
-                                 const std::array<Index, 4>& particle) {
-  if (share_particle(particle, kind)) return;
-  PairColumns<Real>& columns = columns_of(kind);
-  columns.add(a, b, particle);
-  if (columns.size() >= kPairsAtOnce) keep_near(columns);
-}
-
-/// Keeps pairs unless one axis separates the balls of their particles at both ends of the horizon,
-/// and thereby all along.
-template <class Real>
-void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
-  separate_pairs(motion_.start, motion_.end, columns);
-  const Real apart = 2 * motion_.radius;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (columns.gap[k] > apart && columns.end_gap[k] > apart) continue;
-    GuardedPair<Real> pair;
-    pair.kind = columns.kind;
-    for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
-    pair.a = columns.a[k];
-    pair.b = columns.b[k];
-    pair.bound = columns.separation(k, motion_.start).gap;
-    pair.open = !(pair.bound > 0);
-    open_pairs_ += pair.open ? 1 : 0;
-    pairs_.push_back(pair);
-  }
-  columns.clear();
 }
 
 /// Lists the pairs of each particle.
@@ -343,8 +241,28 @@ void ClothGuard<Real>::join_pairs() {
       pairs_of_[static_cast<std::size_t>(--pairs_begin_[static_cast<std::size_t>(i) + 1])] =
           static_cast<Index>(k);
   }
+  pairs_end_.resize(n);
   for (std::size_t i = 0; i < n; ++i) pairs_begin_[i] = pairs_begin_[i + 1];
   pairs_begin_[n] = static_cast<Index>(pairs_of_.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    pairs_end_[i] = pairs_begin_[i + 1];
+    is_active_[i] = pairs_end_[i] > pairs_begin_[i] ? 1 : 0;
+  }
+  later_.assign(n, kNone);
+}
+
+/// Lists later pairs with their particles.
+template <class Real>
+void ClothGuard<Real>::list_pairs(std::size_t first) {
+  for (std::size_t k = first; k < pairs_.size(); ++k) {
+    GuardedPair<Real>& pair = pairs_[k];
+    if (pair.open) continue;
+    for (std::size_t m = 0; m < 4; ++m) {
+      const auto i = static_cast<std::size_t>(pair.particle[m]);
+      pair.next[m] = std::exchange(later_[i], static_cast<Index>(4 * k + m));
+      if (!std::exchange(is_active_[i], 1)) active_.push_back(pair.particle[m]);
+    }
+  }
 }
 
 /// Shares the gap of each pair by the speeds of its sides.
@@ -355,7 +273,7 @@ void ClothGuard<Real>::share_all_gaps() {
     room_[i] = std::numeric_limits<Real>::infinity();
   }
   for (const GuardedPair<Real>& pair : pairs_) {
-    if (pair.open) continue;
+    if (pair.open || pair.gone) continue;
     const Real room = std::max(Real(0), pair.bound - smallest_gap_);
     const auto [first, second] = speeds(pair);
     const Real share = first / (first + second);
@@ -367,17 +285,17 @@ void ClothGuard<Real>::share_all_gaps() {
   dirty_.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template void ClothGuard<Real>::collect(Real, Profile&);                                        \
-  template void ClothGuard<Real>::box_patch(Index);                                               \
-  template std::uint64_t ClothGuard<Real>::test_patches(Index, Index, bool);                      \
-  template void ClothGuard<Real>::collect_strays(Real, Profile&);                                 \
-  template void ClothGuard<Real>::admit_pairs(std::size_t);                                       \
-  template Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;                   \
-  template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&); \
-  template void ClothGuard<Real>::keep_near(PairColumns<Real>&);                                  \
-  template Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>&, std::size_t) const;             \
-  template void ClothGuard<Real>::join_pairs();                                                   \
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template void ClothGuard<Real>::collect(Real, Profile&);                                  \
+  template void ClothGuard<Real>::collect_strays(Real, Profile&);                           \
+  template void ClothGuard<Real>::admit_pairs(std::size_t);                                 \
+  template Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;             \
+  template Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>&, std::size_t, Real) const; \
+  template void ClothGuard<Real>::drop_pairs_of_strays();                                   \
+  template void ClothGuard<Real>::list_pairs(std::size_t);                                  \
+  template Vec3<Real> ClothGuard<Real>::on_path(std::size_t, Real) const;                   \
+  template void ClothGuard<Real>::predict(Real);                                            \
+  template void ClothGuard<Real>::join_pairs();                                             \
   template void ClothGuard<Real>::share_all_gaps();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -46,7 +46,7 @@ void ClothGuard<Real>::find_strays() {
   bool left = false;
   strays_.clear();
   for (std::size_t i = 0; i < step_.size(); ++i) {
-    const Vec3<Real> off = legal_[i] + step_[i] - (motion_.start[i] + velocity_[i] * elapsed_);
+    const Vec3<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_);
     sum += off;
     const Real off2 = (off - off_path_).squaredNorm();
     if (off2 <= soon) continue;
@@ -171,7 +171,7 @@ void ClothGuard<Real>::anchor_all() {
     anchor_[i] = legal_[i];
   }
   for (GuardedPair<Real>& pair : pairs_) {
-    if (!pair.open) measure(pair);
+    if (!pair.open && !pair.gone) measure(pair);
   }
   share_all_gaps();
 }

@@ -61,7 +61,7 @@ void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profil
   row_particles_.clear();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const GuardedPair<Real>& pair = pairs_[k];
-    if (!pair.open && !is_beyond(pair))
+    if (!pair.open && !pair.gone && !is_beyond(pair))
       columns_of(pair.kind).add(static_cast<Index>(k), 0, pair.particle);
   }
   for (PairColumns<Real>& columns : columns_) {
@@ -99,11 +99,8 @@ template <class Real>
 void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::narrow_phase, arrived_.size());
   for (const GuardedPair<Real>& pair : arrived_) {
-    for (const Index k : pair.particle) {
-      const auto i = static_cast<std::size_t>(k);
-      if (!was_active_[i]) x_rows_[i] = state.x[i];
-      quad_x_[i] = to_quad(state.x[i]);
-    }
+    for (const Index i : pair.particle)
+      quad_x_[static_cast<std::size_t>(i)] = to_quad(state.x[static_cast<std::size_t>(i)]);
     const std::size_t before = rows_.size();
     add_row(state, pair, separate_pair(pair.kind, points(pair, state.x)));
     if (rows_.size() > before) busy_rows_.push_back(static_cast<Index>(before));

@@ -190,26 +190,23 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
 }
 
 template <class Real>
-void PatchTree<Real>::fit_boxes(const PredictedMotion<Real>& motion) {
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    node.box = {};
-    if (node.patch == kNone) {
-      node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
-      node.box.add(nodes_[static_cast<std::size_t>(node.right)].box);
-      continue;
-    }
-    for (const Index i : patches_[static_cast<std::size_t>(node.patch)].particles) {
-      node.box.add(motion.start[static_cast<std::size_t>(i)]);
-      node.box.add(motion.end[static_cast<std::size_t>(i)]);
-    }
-    node.box = node.box.grown(motion.radius);
+void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) const {
+  node.box = {};
+  if (node.patch == kNone) {
+    node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
+    node.box.add(nodes_[static_cast<std::size_t>(node.right)].box);
+    return;
   }
+  for (const Index i : patches_[static_cast<std::size_t>(node.patch)].particles) {
+    node.box.add(motion.start[static_cast<std::size_t>(i)]);
+    node.box.add(motion.end[static_cast<std::size_t>(i)]);
+  }
+  node.box = node.box.grown(motion.radius);
 }
 
 template <class Real>
 void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
-  fit_boxes(motion);
+  for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
   for (Node& node : nodes_) node.spread = {};
   if (!cull || nodes_.empty()) return;
   measure_tangents(motion.start, tangents_);
@@ -220,17 +217,17 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
 template <class Real>
 void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
                                     const std::vector<char>& changed) {
-  fit_boxes(motion);
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.patch == kNone) {
       node.marked = nodes_[static_cast<std::size_t>(node.left)].marked ||
                     nodes_[static_cast<std::size_t>(node.right)].marked;
-      continue;
+    } else {
+      const auto& particles = patches_[static_cast<std::size_t>(node.patch)].particles;
+      node.marked = std::any_of(particles.begin(), particles.end(),
+                                [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
     }
-    const auto& particles = patches_[static_cast<std::size_t>(node.patch)].particles;
-    node.marked = std::any_of(particles.begin(), particles.end(),
-                              [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+    if (node.marked) fit_box(node, motion);
   }
   if (nodes_.empty()) return;
   sum_changed(changed);

@@ -34,7 +34,7 @@ class PatchTree {
   void refit(const PredictedMotion<Real>& motion, bool cull);
 
   /// The same for a motion that, but for some particles, is the rest of the one before; marks the
-  /// patches that have one of these. Rectangles without them are not looked at again.
+  /// patches that have one of these. Boxes and rectangles without them stay as they are.
   /// @param changed  of each particle one number, not 0 if its motion changed
   void refit_changed(const PredictedMotion<Real>& motion, const std::vector<char>& changed);
 
@@ -106,7 +106,7 @@ class PatchTree {
 
   void measure_tangents(const Vec3Array<Real>& x,
                         std::vector<std::vector<Tangents>>& tangents) const;
-  void fit_boxes(const PredictedMotion<Real>& motion);
+  void fit_box(Node& node, const PredictedMotion<Real>& motion) const;
   void sum_changed(const std::vector<char>& changed);
   bool has_changed(Index part, const CellRange& cells) const;
   void mark_spread(Index node, Real radius, bool only_changed);
