@@ -15,11 +15,11 @@ constexpr double kRowMargin = 0.1;
 
 /// Rows are made anew after this time [s], or when a particle moved by this part of the thickness,
 /// which is looked at every so many steps.
-constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.2;
+constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5;
 constexpr int kStepsBetweenMotions = 4;
 
 /// No row is made for a gap beyond this part of the thickness.
-constexpr double kRowReach = 1 + kRowMotion + kRowMargin;
+constexpr double kRowReach = 1.3;
 
 /// Edges keep less than the thickness, so that particles and triangles respond first.
 constexpr double kEdgeRadius = 0.85;
