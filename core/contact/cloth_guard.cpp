@@ -41,7 +41,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (Vec3Array<Real>* array :
        {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_, &anchor_, &x_rows_})
     array->assign(n, Vec3<Real>::Zero());
-  for (QuadArray<Real>* array : {&quad_x_, &quad_v_, &extra_}) array->assign(n, {});
+  for (QuadArray<Real>* array : {&quad_x_, &quad_v_, &extra_, &start_, &end_}) array->assign(n, {});
   in_rows_.assign(n, 0);
   is_active_.assign(n, 0);
   for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));

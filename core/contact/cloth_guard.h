@@ -201,6 +201,7 @@ class ClothGuard {
   // Collection.
   bool collected_ = false;
   PredictedMotion<Real> motion_;              ///< less the common motion
+  QuadArray<Real> start_, end_;               ///< the same, while pairs are separated [m]
   Vec3Array<Real> from_;                      ///< where each one's predicted path begins [m]
   std::vector<Real> since_;                   ///< and when, after all pairs were collected [s]
   Vec3Array<Real> velocity_;                  ///< along the predicted paths [m/s]

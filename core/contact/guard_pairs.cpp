@@ -85,6 +85,8 @@ void ClothGuard<Real>::predict(Real past) {
   for (std::size_t i = 0; i < legal_.size(); ++i) {
     motion_.start[i] = on_path(i, past) - gone;
     motion_.end[i] = on_path(i, horizon_) - common;
+    start_[i] = to_quad(motion_.start[i]);
+    end_[i] = to_quad(motion_.end[i]);
   }
 }
 
@@ -171,10 +173,11 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
   });
   for (std::size_t k = first; k < pairs_.size(); ++k)
     columns_of(pairs_[k].kind).add(static_cast<Index>(k), 0, pairs_[k].particle);
+  for (std::size_t i = 0; i < anchor_.size(); ++i) start_[i] = to_quad(anchor_[i]);
   for (PairColumns<Real>& columns : columns_) {
-    separate_pairs(anchor_, anchor_, columns);
+    separate_pairs(start_, start_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, start_).gap;
     columns.clear();
   }
   for_new([&](GuardedPair<Real>& pair) {

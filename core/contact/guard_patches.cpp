@@ -123,7 +123,7 @@ void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
 /// and thereby all along.
 template <class Real>
 void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
-  separate_pairs(motion_.start, motion_.end, columns);
+  separate_pairs(start_, end_, columns);
   const Real apart = 2 * motion_.radius;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns.gap[k] > apart && columns.end_gap[k] > apart) continue;
@@ -132,7 +132,7 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
     for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
     pair.a = columns.a[k];
     pair.b = columns.b[k];
-    pair.bound = columns.separation(k, motion_.start).gap;
+    pair.bound = columns.separation(k, start_).gap;
     pair.open = !(pair.bound > 0);
     open_pairs_ += pair.open ? 1 : 0;
     pairs_.push_back(pair);

@@ -65,11 +65,11 @@ void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profil
       columns_of(pair.kind).add(static_cast<Index>(k), 0, pair.particle);
   }
   for (PairColumns<Real>& columns : columns_) {
-    separate_pairs(state.x, state.x, columns);
+    separate_pairs(quad_x_, quad_x_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(columns.a[k])];
       if (!(columns.gap[k] > thickest_ * Real(kRowReach)))
-        add_row(state, pair, columns.separation(k, state.x));
+        add_row(state, pair, columns.separation(k, quad_x_));
     }
     columns.clear();
   }

@@ -18,21 +18,42 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Numbers of where the positions of particles begin: three a particle.
+/// Numbers of where the quads of particles begin: four a particle.
 HWY_INLINE auto places_of(hn::CappedTag<float, kPairPadding> d, const Index* particles) {
   const hn::RebindToSigned<decltype(d)> integers;
-  const auto i = hn::LoadU(integers, particles);
-  return hn::Add(hn::Add(i, i), i);
+  return hn::ShiftLeft<2>(hn::LoadU(integers, particles));
 }
 HWY_INLINE auto places_of(hn::CappedTag<double, kPairPadding> d, const Index* particles) {
   const hn::RebindToSigned<decltype(d)> integers;
   const hn::Rebind<Index, decltype(d)> narrow;
-  const auto i = hn::PromoteTo(integers, hn::LoadU(narrow, particles));
-  return hn::Add(hn::Add(i, i), i);
+  return hn::ShiftLeft<2>(hn::PromoteTo(integers, hn::LoadU(narrow, particles)));
 }
 
-template <class D, class Places, class Real = hn::TFromD<D>>
-HWY_INLINE Triple<hn::Vec<D>> gather(D d, const Real* numbers, Places places) {
+/// Positions of as many particles as there are lanes.
+/// @param numbers    quads
+/// @param particles  their numbers
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> gather(D d, const Real* numbers, const Index* particles) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (sizeof(Real) == 4 && hn::MaxLanes(d) == 8) {
+    // Whole quads, transposed: gathers of single numbers take several times as long.
+    const hn::Half<D> half;
+    const hn::Repartition<double, D> wide;
+    const auto two = [&](std::size_t k) HWY_ATTR {
+      return hn::Combine(d, hn::Load(half, numbers + 4 * particles[k + 4]),
+                         hn::Load(half, numbers + 4 * particles[k]));
+    };
+    const auto p0 = two(0), p1 = two(1), p2 = two(2), p3 = two(3);
+    const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
+               xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
+               z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
+               z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
+    return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
+            hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
+            hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+  }
+#endif
+  const auto places = places_of(d, particles);
   return {hn::GatherIndex(d, numbers, places), hn::GatherIndex(d, numbers + 1, places),
           hn::GatherIndex(d, numbers + 2, places)};
 }
@@ -129,13 +150,9 @@ HWY_INLINE void separate(const Real* x, const Real* end, PairColumns<Real>& pair
   using V = hn::Vec<decltype(d)>;
   const V zero = hn::Zero(d);
   for (std::size_t k = 0; k < pairs.size(); k += hn::Lanes(d)) {
-    const auto first = places_of(d, pairs.particle[0].data() + k),
-               second = places_of(d, pairs.particle[1].data() + k),
-               third = places_of(d, pairs.particle[2].data() + k),
-               fourth = places_of(d, pairs.particle[3].data() + k);
-    const Triple<V> a = gather(d, x, first);
-    const Triple<V> b = gather(d, x, second) - a, c = gather(d, x, third) - a,
-                    e = gather(d, x, fourth) - a;
+    const auto at = [&](const Real* quads, std::size_t side)
+                        HWY_ATTR { return gather(d, quads, pairs.particle[side].data() + k); };
+    const Triple<V> a = at(x, 0), b = at(x, 1) - a, c = at(x, 2) - a, e = at(x, 3) - a;
     const Apart<V> apart =
         pairs.kind == PairKind::vertex_triangle ? point_apart(d, b, c, e) : edges_apart(d, b, c, e);
     const V distance = hn::Sqrt(dot(apart.away, apart.away));
@@ -145,10 +162,11 @@ HWY_INLINE void separate(const Real* x, const Real* end, PairColumns<Real>& pair
     const V none = hn::Set(d, -std::numeric_limits<Real>::infinity());
     hn::StoreU(hn::IfThenElse(clear, gap_of(pairs.kind, b, c, e, n, zero), none), d,
                pairs.gap.data() + k);
-    const Triple<V> ea = gather(d, end, first);
-    hn::StoreU(gap_of(pairs.kind, gather(d, end, second) - ea, gather(d, end, third) - ea,
-                      gather(d, end, fourth) - ea, n, zero),
-               d, pairs.end_gap.data() + k);
+    if (end != x) {
+      const Triple<V> ea = at(end, 0);
+      hn::StoreU(gap_of(pairs.kind, at(end, 1) - ea, at(end, 2) - ea, at(end, 3) - ea, n, zero), d,
+                 pairs.end_gap.data() + k);
+    }
     hn::StoreU(n.x, d, pairs.normal[0].data() + k);
     hn::StoreU(n.y, d, pairs.normal[1].data() + k);
     hn::StoreU(n.z, d, pairs.normal[2].data() + k);

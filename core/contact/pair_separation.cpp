@@ -26,6 +26,11 @@ void pad(PairColumns<Real>& pairs) {
     columns->resize(size);
 }
 
+template <class Real>
+const Real* numbers_of(const QuadArray<Real>& quads) {
+  return reinterpret_cast<const Real*>(quads.data());
+}
+
 }  // namespace
 
 template <class Real>
@@ -43,10 +48,11 @@ void PairColumns<Real>::add(Index first, Index second, const std::array<Index, 4
 }
 
 template <class Real>
-PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const Vec3Array<Real>& x) const {
+PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const QuadArray<Real>& x) const {
   if (!(gap[k] > static_cast<Real>(kCloseGap))) {
     PairPoints<Real> points;
-    for (std::size_t n = 0; n < 4; ++n) points[n] = x[static_cast<std::size_t>(particle[n][k])];
+    for (std::size_t n = 0; n < 4; ++n)
+      points[n] = to_vector(x[static_cast<std::size_t>(particle[n][k])]);
     return separate_pair(kind, points);
   }
   PairSeparation<Real> s;
@@ -65,15 +71,15 @@ PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const Vec3Arra
 HWY_EXPORT(separate_f32);
 HWY_EXPORT(separate_f64);
 
-void separate_pairs(const Vec3Array<float>& x, const Vec3Array<float>& end,
+void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
                     PairColumns<float>& pairs) {
   pad(pairs);
-  HWY_DYNAMIC_DISPATCH(separate_f32)(x.data()->data(), end.data()->data(), pairs);
+  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs);
 }
-void separate_pairs(const Vec3Array<double>& x, const Vec3Array<double>& end,
+void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
                     PairColumns<double>& pairs) {
   pad(pairs);
-  HWY_DYNAMIC_DISPATCH(separate_f64)(x.data()->data(), end.data()->data(), pairs);
+  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs);
 }
 
 template struct PairColumns<float>;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/contact/feature_pair.h"
+#include "core/math/quad.h"
 #include "core/types.h"
 
 namespace weft {
@@ -30,15 +31,15 @@ struct PairColumns {
   void add(Index first, Index second, const std::array<Index, 4>& particles);
   /// All that is known of a pair; exact where it is near.
   /// @param x  positions that the columns were separated with [m]
-  PairSeparation<Real> separation(std::size_t k, const Vec3Array<Real>& x) const;
+  PairSeparation<Real> separation(std::size_t k, const QuadArray<Real>& x) const;
 };
 
 /// Fills the columns from `gap` on.
 /// @param x    positions [m]
-/// @param end  positions for `end_gap`; may be x
-void separate_pairs(const Vec3Array<float>& x, const Vec3Array<float>& end,
+/// @param end  positions for `end_gap`; if it is x, that column is left as it is
+void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
                     PairColumns<float>& pairs);
-void separate_pairs(const Vec3Array<double>& x, const Vec3Array<double>& end,
+void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
                     PairColumns<double>& pairs);
 
 }  // namespace weft

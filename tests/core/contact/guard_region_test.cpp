@@ -112,7 +112,7 @@ void check_balls(unsigned seed) {
 /// Many awkward pairs in one array of positions, four a pair, and where they are a little later.
 template <class Real>
 struct PairCloud {
-  Vec3Array<Real> x, end;
+  QuadArray<Real> x, end;
   PairColumns<Real> columns;
 
   PairCloud(PairKind kind, std::size_t count, Random& random) {
@@ -120,15 +120,16 @@ struct PairCloud {
     for (std::size_t n = 0; n < count; ++n) {
       const auto first = static_cast<Index>(x.size());
       for (const Vec3<Real>& p : awkward_pair<Real>(kind, static_cast<int>(n % 6), random)) {
-        x.push_back(p);
-        end.push_back(p + random.vector(0.002).template cast<Real>());
+        x.push_back(to_quad(p));
+        end.push_back(to_quad<Real>(p + random.vector(0.002).template cast<Real>()));
       }
       columns.add(first, 0, {first, first + 1, first + 2, first + 3});
     }
     separate_pairs(x, end, columns);
   }
-  PairPoints<Real> points(const Vec3Array<Real>& from, std::size_t n) const {
-    return {from[4 * n], from[4 * n + 1], from[4 * n + 2], from[4 * n + 3]};
+  PairPoints<Real> points(const QuadArray<Real>& from, std::size_t n) const {
+    return {to_vector(from[4 * n]), to_vector(from[4 * n + 1]), to_vector(from[4 * n + 2]),
+            to_vector(from[4 * n + 3])};
   }
 };
 
