@@ -9,20 +9,20 @@
 namespace weft::test {
 
 /// Four moving points: a vertex and a triangle, or the ends of two edges.
-using Quad = std::array<Vec3d, 4>;
+using FourPoints = std::array<Vec3d, 4>;
 
-inline Quad between(const Quad& from, const Quad& to, double t) {
-  Quad q;
+inline FourPoints between(const FourPoints& from, const FourPoints& to, double t) {
+  FourPoints q;
   for (std::size_t k = 0; k < 4; ++k) q[k] = from[k] + (to[k] - from[k]) * t;
   return q;
 }
 
-inline double volume(const Quad& q) {
+inline double volume(const FourPoints& q) {
   return (q[1] - q[0]).dot((q[2] - q[0]).cross(q[3] - q[0]));
 }
 
 /// Whether the flat quad has its vertex inside its triangle, or its edges crossing.
-inline bool meet_in_plane(bool vertex, const Quad& q) {
+inline bool meet_in_plane(bool vertex, const FourPoints& q) {
   if (vertex) {
     const Vec3d n = (q[2] - q[1]).cross(q[3] - q[1]);
     const double longest =
@@ -44,7 +44,8 @@ inline bool meet_in_plane(bool vertex, const Quad& q) {
 /// in one plane by dense sampling and bisection. Slow, and shares nothing with what it judges. Does
 /// not see those that stay in one plane, or touch and part between two samples, and leaves out
 /// triangles without area and parallel edges, whose place in the plane is rounding.
-inline bool pass_through(bool vertex, const Quad& from, const Quad& to, int samples = 400) {
+inline bool pass_through(bool vertex, const FourPoints& from, const FourPoints& to,
+                         int samples = 400) {
   double before = volume(from), t_before = 0;
   for (int k = 1; k <= samples; ++k) {
     const double t = static_cast<double>(k) / samples, now = volume(between(from, to, t));

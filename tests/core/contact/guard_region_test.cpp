@@ -12,7 +12,7 @@
 // The theorem on regions: whoever stays in his region passes through nothing.
 
 using namespace weft;
-using test::Quad;
+using test::FourPoints;
 using test::Random;
 
 namespace {
@@ -30,7 +30,7 @@ unsigned seed_or(unsigned usual) {
 /// or area, tiny gaps, far from the origin.
 template <class Real>
 PairPoints<Real> awkward_pair(PairKind kind, int kind_of_trouble, Random& random) {
-  Quad q;
+  FourPoints q;
   const double size = kind_of_trouble == 1 ? 1e-3 : 0.02;
   for (Vec3d& p : q) p = random.vector(size);
   const std::size_t middle = first_side(kind);
@@ -65,8 +65,8 @@ PairPoints<Real> awkward_pair(PairKind kind, int kind_of_trouble, Random& random
 }
 
 template <class Real>
-Quad in_double(const PairPoints<Real>& x) {
-  Quad q;
+FourPoints in_double(const PairPoints<Real>& x) {
+  FourPoints q;
   for (std::size_t k = 0; k < 4; ++k) q[k] = x[k].template cast<double>();
   return q;
 }
