@@ -92,7 +92,12 @@ class ClothGuard {
   void settle(ClothState<Real>& state, Real dt, Profile& profile);
 
   const GuardCounts& counts() const { return counts_; }
+  /// Those that are not `gone`: all whose features come nearer than twice the reach while all
+  /// particles go along their predicted paths.
   const std::vector<GuardedPair<Real>>& pairs() const { return pairs_; }
+  /// Where a particle's predicted path is after the last step [m].
+  Vec3<Real> predicted(std::size_t particle) const { return on_path(particle, elapsed_); }
+  Real reach() const { return reach_; }
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
   /// Pairs that were not apart when they were collected.
   std::size_t open_pairs() const { return open_pairs_; }
