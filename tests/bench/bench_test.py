@@ -35,6 +35,22 @@ class Bench(unittest.TestCase):
             self.assertLess(row["self_error"], 1e-7)
             self.assertLess(row["growth_of_1um"], 10)
 
+    def test_runge_kutta_and_extrapolated_leapfrog_are_the_same_reference(self):
+        case = "--scenes", "swing", "--sizes", "16", "--budget", "100"
+        kutta, leapfrog = (measure(*case, "--reference", method)
+                           for method in ("runge-kutta", "extrapolation"))
+        self.assertIn("Runge-Kutta", kutta["references"][0]["how"])
+        self.assertIn("extrapolated", leapfrog["references"][0]["how"])
+        for one, other in zip(kutta["accuracy"], leapfrog["accuracy"], strict=True):
+            for key in ENVELOPE:
+                self.assertAlmostEqual(one[key], other[key], delta=1e-7 + 1e-3 * one[key])
+
+    def test_each_solver_has_at_least_six_settings(self):
+        text = subprocess.run([PROGRAM, "--list-settings"], check=True, capture_output=True, text=True)
+        names = [line.split(" ", 1) for line in text.stdout.splitlines()]
+        for solver in tables.SOLVERS:
+            self.assertGreaterEqual(len({name for kind, name in names if kind == solver}), 6)
+
     def test_every_cell_has_its_columns_and_every_solver_its_settings(self):
         for solver in tables.SOLVERS:
             cells = tables.of_case(self.swing["accuracy"], "swing", "soft", 16, solver)

@@ -23,13 +23,15 @@ struct BenchScene {
   int sample_every;  ///< ticks
   Compared compared;
   bool forces_alone;        ///< no contact and no air: an ordinary differential equation
-  bool all_settings;        ///< or every second one
-  double run_budget;        ///< CPU seconds that one run may take [s]
+  double run_budget;        ///< CPU seconds that one run may take up to 128 particles a side [s]
   double reference_budget;  ///< CPU seconds that the reference may take [s]
   WorldDef (*make)(int n, const FabricDef& fabric);
 };
 
 const std::vector<BenchScene>& bench_scenes();
+
+/// CPU seconds that one run may take [s]: above 128 twice the scene's.
+double run_budget(const BenchScene& scene, int n);
 
 /// A fabric of the report.
 struct BenchFabric {
@@ -46,14 +48,14 @@ WorldDef without_dashpots(WorldDef def);
 
 /// One way to run a solver.
 struct Setting {
-  std::string solver;  ///< verlet, xpbd or relaxation
-  std::string name;    ///< e.g. "x1.5" (of the stable substeps) or "16x4" (substeps x sweeps)
-  double factor = 1;   ///< of verlet's own count of substeps
-  int damping_sweeps = 1;
+  std::string solver;      ///< verlet, xpbd or relaxation
+  std::string name;        ///< e.g. "x1.5" (of the stable substeps) or "16x4" (substeps x sweeps)
+  double factor = 1;       ///< of verlet's own count of substeps
+  int damping_sweeps = 1;  ///< 0: no dashpots
   int substeps = 1, sweeps = 1;
 };
 
-/// All settings, those of one solver together. Short: every second one.
+/// All settings, those of one solver together. Quick: every second one.
 std::vector<Setting> settings(bool quick);
 
 /// Applies a setting.

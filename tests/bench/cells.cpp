@@ -82,7 +82,7 @@ void plan(const CaseResult& result, const Effort& effort, Run& run) {
     return;
   }
   const double seconds = expected_seconds(run.def, scene.ticks);
-  const double budget = scene.run_budget * effort.budget_factor;
+  const double budget = run_budget(scene, result.n) * effort.budget_factor;
   if (seconds > budget) {
     run.cell.reason = text("one run would take %.1f CPU s, more than %.1f", seconds, budget);
     return;
@@ -106,11 +106,11 @@ CaseResult run_case(const BenchScene& scene, const BenchFabric& fabric, int n,
   result.def = scene.make(n, fabric.fabric);
   BenchScene within = scene;
   within.reference_budget *= effort.budget_factor;
-  result.reference = make_reference(within, result.def);
+  result.reference = make_reference(within, result.def, effort.reference);
   World<float> probe(result.def);
   const int stable = probe.step().substeps;
   std::vector<Run> runs;
-  for (const Setting& setting : settings(effort.quick || !scene.all_settings)) {
+  for (const Setting& setting : settings(effort.quick)) {
     Run run;
     run.cell.setting = setting;
     run.def = with_setting(result.def, setting, stable);

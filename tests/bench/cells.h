@@ -38,6 +38,7 @@ struct Effort {
   int timed_runs = 5;
   double timed_seconds = 0.08;  ///< CPU seconds of one timed run where each tick costs the same
   double budget_factor = 1;     ///< of the scenes' budgets
+  ReferenceMethod reference = ReferenceMethod::cheapest_that_fits;
 };
 
 /// Runs all settings of a case, each once against the reference, and then times them in turn.

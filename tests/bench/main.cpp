@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -44,7 +45,8 @@ void measure_accuracy(const Options& options, Tables& tables) {
 int measure(const Options& options) {
   std::filesystem::create_directories(options.out);
   Tables tables(options.out, options.commit);
-  tables.write_machine();
+  const std::string load = load_average();
+  tables.write_machine(load, 0);
   const bool quick = options.effort.quick;
   if (wanted(options.parts, "kernels")) {
     std::cerr << "bench: kernels" << std::endl;
@@ -59,6 +61,7 @@ int measure(const Options& options) {
     tables.write_shaking(measure_shaking(quick));
   }
   if (wanted(options.parts, "accuracy")) measure_accuracy(options, tables);
+  tables.write_machine(load, cpu_seconds());
   return 0;
 }
 
@@ -67,7 +70,9 @@ int measure(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("Measures speed against error of Weft's solvers, in CPU time of one thread");
-  app.add_option("--out", options.out, "directory for the tables")->required();
+  app.add_option("--out", options.out, "directory for the tables");
+  bool list = false;
+  app.add_flag("--list-settings", list, "print all settings of the accuracy, one a line");
   app.add_option("--commit", options.commit, "written into each row");
   app.add_option("--meshes", options.meshes, "directory of installed meshes");
   app.add_option("--parts", options.parts, "kernels, parts, shaking, accuracy; default: all");
@@ -78,9 +83,21 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 99));
   app.add_option("--budget", options.effort.budget_factor, "times the CPU budget of each cell")
       ->check(CLI::Range(0.0, 1e3));
+  const std::map<std::string, ReferenceMethod> methods = {
+      {"cheapest", ReferenceMethod::cheapest_that_fits},
+      {"runge-kutta", ReferenceMethod::runge_kutta},
+      {"extrapolation", ReferenceMethod::extrapolation}};
+  app.add_option("--reference", options.effort.reference, "method of the references")
+      ->transform(CLI::CheckedTransformer(methods));
   app.add_flag("--quick", options.effort.quick, "fewer settings, shorter runs");
   CLI11_PARSE(app, argc, argv);
   try {
+    if (list) {
+      for (const Setting& s : settings(options.effort.quick))
+        std::cout << s.solver << ' ' << s.name << '\n';
+      return 0;
+    }
+    if (options.out.empty()) throw std::runtime_error("--out is missing");
     return measure(options);
   } catch (const std::exception& error) {
     std::cerr << "weft_bench: " << error.what() << std::endl;

@@ -3,86 +3,55 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/forces/grid_pass.h"
+#include "core/world/world.h"
 #include "tests/support/random.h"
 
 namespace weft::bench {
 namespace {
 
-using Numbers = std::vector<double>;
+/// Above so many CPU seconds extrapolation, which takes a quarter of it, is the reference.
+constexpr double kRungeKuttaBudget = 12;
 
-/// The right-hand side x' = v, v' = f(x)/m + g - drag v, three numbers a particle, all 0 where it
-/// is pinned.
-class Motion {
- public:
-  explicit Motion(World<double>& world)
-      : drag_(world.environment().drag), position_(world.state().x),
-        velocity_(world.state().x.size(), Vec3d::Zero()), force_(position_.size()) {
-    grid_.prepare(world.model().parts[0]);
-    if (!grid_.fits()) throw std::runtime_error("the reference wants a regular grid");
-    for (const double w : world.state().inverse_mass) {
-      for (int k = 0; k < 3; ++k) {
-        inverse_mass_.push_back(w);
-        gravity_.push_back(w > 0 ? world.environment().gravity[k] : 0);
-      }
-    }
+/// What a refinement is made of: runs of one integrator, and how they become a path.
+struct Method {
+  const BenchScene& scene;
+  const WorldDef& def;
+  bool runge_kutta = false, extrapolated = false;
+  int stable = 0;  ///< substeps a tick of the coarsest level
+  double seconds = 0;
+
+  Path run(int ticks, int substeps, const Vec3Array<double>& offset) {
+    const double start = cpu_seconds();
+    Path path = runge_kutta ? run_runge_kutta(def, ticks, scene.sample_every, substeps, offset)
+                            : run_world(def, ticks, scene.sample_every, substeps, offset);
+    seconds += cpu_seconds() - start;
+    return path;
   }
 
-  std::size_t size() const { return gravity_.size(); }
+  int substeps(std::size_t level) const {
+    static constexpr double kFactors[] = {1, 1.5, 2, 3, 4};
+    const double factor = extrapolated ? kFactors[level] : std::exp2(static_cast<double>(level));
+    return static_cast<int>(std::ceil(factor * stable));
+  }
+  std::size_t most_levels() const { return extrapolated ? 5 : 8; }
 
-  /// Without dashpots the springs do not ask for the velocities.
-  void accelerations(const Numbers& x, const Numbers& v, Numbers& a) {
-    std::copy(x.begin(), x.end(), position_.front().data());
-    grid_.load(position_, velocity_);
-    grid_.compute_internal_forces(force_);
-    const double* f = force_.front().data();
-    for (std::size_t i = 0; i < a.size(); ++i)
-      a[i] = f[i] * inverse_mass_[i] + (gravity_[i] - drag_ * v[i]);
+  /// CPU seconds of the least that makes a reference: the coarsest level, the perturbed run and two
+  /// refinements, or one if substeps are doubled. Looked at in two ticks.
+  double expected() {
+    seconds = 0;
+    run(2, stable, {});
+    const double one = seconds * scene.ticks / 2;
+    seconds = 0;
+    return one * (extrapolated ? 5.5 : 4);
   }
 
- private:
-  double drag_;
-  GridPass<double> grid_;
-  Vec3Array<double> position_, velocity_, force_;
-  Numbers inverse_mass_, gravity_;
+  std::string name(int substeps) const {
+    const std::string count = std::to_string(substeps) + " substeps a tick";
+    if (runge_kutta) return "Runge-Kutta 4, " + count;
+    return (extrapolated ? "verlet, double, extrapolated from at most " : "verlet, double, ") +
+           count;
+  }
 };
-
-struct Stages {
-  Numbers x, v, a, x_sum, v_sum;
-  explicit Stages(std::size_t n) : x(n), v(n), a(n), x_sum(n), v_sum(n) {}
-};
-
-/// One step h of the classical method: slopes at t, t + h/2 twice and t + h, weighted 1 2 2 1.
-void step_runge_kutta(Motion& motion, double h, Numbers& x, Numbers& v, Stages& s) {
-  static constexpr double kWeight[] = {1, 2, 2, 1}, kNext[] = {0.5, 0.5, 1, 0};
-  s.x = x;
-  s.v = v;
-  std::fill(s.x_sum.begin(), s.x_sum.end(), 0.0);
-  std::fill(s.v_sum.begin(), s.v_sum.end(), 0.0);
-  const std::size_t n = x.size();
-  for (int k = 0; k < 4; ++k) {
-    motion.accelerations(s.x, s.v, s.a);
-    const double weight = kWeight[k], next = kNext[k] * h;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double slope = s.v[i];
-      s.x_sum[i] += weight * slope;
-      s.v_sum[i] += weight * s.a[i];
-      s.x[i] = x[i] + next * slope;
-      s.v[i] = v[i] + next * s.a[i];
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] += h / 6 * s.x_sum[i];
-    v[i] += h / 6 * s.v_sum[i];
-  }
-}
-
-void displace(World<double>& world, const Vec3Array<double>& offset) {
-  for (std::size_t i = 0; i < offset.size(); ++i) {
-    if (world.state().inverse_mass[i] > 0) world.state().x[i] += offset[i];
-  }
-  world.accept_state();
-}
 
 /// The last sample up to which the perturbation has grown less than it may.
 std::size_t last_before_growth(const Path& path, const Path& perturbed, std::size_t first,
@@ -109,93 +78,74 @@ Vec3Array<double> random_offset(std::size_t n) {
   return offset;
 }
 
+/// Refines from the coarsest level on.
+void refine(Method& method, Path coarsest, Reference& reference) {
+  std::vector<Level> levels;
+  levels.push_back({method.stable, coarsest});
+  reference.path = std::move(coarsest);
+  const double unit = method.seconds / 2 / method.stable;  // a substep a tick, of two runs
+  for (std::size_t level = 1; level < method.most_levels(); ++level) {
+    const int substeps = method.substeps(level);
+    const bool least = level <= (method.extrapolated ? 2u : 1u);
+    if (!least && method.seconds + unit * substeps > method.scene.reference_budget) break;
+    levels.push_back({substeps, method.run(method.scene.ticks, substeps, {})});
+    Path finer = method.extrapolated ? extrapolate(levels, 0) : levels.back().path;
+    // An extrapolation is compared with the one that lacks the coarsest level.
+    const Path other = method.extrapolated ? extrapolate(levels, 1) : reference.path;
+    reference.self_error = position_error(other, finer, reference.first, reference.last);
+    reference.path = std::move(finer);
+    if (!method.extrapolated) levels.erase(levels.begin());
+    reference.how = method.name(substeps);
+    if (reference.self_error < kSelfErrorWanted && !(method.extrapolated && level < 2)) break;
+  }
+}
+
+/// Takes the first method that fits the budget; if none does, says so.
+/// @returns whether there is one
+bool choose(Method& method, ReferenceMethod wanted, Reference& reference) {
+  World<double> probe(method.def);
+  const int leapfrog = probe.step().substeps;
+  const auto fits = [&](bool runge_kutta, bool extrapolated) {
+    method.runge_kutta = runge_kutta;
+    method.extrapolated = extrapolated;
+    // Leapfrog is stable up to dt = 2/omega, Runge-Kutta up to 2.78/omega.
+    method.stable = runge_kutta ? (3 * leapfrog + 3) / 4 : leapfrog;
+    const double expected = method.expected();
+    const double budget = runge_kutta ? std::min(kRungeKuttaBudget, method.scene.reference_budget)
+                                      : method.scene.reference_budget;
+    if (expected <= budget) return true;
+    reference.missing = "its reference would take " + std::to_string(std::lround(expected)) +
+                        " CPU s, more than " +
+                        std::to_string(std::lround(method.scene.reference_budget));
+    return false;
+  };
+  if (!method.scene.forces_alone) return fits(false, false);
+  if (wanted != ReferenceMethod::extrapolation && fits(true, false)) return true;
+  return wanted != ReferenceMethod::runge_kutta && fits(false, true);
+}
+
 }  // namespace
 
-Path run_runge_kutta(const WorldDef& def, int ticks, int sample_every, int substeps,
-                     const Vec3Array<double>& offset) {
-  World<double> world(def);
-  displace(world, offset);
-  Motion motion(world);
-  Stages stages(motion.size());
-  const double* start = world.state().x.front().data();
-  Numbers x(start, start + motion.size()), v(motion.size(), 0);
-  Snapshot now = snapshot(world.state());
-  Path path;
-  path.samples.push_back(now);
-  for (int tick = 1; tick <= ticks; ++tick) {
-    for (int s = 0; s < substeps; ++s)
-      step_runge_kutta(motion, world.tick_seconds() / substeps, x, v, stages);
-    if (tick % sample_every != 0) continue;
-    std::copy(x.begin(), x.end(), now.x.front().data());
-    std::copy(v.begin(), v.end(), now.v.front().data());
-    path.samples.push_back(now);
-  }
-  return path;
-}
-
-Path run_world(WorldDef def, int ticks, int sample_every, int substeps,
-               const Vec3Array<double>& offset) {
-  def.solver.min_substeps = substeps;
-  def.solver.damping_sweeps = 2;
-  World<double> world(def);
-  displace(world, offset);
-  Path path;
-  path.samples.push_back(snapshot(world.state()));
-  for (int tick = 1; tick <= ticks; ++tick) {
-    const TickReport& report = world.step();
-    if (report.divergence) throw std::runtime_error("reference: " + describe(*report.divergence));
-    if (tick % sample_every == 0) path.samples.push_back(snapshot(world.state()));
-  }
-  return path;
-}
-
-Reference make_reference(const BenchScene& scene, const WorldDef& scene_def) {
+Reference make_reference(const BenchScene& scene, const WorldDef& scene_def,
+                         ReferenceMethod wanted) {
   const WorldDef def = without_dashpots(scene_def);
   Reference reference;
-  World<double> probe(def);
-  int substeps = probe.step().substeps;
-  // Leapfrog is stable up to dt = 2/omega, Runge-Kutta up to 2.78/omega.
-  if (scene.forces_alone) substeps = (3 * substeps + 3) / 4;
-  const auto run = [&](int ticks, int count, const Vec3Array<double>& offset) {
-    const double start = cpu_seconds();
-    Path path = scene.forces_alone ? run_runge_kutta(def, ticks, scene.sample_every, count, offset)
-                                   : run_world(def, ticks, scene.sample_every, count, offset);
-    reference.cpu_seconds += cpu_seconds() - start;
-    return path;
-  };
-  const double start = cpu_seconds();
-  run(2, substeps, {});
-  // The first level, the perturbed run and one of twice the substeps.
-  const double expected = 4 * (cpu_seconds() - start) * scene.ticks / 2;
-  if (expected > scene.reference_budget) {
-    reference.missing = "its reference would take " + std::to_string(std::lround(expected)) +
-                        " CPU s, more than " + std::to_string(std::lround(scene.reference_budget));
-    return reference;
-  }
-  reference.cpu_seconds = 0;
-  reference.path = run(scene.ticks, substeps, {});
+  Method method{scene, def};
+  if (!choose(method, wanted, reference)) return reference;
+  reference.missing.clear();
+  Path path = method.run(scene.ticks, method.stable, {});
   const Path perturbed =
-      run(scene.ticks, substeps, random_offset(reference.path.samples.front().x.size()));
-  reference.mean_floor = mean_shape_error(perturbed, reference.path);
-  const std::size_t end = reference.path.samples.size() - 1;
+      method.run(scene.ticks, method.stable, random_offset(path.samples.front().x.size()));
+  reference.mean_floor = mean_shape_error(perturbed, path);
+  const std::size_t end = path.samples.size() - 1;
   reference.first = scene.compared == Compared::at_the_end ? end : 1;
-  reference.last = last_before_growth(reference.path, perturbed, reference.first, reference.growth);
+  reference.last = last_before_growth(path, perturbed, reference.first, reference.growth);
   reference.shortened = reference.last < end;
-  if (reference.last < reference.first) {
+  if (reference.last < reference.first)
     reference.missing = "a perturbation of 1 um has grown more than 10 times at the first sample";
-    return reference;
-  }
-  for (double level_cost = reference.cpu_seconds / 2;;) {
-    substeps *= 2;
-    level_cost *= 2;
-    Path finer = run(scene.ticks, substeps, {});
-    reference.self_error = position_error(reference.path, finer, reference.first, reference.last);
-    reference.path = std::move(finer);
-    if (reference.self_error < kSelfErrorWanted) break;
-    if (reference.cpu_seconds + 2 * level_cost > scene.reference_budget) break;
-  }
-  reference.how = std::string(scene.forces_alone ? "Runge-Kutta 4" : "verlet, double") + ", " +
-                  std::to_string(substeps) + " substeps a tick";
+  else
+    refine(method, std::move(path), reference);
+  reference.cpu_seconds = method.seconds;
   return reference;
 }
 

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "tests/bench/cases.h"
-#include "tests/bench/measures.h"
+#include "tests/bench/integrators.h"
 
 namespace weft::bench {
 
@@ -12,7 +11,7 @@ namespace weft::bench {
 struct Reference {
   Path path;
   std::string how;         ///< integrator and substeps
-  double self_error = 0;   ///< what its last halving changed: position, relative
+  double self_error = 0;   ///< what its last refinement changed: position, relative
   double cpu_seconds = 0;  ///< all runs that it took
   double growth = 0;       ///< of a perturbation of 1 um, over the samples that are compared
   double mean_floor = 0;   ///< by how much the perturbed run's mean shape differs, relative
@@ -25,19 +24,17 @@ inline constexpr double kMostGrowth = 10;      ///< of a perturbation, for a com
 inline constexpr double kPerturbation = 1e-6;  ///< rms [m]
 inline constexpr double kSelfErrorWanted = 1e-8;
 
-/// Halves the substeps of a reference until that changes less than kSelfErrorWanted or the budget
-/// is spent, and follows a perturbed start beside it.
-Reference make_reference(const BenchScene& scene, const WorldDef& def);
+/// Which method a reference is made with.
+enum class ReferenceMethod {
+  cheapest_that_fits,  ///< Runge-Kutta within the budget, or else extrapolation
+  runge_kutta,         ///< fourth order, substeps doubled
+  extrapolation,       ///< leapfrog at 1, 1.5, 2, 3 and 4 times the stable substeps, to the limit
+};
 
-/// Runs a definition with the classical Runge-Kutta method of fourth order: springs, bending,
-/// gravity and drag, in double. The forces are core's.
-/// @param substeps  a tick
-/// @param offset    added to the start of each particle that is not pinned [m]
-Path run_runge_kutta(const WorldDef& def, int ticks, int sample_every, int substeps,
-                     const Vec3Array<double>& offset);
-
-/// Runs World<double> with at least so many substeps.
-Path run_world(WorldDef def, int ticks, int sample_every, int substeps,
-               const Vec3Array<double>& offset);
+/// Refines a reference until that changes less than kSelfErrorWanted or the budget is spent, and
+/// follows a perturbed start beside it. Scenes with contact or air have World<double> with substeps
+/// doubled, whatever the method: they are not smooth.
+Reference make_reference(const BenchScene& scene, const WorldDef& def,
+                         ReferenceMethod method = ReferenceMethod::cheapest_that_fits);
 
 }  // namespace weft::bench

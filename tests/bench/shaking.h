@@ -10,7 +10,7 @@ struct ShakingFigure {
   std::string solver, setting, fabric, insult;
   int n = 0;
   double from_rest = 0;      ///< 5 s later with drag 5/s: rms distance from its own rest, over 1 m
-  double gained_energy = 0;  ///< without drag: most that it had above its start, over m g L + start
+  double gained_energy = 0;  ///< without drag: most above its start, over start minus rest
   int rescues = 0;           ///< ticks that were taken back, in both runs
 };
 

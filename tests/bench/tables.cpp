@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <thread>
 
 #include "core/forces/grid_pass.h"
 
@@ -36,6 +37,14 @@ std::string cpu_features() {
 }
 
 }  // namespace
+
+std::string load_average() {
+  std::ifstream file("/proc/loadavg");
+  std::string minute, five, fifteen;
+  if (!(file >> minute >> five >> fifteen)) return "unknown";
+  return minute + ", " + five + ", " + fifteen + " in 1, 5, 15 minutes, on " +
+         std::to_string(std::thread::hardware_concurrency()) + " processors";
+}
 
 Csv::Csv(const std::string& path, const std::vector<std::string>& columns)
     : file_(path), columns_(columns.size()) {
@@ -83,7 +92,7 @@ Tables::Tables(const std::string& directory, const std::string& commit)
       spatial_(directory + "/spatial.csv",
                {"scene", "fabric", "n", "against", "position", "commit"}) {}
 
-void Tables::write_machine() {
+void Tables::write_machine(const std::string& load_at_start, double cpu_seconds) {
   Csv csv(directory_ + "/machine.csv", {"key", "value"});
   csv.row("commit", commit_);
   csv.row("compiler", std::string("g++ or clang++ ") + __VERSION__);
@@ -96,6 +105,9 @@ void Tables::write_machine() {
   csv.row("features", cpu_features());
   csv.row("kernels", std::string(simd_level()));
   csv.row("clock", "CPU time of the thread");
+  csv.row("load of the machine at the start", load_at_start);
+  csv.row("load of the machine at the end", cpu_seconds > 0 ? load_average() : "the run was cut");
+  csv.row("CPU seconds of all measurements", cpu_seconds);
 }
 
 void Tables::add_case(const CaseResult& result) {
@@ -132,11 +144,13 @@ void Tables::write_kernels(const std::vector<KernelFigure>& figures) {
 }
 
 void Tables::write_parts(const std::vector<PartFigure>& figures) {
-  Csv csv(directory_ + "/parts.csv", {"scene", "solver", "off", "ticks", "cpu_per_second",
-                                      "slowest_second", "moved_m", "same_bits", "runs", "commit"});
+  Csv csv(directory_ + "/parts.csv",
+          {"scene", "solver", "off", "ticks", "cpu_per_second", "slowest_second",
+           "seconds_looked_at", "share_of_solver", "moved_m", "same_bits", "runs", "commit"});
   for (const PartFigure& f : figures)
-    csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.slowest_second, f.moved,
-            f.same_bits ? "yes" : "no", f.runs, commit_);
+    csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.slowest_second,
+            f.seconds_looked_at, f.share_of_solver, f.moved, f.same_bits ? "yes" : "no", f.runs,
+            commit_);
 }
 
 void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {

@@ -35,13 +35,17 @@ class Csv {
   std::size_t columns_;
 };
 
+/// What else runs on the machine, by the kernel's count.
+std::string load_average();
+
 /// The tables of the report, into a directory.
 class Tables {
  public:
   /// @param commit  written into each row
   Tables(const std::string& directory, const std::string& commit);
 
-  void write_machine();
+  /// @param cpu_seconds  of the whole run; 0 before it
+  void write_machine(const std::string& load_at_start, double cpu_seconds);
   void add_case(const CaseResult& result);
   /// @param coarse,fine  the same scene and fabric with N and 2N particles a side
   void add_spatial(const CaseResult& coarse, const CaseResult& fine);
