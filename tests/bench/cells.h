@@ -36,7 +36,7 @@ struct CaseResult {
 struct Effort {
   bool quick = false;  ///< fewer settings
   int timed_runs = 5;
-  double timed_seconds = 0.08;  ///< CPU seconds of one timed run where each tick costs the same
+  double timed_seconds = 0.05;  ///< CPU seconds of one timed run where each tick costs the same
   double budget_factor = 1;     ///< of the scenes' budgets
   ReferenceMethod reference = ReferenceMethod::cheapest_that_fits;
 };
