@@ -97,6 +97,14 @@ double slowest_second(const WorldDef& def, int seconds) {
   return slowest;
 }
 
+/// Median of several, but of one alone where that is far from what matters.
+double median_slowest_second(const WorldDef& def, int seconds, int runs) {
+  std::vector<double> all = {slowest_second(def, seconds)};
+  while (all.front() > 0.7 && static_cast<int>(all.size()) < runs)
+    all.push_back(slowest_second(def, seconds));
+  return median(all);
+}
+
 /// CPU seconds of a scene's second tick.
 double cost_of_tick(const WorldDef& def) {
   World<float> world(def);
@@ -117,13 +125,15 @@ std::vector<PartFigure> measure_parts(bool quick, const std::string& mesh_direct
     if (!info.installed.empty() && !std::filesystem::exists(mesh)) continue;
     const WorldDef def = make_scene(info.name, mesh_directory);
     std::vector<Variant> all = variants(def);
-    const double tick = cost_of_tick(def), budget = quick ? 0.05 : 0.3;
+    const double tick = cost_of_tick(def), budget = quick ? 0.05 : 0.15;
     const int ticks = std::clamp(static_cast<int>(budget / tick), 6, 60);
-    const int seconds = quick || tick * def.tick_rate > 1 ? 1 : 4;
+    const bool own = info.name.rfind("seed-", 0) != 0;
+    const int seconds = quick || !own ? 1 : 4;
     for (int k = 0; k < runs; ++k) {
       for (Variant& variant : all) run(variant, ticks);
     }
-    const double slowest = slowest_second(def, seconds), share = share_of_solver(def, ticks);
+    const double slowest = median_slowest_second(def, seconds, runs),
+                 share = share_of_solver(def, ticks);
     for (const Variant& variant : all) {
       PartFigure f;
       f.scene = info.name;

@@ -63,7 +63,7 @@ def panel(index, cells, scene, fabric, n):
             wrapped.append("")
         wrapped[-1] = (wrapped[-1] + " " + word).strip()
     text = "\\n".join(["not run:"] + wrapped)
-    return lines + [f'set label 1 "{text}" at graph 0.5,0.6 center font ",9"',
+    return lines + [f'set label 1 "{text}" at graph 0.5,0.45 center font ",9"',
                     "plot [0.001:10][1e-4:300] NaN notitle", "unset label 1"]
 
 
@@ -124,7 +124,7 @@ def report_text(data):
            "The reference solves the same springs and masses in double precision, without dashpots: "
            "these belong to verlet, and what they change counts as its error. Forces alone are "
            "integrated by the classical Runge-Kutta method, its substeps doubled, or, where that takes "
-           "too long, by leapfrog at 1, 1.5, 2, 3 and 4 times the stable substeps, extrapolated to "
+           "too long, by leapfrog at 1, 1.25, 1.5, 2 and 3 times the stable substeps, extrapolated to "
            "infinitely many; a test holds that both give the same errors. With contact or air it is "
            "verlet in double with its substeps doubled. This goes on until it changes the positions "
            "by less than 1e-8 or the budget is spent; what the last refinement changed is told. "
