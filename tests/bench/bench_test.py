@@ -89,6 +89,22 @@ class Bench(unittest.TestCase):
             self.assertIn("CPU s, more than", cell["reason"])
         self.assertIn("CPU s, more than", tables.cost_of_accuracy(cells))
 
+    def test_the_verdict_on_an_implicit_solver_follows_the_figures(self):
+        def verdict(slowest, share, cotton):
+            part = {"scene": "sling", "solver": "verlet", "off": "nothing", "cpu_per_second": 0.5,
+                    "slowest_second": slowest, "seconds_looked_at": 4, "share_of_solver": share}
+            cell = {"scene": "swing", "fabric": "cotton", "n": 128, "solver": "verlet",
+                    "setting": "x1", "outcome": "ran", "cpu_per_second": cotton}
+            return tables.need_of_implicit([part], [cell]).splitlines()[0]
+
+        self.assertIn("**No**", verdict(0.9, 1, 0.9))
+        self.assertNotIn("Not in real time", verdict(0.9, 1, 0.9))
+        self.assertIn("does not hold sling (2.5 CPU", verdict(2.5, 0.5, 0.9))
+        self.assertIn("does not hold cotton at 128²", verdict(0.9, 1, 1.1))
+        # What contact costs is no reason for another solver, but is told.
+        self.assertIn("**No**", verdict(2.5, 0.1, 0.9))
+        self.assertIn("sling (2.5 CPU s in its dearest second", verdict(2.5, 0.1, 0.9))
+
     def test_the_same_run_has_the_same_errors(self):
         again = measure("--scenes", "swing", "--sizes", "16", "--budget", "100")["accuracy"]
         for before, now in zip(self.swing["accuracy"], again, strict=True):
