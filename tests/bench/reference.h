@@ -28,7 +28,7 @@ inline constexpr double kSelfErrorWanted = 1e-8;
 enum class ReferenceMethod {
   cheapest_that_fits,  ///< Runge-Kutta within the budget, or else extrapolation
   runge_kutta,         ///< fourth order, substeps doubled
-  extrapolation,       ///< leapfrog at 1, 1.25, 1.5, 2 and 3 times the stable substeps, to the limit
+  extrapolation,       ///< leapfrog at 1 to 3 times the stable substeps, to the limit
 };
 
 /// Refines a reference until that changes less than kSelfErrorWanted or the budget is spent, and
