@@ -56,7 +56,7 @@ def panel(index, cells, scene, fabric, n):
     if curves:
         return lines + ["plot " + ", ".join(curves)]
     case = tables.of_case(cells, scene, fabric, n)
-    reason = tables.why_not(case) if case else "this run was not asked for it"
+    reason = tables.why_not(case) if case else "this run was cut before it, or not asked for it"
     words, wrapped = reason.split(), [""]
     for word in words:
         if len(wrapped[-1]) + len(word) > 34:
