@@ -161,6 +161,7 @@ double Room::step_world() {
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
   frame_wanted_ = true;
   tell_voided();
+  tell_bad_starts();
   if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);

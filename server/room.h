@@ -112,7 +112,8 @@ class Room {
   void take_deferred();
   void finish_advance();
   double step_world();
-  void tell_voided();  // room_queries.cpp
+  void tell_voided();      // room_queries.cpp
+  void tell_bad_starts();  // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
@@ -213,8 +214,9 @@ class Room {
   std::vector<proto::GrabSample> grab_samples_;
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
-  bool measures_forces_ = false;  // the world does
-  std::vector<bool> voided_;      // of each collider, as told
+  bool measures_forces_ = false;         // the world does
+  std::vector<bool> voided_;             // of each collider, as told
+  std::vector<std::string> bad_starts_;  // as told
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -133,6 +134,21 @@ void Room::tell_voided() {
                  " was forced through the cloth: that nothing crosses is no longer promised");
     voided_[k] = voided;
   }
+}
+
+/// Says once what started where nothing can be promised about it, and when all is clear.
+void Room::tell_bad_starts() {
+  std::vector<std::string> found = world_->bad_starts();
+  if (found == bad_starts_) return;
+  for (const std::string& what : found) {
+    if (std::find(bad_starts_.begin(), bad_starts_.end(), what) == bad_starts_.end())
+      notify(proto::NoticeLevel::warning, "guarantee_void",
+             what + ": until it is out, that nothing crosses is not promised there");
+  }
+  if (found.empty())
+    notify(proto::NoticeLevel::info, "guarantee_back",
+           "what started inside is out: nothing crosses from now on");
+  bad_starts_ = std::move(found);
 }
 
 }  // namespace weft::server

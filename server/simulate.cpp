@@ -120,6 +120,8 @@ Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
       {"deepest_penetration", verdict.deepest},
       {"smallest_gap", std::isfinite(verdict.smallest_gap) ? Json(verdict.smallest_gap) : Json()},
       {"largest_strain", verdict.largest_strain},
+      {"energy_excess", verdict.energy_excess},
+      {"rest_error", std::isfinite(verdict.rest_error) ? Json(verdict.rest_error) : Json()},
       {"lost_motion", verdict.lost_motion},
       {"recoveries", verdict.recoveries},
       {"allowed",

@@ -149,8 +149,12 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
     if (!is_free(i)) continue;
     const Vec3d before = state.v[i].template cast<double>();
     const Vec3d given = mean * whole + (change(n, i) - mean) * own;
-    state.v[i] = (before + given).template cast<Real>();
-    work_ += static_cast<double>(model_->mass[i]) * given.dot(before + given / 2);
+    const Vec3d after = before + given;
+    state.v[i] = after.template cast<Real>();
+    // Forces that the pin only cancels do no work: what counts is how the particle drifts before
+    // and after, not how it was kicked in between.
+    work_ += static_cast<double>(model_->mass[i]) * given.dot(path.velocity[n] + after) / 2;
+    path.velocity[n] = after;
   }
   path.impulse += sum * whole;
 }

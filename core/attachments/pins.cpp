@@ -62,6 +62,7 @@ bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins
   path.move = move;
   for (const Index i : found->particles)
     path.start.push_back(state.x[static_cast<std::size_t>(i)].template cast<double>());
+  path.velocity.assign(path.start.size(), Vec3d::Zero());
   found->path = std::move(path);
   for (const Index i : found->particles) {
     const auto p = static_cast<std::size_t>(i);

@@ -28,6 +28,7 @@ struct PinPath {
   Vec3d offset = Vec3d::Zero();   ///< from there to where they shall be now [m]
   Vec3d step = Vec3d::Zero();     ///< by which it grows in the coming tick [m]
   double pace = 0;                ///< in the last tick [m/s]
+  std::vector<Vec3d> velocity;    ///< that it gave its particles last [m/s]
   Vec3d impulse = Vec3d::Zero();  ///< given to the cloth in this tick [N s]
 };
 

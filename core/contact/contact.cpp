@@ -88,6 +88,7 @@ void Contact<Real>::reset() {
   clearance_.clear();
   rows_.clear();
   moving_rows_.clear();
+  exits_.clear();
 }
 
 template <class Real>

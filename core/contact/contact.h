@@ -65,6 +65,16 @@ struct MovingRow {
   Real grip = 0;
 };
 
+/// A cloth that got into an object other than through contact: it started there. Until it is out
+/// nothing is promised about the two; it is led out in one direction, with its folds.
+template <class Real>
+struct BadStart {
+  std::size_t collider = 0;
+  Index cloth = 0;
+  Vec3<Real> direction = Vec3<Real>::UnitY();  ///< in which it leaves, unit
+  std::size_t particles = 0;                   ///< so many are still inside
+};
+
 template <class Real>
 class ClothGuard;
 
@@ -126,6 +136,9 @@ class Contact {
   double deepest_penetration(const Vec3Array<Real>& x) const;
 
   const std::vector<ContactRow<Real>>& rows() const { return rows_; }
+
+  /// Cloths that are inside objects because they started there.
+  const std::vector<BadStart<Real>>& bad_starts() const { return exits_; }
 
   /// Notes the impulses of each tick from now on, or no longer.
   void log_impulses(bool wanted) { log_.want(wanted); }
@@ -237,6 +250,12 @@ class Contact {
                const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
                std::size_t collider, bool responds = true);
 
+  // contact_exits.cpp
+  Real distance_from(std::size_t collider, const Vec3<Real>& p) const;
+  void add_inside(const ClothState<Real>& state, Index i, const Vec3<Real>& normal, Real distance,
+                  std::size_t collider);
+  Vec3<Real> find_way_out(const ClothState<Real>& state, std::size_t collider, Index cloth) const;
+
   // contact_solve.cpp
   bool measure_way(const ClothState<Real>& state, Real dt);
   /// Whether no object moves or has moved since the lists were made.
@@ -318,7 +337,8 @@ class Contact {
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
   std::vector<MeshDistance<Real>>
       nearby_;                ///< triangles near one particle, while its rows are built
-  std::vector<char> inside_;  ///< particles inside a closed mesh
+  std::vector<char> inside_;  ///< particles inside a closed mesh, or where they started
+  std::vector<BadStart<Real>> exits_;
   std::vector<ContactRow<Real>> rows_;
   std::vector<Real> travel2_;             ///< see measure_way [m^2]
   std::vector<RowRoom> rooms_;            ///< of the rows

@@ -148,8 +148,8 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
   if (nearby_.empty()) return 0;
   if (nearby_[nearest].distance < 0) {
     inside_[p] = 1;
-    add_row(state, {i}, {Real(1), 0, 0}, frame.world_direction(nearby_[nearest].normal),
-            nearby_[nearest].distance, collider);
+    add_inside(state, i, frame.world_direction(nearby_[nearest].normal), nearby_[nearest].distance,
+               collider);
     return nearby_.size();
   }
   for (const MeshDistance<Real>& d : nearby_) {
@@ -170,6 +170,14 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
   const auto add = [&](Index i, const Vec3<Real>& normal, Real distance, std::size_t collider) {
     if (distance <= reach_of(i)) add_row(state, {i}, {Real(1), 0, 0}, normal, distance, collider);
   };
+  const auto add_round = [&](Index i, const Vec3<Real>& normal, Real distance,
+                             std::size_t collider) {
+    if (distance < 0)
+      add_inside(state, i, normal, distance, collider);
+    else
+      add(i, normal, distance, collider);
+  };
+  for (BadStart<Real>& exit : exits_) exit.particles = 0;
   cursor_.assign(meshes_.size(), 0);
   inside_.assign(state.x.size(), 0);
   for (const Index i : active_particles_) {
@@ -178,16 +186,17 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
       add(i, plane.normal, plane.normal.dot(p) - plane.offset, plane.collider);
     for (const Ball& ball : balls_) {
       const auto s = separate<Real>(p, ball.centre, Vec3<Real>::UnitY());
-      add(i, s.normal, s.distance - ball.radius, ball.collider);
+      add_round(i, s.normal, s.distance - ball.radius, ball.collider);
     }
     for (const Rod& rod : rods_) {
       const Vec3<Real> q = rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
       const auto s = separate<Real>(p, q, Vec3<Real>::UnitY());
-      add(i, s.normal, s.distance - rod.radius, rod.collider);
+      add_round(i, s.normal, s.distance - rod.radius, rod.collider);
     }
     tests += planes_.size() + balls_.size() + rods_.size();
     for (std::size_t m = 0; m < meshes_.size(); ++m) tests += add_mesh_rows(state, m, i);
   }
+  std::erase_if(exits_, [](const BadStart<Real>& exit) { return exit.particles == 0; });
   profile[Stage::narrow_phase].work += tests;
 }
 
@@ -206,8 +215,10 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
     add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, d.normal, d.distance - radius, collider,
             responds);
   };
+  const auto is_inside = [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; };
   for (const Index k : near_edges_) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
+    if (is_inside(e[0]) || is_inside(e[1])) continue;
     for (const Ball& ball : balls_) {
       if (ball.smooth) continue;
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
@@ -228,8 +239,7 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
     const Vec3Array<Real>& own = in_frame_of(m, state.x);
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
       const Edge& e = patches_.edges[static_cast<std::size_t>(pair.cloth)];
-      if (inside_[static_cast<std::size_t>(e[0])] || inside_[static_cast<std::size_t>(e[1])])
-        continue;
+      if (is_inside(e[0]) || is_inside(e[1])) continue;
       const Real moved =
           std::max(moved_[static_cast<std::size_t>(e[0])], moved_[static_cast<std::size_t>(e[1])]);
       if (pair.distance - moved - frame.way_collected > reach_of(e)) continue;
@@ -252,6 +262,7 @@ template <class Real>
 void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& profile) {
   std::uint64_t tests = 0;
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
+  const auto is_inside = [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; };
   const auto over = [&](const Triangle& t, const std::vector<Real>& values) {
     return std::max({values[static_cast<std::size_t>(t[0])], values[static_cast<std::size_t>(t[1])],
                      values[static_cast<std::size_t>(t[2])]});
@@ -268,6 +279,7 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   };
   for (const Index k : near_triangles_) {
     const Triangle& t = patches_.triangles[static_cast<std::size_t>(k)];
+    if (std::any_of(t.begin(), t.end(), is_inside)) continue;
     for (const Ball& ball : balls_) {
       if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
     }
@@ -282,9 +294,7 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
     const ColliderFrame<Real>& frame = frames_[mesh_collider_[m]];
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
       const Triangle& t = patches_.triangles[static_cast<std::size_t>(pair.cloth)];
-      if (std::any_of(t.begin(), t.end(),
-                      [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; }))
-        continue;
+      if (std::any_of(t.begin(), t.end(), is_inside)) continue;
       const Real moved = over(t, moved_) + frame.way_collected;
       if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
       const auto v = static_cast<std::size_t>(pair.feature);

@@ -38,6 +38,8 @@ struct VerdictDef {
   double strain = 0;         ///< largest one allowed, 0 to 1000; 0: the scene is no hard case
   double lost_motion = 0.2;  ///< part of the wanted motion that the guard may take, 0 to 1
   double clear_after = 0;    ///< from when on nothing may cross [s], 0 to 3600
+  double rest_at = 0;        ///< when it rests as it shall rest again [s], 0 to 3600
+  double back_by = 0;        ///< when it must rest so, to 1 % [s], 0 to 3600; 0: never
 };
 
 /// Throws DefinitionError if a field is out of range; `path` stands before the name of the field.
@@ -80,6 +82,10 @@ void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {
         verdict.lost_motion);
   visit(FieldInfo{"clear_after", 0, 3600, "s", "from when on nothing may cross"},
         verdict.clear_after);
+  visit(FieldInfo{"rest_at", 0, 3600, "s", "when it rests as it shall rest again"},
+        verdict.rest_at);
+  visit(FieldInfo{"back_by", 0, 3600, "s", "when it must rest so again, to 1 %; 0: never"},
+        verdict.back_by);
 }
 
 }  // namespace weft

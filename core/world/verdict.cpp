@@ -9,6 +9,9 @@
 namespace weft {
 namespace {
 
+/// Parts of the energy at play, and of the extent, that may be amiss.
+constexpr double kMostExcess = 0.01, kBack = 0.01;
+
 /// A collider's triangles where it is; none if it has no triangles.
 TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
   TriangleMesh mesh;
@@ -47,6 +50,42 @@ std::uint64_t Verdict<Real>::count_crossings_of(const World<Real>& world) {
 }
 
 template <class Real>
+void Verdict<Real>::look_at_energy(const World<Real>& world) {
+  const TickReport& report = world.report();
+  const double now = report.energies.total();
+  // What leads a start that intersects apart does work that is not logged.
+  if (!start_energy_ || report.time <= world.def().verdict.clear_after) {
+    start_energy_ = now;
+    return;
+  }
+  given_ += report.work + report.brought;
+  worked_ += std::abs(report.work) + std::abs(report.brought);
+  at_play_ = std::max(at_play_,
+                      report.energies.kinetic + report.energies.stretch + report.energies.bending);
+  excess_ = std::max(excess_, now - *start_energy_ - given_);
+  energy_excess = at_play_ + worked_ > 0 ? excess_ / (at_play_ + worked_) : 0;
+}
+
+template <class Real>
+void Verdict<Real>::look_at_rest(const World<Real>& world) {
+  const VerdictDef& def = world.def().verdict;
+  if (def.back_by == 0) return;
+  const Vec3Array<Real>& x = world.state().x;
+  const double half = world.tick_seconds() / 2;
+  if (std::abs(world.report().time - def.rest_at) < half) rest_ = x;
+  if (std::abs(world.report().time - def.back_by) >= half || rest_.empty()) return;
+  Vec3d mean = Vec3d::Zero();
+  for (const Vec3<Real>& p : rest_) mean += p.template cast<double>();
+  mean /= static_cast<double>(rest_.size());
+  double off2 = 0, extent2 = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    off2 += static_cast<double>((x[i] - rest_[i]).squaredNorm());
+    extent2 += (rest_[i].template cast<double>() - mean).squaredNorm();
+  }
+  rest_error = std::sqrt(off2 / extent2);
+}
+
+template <class Real>
 void Verdict<Real>::look(const World<Real>& world) {
   ++ticks;
   const Vec3Array<Real>& x = world.state().x;
@@ -55,6 +94,8 @@ void Verdict<Real>::look(const World<Real>& world) {
   recoveries += world.report().divergence ? 1U : 0U;
   largest_strain = std::max(largest_strain, world.report().largest_strain);
   if (!finite) return;
+  look_at_energy(world);
+  look_at_rest(world);
   const std::uint64_t found = count_crossings_of(world);
   if (world.report().time <= world.def().verdict.clear_after) {
     early_crossings += found;
@@ -92,6 +133,12 @@ std::vector<std::string> Verdict<Real>::failures(const VerdictDef& def) const {
   if (lost_motion > def.lost_motion)
     list.push_back("lost motion of " + number_text(lost_motion) + ", more than " +
                    number_text(def.lost_motion));
+  if (energy_excess > kMostExcess)
+    list.push_back(number_text(energy_excess) + " more energy than it was given, more than " +
+                   number_text(kMostExcess));
+  if (rest_error > kBack)
+    list.push_back("off its rest by " + number_text(rest_error) + ", more than " +
+                   number_text(kBack));
   return list;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ class Verdict {
   double smallest_gap = std::numeric_limits<double>::infinity();  ///< of contacts [m]
   double largest_strain = 0;
   double lost_motion = 0;  ///< truncated by wanted motion, of the guard
+  /// Largest energy beyond that at the start, what was logged as work and what insults brought, as
+  /// a part of the energy that was at play: of motion and stretch at most, and of all work.
+  double energy_excess = 0;
+  /// Distance from the rest that it shall come back to, as a part of its extent (both as root mean
+  /// squares over the particles); NaN before that is looked at.
+  double rest_error = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t recoveries = 0;
   bool finite = true;
 
@@ -32,8 +39,15 @@ class Verdict {
 
  private:
   std::uint64_t count_crossings_of(const World<Real>& world);
+  void look_at_energy(const World<Real>& world);
+  void look_at_rest(const World<Real>& world);
 
   Bvh<double> tree_;
+  std::optional<double> start_energy_;  ///< [J]
+  double given_ = 0;                    ///< by work and insults since [J]
+  double at_play_ = 0, worked_ = 0;  ///< most mechanical energy, and sum of all that is given [J]
+  double excess_ = 0;                ///< [J]
+  Vec3Array<Real> rest_;
 };
 
 extern template class Verdict<float>;

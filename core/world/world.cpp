@@ -124,6 +124,7 @@ void World<Real>::accept_state() {
 
 template <class Real>
 const TickReport& World<Real>::step() {
+  report_.brought = 0;
   run_script();
   report_.profile.clear();
   report_.divergence.reset();

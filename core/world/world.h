@@ -51,8 +51,9 @@ struct TickReport {
   std::uint64_t tick = 0;  ///< number of the state that it led to; the start is 0
   double time = 0;         ///< simulated [s]
   int substeps = 0;
-  Energies energies;  ///< at the end [J]; kept up to date when commands change it between ticks
-  double work = 0;    ///< by hands and air [J]
+  Energies energies;   ///< at the end [J]; kept up to date when commands change it between ticks
+  double work = 0;     ///< by hands, air, objects and pins that move [J]
+  double brought = 0;  ///< energy that the scene's insults brought right before [J]
   double largest_strain = 0;
   std::optional<Divergence> divergence;
   Profile profile;
@@ -134,6 +135,10 @@ class World {
 
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;
+
+  /// What nothing is promised about, because it started where it should not be, in words; empty as
+  /// soon as all is clear.
+  std::vector<std::string> bad_starts() const;
 
   /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
   void measure_forces(bool wanted);

@@ -167,6 +167,18 @@ double World<Real>::deepest_penetration() const {
 }
 
 template <class Real>
+std::vector<std::string> World<Real>::bad_starts() const {
+  std::vector<std::string> list;
+  for (const BadStart<Real>& start : contact_.bad_starts()) {
+    const std::string& cloth = def_.cloths[static_cast<std::size_t>(start.cloth)].name;
+    list.push_back((cloth.empty() ? "cloth " + std::to_string(start.cloth) : cloth) +
+                   " started inside " + def_.colliders[start.collider].name);
+  }
+  if (guard_ && guard_->open_pairs() > 0) list.push_back("cloth started through cloth");
+  return list;
+}
+
+template <class Real>
 std::vector<Aabb<float>> World<Real>::debug_boxes(const std::string& tree, int level) {
   if (!debug_trees_) debug_trees_.emplace(model_, def_.colliders);
   return debug_trees_->boxes(tree, level, state_.x);
@@ -201,6 +213,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \
   template double World<Real>::deepest_penetration() const;                             \
+  template std::vector<std::string> World<Real>::bad_starts() const;                    \
   template std::vector<Aabb<float>> World<Real>::debug_boxes(const std::string&, int);  \
   template std::vector<std::string> World<Real>::debug_tree_names();                    \
   template int World<Real>::debug_tree_levels(const std::string&);

@@ -40,7 +40,11 @@ void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
       state_.v[i][axis] +=
           static_cast<Real>(insult.noise * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
   }
-  if (insult.noise > 0) accept_state();
+  if (insult.noise > 0) {
+    const double before = report_.energies.total();
+    accept_state();
+    report_.brought += report_.energies.total() - before;
+  }
   if (insult.pinned.isZero(0)) return;
   for (const Pin& pin : pins_.list) {
     PinMove move;

@@ -44,6 +44,28 @@ TEST_CASE("an object that is forced through the cloth is told of once") {
   CHECK(ball()["voided"] == false);
 }
 
+TEST_CASE("a cloth that starts inside an object is named, and told of again when it is out") {
+  TestRoom t;
+  t.join(1);
+  const auto told = [&t](const std::string& code) {
+    std::string messages;
+    for (const auto& [viewer, text] : t.output.sent) {
+      const json message = json::parse(text);
+      if (message.value("code", "") == code) messages += message.value("message", "");
+    }
+    return messages;
+  };
+  t.say(1, R"({"op":"load","scene":{"name":"inside",
+    "cloths":[{"name":"scarf","rows":9,"columns":9,"width":0.4,"height":0.4,
+               "origin":[-0.2,0.5,-0.2],"v":[0,0,1]}],
+    "colliders":[{"name":"ball","shape":"sphere","center":[0,0.5,0],"radius":0.1}]}})");
+  t.say(1, R"({"op":"advance","n":1})");
+  CHECK_THAT(told("guarantee_void"), Catch::StartsWith("scarf started inside ball"));
+  CHECK(told("guarantee_back").empty());
+  t.say(1, R"({"op":"advance","n":120})");
+  CHECK_FALSE(told("guarantee_back").empty());
+}
+
 TEST_CASE("a collider is moved by name, seen in frames and queries, and told wrong names") {
   TestRoom t;
   t.join(1);

@@ -1,0 +1,57 @@
+#include <catch2/catch.hpp>
+
+#include "core/world/world.h"
+
+// Cloth that starts inside objects: named, led out whole, and the guarantee is back.
+
+using namespace weft;
+
+namespace {
+
+WorldDef sheet_through(const ShapeDef& shape, double height) {
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.name = "sheet";
+  cloth.rows = cloth.columns = 21;
+  cloth.width = cloth.height = 0.6;
+  cloth.origin = Vec3d(-0.3, height, -0.3);
+  cloth.v = Vec3d::UnitZ();
+  def.colliders = {{"ground", PlaneDef{}}, {"thing", shape}};
+  def.environment.drag = 1;
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+}  // namespace
+
+TEST_CASE("a sheet that starts halfway through a solid is out of it within 2 s, little strained") {
+  const ShapeDef shape =
+      GENERATE(ShapeDef(SphereDef{Vec3d(0, 0.5, 0), 0.12}),
+               ShapeDef(CapsuleDef{Vec3d(-0.1, 0.5, 0), Vec3d(0.1, 0.5, 0), 0.08}),
+               ShapeDef(BoxDef{Vec3d(0, 0.5, 0), Vec3d(0.1, 0.08, 0.12)}));
+  const double height = GENERATE(0.5, 0.53, 0.47);
+  World<float> world(sheet_through(shape, height));
+  world.step();
+  REQUIRE(world.bad_starts().size() == 1);
+  CHECK(world.bad_starts()[0] == "sheet started inside thing");
+  double largest_strain = 0;
+  for (int k = 1; k < 120; ++k) {
+    REQUIRE_FALSE(world.step().divergence);
+    largest_strain = std::max(largest_strain, world.report().largest_strain);
+  }
+  CHECK(world.deepest_penetration() == 0);
+  CHECK(world.bad_starts().empty());
+  CHECK(largest_strain < 1);
+  for (int k = 0; k < 60; ++k) {
+    world.step();
+    CHECK(world.deepest_penetration() == 0);
+  }
+}
+
+TEST_CASE("a sheet that starts beside an object is not called a bad start") {
+  World<float> world(sheet_through(SphereDef{Vec3d(0, 0.5, 0), 0.12}, 0.63));
+  for (int k = 0; k < 60; ++k) {
+    world.step();
+    CHECK(world.bad_starts().empty());
+  }
+}
