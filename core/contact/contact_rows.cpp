@@ -81,6 +81,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   add_particle_rows(state, profile);
   add_edge_rows(state, profile);
   add_triangle_rows(state, profile);
+  std::erase_if(exits_, [](const BadStart<Real>& exit) { return exit.particles == 0; });
   measure_rooms();
   rows_built_ = true;
 }
@@ -196,7 +197,6 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
     tests += planes_.size() + balls_.size() + rods_.size();
     for (std::size_t m = 0; m < meshes_.size(); ++m) tests += add_mesh_rows(state, m, i);
   }
-  std::erase_if(exits_, [](const BadStart<Real>& exit) { return exit.particles == 0; });
   profile[Stage::narrow_phase].work += tests;
 }
 
@@ -216,6 +216,15 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
             responds);
   };
   const auto is_inside = [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; };
+  // An edge that cuts a corner of what its cloth is just leaving goes on outward.
+  const auto still_leaves = [&](Index i, std::size_t m) {
+    for (BadStart<Real>& exit : exits_) {
+      if (exit.collider != mesh_collider_[m] || exit.cloth != cloth_of(i)) continue;
+      ++exit.particles;
+      return true;
+    }
+    return false;
+  };
   for (const Index k : near_edges_) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
     if (is_inside(e[0]) || is_inside(e[1])) continue;
@@ -251,8 +260,11 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       ++tests;
       const Vec3<Real>& outward = mesh.edge_normals[static_cast<std::size_t>(pair.feature)];
       Separation<Real> d = separate<Real>(c.p, c.q, outward);
+      const bool between = between_ends(c.s) && between_ends(c.t);
+      if (mesh.closed && between && d.normal.dot(outward) < 0 && still_leaves(e[0], m))
+        d = {-d.normal, -d.distance};
       d.normal = frame.world_direction(d.normal);
-      add(e, c.s, d, Real(0), mesh_collider_[m], between_ends(c.s) && between_ends(c.t));
+      add(e, c.s, d, Real(0), mesh_collider_[m], between);
     }
   }
   profile[Stage::narrow_phase].work += tests;

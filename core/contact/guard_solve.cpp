@@ -37,7 +37,10 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   ++rows_steps_;
   if (!rows_built_ || !rows_hold(state)) build_rows(state, profile);
   if (!arrived_.empty()) add_arrived(state, profile);
-  if (rows_.empty()) return;
+  if (rows_.empty()) {
+    busy_rows_.clear();
+    return;
+  }
   const StageTimer timer(profile, Stage::contact, rows_.size());
   load_rows(state);
   if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
