@@ -170,6 +170,7 @@ template <class Real>
 std::vector<std::string> World<Real>::bad_starts() const {
   std::vector<std::string> list;
   for (const BadStart<Real>& start : contact_.bad_starts()) {
+    if (colliders_[start.collider].voided) continue;  // it was forced there
     const std::string& cloth = def_.cloths[static_cast<std::size_t>(start.cloth)].name;
     list.push_back((cloth.empty() ? "cloth " + std::to_string(start.cloth) : cloth) +
                    " started inside " + def_.colliders[start.collider].name);
