@@ -50,6 +50,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   anchored_at_.assign(n, 0);
   is_tight_.assign(n, 0);
   is_pushed_.assign(n, 0);
+  whole_push_.assign(n, 0);
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
   vertex_boxes_.resize(n);

@@ -261,7 +261,8 @@ class ClothGuard {
   std::vector<Index> busy_rows_;     ///< that push or soon may
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
-  Vec3Array<Real> pushed_v_;  ///< their velocities with it
+  std::vector<char> whole_push_;  ///< of the pushed ones, those whom no other contact has changed
+  Vec3Array<Real> pushed_v_;      ///< their velocities with it
 
   GuardCounts counts_;
 };

@@ -115,16 +115,22 @@ Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
 
 template <class Real>
 Real ClothGuard<Real>::sweep_again(ClothState<Real>& state) {
+  // The push is no velocity: seen by the rows it would take away the impulses that hold them.
+  for (std::size_t n = 0; n < pushed_.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pushed_[n]);
+    whole_push_[n] = state.v[i] == pushed_v_[n] ? 1 : 0;
+    state.v[i] -= to_vector(extra_[i]);
+  }
   load_rows(state);
   Real largest = 0;
   for (const Index k : busy_rows_)
     largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(k)]));
-  // What only the rows changed still has its whole push.
+  store_rows(state);
   for (std::size_t n = 0; n < pushed_.size(); ++n) {
     const auto i = static_cast<std::size_t>(pushed_[n]);
-    if (state.v[i] == pushed_v_[n]) pushed_v_[n] = to_vector(quad_v_[i]);
+    state.v[i] += to_vector(extra_[i]);
+    if (whole_push_[n]) pushed_v_[n] = state.v[i];  // no other contact has stopped it
   }
-  store_rows(state);
   return largest;
 }
 
