@@ -118,6 +118,7 @@ Json json_of(const State& state) {
           {"particles", state.particles},
           {"step_ms", state.step_ms},
           {"real_time_factor", state.real_time_factor},
+          {"sleeping", {{"islands", state.sleeping.islands}, {"cloths", state.sleeping.cloths}}},
           {"strain", json_of(state.strain)},
           {"energy", json_of(state.energy)}};
 }

@@ -91,6 +91,12 @@ struct Energy {
   double kinetic = 0, stretch = 0, bending = 0, gravity = 0, total = 0;  ///< [J]
 };
 
+/// Cloths that have come to rest and are not stepped until something acts on them.
+struct Sleeping {
+  std::uint32_t islands = 0;  ///< groups of touching cloths that sleep and wake together
+  std::vector<std::string> cloths;
+};
+
 struct State {
   std::uint64_t tick = 0;
   double time = 0;  ///< simulated [s]
@@ -110,6 +116,7 @@ struct State {
   std::uint32_t particles = 0;
   double step_ms = 0;
   double real_time_factor = 0;
+  Sleeping sleeping;
   Strain strain;
   Energy energy;
 };

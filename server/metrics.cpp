@@ -25,10 +25,11 @@ void labelled(std::ostream& out, const char* name, const char* help, const char*
 
 }  // namespace
 
-void Metrics::count_tick(double seconds) {
+void Metrics::count_tick(double seconds, bool rested) {
   const auto bound = std::lower_bound(kTickBounds.begin(), kTickBounds.end(), seconds);
   ++tick_counts_[static_cast<std::size_t>(bound - kTickBounds.begin())];
   ++ticks_;
+  rested_ticks_ += rested ? 1U : 0U;
   tick_nanoseconds_ += static_cast<std::uint64_t>(seconds * 1e9);
 }
 
@@ -46,6 +47,9 @@ std::string Metrics::text() const {
   std::ostringstream out;
   out.precision(9);
   single(out, "ticks_total", "counter", "Ticks simulated.", ticks_.load());
+  single(out, "ticks_rested_total", "counter", "Ticks in which all cloth slept.",
+         rested_ticks_.load());
+  single(out, "cloths_asleep", "gauge", "Cloths that sleep.", asleep_.load());
   head(out, "tick_seconds", "histogram", "Time that a tick took.");
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < kTickBounds.size(); ++i) {

@@ -155,10 +155,12 @@ double Room::step_world() {
   const TickReport& report = world_->step();
   last_tick_done_ = clock_();
   const double seconds = last_tick_done_ - start;
-  metrics_.count_tick(seconds);
+  metrics_.count_tick(seconds, report.rested);
   if (tick_times_.size() < kTickTimes) tick_times_.resize(tick_times_.size() + 1);
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
+  tell_sleep();
+  if (report.rested) return seconds;
   frame_wanted_ = true;
   tell_voided();
   tell_bad_starts();
@@ -173,7 +175,7 @@ double Room::step_world() {
 void Room::tick() {
   const double seconds = step_world();
   meter_.add(world_->tick_seconds(), clock_());
-  keep_budget(seconds);
+  if (!world_->report().rested) keep_budget(seconds);
   if (paused_ && steps_left_ > 0 && --steps_left_ == 0) state_changed_ = true;
 }
 
@@ -202,7 +204,7 @@ void Room::finish_turn() {
   const double now = clock_();
   end_leases();
   if (ticking() && now >= next_state_) {
-    state_changed_ = true;
+    state_changed_ = state_changed_ || !world_->report().rested;
     tell_slow_motion(now);
   }
   tell_changes();

@@ -114,6 +114,7 @@ class Room {
   double step_world();
   void tell_voided();      // room_queries.cpp
   void tell_bad_starts();  // room_queries.cpp
+  void tell_sleep();       // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
@@ -215,6 +216,7 @@ class Room {
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
   bool measures_forces_ = false;         // the world does
+  std::vector<char> asleep_;             // of each cloth, as told
   std::vector<bool> voided_;             // of each collider, as told
   std::vector<std::string> bad_starts_;  // as told
   std::vector<proto::ContactSample> contact_samples_;

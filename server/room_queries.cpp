@@ -123,6 +123,15 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   return proto::Reply(std::move(reply));
 }
 
+/// Which cloths sleep is told when it changes.
+void Room::tell_sleep() {
+  const std::vector<char>& asleep = world_->sleep().asleep();
+  if (asleep == asleep_) return;
+  asleep_ = asleep;
+  metrics_.set_asleep(static_cast<int>(std::count(asleep_.begin(), asleep_.end(), 1)));
+  state_changed_ = true;
+}
+
 /// Says once of each object that it has gone through the cloth.
 void Room::tell_voided() {
   voided_.resize(world_->colliders().size(), false);

@@ -220,6 +220,12 @@ proto::State state_of(const ServedWorld& world) {
   state.solver = solver_name(world.def());
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());
+  const Sleep<float>& sleep = world.sleep();
+  for (std::size_t p = 0; p < world.model().parts.size(); ++p) {
+    if (!sleep.is_asleep(p)) continue;
+    state.sleeping.cloths.push_back(world.def().cloths[p].name);
+    state.sleeping.islands += sleep.island_of(p) == p ? 1U : 0U;
+  }
   thread_local std::vector<float> scratch;
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   state.strain = {strain.largest, strain.p99};

@@ -6,16 +6,13 @@
 #include "core/error.h"
 
 namespace weft {
-namespace {
 
-/// Whether a pin that stays where it is holds a particle.
 bool is_fixed(const Pins& pins, Index particle) {
+  if (pins.pin_count[static_cast<std::size_t>(particle)] == 0) return false;
   return std::any_of(pins.list.begin(), pins.list.end(), [particle](const Pin& pin) {
     return !pin.path && std::binary_search(pin.particles.begin(), pin.particles.end(), particle);
   });
 }
-
-}  // namespace
 
 bool Pins::any_on_way() const {
   return std::any_of(list.begin(), list.end(), [](const Pin& pin) { return pin.path.has_value(); });
@@ -81,8 +78,7 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
   for (const Index i : particles) {
     const auto p = static_cast<std::size_t>(i);
     --pins.pin_count[p];
-    if (pins.pin_count[p] == 0 || !is_fixed(pins, i))
-      state.inverse_mass[p] = Real(1) / model.mass[p];
+    if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
   }
   return true;
 }

@@ -51,6 +51,9 @@ struct Pins {
   bool any_on_way() const;
 };
 
+/// Whether a pin that stays where it is holds a particle.
+bool is_fixed(const Pins& pins, Index particle);
+
 inline constexpr std::size_t kMostPins = 4096;
 
 /// Sizes the counters for a cloth without pins.

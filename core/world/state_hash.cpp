@@ -1,5 +1,6 @@
 #include "core/world/state_hash.h"
 
+#include <algorithm>
 #include <array>
 
 #define XXH_INLINE_ALL
@@ -57,11 +58,14 @@ void feed(XXH64_state_t& hash, const Pin& pin) {
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
                          const std::vector<ColliderDef>& defs, const ColliderStates& colliders,
-                         const std::vector<Gripper>& grippers, std::uint64_t tick) {
+                         const std::vector<Gripper>& grippers, const std::vector<char>& asleep,
+                         std::uint64_t tick) {
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(Real), "positions are hashed as plain numbers");
   XXH64_state_t hash;
   XXH64_reset(&hash, 0);
-  feed(hash, &tick, 1);
+  const auto awake = static_cast<std::size_t>(std::count(asleep.begin(), asleep.end(), 0));
+  if (awake > 0) feed(hash, &tick, 1);
+  if (awake < asleep.size()) feed(hash, asleep.data(), asleep.size());
   feed(hash, state.x.data(), state.x.size());
   feed(hash, state.v.data(), state.v.size());
   feed(hash, pins.pin_count.data(), pins.pin_count.size());
@@ -88,9 +92,11 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
 
 template std::uint64_t state_hash(const ClothState<float>&, const Pins&, const Grabs<float>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
-                                  const std::vector<Gripper>&, std::uint64_t);
+                                  const std::vector<Gripper>&, const std::vector<char>&,
+                                  std::uint64_t);
 template std::uint64_t state_hash(const ClothState<double>&, const Pins&, const Grabs<double>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
-                                  const std::vector<Gripper>&, std::uint64_t);
+                                  const std::vector<Gripper>&, const std::vector<char>&,
+                                  std::uint64_t);
 
 }  // namespace weft

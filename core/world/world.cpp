@@ -62,7 +62,9 @@ template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
       model_(build_cloths<Real>(def.cloths)), contact_(make_contact(def_, model_, runtime)),
-      account_(total_mass(model_)) {
+      account_(total_mass(model_)),
+      sleep_(model_, def.sleep, tick_seconds(),
+             solver_of(def) == SolverKind::relaxation || contact_of(def) == ContactModel::seed) {
   state_ = initial_state(model_);
   for (const ClothPart<Real>& part : model_.parts)
     thickest_ = std::max(thickest_, part.fabric.thickness);
@@ -113,6 +115,7 @@ void World<Real>::reset() {
 template <class Real>
 void World<Real>::accept_state() {
   reactions_.reset();
+  wake_all();
   last_good_ = state_;
   verlet_.elastic.reset();
   account_.clear();
@@ -128,18 +131,22 @@ const TickReport& World<Real>::step() {
   run_script();
   report_.profile.clear();
   report_.divergence.reset();
-  const int substeps = choose_substeps();
-  blow_wind();
   plan_grippers(static_cast<double>(tick_) / def_.tick_rate, tick_seconds(), thickest_, grippers_,
                 colliders_);
   plan_motion(def_.colliders, static_cast<double>(tick_) / def_.tick_rate, tick_seconds(),
               colliders_);
   PinDrive<Real>::plan(tick_seconds(), state_, pins_);
+  rouse_sleepers();
+  if (rests()) return rest();
+  const int substeps = choose_substeps();
+  blow_wind();
   advance_or_recover(substeps);
   finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_grippers(tick_seconds(), colliders_, grippers_);
   finish_tick(grabs_);
   finish_pins();
+  put_to_sleep();
+  report_.rested = false;
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (measures_forces_) take_reactions();

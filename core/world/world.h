@@ -18,6 +18,7 @@
 #include "core/world/energy_account.h"
 #include "core/world/profile.h"
 #include "core/world/reactions.h"
+#include "core/world/sleep.h"
 #include "core/world/world_def.h"
 
 namespace weft {
@@ -55,6 +56,7 @@ struct TickReport {
   double work = 0;     ///< by hands, air, objects and pins that move [J]
   double brought = 0;  ///< energy that the scene's insults brought right before [J]
   double largest_strain = 0;
+  bool rested = false;  ///< all slept and nothing moved: nothing was computed, no work counted
   std::optional<Divergence> divergence;
   Profile profile;
 };
@@ -131,6 +133,7 @@ class World {
 
   /// Hash of all that decides the future: positions, velocities, pins, grabs, poses of colliders
   /// that move, tick.
+  /// While all cloths sleep the tick is not part of it.
   std::uint64_t hash() const;
 
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
@@ -175,6 +178,8 @@ class World {
   const Contact<Real>& contact() const { return contact_; }
   /// Contact of cloths with themselves and each other; null if there is none.
   const ClothGuard<Real>* guard() const { return guard_ ? &*guard_ : nullptr; }
+  /// Which cloths sleep, where the scene lets them (SleepDef). What acts on one wakes it.
+  const Sleep<Real>& sleep() const { return sleep_; }
   std::uint64_t tick() const { return tick_; }
   double tick_seconds() const { return 1 / def_.tick_rate; }
 
@@ -191,6 +196,14 @@ class World {
   void insult(const InsultDef& insult, std::uint64_t seed);
   void run_script();
   void finish_pins();
+  void masses_changed();
+  void wake(Index particle);
+  void wake_held(PinId pin);
+  void wake_all();
+  void rouse_sleepers();
+  bool rests() const;
+  const TickReport& rest();
+  void put_to_sleep();
   int choose_substeps() const;
   void prepare_solver();
   void make_room();
@@ -224,6 +237,7 @@ class World {
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   EnergyAccount account_;
+  Sleep<Real> sleep_;
   std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;

@@ -14,38 +14,37 @@ namespace weft {
 
 template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
-  contact_.invalidate_rows();
-  if (guard_) guard_->invalidate_rows();
+  masses_changed();
   const PinId id = add_pin(model_, def, pins_, state_);
+  wake(pins_.list.back().centre);
   report_present_state();  // what is pinned has lost its velocity
   return id;
 }
 
 template <class Real>
 bool World<Real>::unpin(PinId id) {
-  contact_.invalidate_rows();
-  if (guard_) guard_->invalidate_rows();
+  masses_changed();
+  wake_held(id);
   return remove_pin(model_, id, pins_, state_);
 }
 
 template <class Real>
 bool World<Real>::move_pin(PinId id, const PinMove& move) {
-  contact_.invalidate_rows();
-  if (guard_) guard_->invalidate_rows();
+  masses_changed();
+  wake_held(id);
   return weft::move_pin(model_, id, move, pins_, state_);
 }
 
 /// What has arrived is fixed again.
 template <class Real>
 void World<Real>::finish_pins() {
-  if (!PinDrive<Real>::finish(tick_seconds(), state_, pins_)) return;
-  contact_.invalidate_rows();
-  if (guard_) guard_->invalidate_rows();
+  if (PinDrive<Real>::finish(tick_seconds(), state_, pins_)) masses_changed();
 }
 
 template <class Real>
 GrabId World<Real>::grab(const GrabDef& def) {
   const GrabId id = add_grab(model_, state_, def, grabs_);
+  wake(grabs_.list.back().particles.front());
   make_room();
   return id;
 }
@@ -101,6 +100,7 @@ template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
+  wake_all();
   make_room();
   report_present_state();
 }
@@ -116,6 +116,7 @@ void World<Real>::set_softness(double softness) {
     model_.parts[p].grid_springs = model.parts[p].grid_springs;
     model_.parts[p].bounds = model.parts[p].bounds;
   }
+  wake_all();
   prepare_solver();
   report_present_state();
 }
@@ -158,7 +159,8 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 
 template <class Real>
 std::uint64_t World<Real>::hash() const {
-  return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, tick_);
+  return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, sleep_.asleep(),
+                    tick_);
 }
 
 template <class Real>

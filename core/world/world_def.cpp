@@ -140,6 +140,9 @@ void validate(const WorldDef& def) {
                               "a name that no other cloth has", "pins name their cloth");
     }
   }
+  if (def.sleep.after > 0 && def.test != TextileTest::none)
+    throw DefinitionError("sleep.after", number_text(def.sleep.after), "0 in a textile test",
+                          "what is measured shall come to rest by itself");
   validate(def.environment);
   validate_grippers(def);
   validate_script(def);

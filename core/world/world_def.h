@@ -14,6 +14,7 @@
 #include "core/world/budget.h"
 #include "core/world/environment.h"
 #include "core/world/script.h"
+#include "core/world/sleep.h"
 
 namespace weft {
 
@@ -50,6 +51,7 @@ struct WorldDef {
   RelaxationDef relaxation;
   CollisionDef contact;
   BudgetDef budget;
+  SleepDef sleep;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;          ///< made at the start
@@ -78,6 +80,7 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
   visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
   visit_fields_of_budget(def.budget, below("budget."));
+  visit_fields_of_sleep(def.sleep, below("sleep."));
   visit_fields_of_verdict(def.verdict, below("verdict."));
 }
 

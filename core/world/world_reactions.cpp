@@ -10,6 +10,7 @@ void World<Real>::measure_forces(bool wanted) {
   measures_forces_ = wanted;
   contact_.log_impulses(wanted);
   if (!wanted) reactions_.reset();
+  if (wanted && rests()) reactions_ = coming_reactions();  // no tick will take them
 }
 
 template <class Real>
@@ -53,6 +54,7 @@ World<Real> World<Real>::copy() const {
 template <class Real>
 Reactions World<Real>::coming_reactions() const {
   World trial = copy();
+  trial.wake_all();  // what sleeps is held by forces all the same
   trial.measure_forces(true);
   trial.step();
   return *trial.reactions();

@@ -136,6 +136,8 @@ export interface State extends Settings {
   particles: number;
   step_ms: number;
   real_time_factor: number;
+  /** Cloths at rest that are not stepped; no frames come while all of them are. */
+  sleeping: { islands: number; cloths: string[] };
   strain: Strain;
   energy: Energy;
 }

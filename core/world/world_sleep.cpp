@@ -1,0 +1,106 @@
+// What lets cloth sleep and what wakes it: sleep.h decides, the world says what acts on it.
+
+#include <algorithm>
+
+#include "core/world/world.h"
+
+namespace weft {
+
+/// Says that masses changed.
+template <class Real>
+void World<Real>::masses_changed() {
+  contact_.invalidate_rows();
+  if (guard_) guard_->invalidate_rows();
+}
+
+/// Wakes the cloth of a particle, and what touches it.
+template <class Real>
+void World<Real>::wake(Index particle) {
+  if (!sleep_.wanted()) return;
+  const auto part =
+      static_cast<std::size_t>(&part_of_particle(model_, particle) - &model_.parts[0]);
+  if (sleep_.is_asleep(part)) masses_changed();
+  sleep_.wake(part, pins_, state_);
+}
+
+template <class Real>
+void World<Real>::wake_held(PinId id) {
+  for (const Pin& pin : pins_.list) {
+    if (pin.id == id) wake(pin.centre);
+  }
+}
+
+template <class Real>
+void World<Real>::wake_all() {
+  if (!sleep_.wanted()) return;
+  if (sleep_.any_asleep()) masses_changed();
+  sleep_.wake_all(pins_, state_);
+}
+
+/// Wakes whom hands, pins, air, objects or neighbours act on in the coming tick.
+template <class Real>
+void World<Real>::rouse_sleepers() {
+  if (!sleep_.wanted()) return;
+  const auto disturb = [this](Index particle) {
+    sleep_.disturb(
+        static_cast<std::size_t>(&part_of_particle(model_, particle) - &model_.parts[0]));
+  };
+  for (const Grab<Real>& grab : grabs_.list) disturb(grab.particles.front());
+  for (const Shot<Real>& shot : grabs_.shots) disturb(shot.particles.front());
+  for (const Pin& pin : pins_.list) {
+    if (pin.path) disturb(pin.centre);
+  }
+  // A wind that does not change leaves cloth that has come to rest in it at rest.
+  if (has_air(environment_) && environment_.gust_speed > 0) sleep_.disturb_all();
+  for (const BadStart<Real>& start : contact_.bad_starts())
+    sleep_.disturb(static_cast<std::size_t>(start.cloth));
+  if (guard_ && guard_->open_pairs() > 0) sleep_.disturb_all();
+  for (std::size_t k = 0; k < colliders_.size(); ++k) {
+    if (colliders_[k].is_active()) sleep_.disturb_near(state_, def_.colliders[k], colliders_[k]);
+  }
+  if (sleep_.rouse(pins_, state_)) masses_changed();
+}
+
+/// Whether the coming tick changes nothing.
+template <class Real>
+bool World<Real>::rests() const {
+  return sleep_.all_asleep() &&
+         std::none_of(colliders_.begin(), colliders_.end(),
+                      [](const ColliderState& collider) { return collider.is_active(); });
+}
+
+/// The tick of a world that rests: time passes.
+template <class Real>
+const TickReport& World<Real>::rest() {
+  report_.rested = true;
+  report_.work = 0;
+  report_.substeps = 0;
+  report_.tick = ++tick_;
+  report_.time = static_cast<double>(tick_) / def_.tick_rate;
+  if (reactions_) reactions_->tick = tick_;
+  return report_;
+}
+
+/// After a tick: what has been still for long falls asleep.
+template <class Real>
+void World<Real>::put_to_sleep() {
+  if (!sleep_.settle(state_)) return;
+  masses_changed();
+  last_good_.v = state_.v;
+  report_present_state();
+}
+
+#define WEFT_INSTANTIATE(Real)                    \
+  template void World<Real>::masses_changed();    \
+  template void World<Real>::wake(Index);         \
+  template void World<Real>::wake_held(PinId);    \
+  template void World<Real>::wake_all();          \
+  template void World<Real>::rouse_sleepers();    \
+  template bool World<Real>::rests() const;       \
+  template const TickReport& World<Real>::rest(); \
+  template void World<Real>::put_to_sleep();
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,169 @@
+#include <thread>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "tests/support/sleepers.h"
+#include "tests/support/worlds.h"
+
+using namespace weft;
+using namespace weft::test;
+
+TEST_CASE(
+    "a cloth that has hung still for a second sleeps: no work in any stage, and the same "
+    "hash at each tick") {
+  World<float> world(hanging({curtain("one", 0)}));
+  REQUIRE(run_to_sleep(world) > 60);
+  const std::uint64_t hash = world.hash();
+  const Vec3Array<float> x = world.state().x;
+  const Energies energies = world.report().energies;
+  CHECK(energies.kinetic == 0);
+  const std::uint64_t fell_asleep = world.tick();
+  for (std::uint64_t tick = fell_asleep + 1; tick < fell_asleep + 200; ++tick) {
+    const TickReport& report = world.step();
+    REQUIRE(report.rested);
+    REQUIRE(work_of(report) == 0);
+    REQUIRE(report.work == 0);
+    REQUIRE(report.tick == tick);
+    REQUIRE(world.hash() == hash);
+    REQUIRE(report.energies.total() == energies.total());
+  }
+  CHECK(world.state().x == x);
+  for (const Vec3f& v : world.state().v) REQUIRE(v.isZero(0));
+}
+
+TEST_CASE("a cloth moves bit for bit as one that never sleeps until it does") {
+  WorldDef def = hanging({curtain("one", 0)});
+  World<float> world(def);
+  def.sleep.after = 0;
+  World<float> other(def);
+  int ticks = 0;
+  for (; !world.sleep().any_asleep() && ticks < 1500; ++ticks) {
+    REQUIRE(world.hash() == other.hash());
+    world.step();
+    other.step();
+  }
+  CHECK(ticks < 1500);
+  CHECK_FALSE(other.sleep().any_asleep());
+}
+
+TEST_CASE("a cloth that goes on moving does not sleep, and neither does one that creeps") {
+  WorldDef def = hanging({curtain("one", 0)}, 0);
+  def.cloths[0].v = Vec3d::UnitX();  // it swings down, and no drag stops it
+  World<float> swinging(def);
+  for (int tick = 0; tick < 300; ++tick) {
+    swinging.step();
+    REQUIRE_FALSE(swinging.sleep().any_asleep());
+  }
+  WorldDef free = test::empty_world(curtain("one", 0));
+  free.sleep = {1, 1e-3};
+  World<float> creeping(free);
+  for (Vec3f& v : creeping.state().v) v = Vec3f(0.0011F, 0, 0);
+  creeping.accept_state();
+  for (int tick = 0; tick < 300; ++tick) {
+    creeping.step();
+    REQUIRE_FALSE(creeping.sleep().any_asleep());
+  }
+  for (Vec3f& v : creeping.state().v) v = Vec3f(0.0009F, 0, 0);
+  creeping.accept_state();
+  CHECK(run_to_sleep(creeping) == 60);
+}
+
+TEST_CASE("cloth sleeps in a steady wind and in still air, and never in gusts") {
+  WorldDef def = hanging({curtain("one", 0)}, 20);
+  def.environment.wind = Vec3d(0.5, 0, 0);
+  World<float> steady(def);
+  CHECK(run_to_sleep(steady) > 0);
+  CHECK(steady.state().x.back()[0] > 0.001F);
+  def.environment.gust_speed = 0.01;
+  World<float> gusty(def);
+  CHECK(run_to_sleep(gusty, 600) < 0);
+  EnvironmentDef gusts = steady.environment();
+  gusts.gust_speed = 0.5;
+  steady.set_environment(gusts);
+  const Vec3f before = steady.state().x.back();
+  for (int tick = 0; tick < 60; ++tick) REQUIRE_FALSE(steady.step().rested);
+  CHECK((steady.state().x.back() - before).norm() > 0.001F);
+}
+
+TEST_CASE("of two cloths apart one sleeps while the other swings, as beside one that does not") {
+  ClothDef still = curtain("still", 0), swinging = curtain("swinging", 1.2);
+  swinging.v = Vec3d::UnitX();
+  WorldDef def = hanging({still, swinging}, 0.5);
+  def.sleep.distance = 2e-3;
+  World<float> world(def);
+  def.sleep.after = 0;
+  World<float> other(def);
+  const IndexRange own = world.model().parts[1].particles;
+  int asleep = 0;
+  for (int tick = 0; tick < 480; ++tick) {
+    world.step();
+    other.step();
+    REQUIRE_FALSE(world.sleep().is_asleep(1));
+    asleep += world.sleep().is_asleep(0) ? 1 : 0;
+    for (Index i = own.first; i < own.end(); ++i)
+      REQUIRE(world.state().x[static_cast<std::size_t>(i)] ==
+              other.state().x[static_cast<std::size_t>(i)]);
+  }
+  CHECK(asleep > 120);
+}
+
+TEST_CASE("sleep is the same for any number of threads, and a replay repeats it") {
+  struct TwoThreads : Executor {
+    void run(int chunks, void (*work)(void*, int), void* context) override {
+      std::thread odd([&] {
+        for (int chunk = 1; chunk < chunks; chunk += 2) work(context, chunk);
+      });
+      for (int chunk = 0; chunk < chunks; chunk += 2) work(context, chunk);
+      odd.join();
+    }
+  } executor;
+  WorldDef def;
+  def.cloths = {test::flat_cloth(10, 10, 0.3, 0.3)};
+  def.cloths[0].origin = Vec3d(-0.15, 0.15, -0.15);
+  def.environment.drag = 5;
+  def.colliders = {{"ball", SphereDef{Vec3d::Zero(), 0.1}},
+                   {"ground", PlaneDef{Vec3d(0, -0.1, 0)}}};
+  def.sleep = {0.5, 1e-3};
+  World<float> one(def), two(def, {&executor, nullptr});
+  int slept = 0;
+  for (int tick = 0; tick < 600; ++tick) {
+    for (World<float>* world : {&one, &two}) {
+      if (tick == 450) world->grab(touch(*world, 5, 0.1));
+      world->step();
+    }
+    slept += one.report().rested ? 1 : 0;
+    REQUIRE(one.hash() == two.hash());
+  }
+  CHECK(slept > 100);
+  CHECK_FALSE(one.report().rested);
+}
+
+TEST_CASE("the pins of a sleeping cloth carry its weight, when asked and as measured") {
+  World<double> world(hanging({curtain("one", 0)}));
+  REQUIRE(run_to_sleep(world) > 0);
+  double mass = 0;
+  for (const double m : world.model().mass) mass += m;
+  const auto carried = [](const Reactions& reactions) {
+    Vec3d sum = Vec3d::Zero();
+    for (const PinReaction& pin : reactions.pins) sum += pin.force;
+    return sum[1];
+  };
+  CHECK(carried(world.coming_reactions()) == Approx(mass * 9.81).epsilon(1e-3));
+  CHECK(world.sleep().all_asleep());
+  world.measure_forces(true);
+  world.step();
+  REQUIRE(world.report().rested);
+  REQUIRE(world.reactions());
+  CHECK(world.reactions()->tick == world.tick());
+  CHECK(carried(*world.reactions()) == Approx(mass * 9.81).epsilon(1e-3));
+}
+
+TEST_CASE("a textile test does not sleep: its measure is of what comes to rest by itself") {
+  WorldDef def = hanging({curtain("one", 0)});
+  def.test = TextileTest::drape;
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+  def.test = TextileTest::none;
+  def.sleep.distance = 0;
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+}
