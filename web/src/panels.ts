@@ -37,6 +37,9 @@ export class Panels {
     set_text('step-time', state.step_ms.toFixed(state.step_ms < 10 ? 2 : 0));
     this.reduced('pace', state.pace);
     this.reduced('softness', state.softness);
+    const asleep = state.sleeping.cloths.length;
+    element('asleep').closest('div')!.hidden = asleep === 0;
+    set_text('asleep', String(asleep));
     if (!state.paused) return;
     this.ticks = [];
     set_text('tick-rate', '0');
