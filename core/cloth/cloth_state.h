@@ -14,6 +14,10 @@ struct ClothState {
   Vec3Array<Real> x;               ///< positions [m]
   Vec3Array<Real> v;               ///< velocities [m/s]
   std::vector<Real> inverse_mass;  ///< [1/kg]; 0 for a pinned particle
+  /// Of each cloth 1 if it sleeps: nothing is computed for it. Empty if none does.
+  std::vector<char> asleep;
+
+  bool is_asleep(std::size_t part) const { return !asleep.empty() && asleep[part] != 0; }
 };
 
 /// At rest at the model's rest positions, nothing pinned.

@@ -57,6 +57,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   edge_boxes_.resize(edges_.size());
   triangle_boxes_.resize(triangles_.size());
   boxed_.assign(tree_.patch_count(), 0);
+  resting_.assign(tree_.patch_count(), 0);
 }
 
 template <class Real>
@@ -82,6 +83,15 @@ void ClothGuard<Real>::reset() {
   pushed_.clear();
   open_pairs_ = 0;
   counts_ = {};
+}
+
+template <class Real>
+void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
+  collected_ = rows_built_ = false;
+  for (std::size_t p = 0; p < resting_.size(); ++p) {
+    const Index particle = tree_.patch(static_cast<Index>(p)).particles.front();
+    resting_[p] = asleep.empty() ? 0 : asleep[static_cast<std::size_t>(part_of(particle))];
+  }
 }
 
 template <class Real>

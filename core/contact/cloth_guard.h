@@ -73,6 +73,10 @@ class ClothGuard {
   /// Says that masses changed (a pin).
   void invalidate_rows() { rows_built_ = false; }
 
+  /// Says that which cloths sleep has changed: these are not looked at between each other.
+  /// @param asleep  of each cloth 1 if it sleeps; empty if none does
+  void let_rest(const std::vector<char>& asleep);
+
   /// Before all other contact: contact impulses, and a push for those that are too near, which
   /// moves them in the coming drift without giving them velocity.
   void solve(ClothState<Real>& state, Real dt, Profile& profile);
@@ -202,6 +206,7 @@ class ClothGuard {
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]
   Real thickest_ = 0, reach_ = 0, finest_ = 0;
   PatchTree<Real> tree_;
+  std::vector<char> resting_;  ///< 1 for each patch of a cloth that sleeps
 
   // Collection.
   bool collected_ = false;

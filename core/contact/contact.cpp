@@ -92,6 +92,15 @@ void Contact<Real>::reset() {
 }
 
 template <class Real>
+void Contact<Real>::let_rest(const ClothState<Real>& state) {
+  collected_ = rows_built_ = false;
+  resting_.clear();
+  if (state.asleep.empty()) return;
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    resting_.push_back(state.asleep[static_cast<std::size_t>(cloth_of(static_cast<Index>(i)))]);
+}
+
+template <class Real>
 void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   tick_seconds_ = static_cast<Real>(tick_seconds);
   colliders_ = colliders;

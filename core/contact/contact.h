@@ -121,6 +121,10 @@ class Contact {
   /// valid.
   void invalidate_rows() { rows_built_ = false; }
 
+  /// Says that which cloths sleep has changed: their particles meet nothing, and it is the caller's
+  /// to wake what an object will meet.
+  void let_rest(const ClothState<Real>& state);
+
   /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
   /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
   /// @param guard  of the cloths, whose rows are swept in turn with these while either still
@@ -315,6 +319,7 @@ class Contact {
 
   Real tick_seconds_ = 0;
   bool collected_ = false, rows_built_ = false;
+  std::vector<char> resting_;  ///< 1 for each particle of a cloth that sleeps; empty if none does
   Vec3Array<Real> x_collected_, x_rows_;
   std::vector<Real> clearance_;        ///< lower bound of each particle's distance from all objects
   std::vector<Real> fresh_clearance_;  ///< the same, while pairs are collected

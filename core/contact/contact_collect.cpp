@@ -22,6 +22,9 @@ constexpr double kSkinTicks = 2.5;
 /// Substeps of it for which they shall hold at least, however fast it is.
 constexpr double kSkinSubsteps = 4;
 
+/// Clearance of what sleeps [m]: no list ever has it.
+constexpr double kOutOfReach = 1e9;
+
 /// Collections between two measurements of a particle that is near without having pairs.
 constexpr std::size_t kTurns = 8;
 
@@ -128,6 +131,10 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
   run_chunks(executor_, kChunks, [&](int chunk) {
     const auto c = static_cast<std::size_t>(chunk);
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
+      if (!resting_.empty() && resting_[i]) {
+        clearance_[i] = Real(kOutOfReach);
+        continue;
+      }
       skin_[i] = wanted_skin(state, i, dt);
       const Real needed = thickness_ + span_[i] + skin_[i];
       if (known) clearance_[i] -= (state.x[i] - x_collected_[i]).norm() + gone_;

@@ -43,6 +43,7 @@ void ClothGuard<Real>::box_patch(Index p) {
 /// @param all  or only pairs that have a changed particle
 template <class Real>
 std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
+  if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return 0;
   box_patch(p);
   box_patch(q);
   const auto& first = tree_.patch(p);

@@ -45,6 +45,9 @@ struct Tick {
   GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }
   bool by_rows(std::size_t p) const { return work.grids[p].fits(); }
   std::size_t parts() const { return model.parts.size(); }
+  bool sleeps(std::size_t p) const { return state.is_asleep(p); }
+  /// It sleeps, and its energy is known.
+  bool rests(std::size_t p) const { return sleeps(p) && work.at_rest[p]; }
 };
 
 std::size_t size_of(const IndexRange& range) {
@@ -100,8 +103,10 @@ void pull(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity, bool
   Vec3Array<Real>& force = tick.work.external;
   if (listed || !tick.work.all_grids) std::fill(force.begin(), force.end(), Vec3<Real>::Zero());
   if (around.air) {
-    const StageTimer timer(tick.profile, Stage::air, tick.model.triangles.size());
+    const StageTimer timer(tick.profile, Stage::air, 0);
     for (std::size_t p = 0; p < tick.parts(); ++p) {
+      if (tick.sleeps(p)) continue;
+      tick.profile[Stage::air].work += size_of(tick.part(p).triangles);
       if (tick.by_rows(p)) {
         tick.grid(p).compute_air_forces(around.air_density);
         if (listed) tick.grid(p).store_external(force);
@@ -168,6 +173,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k, Real progress) {
   Vec3Array<Real>& v = tick.state.v;
   pull(tick, progress, v, tick.hands);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.sleeps(p)) continue;
     if (tick.by_rows(p)) {
       if (tick.hands) tick.grid(p).load_external(tick.work.external);
       advance_grid(tick, p, k, Real(0));
@@ -185,6 +191,7 @@ template <class Real>
 void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const ClothPart<Real>& part = tick.part(p);
+    if (tick.sleeps(p)) continue;
     if (!tick.by_rows(p)) {
       evaluate_elements(tick, p, velocity);
       continue;
@@ -197,6 +204,15 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
   pull(tick, progress, velocity, true);
 }
 
+/// Kicks all cloths that are awake.
+template <class Real>
+void kick_awake(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& from,
+                Vec3Array<Real>& to) {
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (!tick.sleeps(p)) kick(tick, tick.part(p).particles, k, from, to);
+  }
+}
+
 /// Kicks with the dashpots' velocity found by fixed-point sweeps.
 /// @param share  where between the old and the new velocity the instant of the forces lies
 template <class Real>
@@ -206,16 +222,15 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress
     return;
   }
   Vec3Array<Real>&v = tick.state.v, &estimate = tick.work.velocity;
-  const IndexRange all{0, tick.model.particle_count()};
   estimate = v;
   for (int sweep = 1; sweep <= tick.solver.damping_sweeps; ++sweep) {
     evaluate_forces(tick, progress, estimate);
     if (sweep == tick.solver.damping_sweeps) break;
-    kick(tick, all, k, v, estimate);
+    kick_awake(tick, k, v, estimate);
     for (std::size_t i = 0; i < v.size(); ++i)
       estimate[i] = v[i] * (Real(1) - share) + estimate[i] * share;
   }
-  kick(tick, all, k, v, v);
+  kick_awake(tick, k, v, v);
 }
 
 /// Work of the external forces on some particles over the coming drift [J].
@@ -242,6 +257,7 @@ double drift(Tick<Real>& tick) {
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const IndexRange& range = tick.part(p).particles;
+    if (tick.sleeps(p)) continue;
     if (tick.by_rows(p) && tick.solver.damping_sweeps == 1) {
       work += tick.grid(p).drift(tick.dt, tick.pulled, v, x) * static_cast<double>(tick.dt);
     } else {
@@ -255,8 +271,8 @@ double drift(Tick<Real>& tick) {
 template <class Real>
 void load_grids(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
-  for (GridPass<Real>& grid : tick.work.grids) {
-    if (grid.fits()) grid.load(tick.state.x, tick.state.v);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.by_rows(p) && !tick.rests(p)) tick.grid(p).load(tick.state.x, tick.state.v);
   }
 }
 
@@ -271,7 +287,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     advance_kick(tick, kicks.opening, Real(0));
   } else {
     evaluate_forces(tick, Real(0), state.v);
-    kick(tick, {0, tick.model.particle_count()}, kicks.opening, state.v, state.v);
+    kick_awake(tick, kicks.opening, state.v, state.v);
   }
   for (int s = 0; s < substeps; ++s) {
     collision.before_drift(state, tick.dt, tick.profile);
@@ -313,10 +329,16 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
 template <class Real>
 ElasticEnergy present_energy(const Tick<Real>& tick) {
   ElasticEnergy sum;
-  for (std::size_t p = 0; p < tick.parts(); ++p)
-    add(tick.by_rows(p) ? tick.grid(p).elastic_energy()
-                        : elastic_energy(tick.model, tick.part(p), tick.state.x),
-        sum);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    std::optional<ElasticEnergy>& at_rest = tick.work.at_rest[p];
+    if (!tick.sleeps(p)) at_rest.reset();
+    const ElasticEnergy energy = at_rest ? *at_rest
+                                 : tick.by_rows(p)
+                                     ? tick.grid(p).elastic_energy()
+                                     : elastic_energy(tick.model, tick.part(p), tick.state.x);
+    if (tick.sleeps(p)) at_rest = energy;
+    add(energy, sum);
+  }
   return sum;
 }
 
@@ -352,8 +374,9 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   load_grids(tick);
   result.before = timed_energies(tick).energies;
   if (collision.empty() && !hands && work.all_grids && solver.damping_sweeps == 1) {
-    for (std::size_t p = 0; p < tick.parts(); ++p)
-      result.work += advance_alone(tick, p, kicks, substeps);
+    for (std::size_t p = 0; p < tick.parts(); ++p) {
+      if (!tick.sleeps(p)) result.work += advance_alone(tick, p, kicks, substeps);
+    }
   } else {
     result.work = advance_together(tick, kicks, substeps);
   }

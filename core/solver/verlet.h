@@ -69,9 +69,10 @@ struct VerletWorkspace {
   Vec3Array<Real> gravity;               ///< of each particle, 0 if it is fixed [m/s^2]
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< somebody else moves the cloth
-  std::vector<GridPass<Real>> grids;     ///< for each part its row-wise form, if it fits
-  std::vector<MeshPass<Real>> meshes;    ///< for each other part its form by gathering, likewise
-  bool all_grids = false;                ///< every part fits as a grid
+  std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each part while it sleeps, once known
+  std::vector<GridPass<Real>> grids;   ///< for each part its row-wise form, if it fits
+  std::vector<MeshPass<Real>> meshes;  ///< for each other part its form by gathering, likewise
+  bool all_grids = false;              ///< every part fits as a grid
 
   /// Sizes the arrays for a cloth on which neither air nor hands act.
   void prepare(const ClothModel<Real>& model, const SolverDef& solver);

@@ -7,6 +7,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   grids.clear();
   grids.resize(model.parts.size());
   meshes.assign(model.parts.size(), {});
+  at_rest.assign(model.parts.size(), {});
   all_grids = true;
   for (std::size_t p = 0; p < grids.size(); ++p) {
     grids[p].prepare(model.parts[p]);

@@ -157,6 +157,10 @@ template <class Real>
 void Sleep<Real>::wake_cloth(std::size_t part, const Pins& pins, ClothState<Real>& state) {
   begin_stillness(part, state);
   if (!std::exchange(asleep_[part], char{0})) return;
+  if (any_asleep())
+    state.asleep = asleep_;
+  else
+    state.asleep.clear();
   for (Index i = particles_[part].first; i < particles_[part].end(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!is_fixed(pins, i)) state.inverse_mass[k] = Real(1) / mass_[k];
@@ -266,6 +270,7 @@ bool Sleep<Real>::settle(ClothState<Real>& state) {
         state.inverse_mass[static_cast<std::size_t>(i)] = 0;
       }
       asleep_[p] = 1;
+      state.asleep = asleep_;
       enclose(p, state);
       any = true;
     }

@@ -197,6 +197,7 @@ class World {
   void run_script();
   void finish_pins();
   void masses_changed();
+  void sleep_changed();
   void wake(Index particle);
   void wake_held(PinId pin);
   void wake_all();

@@ -13,14 +13,22 @@ void World<Real>::masses_changed() {
   if (guard_) guard_->invalidate_rows();
 }
 
+/// Says that other cloths sleep now.
+template <class Real>
+void World<Real>::sleep_changed() {
+  contact_.let_rest(state_);
+  if (guard_) guard_->let_rest(state_.asleep);
+}
+
 /// Wakes the cloth of a particle, and what touches it.
 template <class Real>
 void World<Real>::wake(Index particle) {
   if (!sleep_.wanted()) return;
   const auto part =
       static_cast<std::size_t>(&part_of_particle(model_, particle) - &model_.parts[0]);
-  if (sleep_.is_asleep(part)) masses_changed();
+  const bool slept = sleep_.is_asleep(part);
   sleep_.wake(part, pins_, state_);
+  if (slept) sleep_changed();
 }
 
 template <class Real>
@@ -33,8 +41,9 @@ void World<Real>::wake_held(PinId id) {
 template <class Real>
 void World<Real>::wake_all() {
   if (!sleep_.wanted()) return;
-  if (sleep_.any_asleep()) masses_changed();
+  const bool any = sleep_.any_asleep();
   sleep_.wake_all(pins_, state_);
+  if (any) sleep_changed();
 }
 
 /// Wakes whom hands, pins, air, objects or neighbours act on in the coming tick.
@@ -58,7 +67,7 @@ void World<Real>::rouse_sleepers() {
   for (std::size_t k = 0; k < colliders_.size(); ++k) {
     if (colliders_[k].is_active()) sleep_.disturb_near(state_, def_.colliders[k], colliders_[k]);
   }
-  if (sleep_.rouse(pins_, state_)) masses_changed();
+  if (sleep_.rouse(pins_, state_)) sleep_changed();
 }
 
 /// Whether the coming tick changes nothing.
@@ -85,13 +94,14 @@ const TickReport& World<Real>::rest() {
 template <class Real>
 void World<Real>::put_to_sleep() {
   if (!sleep_.settle(state_)) return;
-  masses_changed();
+  sleep_changed();
   last_good_.v = state_.v;
   report_present_state();
 }
 
 #define WEFT_INSTANTIATE(Real)                    \
   template void World<Real>::masses_changed();    \
+  template void World<Real>::sleep_changed();     \
   template void World<Real>::wake(Index);         \
   template void World<Real>::wake_held(PinId);    \
   template void World<Real>::wake_all();          \

@@ -109,6 +109,53 @@ TEST_CASE("of two cloths apart one sleeps while the other swings, as beside one 
   CHECK(asleep > 120);
 }
 
+TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awake") {
+  std::vector<ClothDef> sheets = {test::flat_cloth(10, 10, 0.3, 0.3),
+                                  test::flat_cloth(9, 12, 0.3, 0.3)};
+  sheets[1].name = "second";
+  sheets[0].origin = Vec3d(-0.5, 0.004, 0);
+  sheets[1].origin = Vec3d(0.5, 0.004, 0);
+  sheets[1].bending_model = GENERATE(BendingModel::automatic, BendingModel::hinges);
+  for (ClothDef& sheet : sheets) sheet.fabric.thickness = 0.004;
+  WorldDef def;
+  def.environment.drag = 5;
+  def.environment.wind = Vec3d(0.01, 0, 0);
+  def.contact.seed.self = SelfContact::guard;
+  def.solver.min_substeps = 40;  // more than either needs alone
+  def.solver.damping_sweeps = GENERATE(1, 2);
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.cloths = sheets;
+  def.sleep = {0.5, 1e-3};
+  World<float> both(def);
+  REQUIRE(run_to_sleep(both) > 0);
+  def.cloths = {sheets[1]};
+  def.sleep.after = 0;
+  World<float> alone(def);
+  const Index first = both.model().parts[1].triangles.first;
+  alone.step();
+  both.grab(touch(both, first, 0.1));
+  alone.grab(touch(alone, 0, 0.1));
+  for (int tick = 0; tick < 30; ++tick) {
+    const TickReport& report = both.step();
+    REQUIRE(both.sleep().is_asleep(0));
+    REQUIRE_FALSE(both.sleep().is_asleep(1));
+    const TickReport& other = alone.step();
+    REQUIRE(report.substeps == other.substeps);
+    for (const Stage stage : {Stage::air, Stage::stretch, Stage::bending, Stage::integration})
+      REQUIRE(report.profile[stage].work == other.profile[stage].work);
+    for (const ContactRow<float>& row : both.contact().rows()) REQUIRE(row.particle[0] >= 100);
+    for (const GuardedPair<float>& pair : both.guard()->pairs()) REQUIRE(pair.particle[0] >= 100);
+  }
+  REQUIRE(!both.contact().rows().empty());
+  // The energies are those of all cloths.
+  const EnergyReading all = read_energies(both.model(), both.state(), Vec3f(0, -9.81F, 0));
+  CHECK(both.report().energies.total() == Approx(all.energies.total()).epsilon(1e-6));
+  // The first one still lies on the ground when it is woken.
+  both.grab(touch(both, 0, 0.01));
+  for (int tick = 0; tick < 30; ++tick) both.step();
+  CHECK(both.deepest_penetration() == 0);
+}
+
 TEST_CASE("sleep is the same for any number of threads, and a replay repeats it") {
   struct TwoThreads : Executor {
     void run(int chunks, void (*work)(void*, int), void* context) override {
