@@ -133,6 +133,7 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
     for (std::size_t i = n * c / kChunks; i < n * (c + 1) / kChunks; ++i) {
       if (!resting_.empty() && resting_[i]) {
         clearance_[i] = Real(kOutOfReach);
+        skin_[i] = 0;
         continue;
       }
       skin_[i] = wanted_skin(state, i, dt);

@@ -472,6 +472,32 @@ test('a hidden page asks for no frames, and goes on when it is seen again', boun
   }),
 );
 
+test('what sleeps is told, and a hand wakes it', bounded, async () => {
+  const restful = ['--set', 'environment.drag=20', '--set', 'sleep.after=0.5'];
+  const sleepy = await start_server([...CALM, ...restful]);
+  const page = await open_page(browser, sleepy.url);
+  const script = await sleepy.script();
+  try {
+    await until(() => page.locator('#asleep').isVisible(), 'the cloth sleeps');
+    assert.equal(await page.locator('#asleep').textContent(), '1');
+    const tick = await read(page, 'tick');
+    const { tick: later, sleeping } = await script.query('state');
+    assert.deepEqual(sleeping, { islands: 1, cloths: ['cloth'] });
+    await until(async () => (await script.query('state')).tick > later + 60);
+    assert.equal(await read(page, 'tick'), tick, 'no frame has come');
+    await drag_cloth(page, 0, -30);
+    await until(async () => !(await page.locator('#asleep').isVisible()), 'it is awake');
+    await until(async () => (await read(page, 'tick')) > tick);
+    await page.mouse.up();
+    await until(() => page.locator('#asleep').isVisible(), 'it sleeps again');
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    script.close();
+    await page.context().close();
+    await sleepy.stop();
+  }
+});
+
 test('after the server was away the page comes back, without the hand', bounded, async () => {
   let first = await start_server(CALM);
   let second;

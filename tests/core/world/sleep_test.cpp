@@ -135,6 +135,7 @@ TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awa
   alone.step();
   both.grab(touch(both, first, 0.1));
   alone.grab(touch(alone, 0, 0.1));
+  std::uint64_t searched = 0, searched_alone = 0;
   for (int tick = 0; tick < 30; ++tick) {
     const TickReport& report = both.step();
     REQUIRE(both.sleep().is_asleep(0));
@@ -143,13 +144,19 @@ TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awa
     REQUIRE(report.substeps == other.substeps);
     for (const Stage stage : {Stage::air, Stage::stretch, Stage::bending, Stage::integration})
       REQUIRE(report.profile[stage].work == other.profile[stage].work);
+    for (const Stage stage : {Stage::broad_phase, Stage::narrow_phase}) {
+      searched += report.profile[stage].work;
+      searched_alone += other.profile[stage].work;
+    }
     for (const ContactRow<float>& row : both.contact().rows()) REQUIRE(row.particle[0] >= 100);
     for (const GuardedPair<float>& pair : both.guard()->pairs()) REQUIRE(pair.particle[0] >= 100);
   }
   REQUIRE(!both.contact().rows().empty());
+  CHECK(static_cast<double>(searched) < 1.2 * static_cast<double>(searched_alone));
   // The energies are those of all cloths.
   const EnergyReading all = read_energies(both.model(), both.state(), Vec3f(0, -9.81F, 0));
   CHECK(both.report().energies.total() == Approx(all.energies.total()).epsilon(1e-6));
+  CHECK(both.report().energies.stretch == Approx(all.energies.stretch).epsilon(1e-4));
   // The first one still lies on the ground when it is woken.
   both.grab(touch(both, 0, 0.01));
   for (int tick = 0; tick < 30; ++tick) both.step();
