@@ -140,6 +140,9 @@ class Contact {
   double deepest_penetration(const Vec3Array<Real>& x) const;
 
   const std::vector<ContactRow<Real>>& rows() const { return rows_; }
+  /// Distance of a row's point of the cloth from the row's object where both are now [m]; from its
+  /// plane, if the object has no inside.
+  Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const;
 
   /// Cloths that are inside objects because they started there.
   const std::vector<BadStart<Real>>& bad_starts() const { return exits_; }

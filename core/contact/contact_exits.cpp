@@ -9,6 +9,9 @@
 namespace weft {
 namespace {
 
+/// Where nothing is near [m].
+constexpr double kFar = 1000;
+
 /// Steps of the search for the surface, and the least length of one [m].
 constexpr int kMostSteps = 64;
 constexpr double kLeastStep = 1e-4;
@@ -23,8 +26,7 @@ constexpr double kAlike = 0.3, kDecided = 0.1;
 /// has no inside, a large number.
 template <class Real>
 Real Contact<Real>::distance_from(std::size_t collider, const Vec3<Real>& p) const {
-  constexpr Real kFar = Real(1000);
-  Real nearest = kFar;
+  Real nearest = Real(kFar);
   for (const Ball& ball : balls_) {
     if (ball.collider == collider)
       nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
@@ -36,10 +38,19 @@ Real Contact<Real>::distance_from(std::size_t collider, const Vec3<Real>& p) con
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     if (mesh_collider_[m] != collider || !meshes_[m].closed) continue;
-    nearest =
-        std::min(nearest, distance_to_mesh(meshes_[m], frames_[collider].own(p), kFar).distance);
+    nearest = std::min(nearest,
+                       distance_to_mesh(meshes_[m], frames_[collider].own(p), Real(kFar)).distance);
   }
   return nearest;
+}
+
+template <class Real>
+Real Contact<Real>::gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const {
+  Vec3<Real> p = Vec3<Real>::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+    p += x[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
+  const Real distance = distance_from(static_cast<std::size_t>(row.collider), p);
+  return distance < Real(kFar) ? distance : row.normal.dot(p) - row.offset;
 }
 
 /// Adds the row of a particle inside a solid. Pressed in a little it goes back to the nearest
@@ -125,6 +136,7 @@ Vec3<Real> Contact<Real>::find_way_out(const ClothState<Real>& state, std::size_
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
   template Real Contact<Real>::distance_from(std::size_t, const Vec3<Real>&) const;                \
+  template Real Contact<Real>::gap_of(const ContactRow<Real>&, const Vec3Array<Real>&) const;      \
   template void Contact<Real>::add_inside(const ClothState<Real>&, Index, const Vec3<Real>&, Real, \
                                           std::size_t);                                            \
   template Vec3<Real> Contact<Real>::find_way_out(const ClothState<Real>&, std::size_t, Index)     \

@@ -1,10 +1,12 @@
 #include "core/world/verdict.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
+#include "core/geometry/distance.h"
 
 namespace weft {
 namespace {
@@ -22,14 +24,17 @@ TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
   return mesh;
 }
 
-template <class Row, class Real>
-double gap_of(const Row& row, const Vec3<Real>& normal, std::size_t count,
-              const Vec3Array<Real>& x) {
-  double sum = 0;
-  for (std::size_t k = 0; k < count; ++k)
-    sum += static_cast<double>(row.weight[k]) *
-           static_cast<double>(normal.dot(x[static_cast<std::size_t>(row.particle[k])]));
-  return sum;
+/// Distance of two features of cloths where they are now [m]: the normals of rows are from when
+/// these were built, and a pair that has just come near has no row yet.
+template <class Real>
+double gap_of(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) {
+  std::array<Vec3d, 4> p;
+  for (std::size_t k = 0; k < 4; ++k)
+    p[k] = x[static_cast<std::size_t>(pair.particle[k])].template cast<double>();
+  if (pair.kind == PairKind::vertex_triangle)
+    return (p[0] - closest_on_triangle(p[0], p[1], p[2], p[3]).point).norm();
+  const SegmentPoints<double> nearest = closest_of_segments(p[0], p[1], p[2], p[3]);
+  return (nearest.p - nearest.q).norm();
 }
 
 }  // namespace
@@ -105,13 +110,12 @@ void Verdict<Real>::look(const World<Real>& world) {
     deepest = std::max(deepest, world.deepest_penetration());
     for (const ContactRow<Real>& row : world.contact().rows()) {
       if (!row.responds) continue;
-      smallest_gap =
-          std::min(smallest_gap, gap_of(row, row.normal, static_cast<std::size_t>(row.count), x) -
-                                     static_cast<double>(row.offset));
+      smallest_gap = std::min(smallest_gap, static_cast<double>(world.contact().gap_of(row, x)));
     }
     if (world.guard()) {
-      for (const GuardRow<Real>& row : world.guard()->rows())
-        smallest_gap = std::min(smallest_gap, gap_of(row, to_vector(row.normal), 4, x));
+      for (const GuardedPair<Real>& pair : world.guard()->pairs()) {
+        if (!pair.gone && !pair.open) smallest_gap = std::min(smallest_gap, gap_of(pair, x));
+      }
     }
   }
   if (!world.guard()) return;

@@ -22,7 +22,7 @@ class Verdict {
   std::uint64_t crossed_ticks = 0;    ///< ticks that count with any of them
   std::uint64_t early_crossings = 0;  ///< before the ticks that count
   double deepest = 0;                 ///< into an object, in ticks that count [m]
-  double smallest_gap = std::numeric_limits<double>::infinity();  ///< of contacts [m]
+  double smallest_gap = std::numeric_limits<double>::infinity();  ///< of near features [m]
   double largest_strain = 0;
   double lost_motion = 0;  ///< truncated by wanted motion, of the guard
   /// Largest energy beyond that at the start, what was logged as work and what insults brought, as

@@ -1,0 +1,69 @@
+#include "core/world/verdict.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "core/geometry/distance.h"
+#include "tests/support/cloths.h"
+
+using namespace weft;
+
+namespace {
+
+/// Smallest distance of features that share no particle, over all of them [m].
+double brute_force_gap(const World<float>& world) {
+  const ClothModel<float>& model = world.model();
+  const auto at = [&world](Index i) {
+    return world.state().x[static_cast<std::size_t>(i)].cast<double>().eval();
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : model.triangles) {
+    for (Index i = 0; i < model.particle_count(); ++i) {
+      if (i == t[0] || i == t[1] || i == t[2]) continue;
+      const Vec3d p = at(i), nearest = closest_on_triangle(p, at(t[0]), at(t[1]), at(t[2])).point;
+      least = std::min(least, (p - nearest).norm());
+    }
+  }
+  for (const Edge& e : model.edges) {
+    for (const Edge& f : model.edges) {
+      if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
+      const auto nearest = closest_of_segments(at(e[0]), at(e[1]), at(f[0]), at(f[1]));
+      least = std::min(least, (nearest.p - nearest.q).norm());
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("a verdict's smallest gap is that of the nearest features where they are, to 1 um") {
+  // A hand sweeps one crumpling sheet over another: rows are from before they went on.
+  WorldDef def;
+  def.cloths = {test::flat_cloth(9, 9, 0.4, 0.4), test::flat_cloth(6, 6, 0.2, 0.2)};
+  def.cloths[1].name = "upper";
+  def.cloths[0].origin = Vec3d(-0.2, 0, -0.2);
+  def.cloths[1].origin = Vec3d(-0.1, 0.012, -0.1);
+  for (ClothDef& cloth : def.cloths) cloth.fabric.thickness = 0.01;
+  for (const Side side : {Side::left, Side::right})
+    def.pins.push_back({EdgeStrip{side, 0.0}, 0.0, {}});
+  HandDef hand;
+  hand.cloth = "upper";
+  hand.path = {{0.2, Vec3d::Zero()}, {0.4, Vec3d(0.3, -0.02, 0.2)}, {0.6, Vec3d(-0.2, -0.02, 0)}};
+  def.hands = {hand};
+  def.contact.seed.self = SelfContact::guard;
+  World<float> world(def);
+  int met = 0;
+  for (int tick = 0; tick < 40; ++tick) {
+    world.step();
+    Verdict<float> verdict;
+    verdict.look(world);
+    REQUIRE(verdict.crossings == 0);
+    const double gap = brute_force_gap(world);
+    if (gap > 0.01) continue;
+    ++met;
+    REQUIRE(verdict.smallest_gap == Approx(gap).margin(1e-6));
+  }
+  CHECK(met > 20);
+}
