@@ -50,7 +50,6 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   anchored_at_.assign(n, 0);
   is_tight_.assign(n, 0);
   is_pushed_.assign(n, 0);
-  whole_push_.assign(n, 0);
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
   vertex_boxes_.resize(n);
@@ -82,6 +81,9 @@ void ClothGuard<Real>::reset() {
   }
   pushed_.clear();
   open_pairs_ = 0;
+  kicked_ = 0;
+  closed_ = true;
+  upwards_ = false;
   counts_ = {};
 }
 

@@ -77,13 +77,18 @@ class ClothGuard {
   /// @param asleep  of each cloth 1 if it sleeps; empty if none does
   void let_rest(const std::vector<char>& asleep);
 
-  /// Before all other contact: contact impulses, and a push for those that are too near, which
-  /// moves them in the coming drift without giving them velocity.
+  /// Before all other contact: the contact impulses of the last step again. `sweep` mends them.
   void solve(ClothState<Real>& state, Real dt, Profile& profile);
 
-  /// One more sweep over the rows, after other contact changed velocities.
+  /// A sweep over the rows, to be called in turn with those of other contact: what rests in layers
+  /// on an object is held by both.
   /// @return largest change of a normal velocity [m/s]
-  Real sweep_again(ClothState<Real>& state);
+  Real sweep(ClothState<Real>& state);
+
+  /// After all sweeps: a push for those that are too near, which moves them in the coming drift
+  /// without giving them velocity. No sweep may see it: what holds against the push would become
+  /// impulses, and what is squeezed between objects would be pressed harder each step.
+  void push_apart(ClothState<Real>& state);
 
   /// After all other contact and right before the drift of `dt` [s]: lets nobody leave his region.
   /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.
@@ -92,7 +97,8 @@ class ClothGuard {
   /// After the drift: takes the push out of the velocities again.
   void finish(ClothState<Real>& state);
 
-  /// At the end of a tick: makes the velocities admissible.
+  /// At the end of a tick, whose last kick is half of one: stands against that with half the
+  /// impulses. `sweep` makes the velocities admissible.
   void settle(ClothState<Real>& state, Real dt, Profile& profile);
 
   const GuardCounts& counts() const { return counts_; }
@@ -103,6 +109,8 @@ class ClothGuard {
   Vec3<Real> predicted(std::size_t particle) const { return on_path(particle, elapsed_); }
   Real reach() const { return reach_; }
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
+  /// Time of the forces that the rows' impulses stand against [s].
+  Real kicked() const { return kicked_; }
   /// Pairs that were not apart when they were collected.
   std::size_t open_pairs() const { return open_pairs_; }
 
@@ -181,6 +189,10 @@ class ClothGuard {
   // guard_rows.cpp
   bool rows_hold(const ClothState<Real>& state) const;
   void build_rows(const ClothState<Real>& state, Profile& profile);
+  void turn_rows(const ClothState<Real>& state, Profile& profile);
+  void turn(const ClothState<Real>& state, const PairSeparation<Real>& s, GuardRow<Real>& row);
+  bool weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
+             GuardRow<Real>& row) const;
   void add_arrived(const ClothState<Real>& state, Profile& profile);
   bool is_beyond(const GuardedPair<Real>& pair) const;
   void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
@@ -194,8 +206,8 @@ class ClothGuard {
   void aim(GuardRow<Real>& row, Real dt) const;
   Real solve_row(GuardRow<Real>& row);
   void find_busy_rows(Real dt);
-  void sweep_rows(Real dt);
-  void push_apart();
+  void warm_rows(Real dt, Real kicked);
+  Real sweep_rows();
 
   Index part_of(Index particle) const;
 
@@ -255,7 +267,9 @@ class ClothGuard {
   Vec3Array<Real> x_rows_;
   Real rows_time_ = 0;  ///< since rows were built [s]
   int rows_steps_ = 0;
-  Real warm_dt_ = 0;  ///< length of the step in which the rows' impulses were found [s]
+  Real kicked_ = 0;       ///< time of the forces that the rows' impulses stand against [s]
+  bool upwards_ = false;  ///< which way the last sweep went
+  bool closed_ = true;    ///< the last tick has been settled, and nothing solved since
   std::vector<GuardRow<Real>> rows_, old_rows_;
   std::vector<std::pair<std::uint64_t, Index>> old_keys_;
   std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
@@ -266,8 +280,7 @@ class ClothGuard {
   std::vector<Index> busy_rows_;     ///< that push or soon may
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
-  std::vector<char> whole_push_;  ///< of the pushed ones, those whom no other contact has changed
-  Vec3Array<Real> pushed_v_;      ///< their velocities with it
+  Vec3Array<Real> pushed_v_;  ///< their velocities with it
 
   GuardCounts counts_;
 };

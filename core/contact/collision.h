@@ -25,7 +25,12 @@ struct Collision {
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
     if (guard) guard->solve(state, dt, profile);
-    if (weft) weft->resolve(state, dt, profile, guard);
+    if (weft) {
+      weft->resolve(state, dt, profile, guard);
+    } else if (guard) {
+      guard->sweep(state);
+      guard->push_apart(state);
+    }
     if (seed) seed->separate(state, profile);
     if (guard) guard->certify(state, dt, profile);
   }
@@ -38,7 +43,10 @@ struct Collision {
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->settle(state, dt);
     if (guard) guard->settle(state, dt, profile);
-    if (weft) weft->settle(state, dt, profile);
+    if (weft)
+      weft->settle(state, dt, profile, guard);
+    else if (guard)
+      guard->sweep(state);
   }
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/contact/cloth_guard.h"
+
 namespace weft {
 namespace {
 
@@ -13,6 +15,9 @@ constexpr double kHiddenRise = 0.75;
 
 /// What is nearer than this part of the thickness touches, as others are told.
 constexpr double kTouching = 1.05;
+
+/// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
+constexpr int kClosingSweeps = 4;
 
 bool is_thinner(const ContactDef& a, const ContactDef& b) {
   return a.thickness < b.thickness;
@@ -149,21 +154,36 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
     if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
     solve_rows(state, dt, profile, guard);
+    if (guard) guard->push_apart(state);
     certify(state, dt);
+  } else if (guard) {
+    guard->sweep(state);
+    guard->push_apart(state);
   }
   first_substep_ = false;
   move_colliders(dt);
 }
 
 template <class Real>
-void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
-  if (rows_.empty()) return;
+void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
+                           ClothGuard<Real>* guard) {
+  if (rows_.empty()) {
+    if (guard) guard->sweep(state);
+    return;
+  }
   const StageTimer timer(profile, Stage::contact, rows_.size());
   measure_way(state, dt);
   find_busy_rows();
   aim_rows(state, dt);
   if (any_jaw_) share_squeeze(state, dt / 2);
-  solve_rows(state, dt, profile, nullptr);
+  solve_rows(state, dt, profile, guard);
+  if (!guard) return;
+  std::uint64_t friction_evaluations = 0;
+  for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {
+    guard->sweep(state);
+    sweep_rows(state, friction_evaluations);
+  }
+  profile[Stage::friction].work += friction_evaluations;
 }
 
 template <class Real>

@@ -127,13 +127,15 @@ class Contact {
 
   /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
   /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
-  /// @param guard  of the cloths, whose rows are swept in turn with these while either still
-  ///               changes velocities much; null: none
+  /// @param guard  of the cloths, whose rows are swept in turn with these, and again while either
+  ///               still changes velocities much; null: none
   void resolve(ClothState<Real>& state, Real dt, Profile& profile,
                ClothGuard<Real>* guard = nullptr);
 
   /// Makes the velocities at the end of a tick admissible.
-  void settle(ClothState<Real>& state, Real dt, Profile& profile);
+  /// @param guard  as above
+  void settle(ClothState<Real>& state, Real dt, Profile& profile,
+              ClothGuard<Real>* guard = nullptr);
 
   /// Deepest point of the cloth inside an object [m], 0 if there is none: particles, and points at
   /// each quarter of the edges. Does not use the lists above.

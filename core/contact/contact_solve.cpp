@@ -205,6 +205,8 @@ Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_
   return largest;
 }
 
+/// The rows of cloths with each other are swept after a first sweep over these: what lies on an
+/// object in layers would seem to part as long as the object does not carry the lowest one.
 /// Cloth that is pressed on an object in layers, or led by hands against it, needs more than the
 /// usual sweeps, and those of its own rows in between: without, what the rows leave is stopped by
 /// the certificates.
@@ -213,12 +215,14 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profil
                                ClothGuard<Real>* guard) {
   std::uint64_t friction_evaluations = 0;
   Real left = 0;
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
     left = std::max(left, sweep_rows(state, friction_evaluations));
+    if (guard && sweep == 0) guard->sweep(state);
+  }
   if (guard) {
     const Real enough = thickness_ * Real(kResidual) / dt;
     for (int sweep = 0; sweep < kMoreSweeps && left > enough; ++sweep) {
-      if (!(guard->sweep_again(state) > enough)) break;
+      if (!(guard->sweep(state) > enough)) break;
       left = sweep_rows(state, friction_evaluations);
     }
   }

@@ -14,8 +14,9 @@ bool is_edge_pair(const GuardRow<Real>& row) {
 }  // namespace
 
 template <class Real>
-std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x,
-                                      double dt) {
+std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x) {
+  const auto time = static_cast<double>(guard.kicked());
+  const double per_time = time > 0 ? 1 / time : 0;
   std::vector<ContactPoint> contacts;
   for (const GuardRow<Real>& row : guard.rows()) {
     ContactPoint c;
@@ -31,17 +32,15 @@ std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3A
       (k < static_cast<std::size_t>(c.first_side) ? c.point : other) += part;
     }
     c.gap = c.normal.dot(c.point + other);
-    c.normal_force = static_cast<double>(row.push) / dt;
-    c.friction = row.push > 0 ? Vec3d(to_vector(row.drag).template cast<double>() / dt)
+    c.normal_force = static_cast<double>(row.push) * per_time;
+    c.friction = row.push > 0 ? Vec3d(to_vector(row.drag).template cast<double>() * per_time)
                               : Vec3d(Vec3d::Zero());
     if (row.push > 0 || c.gap <= static_cast<double>(row.radius) * kTouching) contacts.push_back(c);
   }
   return contacts;
 }
 
-template std::vector<ContactPoint> contacts_of(const ClothGuard<float>&, const Vec3Array<float>&,
-                                               double);
-template std::vector<ContactPoint> contacts_of(const ClothGuard<double>&, const Vec3Array<double>&,
-                                               double);
+template std::vector<ContactPoint> contacts_of(const ClothGuard<float>&, const Vec3Array<float>&);
+template std::vector<ContactPoint> contacts_of(const ClothGuard<double>&, const Vec3Array<double>&);
 
 }  // namespace weft

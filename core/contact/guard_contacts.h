@@ -8,11 +8,9 @@
 namespace weft {
 
 /// Contacts of cloths with themselves and each other: the guard's rows that push, and those whose
-/// features touch. Forces are those of the last substep.
-/// @param x   positions now [m]
-/// @param dt  length of the last substep [s]
+/// features touch. Forces are those of the last kick.
+/// @param x  positions now [m]
 template <class Real>
-std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x,
-                                      double dt);
+std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x);
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/contact/feature_pair.h"
 #include "core/math/quad.h"
 #include "core/types.h"
 
@@ -34,6 +35,17 @@ Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
   for (std::size_t k = 1; k < 4; ++k)
     sum += values[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
   return sum;
+}
+
+/// What of a vector lies across the row's normal.
+template <class Real>
+Quad<Real> along(const GuardRow<Real>& row, const Quad<Real>& v) {
+  return v - row.normal * dot(row.normal, v);
+}
+
+template <class Real>
+PairKind kind_of(const GuardRow<Real>& row) {
+  return (row.key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;
 }
 
 /// Gives an impulse [N s] to the particles of a row, or what else is shared out like that.

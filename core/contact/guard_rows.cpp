@@ -135,16 +135,8 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
   GuardRow<Real> row;
   row.radius = radius_of(pair, p, q);
   if (s.gap > row.radius + margin) return;
-  Real mobility = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    row.particle[k] = pair.particle[k];
-    row.weight[k] = s.weight[k];
-    row.share[k] = s.weight[k] * state.inverse_mass[static_cast<std::size_t>(pair.particle[k])];
-    mobility += row.share[k] * row.weight[k];
-  }
-  if (!(mobility > 0)) return;
-  row.inertia = 1 / mobility;
-  row.normal = to_quad(s.normal);
+  row.particle = pair.particle;
+  if (!weigh(state, s, row)) return;
   row.friction =
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
   row.key = key_of(pair);
@@ -156,6 +148,55 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
   }
 }
 
+/// Direction and weights of a row.
+/// @return whether anybody can move in it
+template <class Real>
+bool ClothGuard<Real>::weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
+                             GuardRow<Real>& row) const {
+  Real mobility = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    row.weight[k] = s.weight[k];
+    row.share[k] = s.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])];
+    mobility += row.share[k] * row.weight[k];
+  }
+  row.inertia = mobility > 0 ? 1 / mobility : Real(0);
+  row.normal = to_quad(s.normal);
+  return mobility > 0;
+}
+
+/// Turns the rows that push with their features. Frozen until rows are built anew they jump there,
+/// and what rests on them never comes to rest.
+template <class Real>
+void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile) {
+  const StageTimer timer(profile, Stage::narrow_phase, 0);
+  for (const Index k : busy_rows_) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    if (row.push > 0) columns_of(kind_of(row)).add(k, 0, row.particle);
+  }
+  for (PairColumns<Real>& columns : columns_) {
+    profile[Stage::narrow_phase].work += columns.size();
+    separate_pairs(quad_x_, quad_x_, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      turn(state, columns.separation(k, quad_x_), rows_[static_cast<std::size_t>(columns.a[k])]);
+    columns.clear();
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
+                            GuardRow<Real>& row) {
+  if (!(s.gap > 0)) return;
+  const Quad<Real> slipped = row.slip + (weighted(row, quad_x_) - row.apart);
+  // Edges that are nearest at an end leave it to the particle there.
+  if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {
+    row.push = 0;
+    return;
+  }
+  row.drag = along(row, row.drag);
+  row.slip = along(row, slipped);
+  row.apart = weighted(row, quad_x_);
+}
+
 /// Goes on with the impulses and the anchor that the pair had.
 template <class Real>
 void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
@@ -163,21 +204,25 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
                                       std::pair<std::uint64_t, Index>{row.key, 0});
   if (found == old_keys_.end() || found->first != row.key) return;
   const GuardRow<Real>& old = old_rows_[static_cast<std::size_t>(found->second)];
-  const auto along = [&](const Quad<Real>& v) { return v - row.normal * dot(row.normal, v); };
   row.push = old.push;
-  row.drag = along(old.drag);
+  row.drag = along(row, old.drag);
   // What it slipped since it was last aimed counts too.
-  row.slip = along(old.slip + (weighted(old, quad_x_) - old.apart));
+  row.slip = along(row, old.slip + (weighted(old, quad_x_) - old.apart));
 }
 
-#define WEFT_INSTANTIATE(Real)                                                               \
-  template bool ClothGuard<Real>::rows_hold(const ClothState<Real>&) const;                  \
-  template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);             \
-  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);            \
-  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                 \
-  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&, \
-                                          const PairSeparation<Real>&);                      \
-  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;   \
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);               \
+  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,  \
+                                       GuardRow<Real>&);                                      \
+  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
+                                        GuardRow<Real>&) const;                               \
+  template bool ClothGuard<Real>::rows_hold(const ClothState<Real>&) const;                   \
+  template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);              \
+  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
+  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \
+  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \
+                                          const PairSeparation<Real>&);                       \
+  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
   template void ClothGuard<Real>::remember(GuardRow<Real>&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

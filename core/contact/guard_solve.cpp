@@ -14,6 +14,9 @@ namespace {
 constexpr int kStepsBetweenLooks = 4;
 constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
 
+/// Rows that push turn with their features every so many steps.
+constexpr int kStepsBetweenTurns = 4;
+
 /// Time in which a contact that sticks goes back to its anchor [s].
 constexpr double kStickTime = 0.02;
 
@@ -28,6 +31,7 @@ constexpr double kPushSlack = 0.01;
 template <class Real>
 void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
   legal_ = state.x;
+  const Real kicked = std::exchange(closed_, false) ? dt / 2 : dt;
   if (pairs_.empty()) {
     rows_.clear();
     busy_rows_.clear();
@@ -41,17 +45,12 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
     busy_rows_.clear();
     return;
   }
-  const StageTimer timer(profile, Stage::contact, rows_.size());
   load_rows(state);
   if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
-  sweep_rows(dt);
-  push_apart();
+  if (rows_steps_ % kStepsBetweenTurns == 0) turn_rows(state, profile);
+  const StageTimer timer(profile, Stage::contact, rows_.size());
+  warm_rows(dt, kicked);
   store_rows(state);
-  for (const Index k : pushed_) {
-    const auto i = static_cast<std::size_t>(k);
-    state.v[i] += to_vector(extra_[i]);
-    pushed_v_.push_back(state.v[i]);
-  }
 }
 
 template <class Real>
@@ -114,23 +113,11 @@ Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
 }
 
 template <class Real>
-Real ClothGuard<Real>::sweep_again(ClothState<Real>& state) {
-  // The push is no velocity: seen by the rows it would take away the impulses that hold them.
-  for (std::size_t n = 0; n < pushed_.size(); ++n) {
-    const auto i = static_cast<std::size_t>(pushed_[n]);
-    whole_push_[n] = state.v[i] == pushed_v_[n] ? 1 : 0;
-    state.v[i] -= to_vector(extra_[i]);
-  }
+Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
+  if (busy_rows_.empty()) return 0;
   load_rows(state);
-  Real largest = 0;
-  for (const Index k : busy_rows_)
-    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(k)]));
+  const Real largest = sweep_rows();
   store_rows(state);
-  for (std::size_t n = 0; n < pushed_.size(); ++n) {
-    const auto i = static_cast<std::size_t>(pushed_[n]);
-    state.v[i] += to_vector(extra_[i]);
-    if (whole_push_[n]) pushed_v_[n] = state.v[i];  // no other contact has stopped it
-  }
   return largest;
 }
 
@@ -150,12 +137,12 @@ void ClothGuard<Real>::find_busy_rows(Real dt) {
   }
 }
 
-/// A sweep of projected Gauss-Seidel that starts from the impulses of the last step, and goes over
-/// the rows from either end in turn.
+/// Starts from the impulses of the last step.
+/// @param kicked  time of the forces since then that they have to stand against [s]
 template <class Real>
-void ClothGuard<Real>::sweep_rows(Real dt) {
-  const Real warm = warm_dt_ > 0 ? dt / warm_dt_ : Real(0);
-  warm_dt_ = dt;
+void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
+  const Real warm = kicked_ > 0 ? kicked / kicked_ : Real(0);
+  kicked_ = kicked;
   for (const Index k : busy_rows_) {
     GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     aim(row, dt);
@@ -164,18 +151,27 @@ void ClothGuard<Real>::sweep_rows(Real dt) {
     row.drag = row.drag * warm;
     share_out(row, row.normal * row.push + row.drag, quad_v_);
   }
-  if (rows_steps_ % 2 == 0) {
-    for (std::size_t k = 0; k < busy_rows_.size(); ++k)
-      solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]);
-  } else {
-    for (std::size_t k = busy_rows_.size(); k-- > 0;)
-      solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]);
-  }
 }
 
-/// Velocities of the coming drift alone that push apart what is nearer than its radius.
+/// A sweep of projected Gauss-Seidel, from either end in turn.
+/// @return largest change of a normal velocity [m/s]
 template <class Real>
-void ClothGuard<Real>::push_apart() {
+Real ClothGuard<Real>::sweep_rows() {
+  Real largest = 0;
+  const auto visit = [&](std::size_t k) {
+    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]));
+  };
+  upwards_ = !upwards_;
+  if (upwards_) {
+    for (std::size_t k = 0; k < busy_rows_.size(); ++k) visit(k);
+  } else {
+    for (std::size_t k = busy_rows_.size(); k-- > 0;) visit(k);
+  }
+  return largest;
+}
+
+template <class Real>
+void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
   for (const Index k : busy_rows_) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     const Real lack = -row.room;
@@ -187,6 +183,11 @@ void ClothGuard<Real>::push_apart() {
     for (const Index i : row.particle) {
       if (!std::exchange(is_pushed_[static_cast<std::size_t>(i)], 1)) pushed_.push_back(i);
     }
+  }
+  for (const Index k : pushed_) {
+    const auto i = static_cast<std::size_t>(k);
+    state.v[i] += to_vector(extra_[i]);
+    pushed_v_.push_back(state.v[i]);
   }
 }
 
@@ -215,18 +216,9 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
   load_rows(state);
-  for (GuardRow<Real>& row : rows_) {
-    aim(row, dt);
-    const Quad<Real> v = weighted(row, quad_v_);
-    const Real speed = dot(row.normal, v);
-    const Real push = (row.least_speed - speed) * row.inertia;
-    if (!(push > 0)) continue;
-    const Quad<Real> drag = (v - row.normal * speed) * -row.inertia;
-    const Real most = row.friction * push, size = std::sqrt(dot(drag, drag));
-    share_out(row, row.normal * push + (size > most ? drag * (most / size) : drag), quad_v_);
-  }
+  warm_rows(dt, dt / 2);
   store_rows(state);
-  warm_dt_ *= 2;  // the next step's first kick is half of one
+  closed_ = true;
 }
 
 #define WEFT_INSTANTIATE(Real)                                               \
@@ -237,10 +229,11 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
   template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
   template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
-  template Real ClothGuard<Real>::sweep_again(ClothState<Real>&);            \
+  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
   template void ClothGuard<Real>::find_busy_rows(Real);                      \
-  template void ClothGuard<Real>::sweep_rows(Real);                          \
-  template void ClothGuard<Real>::push_apart();
+  template void ClothGuard<Real>::warm_rows(Real, Real);                     \
+  template Real ClothGuard<Real>::sweep_rows();                              \
+  template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

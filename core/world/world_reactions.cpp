@@ -24,9 +24,8 @@ void World<Real>::take_reactions() {
   if (seed_contact_) {
     for (std::size_t k = 0; k < colliders_.size(); ++k) found.colliders[k] = colliders_[k].force;
   }
-  if (guard_ && report_.substeps > 0) {
-    const double dt = tick_seconds() / report_.substeps;
-    for (const ContactPoint& contact : contacts_of(*guard_, state_.x, dt))
+  if (guard_) {
+    for (const ContactPoint& contact : contacts_of(*guard_, state_.x))
       found.contacts.push_back(contact);
   }
   if (solver_of(def_) == SolverKind::verlet) {
