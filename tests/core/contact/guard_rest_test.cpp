@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "core/world/world.h"
+#include "tests/support/random.h"
+
+// Piles of cloth come to rest by themselves: nobody is stopped or put to sleep here.
+
+using namespace weft;
+using namespace weft::test;
+
+namespace {
+
+/// A sheet of 24 x 24 particles that falls upright on the ground and crumples there.
+WorldDef upright_sheet() {
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = 24;
+  cloth.width = cloth.height = 0.6;
+  cloth.origin = Vec3d(-0.3, 0.7, 0);
+  cloth.u = Vec3d::UnitX();
+  cloth.v = Vec3d(0, -1, -0.12).normalized();
+  cloth.fabric.thickness = 0.25 * cloth.width / 23;
+  def.environment.drag = 5;
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+/// Makes falls differ.
+void jolt(World<float>& world, unsigned seed) {
+  Random random(seed);
+  for (Vec3f& v : world.state().v) v += random.vector(0.05).cast<float>();
+  world.accept_state();
+}
+
+/// Speed that 99 % of the particles do not reach [m/s].
+double fastest_but_a_hundredth(const World<float>& world) {
+  std::vector<double> speed;
+  for (const Vec3f& v : world.state().v) speed.push_back(static_cast<double>(v.norm()));
+  std::sort(speed.begin(), speed.end());
+  return speed[speed.size() * 99 / 100];
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a crumpled sheet comes to rest: after 5 s 99 % of it is slower than 2 mm/s at any tick") {
+  World<float> world(upright_sheet());
+  jolt(world, GENERATE(1u, 2u, 3u));
+  for (int tick = 0; tick < 300; ++tick) world.step();
+  CHECK(world.guard()->rows().size() > 100);
+  double fastest = 0;
+  for (int tick = 0; tick < 30; ++tick) {
+    world.step();
+    fastest = std::max(fastest, fastest_but_a_hundredth(world));
+  }
+  CHECK(fastest < 2e-3);
+}
+
+TEST_CASE("a crumpled sheet at rest is moved by a hand of 0.1 N") {
+  World<float> world(upright_sheet());
+  jolt(world, 1);
+  for (int tick = 0; tick < 300; ++tick) world.step();
+  const Vec3Array<float>& x = world.state().x;
+  const auto top = static_cast<std::size_t>(
+      std::max_element(x.begin(), x.end(),
+                       [](const Vec3f& a, const Vec3f& b) { return a[1] < b[1]; }) -
+      x.begin());
+  const Vec3f before = x[top];
+  GrabDef grab;
+  const std::vector<Triangle>& triangles = world.model().triangles;
+  grab.triangle = static_cast<Index>(
+      std::find_if(triangles.begin(), triangles.end(),
+                   [&](const Triangle& t) { return t[0] == static_cast<Index>(top); }) -
+      triangles.begin());
+  REQUIRE(grab.triangle < static_cast<Index>(triangles.size()));
+  grab.barycentric = {1, 0, 0};
+  grab.max_force = 0.1;
+  grab.target = before.cast<double>() + Vec3d(0, 0.05, 0);
+  world.grab(grab);
+  for (int tick = 0; tick < 60; ++tick) world.step();
+  CHECK((world.state().x[top] - before).norm() > 2e-3f);
+}
