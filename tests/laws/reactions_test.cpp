@@ -106,9 +106,7 @@ TEST_CASE("friction holds a sheet on a slope: its sum is the weight along it") {
   CHECK(-friction[0] == Approx(weight_of(world) * std::sin(angle)).epsilon(0.01));
 }
 
-TEST_CASE(
-    "of two sheets that lie on each other the lower one carries the upper one's weight at each "
-    "tick") {
+TEST_CASE("of two sheets the lower one carries the upper one's weight at each tick") {
   WorldDef def = sheet_at(0.006);
   def.cloths.push_back(def.cloths[0]);
   def.cloths[1].name = "upper";
