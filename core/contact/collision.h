@@ -25,12 +25,10 @@ struct Collision {
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
     if (guard) guard->solve(state, dt, profile);
-    if (weft) {
+    if (weft)
       weft->resolve(state, dt, profile, guard);
-    } else if (guard) {
-      guard->sweep(state);
-      guard->push_apart(state);
-    }
+    else if (guard)
+      guard->respond_alone(state, dt);
     if (seed) seed->separate(state, profile);
     if (guard) guard->certify(state, dt, profile);
   }

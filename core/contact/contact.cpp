@@ -157,8 +157,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     if (guard) guard->push_apart(state);
     certify(state, dt);
   } else if (guard) {
-    guard->sweep(state);
-    guard->push_apart(state);
+    guard->respond_alone(state, dt);
   }
   first_substep_ = false;
   move_colliders(dt);

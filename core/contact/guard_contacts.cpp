@@ -6,11 +6,6 @@ namespace {
 /// What is nearer than this part of the distance that a pair keeps touches.
 constexpr double kTouching = 1.05;
 
-template <class Real>
-bool is_edge_pair(const GuardRow<Real>& row) {
-  return (row.key >> 63) != 0;
-}
-
 }  // namespace
 
 template <class Real>
@@ -21,7 +16,7 @@ std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3A
   for (const GuardRow<Real>& row : guard.rows()) {
     ContactPoint c;
     c.count = 4;
-    c.first_side = is_edge_pair(row) ? 2 : 1;
+    c.first_side = static_cast<int>(first_side(kind_of(row)));
     c.normal = to_vector(row.normal).template cast<double>();
     Vec3d other = Vec3d::Zero();
     for (std::size_t k = 0; k < 4; ++k) {

@@ -14,6 +14,12 @@ namespace {
 constexpr int kStepsBetweenLooks = 4;
 constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
 
+/// Where cloths meet nothing but each other sweeps are repeated, up to so many, while one changes
+/// what something moves in the step by more than this part of the thickness. What one sweep leaves
+/// under load sinks in, and the push that leads it out again does work that nobody gave.
+constexpr int kMostSweeps = 3;
+constexpr double kResidual = 0.01;
+
 /// Rows that push turn with their features every so many steps.
 constexpr int kStepsBetweenTurns = 4;
 
@@ -119,6 +125,15 @@ Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
   const Real largest = sweep_rows();
   store_rows(state);
   return largest;
+}
+
+template <class Real>
+void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
+  const Real enough = thickest_ * Real(kResidual) / dt;
+  for (int k = 0; k < kMostSweeps; ++k) {
+    if (!(sweep(state) > enough)) break;
+  }
+  push_apart(state);
 }
 
 /// Lists the rows that push somebody or may have to before the next look.
@@ -230,6 +245,7 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
   template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
   template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
+  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
   template void ClothGuard<Real>::find_busy_rows(Real);                      \
   template void ClothGuard<Real>::warm_rows(Real, Real);                     \
   template Real ClothGuard<Real>::sweep_rows();                              \
