@@ -17,65 +17,121 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr std::ptrdiff_t kTriples = 3 * kMeshBlock;  ///< numbers a slot
-
-/// Brings the triples of one slot's neighbours together.
-template <class Real>
-HWY_INLINE void gather(const Index* neighbour, const Real* from, Real* to) {
-  for (std::ptrdiff_t k = 0; k < kMeshBlock; ++k)
-    std::memcpy(to + 3 * k, from + 3 * static_cast<std::ptrdiff_t>(neighbour[k]), 3 * sizeof(Real));
+/// A particle's three numbers and one of the next particle, which the model's last one has not.
+/// @param from   numbers of the block's first particle
+/// @param spare  whether this may be the last one
+template <class D4>
+HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, std::ptrdiff_t last,
+                                 bool spare) {
+  if (spare && way == last) {
+    HWY_ALIGN float numbers[4] = {from[3 * way], from[3 * way + 1], from[3 * way + 2], 0};
+    return hn::Load(d, numbers);
+  }
+  return hn::LoadU(d, from + 3 * way);
 }
 
-/// Forces on one block: gather everything first, because vectors that span what was just written
-/// piece by piece would wait for it; then add up slot by slot.
-template <class Real>
-HWY_INLINE void block_forces(const MeshView<Real>& mesh, const MeshBlock<Real>& block,
-                             std::ptrdiff_t first, const Real* x, const Real* v, Real* force) {
-  using D = hn::CappedTag<Real, 16>;
+/// Brings the triples of as many particles together as there are lanes.
+/// @tparam meets_last  whether the model's last particle may be among them
+template <bool meets_last, class D>
+HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways,
+                                     std::ptrdiff_t last) {
+#if HWY_TARGET != HWY_SCALAR
+  // Whole particles, transposed: gathers of single numbers take several times as long.
+  const hn::CappedTag<float, 4> four;
+  const hn::Repartition<double, D> wide;
+  const auto one = [&](int k) HWY_ATTR { return load_quad(four, from, ways[k], last, meets_last); };
+  // Every fourth lane's particle from lane k on, as quads one behind the other.
+  const auto every_fourth = [&](int k) HWY_ATTR {
+    if constexpr (hn::MaxLanes(d) == 4) {
+      return one(k);
+    } else if constexpr (hn::MaxLanes(d) == 8) {
+      return hn::Combine(d, one(k + 4), one(k));
+    } else {
+      const hn::Half<D> half;
+      return hn::Combine(d, hn::Combine(half, one(k + 12), one(k + 8)),
+                         hn::Combine(half, one(k + 4), one(k)));
+    }
+  };
+  const auto p0 = every_fourth(0), p1 = every_fourth(1), p2 = every_fourth(2), p3 = every_fourth(3);
+  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
+             xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
+             z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
+             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
+  return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+#else
+  (void)last;
+  const float* const p = from + 3 * std::ptrdiff_t{ways[0]};
+  return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
+#endif
+}
+template <bool meets_last, class D>
+HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* ways, std::ptrdiff_t) {
+  HWY_ALIGN double numbers[3][hn::MaxLanes(D())];
+  for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+    for (std::size_t c = 0; c < 3; ++c)
+      numbers[c][k] = from[3 * std::ptrdiff_t{ways[k]} + static_cast<std::ptrdiff_t>(c)];
+  }
+  return {hn::Load(d, numbers[0]), hn::Load(d, numbers[1]), hn::Load(d, numbers[2])};
+}
+
+/// Forces on a group.
+/// @param x,v  of the block's first particle
+/// @param sum  forces as quads
+template <bool meets_last, class Real>
+HWY_INLINE void group_forces(const MeshGroup& group, const MeshWay* way, const Real* number,
+                             std::ptrdiff_t last, Real damping_per_stiffness, const Real* x,
+                             const Real* v, Real* sum) {
+  using D = hn::CappedTag<Real, kMeshGroup>;
   const D d;
   using V = hn::Vec<D>;
-  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const std::ptrdiff_t count =
-      std::min<std::ptrdiff_t>(kMeshBlock, mesh.first + mesh.count - first);
-  const int slots = block.near + block.far;
-  Real* const places = mesh.gathered;
-  Real* const speeds = places + slots * kTriples;
-  Real* const own_x = speeds + block.near * kTriples;
-  Real *const own_v = own_x + kTriples, *const sum = own_v + kTriples;
-  for (int s = 0; s < slots; ++s)
-    gather(block.neighbour + s * kMeshBlock, x, places + s * kTriples);
-  for (int s = 0; s < block.near; ++s)
-    gather(block.neighbour + s * kMeshBlock, v, speeds + s * kTriples);
-  std::copy_n(x + 3 * first, 3 * count, own_x);
-  std::copy_n(v + 3 * first, 3 * count, own_v);
-
-  const V one = hn::Set(d, Real(1)), damping = hn::Set(d, mesh.damping_per_stiffness),
+  const V one = hn::Set(d, Real(1)), damping = hn::Set(d, damping_per_stiffness),
           smallest = hn::Set(d, Real(kSmallestSquaredLength));
-  for (std::ptrdiff_t k = 0; k < kMeshBlock; k += lanes) {
-    const auto x0 = load_particles(d, own_x + 3 * k), v0 = load_particles(d, own_v + 3 * k);
+  for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
+    const MeshWay* ways = way + k;
+    const Real* numbers = number + k;
+    const auto x0 = gather<meets_last>(d, x, ways, last), v0 = gather<meets_last>(d, v, ways, last);
+    ways += kMeshGroup;
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (int s = 0; s < block.near; ++s) {
-      const std::ptrdiff_t at = s * kMeshBlock + k;
-      const auto way = load_particles(d, places + 3 * at) - x0;
-      const auto speed = load_particles(d, speeds + 3 * at) - v0;
-      const SpringLaw<D> law{one, hn::LoadU(d, block.rest_length + at), damping, smallest};
-      const V pull = spring(d, law, hn::LoadU(d, block.stiffness + at), way, speed);
-      f = fused(d, way, hn::Sub(pull, hn::LoadU(d, block.bending_weight + at)), f);
+    for (int s = 0; s < group.near; ++s, ways += kMeshGroup, numbers += 3 * kMeshGroup) {
+      const auto away = gather<meets_last>(d, x, ways, last) - x0;
+      const auto speed = gather<meets_last>(d, v, ways, last) - v0;
+      const SpringLaw<D> law{one, hn::LoadU(d, numbers), damping, smallest};
+      const V pull = spring(d, law, hn::LoadU(d, numbers + kMeshGroup), away, speed);
+      f = fused(d, away, hn::Sub(pull, hn::LoadU(d, numbers + 2 * kMeshGroup)), f);
     }
-    for (int s = block.near; s < slots; ++s) {
-      const std::ptrdiff_t at = s * kMeshBlock + k;
-      const auto way = load_particles(d, places + 3 * at) - x0;
-      f = fused_minus(d, way, hn::LoadU(d, block.bending_weight + at), f);
+    for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup) {
+      const auto away = gather<meets_last>(d, x, ways, last) - x0;
+      f = fused_minus(d, away, hn::LoadU(d, numbers), f);
     }
-    store_particles(d, f, sum + 3 * k);
+    hn::StoreInterleaved4(f.x, f.y, f.z, hn::Zero(d), d, sum + 4 * k);
   }
-  std::copy_n(sum, 3 * count, force + 3 * first);
 }
 
 template <class Real>
 HWY_INLINE void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* force) {
-  for (int b = 0; b < mesh.blocks; ++b)
-    block_forces(mesh, mesh.block[b], mesh.first + std::ptrdiff_t{b} * kMeshBlock, x, v, force);
+  HWY_ALIGN Real sum[4 * kMeshBlock];
+  const MeshGroup* group = mesh.group;
+  const MeshWay* way = mesh.way;
+  const Real* number = mesh.number;
+  for (std::ptrdiff_t begin = 0; begin < mesh.count; begin += kMeshBlock) {
+    const std::ptrdiff_t first = mesh.first + begin;
+    const std::ptrdiff_t end = std::min<std::ptrdiff_t>(begin + kMeshBlock, mesh.count);
+    for (Real* to = sum; to < sum + 4 * (end - begin); to += 4 * kMeshGroup, ++group) {
+      const std::ptrdiff_t last = mesh.last - first;
+      const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
+      if (group->meets_last)
+        group_forces<true>(*group, way, number, last, mesh.damping_per_stiffness, x0, v0, to);
+      else
+        group_forces<false>(*group, way, number, last, mesh.damping_per_stiffness, x0, v0, to);
+      way += (1 + group->near + group->far) * kMeshGroup;
+      number += (3 * group->near + group->far) * kMeshGroup;
+    }
+    // Back in their own order.
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      std::memcpy(force + 3 * (mesh.first + i), sum + 4 * mesh.place[i], 3 * sizeof(Real));
+  }
 }
 
 HWY_ATTR void mesh_forces_f32(const MeshView<float>& mesh, const float* x, const float* v,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -15,8 +16,9 @@ namespace weft {
 template <class Real>
 class MeshPass {
  public:
-  /// Lists the neighbours. A part whose springs are not all damped in proportion to their stiffness
-  /// does not fit and stays with the element-wise form.
+  /// Lists the neighbours. A part whose springs are not all damped in proportion to their
+  /// stiffness, with more than 64 springs at a particle or with neighbours more than 32 thousand
+  /// particles apart does not fit and stays with the element-wise form.
   void prepare(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
   bool fits() const { return view_.count > 0; }
@@ -33,20 +35,26 @@ class MeshPass {
     Index neighbour = 0;
     Real rest_length = 0, stiffness = 0;
     double bending_weight = 0;
-    bool is_spring = false;
   };
-  using Links = std::vector<std::vector<Link>>;  // by particle of the part
+  /// Neighbours of a particle: those that it has a spring with, and those it only bends with.
+  struct Row {
+    std::vector<Link> near, far;
+  };
+  using Rows = std::vector<Row>;  // by particle of the part
+  using Members = std::array<std::size_t, kMeshGroup>;
 
   static bool collect_springs(const ClothModel<Real>& model, const ClothPart<Real>& part,
-                              Real damping_per_stiffness, Links& links);
-  static void collect_bending(const ClothPart<Real>& part, Links& links);
-  void lay_out(const Links& links, Index first);
+                              Real damping_per_stiffness, Rows& rows);
+  static void collect_bending(const ClothPart<Real>& part, Rows& rows);
+  void lay_out(const Rows& rows);
+  void add_group(const Rows& rows, const Members& members, std::size_t block);
 
   MeshView<Real> view_;
-  std::vector<MeshBlock<Real>> blocks_;
-  std::vector<Index> neighbour_;
-  std::vector<Real> rest_length_, stiffness_, bending_weight_;
-  AlignedVector<Real> gathered_;
+  std::vector<MeshGroup> groups_;
+  std::vector<MeshWay> ways_;
+  AlignedVector<Real> numbers_;
+  std::vector<std::uint8_t> places_;
+  bool in_reach_ = true;  // every neighbour is a MeshWay off
 };
 
 }  // namespace weft

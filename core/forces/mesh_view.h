@@ -1,34 +1,40 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/types.h"
 
 namespace weft {
 
-inline constexpr int kMeshBlock = 64;  ///< particles whose neighbours are gathered together
+inline constexpr int kMeshGroup = 16;  ///< particles of equal slots, worked on at once
+inline constexpr int kMeshBlock = 64;  ///< particles that are sorted into groups among themselves
 
-/// A block of particles of a mesh. In each slot every particle has one neighbour; who has none left
-/// is its own, with zeros for numbers. `near` slots have a spring and a bending weight, `far` ones
-/// a bending weight alone.
-template <class Real>
-struct MeshBlock {
+/// Way to a particle: how far behind the first one of the block it is in the model. Half the size
+/// of its number, as lists are read anew each substep and do not stay in the cache.
+using MeshWay = std::int16_t;
+
+/// Particles of a block that have about as many neighbours. In each slot every one of them has one
+/// neighbour; who has none left is its own, with zeros for numbers. `near` slots have a spring and
+/// a bending weight, `far` ones, which follow, a bending weight alone.
+struct MeshGroup {
   int near = 0, far = 0;
-  const Index* neighbour = nullptr;      ///< of the whole model, kMeshBlock a slot
-  const Real* rest_length = nullptr;     ///< by near slot [m]
-  const Real* stiffness = nullptr;       ///< by near slot [N/m]
-  const Real* bending_weight = nullptr;  ///< by slot: entry of the bending matrix [N/m]
+  bool meets_last = false;  ///< the model's last particle is among them or their neighbours
 };
 
-/// What the kernel of a mesh reads and writes: three numbers a particle in the arrays of the whole
-/// model, of which the mesh is a stretch.
+/// What the kernel of a mesh reads: lists by group without gaps, as many as its slots tell.
 template <class Real>
 struct MeshView {
-  const MeshBlock<Real>* block = nullptr;
-  int blocks = 0;
-  std::ptrdiff_t first = 0, count = 0;  ///< particles of the mesh
+  const MeshGroup* group = nullptr;  ///< kMeshBlock / kMeshGroup a block
+  const MeshWay* way = nullptr;      ///< the group's own particles, then by slot, kMeshGroup each
+  /// By near slot rest lengths [m], stiffness [N/m] and entries of the bending matrix [N/m], by far
+  /// slot these alone, kMeshGroup each.
+  const Real* number = nullptr;
+  /// By particle of the mesh: its place among those of its block.
+  const std::uint8_t* place = nullptr;
+  std::ptrdiff_t first = 0, count = 0;  ///< particles of the mesh, within those of the model
+  std::ptrdiff_t last = 0;              ///< last particle of the model
   Real damping_per_stiffness = 0;       ///< of the springs [s]
-  Real* gathered = nullptr;  ///< scratch: kMeshBlock triples a slot, positions and velocities
 };
 
 }  // namespace weft

@@ -16,8 +16,9 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   }
   external.clear();
   const std::size_t listed = all_grids && solver.damping_sweeps == 1 ? 0 : model.mass.size();
-  for (Vec3Array<Real>* array : {&internal, &velocity, &inverse_mass, &gravity})
+  for (Vec3Array<Real>* array : {&internal, &inverse_mass, &gravity})
     array->assign(listed, Vec3<Real>::Zero());
+  velocity.assign(solver.damping_sweeps > 1 ? listed : 0, Vec3<Real>::Zero());
   if (solver.damping_sweeps > 1) make_room(model, false, true);
 }
 
