@@ -105,6 +105,21 @@ class Bench(unittest.TestCase):
         self.assertIn("**No**", verdict(2.5, 0.1, 0.9))
         self.assertIn("sling (2.5 CPU s in its dearest second", verdict(2.5, 0.1, 0.9))
 
+    def test_two_threads_give_the_bits_of_one_and_the_report_says_whether_they_help(self):
+        directory = tempfile.mkdtemp()
+        subprocess.run([PROGRAM, "--out", directory, "--quick", "--parts", "threads"], check=True,
+                       capture_output=True, timeout=300)
+        rows = tables.read(directory, "threads")
+        self.assertGreaterEqual(len(rows), 5)
+        for row in rows:
+            self.assertEqual(row["same_bits"], "yes")
+            self.assertTrue(0 <= row["share_in_chunks"] <= 1)
+        slow = [{**row, "wall_ratio": 1.1, "same_bits": "no"} for row in rows]
+        self.assertIn("one thread is the right choice", tables.threads(slow))
+        self.assertIn("**no**", tables.threads(slow))
+        fast = [{**rows[0], "wall_ratio": 0.6}, *slow[1:]]
+        self.assertIn(f"1 of {len(rows)} ({rows[0]['scene']})", tables.threads(fast))
+
     def test_the_same_run_has_the_same_errors(self):
         again = measure("--scenes", "swing", "--sizes", "16", "--budget", "100")["accuracy"]
         for before, now in zip(self.swing["accuracy"], again, strict=True):

@@ -19,6 +19,8 @@ WorldDef quiet_world(int rows, int columns, const FabricDef& fabric) {
   cloth.v = Vec3d::UnitZ();
   def.environment.air_density = 0;
   def.environment.drag = 5;
+  // References are for springs and objects alone.
+  def.contact.seed.self = SelfContact::none;
   return def;
 }
 

@@ -68,6 +68,10 @@ int measure(const Options& options) {
     std::cerr << "bench: parts of the built-in scenes" << std::endl;
     tables.write_parts(measure_parts(quick, options.meshes));
   }
+  if (wanted(options.parts, "threads")) {
+    std::cerr << "bench: threads" << std::endl;
+    tables.write_threads(measure_threads(quick));
+  }
   if (wanted(options.parts, "shaking")) {
     std::cerr << "bench: hard shaking" << std::endl;
     tables.write_shaking(measure_shaking(quick));
@@ -87,7 +91,8 @@ int main(int argc, char** argv) {
   app.add_flag("--list-settings", list, "print all settings of the accuracy, one a line");
   app.add_option("--commit", options.commit, "written into each row");
   app.add_option("--meshes", options.meshes, "directory of installed meshes");
-  app.add_option("--parts", options.parts, "kernels, parts, shaking, accuracy; default: all");
+  app.add_option("--parts", options.parts,
+                 "kernels, parts, threads, shaking, accuracy; default: all");
   app.add_option("--scenes", options.scenes, "of the accuracy; default: all");
   app.add_option("--fabrics", options.fabrics, "soft, stiff, cotton; default: all");
   app.add_option("--sizes", options.sizes, "particles a side, ascending");

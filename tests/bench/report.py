@@ -101,7 +101,8 @@ def report_text(data):
     cells = tables.read(data, "accuracy")
     machine = {row["key"]: row["value"] for row in tables.read(data, "machine")}
     references, spatial = tables.read(data, "references"), tables.read(data, "spatial")
-    parts = tables.read(data, "parts")
+    parts, kernels = tables.read(data, "parts"), tables.read(data, "kernels")
+    threads = tables.read(data, "threads")
     out = ["# Speed against error", "",
            "Written by `./dev report`; not by hand. All times are CPU time of one thread, medians of "
            f"{max((c['timed_runs'] for c in cells), default=0)} interleaved runs, and tell what one "
@@ -110,7 +111,7 @@ def report_text(data):
            tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
            "The tables as CSV, with every setting and the commit: " + ", ".join(
                f"[{name}](data/{name}.csv)" for name in
-               ("accuracy", "references", "spatial", "kernels", "parts", "shaking", "machine")) + ".",
+               ("accuracy", "references", "spatial", "kernels", "parts", "threads", "shaking", "machine")) + ".",
            "", "## What an error costs", "",
            "The cheapest setting of any solver whose positions stay within the error all the way of "
            "the swing, in CPU seconds a simulated second.", "",
@@ -144,10 +145,10 @@ def report_text(data):
                 tables.references(references, spatial, scene), "",
                 "The cheapest setting within 1 % in position, or the best one where none is:", "",
                 tables.error_vectors(cells, scene)]
-    out += ["", "## Kernels", "", tables.kernels(tables.read(data, "kernels")), "",
+    out += ["", "## Kernels", "", tables.taken(kernels), "", tables.kernels(kernels), "",
             "## What runs in real time", "",
             "The largest square of particles whose swing, with verlet as scenes run it, needs at most "
-            "half of one core.", "", tables.real_time_sizes(tables.read(data, "kernels")), "",
+            "half of one core.", "", tables.real_time_sizes(kernels), "",
             "## Is an implicit solver called for?", "",
             "It is built as soon as a built-in scene, or cotton at 128², costs more than a second of "
             "CPU a simulated second with verlet. Each of Weft's own scenes, but no "
@@ -157,6 +158,14 @@ def report_text(data):
             "Each built-in scene as it is and with one part switched off, over its first second or a "
             "part of it (the hard cases are left out); how "
             "far the particles end from where they were (rms).", "", tables.parts(parts), "",
+            "## Threads", "",
+            "One thread against two, by wall time and by CPU time of the whole process. What runs in "
+            "chunks is the search for contacts with objects; springs, bending, air, self-contact and "
+            "the sweeps over contacts are on one thread. To share the springs, threads would have to "
+            "meet at each of 30 to 300 substeps a tick, and lose more wherever another process "
+            "takes a core. On a machine that does nothing else the time falls by half of the share at "
+            "best; where the pool's thread comes late, by nothing.", "",
+            tables.taken(threads), "", tables.threads(threads), "",
             "## Hard shaking", "",
             "Cloths of 1 m × 1 m that hang by one edge. With drag 5/s, 5 s after the insult: rms "
             "distance from the solver's own rest, over 1 m; at most 1 % is wanted. Without drag: what "

@@ -139,8 +139,11 @@ void Tables::add_spatial(const CaseResult& coarse, const CaseResult& fine) {
 }
 
 void Tables::write_kernels(const std::vector<KernelFigure>& figures) {
-  Csv csv(directory_ + "/kernels.csv", {"figure", "value", "unit", "bar", "runs", "commit"});
-  for (const KernelFigure& f : figures) csv.row(f.name, f.value, f.unit, f.bar, f.runs, commit_);
+  Csv csv(directory_ + "/kernels.csv",
+          {"figure", "value", "unit", "bar", "runs", "vectors", "load", "commit"});
+  for (const KernelFigure& f : figures)
+    csv.row(f.name, f.value, f.unit, f.bar, f.runs, std::string(simd_level()), load_average(),
+            commit_);
 }
 
 void Tables::write_parts(const std::vector<PartFigure>& figures) {
@@ -151,6 +154,15 @@ void Tables::write_parts(const std::vector<PartFigure>& figures) {
     csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.slowest_second,
             f.seconds_looked_at, f.share_of_solver, f.moved, f.same_bits ? "yes" : "no", f.runs,
             commit_);
+}
+
+void Tables::write_threads(const std::vector<ThreadFigure>& figures) {
+  Csv csv(directory_ + "/threads.csv",
+          {"scene", "ticks", "share_in_chunks", "wall_s_one_thread", "wall_ratio", "cpu_ratio",
+           "same_bits", "runs", "vectors", "load", "commit"});
+  for (const ThreadFigure& f : figures)
+    csv.row(f.scene, f.ticks, f.offered, f.wall_one, f.wall_ratio, f.cpu_ratio,
+            f.same_bits ? "yes" : "no", f.runs, std::string(simd_level()), load_average(), commit_);
 }
 
 void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {

@@ -8,6 +8,7 @@
 #include "tests/bench/kernels.h"
 #include "tests/bench/parts.h"
 #include "tests/bench/shaking.h"
+#include "tests/bench/threads.h"
 
 namespace weft::bench {
 
@@ -51,6 +52,7 @@ class Tables {
   void add_spatial(const CaseResult& coarse, const CaseResult& fine);
   void write_kernels(const std::vector<KernelFigure>& figures);
   void write_parts(const std::vector<PartFigure>& figures);
+  void write_threads(const std::vector<ThreadFigure>& figures);
   void write_shaking(const std::vector<ShakingFigure>& figures);
 
  private:

@@ -206,6 +206,14 @@ def cases_left_out(cells):
             if (scene, fabric, n) not in measured]
 
 
+def taken(rows):
+    """Where a table comes from, as one part of a report may be taken anew elsewhere."""
+    if not rows or "vectors" not in rows[0]:
+        return ""
+    return (f"Taken at commit {rows[0]['commit']} with {rows[0]['vectors']} kernels; load of the machine at "
+            f"the end {rows[0]['load']}.")
+
+
 def kernels(rows):
     table = []
     for row in rows:
@@ -230,6 +238,21 @@ def parts(rows):
         moved = "not a bit" if row["same_bits"] == "yes" else f"{100 * row['moved_m']:.2g} cm"
         table.append(["", "", row["off"], cost, f"{100 * change:+.0f} %", moved])
     return markdown(["scene", "solver", "switched off", "CPU s per s", "time", "moves the cloth by"], table)
+
+
+def threads(rows):
+    """One thread against two, and what that comes to."""
+    if not rows:
+        return "Not measured in this run."
+    table = [[row["scene"].replace(" x ", " × "), row["ticks"], f"{100 * row['share_in_chunks']:.0f} %",
+              f"{1000 * row['wall_s_one_thread'] / row['ticks']:.2g} ms", f"{row['wall_ratio']:.2f}",
+              f"{row['cpu_ratio']:.2f}", "yes" if row["same_bits"] == "yes" else "**no**"] for row in rows]
+    faster = [row["scene"] for row in rows if row["wall_ratio"] < 0.95]
+    verdict = (f"Two threads are faster by a twentieth or more in {len(faster)} of {len(rows)}"
+               + (f" ({', '.join(faster)})." if faster else ": one thread is the right choice here."))
+    return verdict + "\n\n" + markdown(
+        ["scene", "ticks", "runs in chunks", "wall time a tick", "wall time of two / one",
+         "CPU time of two / one", "same bits"], table)
 
 
 def shaking(rows):
