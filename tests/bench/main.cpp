@@ -70,7 +70,7 @@ int measure(const Options& options) {
   }
   if (wanted(options.parts, "threads")) {
     std::cerr << "bench: threads" << std::endl;
-    tables.write_threads(measure_threads(quick));
+    tables.write_threads(measure_threads(quick, options.meshes));
   }
   if (wanted(options.parts, "shaking")) {
     std::cerr << "bench: hard shaking" << std::endl;

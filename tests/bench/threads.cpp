@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <filesystem>
 
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
@@ -76,11 +77,14 @@ ThreadFigure compare(const std::string& name, const WorldDef& def, int ticks, in
 
 }  // namespace
 
-std::vector<ThreadFigure> measure_threads(bool quick) {
+std::vector<ThreadFigure> measure_threads(bool quick, const std::string& mesh_directory) {
   const int runs = quick ? 3 : 5, ticks = quick ? 30 : 60;
   std::vector<ThreadFigure> figures;
   for (const char* name : {"default", "drape-sphere", "table", "gripper", "flag"})
     figures.push_back(compare(name, make_scene(name, {}), ticks, runs));
+  if (std::filesystem::exists(mesh_directory + "/bunny.ply"))
+    figures.push_back(
+        compare("drop-on-bunny", make_scene("drop-on-bunny", mesh_directory), ticks, runs));
   const auto large =
       std::find_if(bench_scenes().begin(), bench_scenes().end(),
                    [](const BenchScene& s) { return s.name == std::string("drape"); });

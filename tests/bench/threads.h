@@ -20,6 +20,7 @@ struct ThreadFigure {
 /// Runs some built-in scenes and a large cloth on a sphere on one thread and on two, in turn.
 /// Threads wait for each other, so here wall time counts as well; what else runs on the machine
 /// makes two look worse than they are.
-std::vector<ThreadFigure> measure_threads(bool quick);
+/// @param mesh_directory  of installed meshes; a scene whose mesh is missing is left out
+std::vector<ThreadFigure> measure_threads(bool quick, const std::string& mesh_directory);
 
 }  // namespace weft::bench
