@@ -120,6 +120,10 @@ class Bench(unittest.TestCase):
         fast = [{**rows[0], "wall_ratio": 0.6}, *slow[1:]]
         self.assertIn(f"1 of {len(rows)} ({rows[0]['scene']})", tables.threads(fast))
 
+    def test_a_commit_is_not_taken_for_a_number(self):
+        self.assertEqual([tables.number(text) for text in ("5311e71", "1.5e-05", "3e+20", "-2", "yes")],
+                         ["5311e71", 1.5e-5, 3e20, -2, "yes"])
+
     def test_the_same_run_has_the_same_errors(self):
         again = measure("--scenes", "swing", "--sizes", "16", "--budget", "100")["accuracy"]
         for before, now in zip(self.swing["accuracy"], again, strict=True):
