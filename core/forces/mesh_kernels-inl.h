@@ -31,15 +31,15 @@ HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, st
 }
 
 /// Brings the triples of as many particles together as there are lanes.
-/// @tparam meets_last  whether the model's last particle may be among them
-template <bool meets_last, class D>
+/// @tparam MeetsLast  whether the model's last particle may be among them
+template <bool MeetsLast, class D>
 HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways,
                                      std::ptrdiff_t last) {
 #if HWY_TARGET != HWY_SCALAR
   // Whole particles, transposed: gathers of single numbers take several times as long.
   const hn::CappedTag<float, 4> four;
   const hn::Repartition<double, D> wide;
-  const auto one = [&](int k) HWY_ATTR { return load_quad(four, from, ways[k], last, meets_last); };
+  const auto one = [&](int k) HWY_ATTR { return load_quad(four, from, ways[k], last, MeetsLast); };
   // Every fourth lane's particle from lane k on, as quads one behind the other.
   const auto every_fourth = [&](int k) HWY_ATTR {
     if constexpr (hn::MaxLanes(d) == 4) {
@@ -66,7 +66,7 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways
   return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
 #endif
 }
-template <bool meets_last, class D>
+template <bool MeetsLast, class D>
 HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* ways, std::ptrdiff_t) {
   HWY_ALIGN double numbers[3][hn::MaxLanes(D())];
   for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
@@ -79,7 +79,7 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* way
 /// Forces on a group.
 /// @param x,v  of the block's first particle
 /// @param sum  forces as quads
-template <bool meets_last, class Real>
+template <bool MeetsLast, class Real>
 HWY_INLINE void group_forces(const MeshGroup& group, const MeshWay* way, const Real* number,
                              std::ptrdiff_t last, Real damping_per_stiffness, const Real* x,
                              const Real* v, Real* sum) {
@@ -91,18 +91,18 @@ HWY_INLINE void group_forces(const MeshGroup& group, const MeshWay* way, const R
   for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
     const MeshWay* ways = way + k;
     const Real* numbers = number + k;
-    const auto x0 = gather<meets_last>(d, x, ways, last), v0 = gather<meets_last>(d, v, ways, last);
+    const auto x0 = gather<MeetsLast>(d, x, ways, last), v0 = gather<MeetsLast>(d, v, ways, last);
     ways += kMeshGroup;
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (int s = 0; s < group.near; ++s, ways += kMeshGroup, numbers += 3 * kMeshGroup) {
-      const auto away = gather<meets_last>(d, x, ways, last) - x0;
-      const auto speed = gather<meets_last>(d, v, ways, last) - v0;
+      const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
+      const auto speed = gather<MeetsLast>(d, v, ways, last) - v0;
       const SpringLaw<D> law{one, hn::LoadU(d, numbers), damping, smallest};
       const V pull = spring(d, law, hn::LoadU(d, numbers + kMeshGroup), away, speed);
       f = fused(d, away, hn::Sub(pull, hn::LoadU(d, numbers + 2 * kMeshGroup)), f);
     }
     for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup) {
-      const auto away = gather<meets_last>(d, x, ways, last) - x0;
+      const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
       f = fused_minus(d, away, hn::LoadU(d, numbers), f);
     }
     hn::StoreInterleaved4(f.x, f.y, f.z, hn::Zero(d), d, sum + 4 * k);
