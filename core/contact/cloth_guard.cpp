@@ -14,8 +14,9 @@ constexpr double kReachPart = 0.65, kMostReach = 0.28;
 
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
-    : edges_(model.edges), triangles_(model.triangles), rest_positions_(model.rest_positions),
-      tree_(model) {
+    : edges_(model.edges), triangles_(model.triangles), tree_(model),
+      boxes_(tree_, edges_, triangles_) {
+  for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
   finest_ = std::numeric_limits<Real>::infinity();
   for (const ClothPart<Real>& part : model.parts) {
     first_particle_.push_back(part.particles.first);
@@ -25,8 +26,8 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
     double sum = 0;
     for (Index e = part.edges.first; e < part.edges.end(); ++e) {
       const Edge& edge = edges_[static_cast<std::size_t>(e)];
-      sum += static_cast<double>((rest_positions_[static_cast<std::size_t>(edge[0])] -
-                                  rest_positions_[static_cast<std::size_t>(edge[1])])
+      sum += static_cast<double>((model.rest_positions[static_cast<std::size_t>(edge[0])] -
+                                  model.rest_positions[static_cast<std::size_t>(edge[1])])
                                      .norm());
     }
     const double mean =
@@ -38,10 +39,9 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   reach_ = std::min(thickest_ * Real(kReachPart), finest_ * Real(kMostReach));
   reach_ = std::max(reach_, finest_ * Real(0.1));
   const std::size_t n = model.mass.size();
-  for (Vec3Array<Real>* array :
-       {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_, &anchor_, &x_rows_})
-    array->assign(n, Vec3<Real>::Zero());
-  for (QuadArray<Real>* array : {&quad_x_, &quad_v_, &extra_, &start_, &end_}) array->assign(n, {});
+  for (QuadArray<Real>* array : {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_,
+                                 &anchor_, &x_rows_, &quad_v_, &extra_})
+    array->assign(n, {});
   in_rows_.assign(n, 0);
   is_active_.assign(n, 0);
   for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));
@@ -52,10 +52,6 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   is_pushed_.assign(n, 0);
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
-  vertex_boxes_.resize(n);
-  edge_boxes_.resize(edges_.size());
-  triangle_boxes_.resize(triangles_.size());
-  boxed_.assign(tree_.patch_count(), 0);
   resting_.assign(tree_.patch_count(), 0);
 }
 
@@ -98,9 +94,10 @@ void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
 
 template <class Real>
 PairPoints<Real> ClothGuard<Real>::points(const GuardedPair<Real>& pair,
-                                          const Vec3Array<Real>& x) const {
+                                          const QuadArray<Real>& x) const {
   PairPoints<Real> p;
-  for (std::size_t k = 0; k < 4; ++k) p[k] = x[static_cast<std::size_t>(pair.particle[k])];
+  for (std::size_t k = 0; k < 4; ++k)
+    p[k] = to_vector(x[static_cast<std::size_t>(pair.particle[k])]);
   return p;
 }
 

@@ -9,7 +9,7 @@
 #include "core/contact/feature_pair.h"
 #include "core/contact/guard_row.h"
 #include "core/contact/pair_separation.h"
-#include "core/contact/patch_tree.h"
+#include "core/contact/patch_boxes.h"
 #include "core/world/profile.h"
 
 namespace weft {
@@ -109,7 +109,9 @@ class ClothGuard {
   /// particles go along their predicted paths.
   const std::vector<GuardedPair<Real>>& pairs() const { return pairs_; }
   /// Where a particle's predicted path is after the last step [m].
-  Vec3<Real> predicted(std::size_t particle) const { return on_path(particle, elapsed_); }
+  Vec3<Real> predicted(std::size_t particle) const {
+    return to_vector(on_path(particle, elapsed_));
+  }
   Real reach() const { return reach_; }
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
   /// Time of the forces that the rows' impulses stand against [s].
@@ -126,27 +128,23 @@ class ClothGuard {
     bool fixed;  ///< stopped at planes
   };
 
-  /// Features of a patch near another one.
-  struct NearFeatures {
-    std::vector<Index> list;  ///< those with a changed particle first
-    std::size_t changed = 0;  ///< so many
-    std::vector<Index> rest;  ///< room to work
-  };
-
   // guard_pairs.cpp
   void collect(Real dt, Profile& profile);
   void collect_strays(Real dt, Profile& profile);
   void drop_pairs_of_strays();
   void admit_pairs(std::size_t first);
   void list_pairs(std::size_t first);
-  Vec3<Real> on_path(std::size_t particle, Real time) const;
+  /// Where a particle's predicted path is at a time after all pairs were collected [m].
+  Quad<Real> on_path(std::size_t i, Real time) const {
+    return from_[i] + velocity_[i] * (time - since_[i]);
+  }
   void predict(Real past);
   PairColumns<Real>& columns_of(PairKind kind) { return columns_[static_cast<std::size_t>(kind)]; }
-  Vec3<Real> path_velocity(std::size_t particle, Real dt) const;
-  Vec3<Real> steady(const Vec3<Real>& v, std::size_t particle, Real dt) const;
+  Quad<Real> path_velocity(std::size_t particle, Real dt) const;
+  Quad<Real> steady(const Quad<Real>& v, std::size_t particle, Real dt) const;
   void join_pairs();
   void share_all_gaps();
-  PairPoints<Real> points(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) const;
+  PairPoints<Real> points(const GuardedPair<Real>& pair, const QuadArray<Real>& x) const;
   template <class Visit>
   void for_pairs_of(std::size_t particle, Visit&& visit) {
     const auto end = static_cast<std::size_t>(pairs_end_[particle]);
@@ -162,8 +160,10 @@ class ClothGuard {
   }
 
   // guard_patches.cpp
-  void box_patch(Index p);
   std::uint64_t test_patches(Index p, Index q, bool all);
+  std::uint64_t test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
+  std::uint64_t test_edges(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
+  typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
   void keep_near(PairColumns<Real>& columns);
 
@@ -190,7 +190,7 @@ class ClothGuard {
   void count_motion();
 
   // guard_rows.cpp
-  bool rows_hold(const ClothState<Real>& state) const;
+  bool rows_hold() const;
   void build_rows(const ClothState<Real>& state, Profile& profile);
   void turn_rows(const ClothState<Real>& state, Profile& profile);
   void turn(const ClothState<Real>& state, const PairSeparation<Real>& s, GuardRow<Real>& row);
@@ -216,7 +216,7 @@ class ClothGuard {
 
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
-  Vec3Array<Real> rest_positions_;
+  QuadArray<Real> rest_positions_;
   std::vector<Index> first_particle_;              ///< of each cloth
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]
   Real thickest_ = 0, reach_ = 0, finest_ = 0;
@@ -225,24 +225,21 @@ class ClothGuard {
 
   // Collection.
   bool collected_ = false;
-  PredictedMotion<Real> motion_;              ///< less the common motion
-  QuadArray<Real> start_, end_;               ///< the same, while pairs are separated [m]
-  Vec3Array<Real> from_;                      ///< where each one's predicted path begins [m]
-  std::vector<Real> since_;                   ///< and when, after all pairs were collected [s]
-  Vec3Array<Real> velocity_;                  ///< along the predicted paths [m/s]
-  Vec3<Real> off_path_ = Vec3<Real>::Zero();  ///< mean way off the paths after the last step [m]
-  Vec3<Real> off_path_now_ = Vec3<Real>::Zero();     ///< with which this step was looked at [m]
-  Vec3<Real> off_path_before_ = Vec3<Real>::Zero();  ///< and the step before [m]
-  Vec3<Real> common_velocity_ = Vec3<Real>::Zero();  ///< of all when pairs were collected [m/s]
-  std::vector<Index> strays_;  ///< particles that leave the balls around their paths
+  PredictedMotion<Real> motion_;  ///< less the common motion
+  QuadArray<Real> from_;          ///< where each one's predicted path begins [m]
+  std::vector<Real> since_;       ///< and when, after all pairs were collected [s]
+  QuadArray<Real> velocity_;      ///< along the predicted paths [m/s]
+  Quad<Real> off_path_;           ///< mean way off the paths after the last step [m]
+  Quad<Real> off_path_now_;       ///< with which this step was looked at [m]
+  Quad<Real> off_path_before_;    ///< and the step before [m]
+  Quad<Real> common_velocity_;    ///< of all when pairs were collected [m/s]
+  std::vector<Index> strays_;     ///< particles that leave the balls around their paths
   std::vector<char> changed_, is_active_;
   std::vector<std::uint64_t> dropped_keys_;
   Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
   Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
-  std::vector<Aabb<Real>> vertex_boxes_, edge_boxes_, triangle_boxes_;
-  std::vector<std::uint32_t> boxed_;  ///< collection in which a patch's features were boxed
-  std::uint32_t collection_ = 0, full_collection_ = 0;
-  std::array<NearFeatures, 6> near_;  ///< vertices, edges and triangles of either of two patches
+  PatchBoxes<Real> boxes_;
+  PatchOverlaps overlaps_;                    ///< of the patches that are being tested
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
@@ -252,8 +249,9 @@ class ClothGuard {
   std::vector<Index> active_;  ///< particles in pairs
 
   // Regions.
-  Vec3Array<Real> legal_, step_;  ///< certified positions before the drift, and the motion wanted
-  Vec3Array<Real> anchor_;
+  QuadArray<Real> legal_;  ///< certified positions before the drift, where rows are solved too [m]
+  QuadArray<Real> step_;   ///< and the motion wanted in it [m]
+  QuadArray<Real> anchor_;
   std::vector<Real> room_, moved_, fraction_;
   std::vector<std::uint32_t> wave_of_;
   std::vector<std::uint64_t> anchored_at_;  ///< step in which each was anchored last
@@ -267,8 +265,8 @@ class ClothGuard {
 
   // Rows.
   bool rows_built_ = false;
-  Vec3Array<Real> x_rows_;
-  Real rows_time_ = 0;  ///< since rows were built [s]
+  QuadArray<Real> x_rows_;  ///< when rows were built [m]
+  Real rows_time_ = 0;      ///< since rows were built [s]
   int rows_steps_ = 0;
   Real kicked_ = 0;       ///< time of the forces that the rows' impulses stand against [s]
   bool upwards_ = false;  ///< which way the last sweep went
@@ -278,9 +276,9 @@ class ClothGuard {
   std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
   std::vector<Index> row_particles_;        ///< of all rows
   std::vector<char> in_rows_;
-  QuadArray<Real> quad_x_, quad_v_;  ///< their positions and velocities while rows are solved
-  QuadArray<Real> extra_;            ///< velocity of the push [m/s]
-  std::vector<Index> busy_rows_;     ///< that push or soon may
+  QuadArray<Real> quad_v_;        ///< their velocities while rows are solved [m/s]
+  QuadArray<Real> extra_;         ///< velocity of the push [m/s]
+  std::vector<Index> busy_rows_;  ///< that push or soon may
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it

@@ -29,7 +29,7 @@ template <class Real>
 void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profile) {
   ++substep_;
   for (std::size_t i = 0; i < step_.size(); ++i)
-    step_[i] = (state.x[i] - legal_[i]) + state.v[i] * dt;
+    step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
   elapsed_ += dt;
   strays_.clear();
   anchored_.clear();
@@ -92,7 +92,7 @@ bool ClothGuard<Real>::find_critical() {
   ++listing_;
   for (const Index k : anchored_) {
     const auto i = static_cast<std::size_t>(k);
-    if (step_[i].squaredNorm() <= room_[i] * room_[i]) continue;
+    if (dot(step_[i], step_[i]) <= room_[i] * room_[i]) continue;
     is_tight_[i] = 1;
     tight_.push_back(k);
   }
@@ -119,7 +119,7 @@ bool ClothGuard<Real>::is_critical(GuardedPair<Real>& pair) {
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = static_cast<std::size_t>(pair.particle[k]);
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    most = std::max(most, is_tight_[i] ? step_[i].norm() : room_[i]);
+    most = std::max(most, is_tight_[i] ? length(step_[i]) : room_[i]);
   }
   const Real needed = side[0] + side[1] + smallest_gap_;
   if (pair.bound >= needed) return false;
@@ -136,10 +136,10 @@ bool ClothGuard<Real>::holds(const Critical& c) const {
   PairPoints<Real> end;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = static_cast<std::size_t>(pair.particle[k]);
-    const Vec3<Real> step = step_[i] * fraction_[i];
+    const Quad<Real> step = step_[i] * fraction_[i];
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    most = std::max(most, step.squaredNorm());
-    end[k] = legal_[i] + step;
+    most = std::max(most, dot(step, step));
+    end[k] = to_vector(legal_[i] + step);
   }
   if (std::sqrt(side[0]) + std::sqrt(side[1]) + smallest_gap_ <= c.gap) return true;
   // One axis that has the sides apart at both ends has them apart all along straight lines. What
@@ -154,7 +154,8 @@ void ClothGuard<Real>::fix(Critical& c) {
   c.fixed = true;
   const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(c.pair)];
   const std::size_t middle = first_side(pair.kind);
-  const Vec3<Real>& origin = legal_[static_cast<std::size_t>(pair.particle[0])];
+  const Quad<Real> normal = to_quad(c.normal);
+  const Quad<Real>& origin = legal_[static_cast<std::size_t>(pair.particle[0])];
   std::array<Real, 4> height, way;  // both towards the other side
   Real front[2] = {std::numeric_limits<Real>::infinity(), std::numeric_limits<Real>::infinity()};
   Real goal[2] = {front[0], front[1]};
@@ -162,8 +163,8 @@ void ClothGuard<Real>::fix(Critical& c) {
     const auto i = static_cast<std::size_t>(pair.particle[k]);
     const std::size_t s = k < middle ? 0 : 1;
     const Real sign = s == 0 ? Real(1) : Real(-1);
-    height[k] = sign * c.normal.dot(legal_[i] - origin);
-    way[k] = -sign * c.normal.dot(step_[i]);
+    height[k] = sign * dot(normal, legal_[i] - origin);
+    way[k] = -sign * dot(normal, step_[i]);
     front[s] = std::min(front[s], height[k]);
     goal[s] = std::min(goal[s], height[k] - way[k] * fraction_[i]);
   }
@@ -201,15 +202,15 @@ void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
     is_tight_[i] = 0;
     dirty_.push_back(k);
     if (fraction_[i] >= 1) return;
-    const Vec3<Real> allowed = step_[i] * fraction_[i];
-    lost_ += static_cast<double>((step_[i] - allowed).norm());
+    const Quad<Real> allowed = step_[i] * fraction_[i];
+    lost_ += static_cast<double>(length(step_[i] - allowed));
     fraction_[i] = 1;
-    const Vec3<Real> off = legal_[i] + allowed - on_path(i, elapsed_) - off_path_now_;
-    const bool off_path = !(off.squaredNorm() <= reach_ * reach_);
+    const Quad<Real> off = legal_[i] + allowed - on_path(i, elapsed_) - off_path_now_;
+    const bool off_path = !(dot(off, off) <= reach_ * reach_);
     if (off_path && !halt) strays_.push_back(k);
-    step_[i] = off_path && halt ? Vec3<Real>(Vec3<Real>::Zero()) : allowed;
-    state.x[i] = legal_[i];
-    state.v[i] = step_[i] / dt;
+    step_[i] = off_path && halt ? Quad<Real>() : allowed;
+    state.x[i] = to_vector(legal_[i]);
+    state.v[i] = to_vector(step_[i]) / dt;
   };
   for (const Critical& c : critical_) {
     for (const Index k : pairs_[static_cast<std::size_t>(c.pair)].particle) visit(k);
@@ -224,7 +225,7 @@ template <class Real>
 void ClothGuard<Real>::count_motion() {
   double allowed = 0;
   for (const Index k : active_)
-    allowed += static_cast<double>(step_[static_cast<std::size_t>(k)].norm());
+    allowed += static_cast<double>(length(step_[static_cast<std::size_t>(k)]));
   counts_.truncated += lost_;
   counts_.wanted += allowed + lost_;
   lost_ = 0;

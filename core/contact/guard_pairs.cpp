@@ -26,15 +26,19 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   const std::size_t n = legal_.size();
   // A motion common to all changes nothing between them.
-  Vec3<Real> common = Vec3<Real>::Zero();
-  for (const Vec3<Real>& step : step_) common += step;
-  common /= static_cast<Real>(n);
-  common_velocity_ = common / dt;
-  Real largest = 0, sum2 = 0;
+  Quad<Real> common;
+  for (const Quad<Real>& step : step_) common += step;
+  common = common * (Real(1) / static_cast<Real>(n));
+  common_velocity_ = common * (Real(1) / dt);
+  QuadBox<Real> all;
+  Real sum2 = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    largest = std::max(largest, legal_[i].cwiseAbs().maxCoeff());
-    sum2 += (step_[i] - common).squaredNorm();
+    all.add(legal_[i]);
+    const Quad<Real> own = step_[i] - common;
+    sum2 += dot(own, own);
   }
+  Real largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, -all.lower[k], all.upper[k]});
   smallest_gap_ = std::max(static_cast<Real>(kSmallestGap),
                            largest * std::numeric_limits<Real>::epsilon() * Real(kRoundings));
   const Real speed = std::sqrt(sum2 / static_cast<Real>(n)) / dt;
@@ -46,10 +50,8 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   from_ = legal_;
   since_.assign(n, 0);
   predict(0);
-  off_path_.setZero();
-  off_path_now_.setZero();
-  off_path_before_.setZero();
-  full_collection_ = ++collection_;
+  off_path_ = off_path_now_ = off_path_before_ = {};
+  boxes_.forget();
   ++counts_.collections;
   tree_.refit(motion_, true);
   pairs_.clear();
@@ -71,22 +73,14 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   rows_built_ = false;
 }
 
-/// Where a particle's predicted path is at a time after all pairs were collected.
-template <class Real>
-Vec3<Real> ClothGuard<Real>::on_path(std::size_t i, Real time) const {
-  return from_[i] + velocity_[i] * (time - since_[i]);
-}
-
 /// Motion along the paths until pairs are collected anew, without the common one.
 /// @param past  time of its start [s]
 template <class Real>
 void ClothGuard<Real>::predict(Real past) {
-  const Vec3<Real> gone = common_velocity_ * past, common = common_velocity_ * horizon_;
+  const Quad<Real> gone = common_velocity_ * past, common = common_velocity_ * horizon_;
   for (std::size_t i = 0; i < legal_.size(); ++i) {
     motion_.start[i] = on_path(i, past) - gone;
     motion_.end[i] = on_path(i, horizon_) - common;
-    start_[i] = to_quad(motion_.start[i]);
-    end_[i] = to_quad(motion_.end[i]);
   }
 }
 
@@ -105,13 +99,12 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
     since_[i] = past;
   }
   predict(past);
-  ++collection_;
   ++counts_.renewals;
   drop_pairs_of_strays();
   const std::size_t kept = pairs_.size();
   tree_.refit_changed(motion_, changed_);
-  for (std::size_t p = 0; p < boxed_.size(); ++p) {
-    if (tree_.is_marked(static_cast<Index>(p))) boxed_[p] = 0;
+  for (std::size_t p = 0; p < tree_.patch_count(); ++p) {
+    if (tree_.is_marked(static_cast<Index>(p))) boxes_.forget(static_cast<Index>(p));
   }
   std::uint64_t tests = 0;
   tree_.for_each_changed_pair([&](Index p, Index q) { tests += test_patches(p, q, false); });
@@ -173,11 +166,10 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
   });
   for (std::size_t k = first; k < pairs_.size(); ++k)
     columns_of(pairs_[k].kind).add(static_cast<Index>(k), 0, pairs_[k].particle);
-  for (std::size_t i = 0; i < anchor_.size(); ++i) start_[i] = to_quad(anchor_[i]);
   for (PairColumns<Real>& columns : columns_) {
-    separate_pairs(start_, start_, columns);
+    separate_pairs(anchor_, anchor_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, start_).gap;
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
     columns.clear();
   }
   for_new([&](GuardedPair<Real>& pair) {
@@ -203,21 +195,22 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
 
 /// Velocity of a predicted path, which has to hold at least for the coming step [m/s].
 template <class Real>
-Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t i, Real dt) const {
-  const Vec3<Real> now = step_[i] / dt, v = steady(now, i, dt);
-  return (step_[i] - v * dt).squaredNorm() > reach_ * reach_ / 4 ? now : v;
+Quad<Real> ClothGuard<Real>::path_velocity(std::size_t i, Real dt) const {
+  const Quad<Real> now = step_[i] * (Real(1) / dt), v = steady(now, i, dt);
+  const Quad<Real> off = step_[i] - v * dt;
+  return dot(off, off) > reach_ * reach_ / 4 ? now : v;
 }
 
 /// What of a velocity is not jitter: the smaller of it and of the mean velocity since the path
 /// began, by components, and nothing where they disagree.
 template <class Real>
-Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>& v, std::size_t i, Real dt) const {
+Quad<Real> ClothGuard<Real>::steady(const Quad<Real>& v, std::size_t i, Real dt) const {
   const Real time = elapsed_ - dt - since_[i];
   if (!collected_ || !(time > 0)) return v;
-  const Vec3<Real> mean = (legal_[i] - from_[i]) / time;
-  Vec3<Real> result = Vec3<Real>::Zero();
+  const Quad<Real> mean = (legal_[i] - from_[i]) * (Real(1) / time);
+  Quad<Real> result;
   for (int k = 0; k < 3; ++k) {
-    if (v[k] * mean[k] > 0) result[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
+    if (v[k] * mean[k] > 0) result.lanes[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
   }
   return result;
 }
@@ -292,11 +285,10 @@ void ClothGuard<Real>::share_all_gaps() {
   template void ClothGuard<Real>::collect(Real, Profile&);                                  \
   template void ClothGuard<Real>::collect_strays(Real, Profile&);                           \
   template void ClothGuard<Real>::admit_pairs(std::size_t);                                 \
-  template Vec3<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;             \
-  template Vec3<Real> ClothGuard<Real>::steady(const Vec3<Real>&, std::size_t, Real) const; \
+  template Quad<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;             \
+  template Quad<Real> ClothGuard<Real>::steady(const Quad<Real>&, std::size_t, Real) const; \
   template void ClothGuard<Real>::drop_pairs_of_strays();                                   \
   template void ClothGuard<Real>::list_pairs(std::size_t);                                  \
-  template Vec3<Real> ClothGuard<Real>::on_path(std::size_t, Real) const;                   \
   template void ClothGuard<Real>::predict(Real);                                            \
   template void ClothGuard<Real>::join_pairs();                                             \
   template void ClothGuard<Real>::share_all_gaps();

@@ -1,6 +1,7 @@
 // Pairs of features of two patches for ClothGuard.
 
 #include <algorithm>
+#include <bit>
 
 #include "core/contact/cloth_guard.h"
 
@@ -15,99 +16,70 @@ bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
   return p[0] == p[2] || p[0] == p[3] || p[1] == p[2] || p[1] == p[3];
 }
 
+/// Calls visit(number) for each bit that is set.
+template <class Visit>
+void for_each_bit(std::uint32_t bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 }  // namespace
 
-/// Boxes around the features of a patch, once a collection and when one of them has changed.
+/// Which features of a patch have a changed particle.
+/// @param all  all have
 template <class Real>
-void ClothGuard<Real>::box_patch(Index p) {
-  if (boxed_[static_cast<std::size_t>(p)] >= full_collection_) return;
-  boxed_[static_cast<std::size_t>(p)] = collection_;
-  const auto box_of = [&](const auto& particles) {
-    Aabb<Real> box;
-    for (const Index i : particles) {
-      box.add(motion_.start[static_cast<std::size_t>(i)]);
-      box.add(motion_.end[static_cast<std::size_t>(i)]);
-    }
-    return box.grown(motion_.radius);
-  };
-  const auto& patch = tree_.patch(p);
-  for (const Index i : patch.vertices)
-    vertex_boxes_[static_cast<std::size_t>(i)] = box_of(std::array<Index, 1>{i});
-  for (const Index e : patch.edges)
-    edge_boxes_[static_cast<std::size_t>(e)] = box_of(edges_[static_cast<std::size_t>(e)]);
-  for (const Index t : patch.triangles)
-    triangle_boxes_[static_cast<std::size_t>(t)] = box_of(triangles_[static_cast<std::size_t>(t)]);
+typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index p, bool all) const {
+  if (all) return {~0u, ~0u, ~0u};
+  return tree_.is_marked(p) ? boxes_.changed(p) : typename PatchBoxes<Real>::Marks{};
 }
 
 /// Tests the features of two patches against each other.
 /// @param all  or only pairs that have a changed particle
+/// @return number of tests
 template <class Real>
 std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
   if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return 0;
-  box_patch(p);
-  box_patch(q);
-  const auto& first = tree_.patch(p);
-  const auto& second = tree_.patch(q);
-  const auto vertex_changed = [&](Index i) { return changed_[static_cast<std::size_t>(i)] != 0; };
-  const auto any_changed = [&](const auto& particles) {
-    return std::any_of(particles.begin(), particles.end(), vertex_changed);
-  };
-  const auto edge_changed = [&](Index e) {
-    return any_changed(edges_[static_cast<std::size_t>(e)]);
-  };
-  const auto triangle_changed = [&](Index t) {
-    return any_changed(triangles_[static_cast<std::size_t>(t)]);
-  };
-  // The changed ones first; where the other patch has nothing changed these alone matter.
-  const auto pick = [&](const std::vector<Index>& from, const std::vector<Aabb<Real>>& boxes,
-                        const Aabb<Real>& box, bool others, auto&& is_changed, NearFeatures& into) {
-    into.list.clear();
-    into.rest.clear();
-    for (const Index f : from) {
-      if (!boxes[static_cast<std::size_t>(f)].overlaps(box)) continue;
-      if (all || is_changed(f))
-        into.list.push_back(f);
-      else if (others)
-        into.rest.push_back(f);
-    }
-    into.changed = into.list.size();
-    into.list.insert(into.list.end(), into.rest.begin(), into.rest.end());
-  };
-  const bool first_rest = all || tree_.is_marked(q), second_rest = all || tree_.is_marked(p);
-  auto& [vertices_a, edges_a, triangles_a, vertices_b, edges_b, triangles_b] = near_;
-  pick(first.vertices, vertex_boxes_, tree_.box(q), first_rest, vertex_changed, vertices_a);
-  pick(first.edges, edge_boxes_, tree_.box(q), first_rest, edge_changed, edges_a);
-  pick(first.triangles, triangle_boxes_, tree_.box(q), first_rest, triangle_changed, triangles_a);
-  pick(second.vertices, vertex_boxes_, tree_.box(p), second_rest, vertex_changed, vertices_b);
-  pick(second.edges, edge_boxes_, tree_.box(p), second_rest, edge_changed, edges_b);
-  pick(second.triangles, triangle_boxes_, tree_.box(p), second_rest, triangle_changed, triangles_b);
-  std::uint64_t tests = 0;
-  // Of each pair at least one has changed.
-  const auto for_pairs = [&](const NearFeatures& a, const std::vector<Aabb<Real>>& boxes_a,
-                             const NearFeatures& b, const std::vector<Aabb<Real>>& boxes_b,
-                             auto&& visit) {
-    for (std::size_t m = 0; m < a.list.size(); ++m) {
-      const Aabb<Real>& box = boxes_a[static_cast<std::size_t>(a.list[m])];
-      const std::size_t end = m < a.changed ? b.list.size() : b.changed;
-      for (std::size_t n = 0; n < end; ++n) {
-        if (box.overlaps(boxes_b[static_cast<std::size_t>(b.list[n])])) visit(a.list[m], b.list[n]);
-      }
-      tests += end;
-    }
-  };
-  const auto test_vertex = [&](Index v, Index t) {
-    const Triangle& c = triangles_[static_cast<std::size_t>(t)];
-    test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
-  };
-  for_pairs(vertices_a, vertex_boxes_, triangles_b, triangle_boxes_, test_vertex);
-  if (p != q) for_pairs(vertices_b, vertex_boxes_, triangles_a, triangle_boxes_, test_vertex);
-  for_pairs(edges_a, edge_boxes_, edges_b, edge_boxes_, [&](Index e, Index f) {
-    if (p == q && f <= e) return;
-    const Edge &c = edges_[static_cast<std::size_t>(std::min(e, f))],
-               &d = edges_[static_cast<std::size_t>(std::max(e, f))];
-    test_pair(PairKind::edge_edge, std::min(e, f), std::max(e, f), {c[0], c[1], d[0], d[1]});
-  });
-  return tests;
+  boxes_.fit(p, tree_.patch(p), motion_, changed_);
+  boxes_.fit(q, tree_.patch(q), motion_, changed_);
+  overlap_patches(boxes_.columns(p), boxes_.columns(q), overlaps_);
+  std::uint64_t tests = test_triangles(p, q, all, overlaps_.first_vertices);
+  if (p != q) tests += test_triangles(q, p, all, overlaps_.second_vertices);
+  return tests + test_edges(p, q, all, overlaps_.first_edges);
+}
+
+/// Particles of one patch against triangles of another one.
+template <class Real>
+std::uint64_t ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
+                                               const PatchOverlaps::Bits& overlaps) {
+  const auto& vertices = tree_.patch(p).vertices;
+  const auto& triangles = tree_.patch(q).triangles;
+  const std::uint32_t changed = changed_in(p, all).vertices, others = changed_in(q, all).triangles;
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const std::uint32_t near = overlaps[k] & (((changed >> k) & 1) != 0 ? ~0u : others);
+    for_each_bit(near, [&](std::size_t n) {
+      const Index v = vertices[k], t = triangles[n];
+      const Triangle& c = triangles_[static_cast<std::size_t>(t)];
+      test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
+    });
+  }
+  return vertices.size() * triangles.size();
+}
+
+/// Edges of two patches, or of one with each other.
+template <class Real>
+std::uint64_t ClothGuard<Real>::test_edges(Index p, Index q, bool all,
+                                           const PatchOverlaps::Bits& overlaps) {
+  const auto &first = tree_.patch(p).edges, &second = tree_.patch(q).edges;
+  const std::uint32_t changed = changed_in(p, all).edges, others = changed_in(q, all).edges;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    std::uint32_t near = overlaps[k] & (((changed >> k) & 1) != 0 ? ~0u : others);
+    if (p == q) near &= ~0u << k << 1;  // each two once
+    for_each_bit(near, [&](std::size_t n) {
+      const auto [e, f] = std::minmax(first[k], second[n]);
+      const Edge &c = edges_[static_cast<std::size_t>(e)], &d = edges_[static_cast<std::size_t>(f)];
+      test_pair(PairKind::edge_edge, e, f, {c[0], c[1], d[0], d[1]});
+    });
+  }
+  return first.size() * second.size();
 }
 
 /// Puts a pair among those that are to be tested.
@@ -124,7 +96,7 @@ void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
 /// and thereby all along.
 template <class Real>
 void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
-  separate_pairs(start_, end_, columns);
+  separate_pairs(motion_.start, motion_.end, columns);
   const Real apart = 2 * motion_.radius;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns.gap[k] > apart && columns.end_gap[k] > apart) continue;
@@ -133,7 +105,7 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
     for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
     pair.a = columns.a[k];
     pair.b = columns.b[k];
-    pair.bound = columns.separation(k, start_).gap;
+    pair.bound = columns.separation(k, motion_.start).gap;
     pair.open = !(pair.bound > 0);
     open_pairs_ += pair.open ? 1 : 0;
     pairs_.push_back(pair);
@@ -142,8 +114,12 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                    \
-  template void ClothGuard<Real>::box_patch(Index);                                               \
+  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;      \
   template std::uint64_t ClothGuard<Real>::test_patches(Index, Index, bool);                      \
+  template std::uint64_t ClothGuard<Real>::test_triangles(Index, Index, bool,                     \
+                                                          const PatchOverlaps::Bits&);            \
+  template std::uint64_t ClothGuard<Real>::test_edges(Index, Index, bool,                         \
+                                                      const PatchOverlaps::Bits&);                \
   template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&); \
   template void ClothGuard<Real>::keep_near(PairColumns<Real>&);
 WEFT_INSTANTIATE(float)

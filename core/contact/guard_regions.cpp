@@ -29,7 +29,8 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
   Real side[2] = {0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    most = std::max(most, step_[static_cast<std::size_t>(pair.particle[k])].squaredNorm());
+    const Quad<Real>& step = step_[static_cast<std::size_t>(pair.particle[k])];
+    most = std::max(most, dot(step, step));
   }
   const Real first = std::sqrt(side[0]), second = std::sqrt(side[1]);
   const Real both = std::max(first, second) * Real(kLeastShare) + Real(1e-9);
@@ -42,13 +43,14 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
 template <class Real>
 void ClothGuard<Real>::find_strays() {
   const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
-  Vec3<Real> sum = Vec3<Real>::Zero();
+  Quad<Real> sum;
   bool left = false;
   strays_.clear();
   for (std::size_t i = 0; i < step_.size(); ++i) {
-    const Vec3<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_);
+    const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_);
     sum += off;
-    const Real off2 = (off - off_path_).squaredNorm();
+    const Quad<Real> own = off - off_path_;
+    const Real off2 = dot(own, own);
     if (off2 <= soon) continue;
     strays_.push_back(static_cast<Index>(i));
     left |= !(off2 <= limit);
@@ -56,7 +58,7 @@ void ClothGuard<Real>::find_strays() {
   if (!left) strays_.clear();
   off_path_before_ = off_path_now_;
   off_path_now_ = off_path_;
-  off_path_ = sum / static_cast<Real>(step_.size());
+  off_path_ = sum * (Real(1) / static_cast<Real>(step_.size()));
 }
 
 /// Particles that would leave the room around their anchors.
@@ -67,8 +69,8 @@ void ClothGuard<Real>::find_loose() {
   for (const Index i : dirty_) wave_of_[static_cast<std::size_t>(i)] = wave_;
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
-    const Vec3<Real> off = legal_[i] + step_[i] - anchor_[i];
-    if (wave_of_[i] == wave_ || !(off.squaredNorm() <= room_[i] * room_[i])) loose_.push_back(k);
+    const Quad<Real> off = legal_[i] + step_[i] - anchor_[i];
+    if (wave_of_[i] == wave_ || !(dot(off, off) <= room_[i] * room_[i])) loose_.push_back(k);
   }
   dirty_.clear();
 }
@@ -109,7 +111,7 @@ void ClothGuard<Real>::anchor_wave(bool first) {
     anchored_.push_back(k);
     ++counts_.anchored;
     // The bound of a gap falls by no more than what an anchor moves.
-    const Real moved = (legal_[i] - anchor_[i]).norm();
+    const Real moved = length(legal_[i] - anchor_[i]);
     anchor_[i] = legal_[i];
     if (moved == 0) continue;
     for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
@@ -122,7 +124,7 @@ void ClothGuard<Real>::anchor_wave(bool first) {
 template <class Real>
 Real ClothGuard<Real>::claim(Index k, bool first) {
   const auto i = static_cast<std::size_t>(k);
-  const Real step = step_[i].norm();
+  const Real step = length(step_[i]);
   Real room = std::numeric_limits<Real>::infinity();
   for_pairs_of(i, [&](GuardedPair<Real>& pair) {
     const std::size_t middle = first_side(pair.kind);

@@ -39,10 +39,11 @@ Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
 
 /// What of a vector lies across the row's normal.
 template <class Real>
-Quad<Real> along(const GuardRow<Real>& row, const Quad<Real>& v) {
+Quad<Real> tangential(const GuardRow<Real>& row, const Quad<Real>& v) {
   return v - row.normal * dot(row.normal, v);
 }
 
+/// Kind of the row's pair, which its key tells (see key_of in cloth_guard.h).
 template <class Real>
 PairKind kind_of(const GuardRow<Real>& row) {
   return (row.key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;

@@ -30,13 +30,14 @@ constexpr double kFabricPart = 0.8;
 }  // namespace
 
 template <class Real>
-bool ClothGuard<Real>::rows_hold(const ClothState<Real>& state) const {
+bool ClothGuard<Real>::rows_hold() const {
   if (rows_time_ > static_cast<Real>(kLongestRows)) return false;
   if (rows_steps_ % kStepsBetweenMotions != 0) return true;
   const Real most = thickest_ * Real(kRowMotion);
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
-    if (!((state.x[i] - x_rows_[i]).squaredNorm() <= most * most)) return false;
+    const Quad<Real> way = legal_[i] - x_rows_[i];
+    if (!(dot(way, way) <= most * most)) return false;
   }
   return true;
 }
@@ -51,11 +52,10 @@ void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profil
     if (old_rows_[k].push > 0) old_keys_.push_back({old_rows_[k].key, static_cast<Index>(k)});
   }
   std::sort(old_keys_.begin(), old_keys_.end());
-  for (std::size_t i = 0; i < state.x.size(); ++i) quad_x_[i] = to_quad(state.x[i]);
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
-    x_rows_[i] = state.x[i];
-    moved_[i] = (state.x[i] - anchor_[i]).norm();
+    x_rows_[i] = legal_[i];
+    moved_[i] = length(legal_[i] - anchor_[i]);
   }
   for (const Index i : row_particles_) in_rows_[static_cast<std::size_t>(i)] = 0;
   row_particles_.clear();
@@ -65,11 +65,11 @@ void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profil
       columns_of(pair.kind).add(static_cast<Index>(k), 0, pair.particle);
   }
   for (PairColumns<Real>& columns : columns_) {
-    separate_pairs(quad_x_, quad_x_, columns);
+    separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(columns.a[k])];
       if (!(columns.gap[k] > thickest_ * Real(kRowReach)))
-        add_row(state, pair, columns.separation(k, quad_x_));
+        add_row(state, pair, columns.separation(k, legal_));
     }
     columns.clear();
   }
@@ -99,10 +99,8 @@ template <class Real>
 void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::narrow_phase, arrived_.size());
   for (const GuardedPair<Real>& pair : arrived_) {
-    for (const Index i : pair.particle)
-      quad_x_[static_cast<std::size_t>(i)] = to_quad(state.x[static_cast<std::size_t>(i)]);
     const std::size_t before = rows_.size();
-    add_row(state, pair, separate_pair(pair.kind, points(pair, state.x)));
+    add_row(state, pair, separate_pair(pair.kind, points(pair, legal_)));
     if (rows_.size() > before) busy_rows_.push_back(static_cast<Index>(before));
   }
   arrived_.clear();
@@ -140,7 +138,7 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
   row.friction =
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
   row.key = key_of(pair);
-  row.apart = weighted(row, quad_x_);
+  row.apart = weighted(row, legal_);
   remember(row);
   rows_.push_back(row);
   for (const Index i : row.particle) {
@@ -175,9 +173,9 @@ void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile
   }
   for (PairColumns<Real>& columns : columns_) {
     profile[Stage::narrow_phase].work += columns.size();
-    separate_pairs(quad_x_, quad_x_, columns);
+    separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      turn(state, columns.separation(k, quad_x_), rows_[static_cast<std::size_t>(columns.a[k])]);
+      turn(state, columns.separation(k, legal_), rows_[static_cast<std::size_t>(columns.a[k])]);
     columns.clear();
   }
 }
@@ -186,15 +184,15 @@ template <class Real>
 void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
                             GuardRow<Real>& row) {
   if (!(s.gap > 0)) return;
-  const Quad<Real> slipped = row.slip + (weighted(row, quad_x_) - row.apart);
+  const Quad<Real> slipped = row.slip + (weighted(row, legal_) - row.apart);
   // Edges that are nearest at an end leave it to the particle there.
   if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {
     row.push = 0;
     return;
   }
-  row.drag = along(row, row.drag);
-  row.slip = along(row, slipped);
-  row.apart = weighted(row, quad_x_);
+  row.drag = tangential(row, row.drag);
+  row.slip = tangential(row, slipped);
+  row.apart = weighted(row, legal_);
 }
 
 /// Goes on with the impulses and the anchor that the pair had.
@@ -205,9 +203,9 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
   if (found == old_keys_.end() || found->first != row.key) return;
   const GuardRow<Real>& old = old_rows_[static_cast<std::size_t>(found->second)];
   row.push = old.push;
-  row.drag = along(row, old.drag);
+  row.drag = tangential(row, old.drag);
   // What it slipped since it was last aimed counts too.
-  row.slip = along(row, old.slip + (weighted(old, quad_x_) - old.apart));
+  row.slip = tangential(row, old.slip + (weighted(old, legal_) - old.apart));
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                \
@@ -216,7 +214,7 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
                                        GuardRow<Real>&);                                      \
   template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
                                         GuardRow<Real>&) const;                               \
-  template bool ClothGuard<Real>::rows_hold(const ClothState<Real>&) const;                   \
+  template bool ClothGuard<Real>::rows_hold() const;                                          \
   template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);              \
   template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
   template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \

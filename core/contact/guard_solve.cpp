@@ -36,7 +36,7 @@ constexpr double kPushSlack = 0.01;
 
 template <class Real>
 void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
-  legal_ = state.x;
+  for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
   const Real kicked = std::exchange(closed_, false) ? dt / 2 : dt;
   if (pairs_.empty()) {
     rows_.clear();
@@ -45,7 +45,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   }
   rows_time_ += dt;
   ++rows_steps_;
-  if (!rows_built_ || !rows_hold(state)) build_rows(state, profile);
+  if (!rows_built_ || !rows_hold()) build_rows(state, profile);
   if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) {
     busy_rows_.clear();
@@ -63,7 +63,6 @@ template <class Real>
 void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
   for (const Index k : row_particles_) {
     const auto i = static_cast<std::size_t>(k);
-    quad_x_[i] = to_quad(state.x[i]);
     quad_v_[i] = to_quad(state.v[i]);
   }
 }
@@ -80,12 +79,11 @@ void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
 /// slip of what stuck in the last step how far it really went.
 template <class Real>
 void ClothGuard<Real>::aim(GuardRow<Real>& row, Real dt) const {
-  const Quad<Real> apart = weighted(row, quad_x_);
+  const Quad<Real> apart = weighted(row, legal_);
   if (row.push == 0) {
     row.slip = {};
   } else if (row.friction > 0) {
-    const Quad<Real> moved = apart - row.apart;
-    row.slip += moved - row.normal * dot(row.normal, moved);
+    row.slip += tangential(row, apart - row.apart);
   }
   row.apart = apart;
   row.room = dot(row.normal, apart) - row.radius;
@@ -144,7 +142,7 @@ void ClothGuard<Real>::find_busy_rows(Real dt) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const GuardRow<Real>& row = rows_[k];
     if (row.push == 0) {
-      const Real room = dot(row.normal, weighted(row, quad_x_)) - row.radius;
+      const Real room = dot(row.normal, weighted(row, legal_)) - row.radius;
       const Real approach = -dot(row.normal, weighted(row, quad_v_));
       if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) continue;
     }
@@ -230,6 +228,8 @@ template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   const StageTimer timer(profile, Stage::contact, rows_.size());
+  for (const Index k : row_particles_)
+    legal_[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
   load_rows(state);
   warm_rows(dt, dt / 2);
   store_rows(state);

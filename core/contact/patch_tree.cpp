@@ -15,20 +15,12 @@ constexpr std::size_t kPatchTriangles = 8;
 /// Rounding of the cull's test, relative.
 constexpr double kCullSlack = 1e-3;
 
-template <class Real>
-Real least_eigenvalue(Real a, Real b, Real off) {
-  const Real half = (a - b) / 2;
-  return (a + b) / 2 - std::sqrt(half * half + off * off);
-}
-
 }  // namespace
 
 template <class Real>
 PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) {
   const auto count = static_cast<Index>(parts_.size());
   grids_.resize(parts_.size());
-  tangents_.resize(parts_.size());
-  end_tangents_.resize(parts_.size());
   for (Index p = 0; p < count; ++p) {
     if (parts_[static_cast<std::size_t>(p)].rows > 0) build_grid(model, p);
   }
@@ -120,11 +112,10 @@ Index PatchTree<Real>::split_mesh(const ClothModel<Real>& model, Index p, std::v
       sum += model.rest_positions[static_cast<std::size_t>(i)];
     return sum;
   };
-  Aabb<Real> box;
-  for (auto t = from; t != to; ++t) box.add(sum_of(*t));
+  QuadBox<Real> box;
+  for (auto t = from; t != to; ++t) box.add(to_quad(sum_of(*t)));
   int axis = 0;
-  const Vec3<Real> size = box.upper - box.lower;
-  size.maxCoeff(&axis);
+  to_vector(box.upper - box.lower).maxCoeff(&axis);
   std::sort(from, to, [&](Index s, Index t) {
     const Real a = sum_of(s)[axis], b = sum_of(t)[axis];
     return a < b || (a == b && s < t);
@@ -209,9 +200,7 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
   for (Node& node : nodes_) node.spread = {};
   if (!cull || nodes_.empty()) return;
-  measure_tangents(motion.start, tangents_);
-  measure_tangents(motion.end, end_tangents_);
-  mark_spread(0, motion.radius, false);
+  mark_spread(0, motion, false);
 }
 
 template <class Real>
@@ -231,9 +220,7 @@ void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
   }
   if (nodes_.empty()) return;
   sum_changed(changed);
-  measure_tangents(motion.start, tangents_);
-  measure_tangents(motion.end, end_tangents_);
-  mark_spread(0, motion.radius, true);
+  mark_spread(0, motion, true);
 }
 
 template <class Real>
@@ -270,24 +257,9 @@ bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
          0;
 }
 
-/// Columns of the deformation gradient of each triangle of the grids.
-template <class Real>
-void PatchTree<Real>::measure_tangents(const Vec3Array<Real>& x,
-                                       std::vector<std::vector<Tangents>>& tangents) const {
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const Real per_u = Real(1) / parts_[p].cell_u, per_v = Real(1) / parts_[p].cell_v;
-    tangents[p].resize(grids_[p].size());
-    const auto side = [&](const std::array<Index, 2>& s) -> Vec3<Real> {
-      return x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])];
-    };
-    for (std::size_t t = 0; t < grids_[p].size(); ++t)
-      tangents[p][t] = {side(grids_[p][t].along_u) * per_u, side(grids_[p][t].along_v) * per_v};
-  }
-}
-
 /// Tries the rectangle of a node, grown by the width of a patch, and else those of its children.
 template <class Real>
-void PatchTree<Real>::mark_spread(Index n, Real radius, bool only_changed) {
+void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion, bool only_changed) {
   Node& node = nodes_[static_cast<std::size_t>(n)];
   const bool grid = node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
   if (grid) {
@@ -299,20 +271,22 @@ void PatchTree<Real>::mark_spread(Index n, Real radius, bool only_changed) {
     // Features that share no particle are at least the height of a triangle apart in the fabric.
     const Real nearest = part.cell_u * part.cell_v /
                          std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
-    const Real least = 2 * radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
+    const Real least = 2 * motion.radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
     const bool inherited = node.spread.cells() > 0 && node.spread != grown;
     const bool as_before = only_changed && !inherited && !has_changed(node.part, grown);
     if (as_before && node.spread.cells() > 0) return;
-    if (!as_before && least < 1 && is_spread(tangents_, grown, node.part, least) &&
-        is_spread(end_tangents_, grown, node.part, least)) {
+    Plane plane;
+    if (!as_before && least < 1 && find_plane(motion, grown, node.part, plane) &&
+        is_spread(motion.start, plane, grown, node.part, least) &&
+        is_spread(motion.end, plane, grown, node.part, least)) {
       give_spread(n, grown);
       return;
     }
   }
   node.spread = {};
   if (node.patch != kNone) return;
-  mark_spread(node.left, radius, only_changed);
-  mark_spread(node.right, radius, only_changed);
+  mark_spread(node.left, motion, only_changed);
+  mark_spread(node.right, motion, only_changed);
 }
 
 template <class Real>
@@ -324,36 +298,57 @@ void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
   give_spread(node.right, cells);
 }
 
-/// Whether the least eigenvalue of the symmetric in-plane gradient is at least `least` all over a
-/// rectangle, in the plane of its mean tangents.
+/// The plane in which a rectangle lies on the whole during the motion, by the mean of its rows and
+/// columns: two directions that stand alike to both.
+/// @return whether there is one
 template <class Real>
-bool PatchTree<Real>::is_spread(const std::vector<std::vector<Tangents>>& tangents,
-                                const CellRange& cells, Index p, Real least) const {
-  const auto& grid = tangents[static_cast<std::size_t>(p)];
-  const int columns = parts_[static_cast<std::size_t>(p)].columns - 1;
-  Vec3<Real> mean_u = Vec3<Real>::Zero(), mean_v = Vec3<Real>::Zero();
-  const auto row_begin = [&](int r) {
-    return static_cast<std::size_t>(2 * (r * columns + cells.column));
+bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const CellRange& cells,
+                                 Index p, Plane& plane) const {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const auto at = [&](int r, int c) {
+    return static_cast<std::size_t>(part.particles.first + r * part.columns + c);
   };
-  const auto width = static_cast<std::size_t>(2 * (cells.column_end - cells.column));
-  for (int r = cells.row; r < cells.row_end; ++r) {
-    for (std::size_t t = row_begin(r); t < row_begin(r) + width; ++t) {
-      mean_u += grid[t].u;
-      mean_v += grid[t].v;
-    }
+  Quad<Real> u, v;
+  for (const QuadArray<Real>* x : {&motion.start, &motion.end}) {
+    for (int r = cells.row; r <= cells.row_end; ++r)
+      u += (*x)[at(r, cells.column_end)] - (*x)[at(r, cells.column)];
+    for (int c = cells.column; c <= cells.column_end; ++c)
+      v += (*x)[at(cells.row_end, c)] - (*x)[at(cells.row, c)];
   }
-  // Two orthonormal directions that stand alike to both tangents.
-  const Vec3<Real> u = mean_u / mean_u.norm(), v = mean_v / mean_v.norm();
-  const Vec3<Real> sum = u + v, difference = u - v;
-  const Real sum_length = sum.norm(), difference_length = difference.norm();
-  if (!(sum_length > Real(0.1)) || !(difference_length > Real(0.1))) return false;
+  const auto scale = [](Quad<Real>& q, Real length) {
+    const Real size = std::sqrt(dot(q, q));
+    q = q * (length / size);
+    return size;
+  };
+  scale(u, 1);
+  scale(v, 1);
+  Quad<Real> sum = u + v, difference = u - v;
   const Real half = std::sqrt(Real(0.5));
-  const Vec3<Real> s = sum * (half / sum_length), d = difference * (half / difference_length);
-  const Vec3<Real> e1 = s + d, e2 = s - d;
+  if (!(scale(sum, half) > Real(0.1)) || !(scale(difference, half) > Real(0.1))) return false;
+  plane = {sum + difference, sum - difference};
+  return true;
+}
+
+/// Whether the least eigenvalue of the symmetric part of the gradient in a plane is above `least`
+/// all over a rectangle.
+template <class Real>
+bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
+                                const CellRange& cells, Index p, Real least) const {
+  const auto& grid = grids_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const int columns = part.columns - 1;
+  const Real per_u = Real(1) / part.cell_u, per_v = Real(1) / part.cell_v;
+  const auto side = [&](const std::array<Index, 2>& s, Real per_length) {
+    return (x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])]) * per_length;
+  };
   for (int r = cells.row; r < cells.row_end; ++r) {
-    for (std::size_t t = row_begin(r); t < row_begin(r) + width; ++t) {
-      const Real off = (e1.dot(grid[t].v) + e2.dot(grid[t].u)) / 2;
-      if (!(least_eigenvalue(e1.dot(grid[t].u), e2.dot(grid[t].v), off) > least)) return false;
+    const auto begin = static_cast<std::size_t>(2 * (r * columns + cells.column));
+    const auto end = static_cast<std::size_t>(2 * (r * columns + cells.column_end));
+    for (std::size_t t = begin; t < end; ++t) {
+      const Quad<Real> u = side(grid[t].along_u, per_u), v = side(grid[t].along_v, per_v);
+      const Real a = dot(plane.u, u) - least, b = dot(plane.v, v) - least;
+      const Real off = (dot(plane.u, v) + dot(plane.v, u)) / 2;
+      if (!(a > 0 && b > 0 && a * b > off * off)) return false;
     }
   }
   return true;

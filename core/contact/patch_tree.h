@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
-#include "core/geometry/aabb.h"
+#include "core/geometry/quad_box.h"
 
 namespace weft {
 
 /// Linear motion of all particles over a stretch of time, each in a ball around its predicted path.
 template <class Real>
 struct PredictedMotion {
-  Vec3Array<Real> start, end;  ///< positions at both ends of the stretch [m]
+  QuadArray<Real> start, end;  ///< positions at both ends of the stretch [m]
   Real radius = 0;             ///< of the balls [m]
 };
 
@@ -21,8 +21,9 @@ struct PredictedMotion {
 /// Patch cull: where the in-plane part of the deformation gradient of all triangles of a rectangle
 /// of the fabric, in one common plane, has a symmetric part with no eigenvalue below lambda, two
 /// points of it are at least lambda times as far apart as in the fabric. So what is stretched out
-/// enough cannot touch itself, and no pair within it needs a test. The gradient is linear in time
-/// on linear paths and the least eigenvalue concave, so both ends of the stretch are enough.
+/// enough cannot touch itself, and no pair within it needs a test. The gradient in one plane is
+/// linear in time on linear paths and the least eigenvalue concave, so both ends of the stretch are
+/// enough, in the same plane.
 template <class Real>
 class PatchTree {
  public:
@@ -45,9 +46,6 @@ class PatchTree {
   };
   const Patch& patch(Index p) const { return patches_[static_cast<std::size_t>(p)]; }
   std::size_t patch_count() const { return patches_.size(); }
-  const Aabb<Real>& box(Index p) const {
-    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].box;
-  }
 
   /// Whether a patch has a changed particle.
   bool is_marked(Index p) const {
@@ -80,7 +78,7 @@ class PatchTree {
     bool operator==(const CellRange&) const = default;
   };
   struct Node {
-    Aabb<Real> box;
+    QuadBox<Real> box;
     Index left = kNone, right = kNone;  ///< nodes, behind this one
     Index patch = kNone;                ///< of a leaf
     Index part = kNone;                 ///< cloth; none if there are several below
@@ -93,8 +91,9 @@ class PatchTree {
   struct GridTriangle {
     std::array<Index, 2> along_u = {kNone, kNone}, along_v = {kNone, kNone};
   };
-  struct Tangents {
-    Vec3<Real> u, v;
+  /// Two orthonormal directions.
+  struct Plane {
+    Quad<Real> u, v;
   };
 
   void build_grid(const ClothModel<Real>& model, Index part);
@@ -104,15 +103,15 @@ class PatchTree {
   Index add_patch(const ClothModel<Real>& model, Index part, const std::vector<Index>& triangles);
   void give_features(const ClothModel<Real>& model);
 
-  void measure_tangents(const Vec3Array<Real>& x,
-                        std::vector<std::vector<Tangents>>& tangents) const;
   void fit_box(Node& node, const PredictedMotion<Real>& motion) const;
   void sum_changed(const std::vector<char>& changed);
   bool has_changed(Index part, const CellRange& cells) const;
-  void mark_spread(Index node, Real radius, bool only_changed);
+  void mark_spread(Index node, const PredictedMotion<Real>& motion, bool only_changed);
   void give_spread(Index node, const CellRange& cells);
-  bool is_spread(const std::vector<std::vector<Tangents>>& tangents, const CellRange& cells,
-                 Index part, Real least) const;
+  bool find_plane(const PredictedMotion<Real>& motion, const CellRange& cells, Index part,
+                  Plane& plane) const;
+  bool is_spread(const QuadArray<Real>& x, const Plane& plane, const CellRange& cells, Index part,
+                 Real least) const;
   bool is_apart(const Node& a, const Node& b) const {
     if (a.part == kNone || a.part != b.part) return false;
     return (a.spread.cells() > 0 && a.spread.holds(b.cells)) ||
@@ -152,7 +151,6 @@ class PatchTree {
   std::vector<Index> node_of_;  ///< each patch's
   std::vector<ClothPart<Real>> parts_;
   std::vector<std::vector<GridTriangle>> grids_;  ///< of each part, two a cell; none of a mesh
-  std::vector<std::vector<Tangents>> tangents_, end_tangents_;
   /// Of each grid, the number of changed particles before a row and a column.
   std::vector<std::vector<int>> changed_sums_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "core/math/aligned_vector.h"
@@ -33,6 +34,11 @@ template <class Real>
 Real dot(const Quad<Real>& a, const Quad<Real>& b) {
   const Quad<Real> product{a.lanes * b.lanes};
   return product[0] + product[1] + product[2];
+}
+
+template <class Real>
+Real length(const Quad<Real>& a) {
+  return std::sqrt(dot(a, a));
 }
 
 template <class Real>

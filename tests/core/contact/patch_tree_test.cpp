@@ -31,8 +31,9 @@ bool come_near(PairKind kind, const std::array<Index, 4>& p, const PredictedMoti
     PairPoints<double> x;
     for (std::size_t k = 0; k < 4; ++k) {
       const auto i = static_cast<std::size_t>(p[k]);
-      x[k] = m.start[i].cast<double>() +
-             (m.end[i] - m.start[i]).cast<double>() * (t / static_cast<double>(times));
+      const Vec3d start = to_vector(m.start[i]).cast<double>();
+      const Vec3d end = to_vector(m.end[i]).cast<double>();
+      x[k] = start + (end - start) * (t / static_cast<double>(times));
     }
     if (separate_pair(kind, x).gap < 2 * static_cast<double>(m.radius)) return true;
   }
@@ -112,9 +113,9 @@ PredictedMotion<float> wrap(const ClothModel<float>& model, double radius, doubl
     const double r = radius + pitch * angle;
     Vec3d x = radius > 0 ? Vec3d(r * std::sin(angle), r * std::cos(angle), z) : Vec3d(s, 0, z);
     x[1] += wave * std::sin(30 * z);
-    motion.start.push_back(x.cast<float>());
+    motion.start.push_back(to_quad<float>(x.cast<float>()));
     const Vec3d moved = x + Vec3d(0.01, -0.02, 0) + random.vector(0.003);
-    motion.end.push_back(moved.cast<float>());
+    motion.end.push_back(to_quad<float>(moved.cast<float>()));
   }
   motion.radius = 0.005f;
   return motion;
@@ -159,12 +160,12 @@ TEST_CASE("after some particles changed their way, old pairs and changed patches
         std::vector<char> changed(model.mass.size(), 0);
         const auto middle = static_cast<std::size_t>(random.uniform(0, 1) * (columns * rows - 1));
         for (std::size_t i = 0; i < changed.size(); ++i) {
-          motion.start[i] += (motion.end[i] - motion.start[i]) / 3;
+          motion.start[i] += (motion.end[i] - motion.start[i]) * (1.0f / 3);
           if ((model.rest_positions[i] - model.rest_positions[middle]).norm() > 0.07f) continue;
           changed[i] = 1;
-          motion.end[i] = motion.start[i] +
-                          Vec3f(0.05f, 0.01f, 0.02f) * static_cast<float>(time - 1) +
-                          random.vector(0.01).cast<float>();
+          const Vec3f way = Vec3f(0.05f, 0.01f, 0.02f) * static_cast<float>(time - 1) +
+                            random.vector(0.01).cast<float>();
+          motion.end[i] = motion.start[i] + to_quad(way);
         }
         const auto is_changed = [&](const std::array<Index, 4>& particle) {
           return std::any_of(particle.begin(), particle.end(),
@@ -206,6 +207,22 @@ TEST_CASE("a flat or gently waved cloth is culled as one, and no patch of it is 
   tree.refit(wrap(model, 0, 0, 0.003, random), false);
   tree.for_each_near_pair([&](Index, Index) { ++visited; });
   CHECK(visited > 256);
+}
+
+TEST_CASE("a sheet that is spread out at both ends of its motion but not between is not culled") {
+  // Straight paths of half a turn in its plane lead every particle through the centre.
+  const ClothModel<float> model = build_cloth<float>(flat_cloth(9, 9, 1, 1));
+  Vec3f centre = Vec3f::Zero();
+  for (const Vec3f& p : model.rest_positions) centre += p / 81;
+  PredictedMotion<float> motion;
+  for (const Vec3f& p : model.rest_positions) {
+    motion.start.push_back(to_quad(p));
+    motion.end.push_back(to_quad<float>(2 * centre - p));
+  }
+  motion.radius = 0.005f;
+  PatchTree<float> tree(model);
+  const bool found_all = find_pairs(model, tree, motion, true).pairs == all_pairs(model, motion);
+  CHECK(found_all);
 }
 
 TEST_CASE("every particle, edge and triangle belongs to one patch") {
