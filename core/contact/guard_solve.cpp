@@ -29,8 +29,9 @@ constexpr double kStickTime = 0.02;
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
 
-/// A lack of this part of the radius is let be.
-constexpr double kPushSlack = 0.01;
+/// A lack of this part of the radius is let be: what cannot part, in tight folds, would be pushed
+/// for ever, and the push drives the springs that bring it back.
+constexpr double kPushSlack = 0.1;
 
 }  // namespace
 

@@ -49,7 +49,7 @@ double fastest_but_a_hundredth(const World<float>& world) {
 TEST_CASE(
     "a crumpled sheet comes to rest: after 5 s 99 % of it is slower than 2 mm/s at any tick") {
   World<float> world(upright_sheet());
-  jolt(world, GENERATE(1u, 2u, 3u));
+  jolt(world, GENERATE(1u, 2u, 3u, 4u, 5u, 6u, 7u));
   for (int tick = 0; tick < 300; ++tick) world.step();
   CHECK(world.guard()->rows().size() > 100);
   double fastest = 0;
