@@ -1,14 +1,12 @@
 #include "core/math/exact_sign.h"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <vector>
 
 namespace weft {
 namespace {
-
-/// A number as an exact sum of doubles of growing size that do not overlap.
-using Expansion = std::vector<double>;
 
 /// sum + error = a + b exactly.
 double two_sum(double a, double b, double& error) {
@@ -17,28 +15,42 @@ double two_sum(double a, double b, double& error) {
   return sum;
 }
 
-void add(Expansion& e, double b) {
-  for (double& term : e) b = two_sum(b, term, term);
-  e.push_back(b);
-}
+/// A number as an exact sum of doubles of growing size that do not overlap, none of them 0. Room
+/// for the most that an orientation needs: 3 products of 2 and 16 terms, 2 each.
+struct Expansion {
+  std::array<double, 192> term;
+  std::size_t size = 0;
 
-void add(Expansion& e, const Expansion& f) {
-  for (const double term : f) add(e, term);
-}
+  void add(double b) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      double error;
+      b = two_sum(b, term[k], error);
+      if (error != 0) term[kept++] = error;
+    }
+    if (b != 0) term[kept++] = b;
+    size = kept;
+  }
+  /// @param sign  1 or -1
+  void add(const Expansion& e, double sign = 1) {
+    for (std::size_t k = 0; k < e.size; ++k) add(sign * e.term[k]);
+  }
+};
 
 Expansion difference(double a, double b) {
-  double error;
-  const double sum = two_sum(a, -b, error);
-  return {error, sum};
+  Expansion result;
+  result.add(a);
+  result.add(-b);
+  return result;
 }
 
 Expansion product(const Expansion& e, const Expansion& f) {
   Expansion result;
-  for (const double a : e) {
-    for (const double b : f) {
-      const double high = a * b;
-      add(result, std::fma(a, b, -high));
-      add(result, high);
+  for (std::size_t k = 0; k < e.size; ++k) {
+    for (std::size_t n = 0; n < f.size; ++n) {
+      const double high = e.term[k] * f.term[n];
+      result.add(std::fma(e.term[k], f.term[n], -high));
+      result.add(high);
     }
   }
   return result;
@@ -46,9 +58,7 @@ Expansion product(const Expansion& e, const Expansion& f) {
 
 Expansion minor(const Expansion& a, const Expansion& b, const Expansion& c, const Expansion& d) {
   Expansion result = product(a, d);
-  Expansion other = product(b, c);
-  for (double& term : other) term = -term;
-  add(result, other);
+  result.add(product(b, c), -1);
   return result;
 }
 
@@ -57,9 +67,7 @@ int sign_of(double value) {
 }
 
 int sign_of(const Expansion& e) {
-  for (auto term = e.rbegin(); term != e.rend(); ++term)
-    if (*term != 0) return sign_of(*term);
-  return 0;
+  return e.size > 0 ? sign_of(e.term[e.size - 1]) : 0;
 }
 
 int exact_orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
@@ -70,8 +78,8 @@ int exact_orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3
     w[k] = difference(c[k], d[k]);
   }
   Expansion sum = product(u[0], minor(v[1], v[2], w[1], w[2]));
-  add(sum, product(u[1], minor(v[2], v[0], w[2], w[0])));
-  add(sum, product(u[2], minor(v[0], v[1], w[0], w[1])));
+  sum.add(product(u[1], minor(v[2], v[0], w[2], w[0])));
+  sum.add(product(u[2], minor(v[0], v[1], w[0], w[1])));
   return sign_of(sum);
 }
 
