@@ -42,6 +42,8 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (QuadArray<Real>* array : {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_,
                                  &anchor_, &x_rows_, &quad_v_, &extra_})
     array->assign(n, {});
+  for (Vec3Array<Real>* array : {&path_base_, &path_velocity_})
+    array->assign(n, Vec3<Real>::Zero());
   in_rows_.assign(n, 0);
   is_active_.assign(n, 0);
   for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));
@@ -53,6 +55,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
   resting_.assign(tree_.patch_count(), 0);
+  let_rest({});
 }
 
 template <class Real>
@@ -86,9 +89,20 @@ void ClothGuard<Real>::reset() {
 template <class Real>
 void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
   collected_ = rows_built_ = false;
+  const auto sleeps = [&](std::size_t cloth) { return !asleep.empty() && asleep[cloth] != 0; };
   for (std::size_t p = 0; p < resting_.size(); ++p) {
     const Index particle = tree_.patch(static_cast<Index>(p)).particles.front();
-    resting_[p] = asleep.empty() ? 0 : asleep[static_cast<std::size_t>(part_of(particle))];
+    resting_[p] = sleeps(static_cast<std::size_t>(part_of(particle))) ? 1 : 0;
+  }
+  awake_.clear();
+  awake_count_ = 0;
+  for (std::size_t k = 0; k < first_particle_.size(); ++k) {
+    const Index first = first_particle_[k], end = k + 1 < first_particle_.size()
+                                                      ? first_particle_[k + 1]
+                                                      : static_cast<Index>(is_active_.size());
+    if (sleeps(k)) continue;
+    awake_.push_back({first, end - first});
+    awake_count_ += static_cast<std::size_t>(end - first);
   }
 }
 

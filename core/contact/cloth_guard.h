@@ -91,7 +91,7 @@ class ClothGuard {
   void push_apart(ClothState<Real>& state);
 
   /// Sweeps and push where the cloths meet nothing else in the coming drift of `dt` [s].
-  void respond_alone(ClothState<Real>& state, Real dt);
+  void respond_alone(ClothState<Real>& state, Real dt, Profile& profile);
 
   /// After all other contact and right before the drift of `dt` [s]: lets nobody leave his region.
   /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.
@@ -140,6 +140,15 @@ class ClothGuard {
   }
   void predict(Real past);
   PairColumns<Real>& columns_of(PairKind kind) { return columns_[static_cast<std::size_t>(kind)]; }
+  /// Mean of value(i) over all particles that are awake.
+  template <class Value>
+  Quad<Real> mean_awake(Value&& value) const {
+    Quad<Real> sum;
+    for (const IndexRange& range : awake_) {
+      for (Index i = range.first; i < range.end(); ++i) sum += value(static_cast<std::size_t>(i));
+    }
+    return sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake_count_, 1)));
+  }
   Quad<Real> path_velocity(std::size_t particle, Real dt) const;
   Quad<Real> steady(const Quad<Real>& v, std::size_t particle, Real dt) const;
   void join_pairs();
@@ -181,6 +190,8 @@ class ClothGuard {
   Real claim(Index particle, bool first);
 
   // guard_critical.cpp
+  bool stays_calm(const ClothState<Real>& state, Real dt) const;
+  void note_paths();
   void stop_crossings();
   bool find_critical();
   bool is_critical(GuardedPair<Real>& pair);
@@ -221,7 +232,9 @@ class ClothGuard {
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]
   Real thickest_ = 0, reach_ = 0, finest_ = 0;
   PatchTree<Real> tree_;
-  std::vector<char> resting_;  ///< 1 for each patch of a cloth that sleeps
+  std::vector<char> resting_;      ///< 1 for each patch of a cloth that sleeps
+  std::vector<IndexRange> awake_;  ///< particles of the cloths that do not
+  std::size_t awake_count_ = 0;    ///< of them
 
   // Collection.
   bool collected_ = false;
@@ -237,7 +250,12 @@ class ClothGuard {
   std::vector<char> changed_, is_active_;
   std::vector<std::uint64_t> dropped_keys_;
   Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
-  Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
+  bool calm_ = false;               ///< there was no pair when the step began
+  Vec3Array<Real> x_before_;        ///< then, where each was when it began [m]
+  /// Where the paths were at time 0, with off_path_ [m], and their velocities [m/s], number by
+  /// number.
+  Vec3Array<Real> path_base_, path_velocity_;
+  Real smallest_gap_ = 0;  ///< that is left between features after every step [m]
   PatchBoxes<Real> boxes_;
   PatchOverlaps overlaps_;                    ///< of the patches that are being tested
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together

@@ -28,7 +28,7 @@ struct Collision {
     if (weft)
       weft->resolve(state, dt, profile, guard);
     else if (guard)
-      guard->respond_alone(state, dt);
+      guard->respond_alone(state, dt, profile);
     if (seed) seed->separate(state, profile);
     if (guard) guard->certify(state, dt, profile);
   }
@@ -41,10 +41,12 @@ struct Collision {
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->settle(state, dt);
     if (guard) guard->settle(state, dt, profile);
-    if (weft)
+    if (weft) {
       weft->settle(state, dt, profile, guard);
-    else if (guard)
+    } else if (guard) {
+      const StageTimer timer(profile, Stage::contact, 0);
       guard->sweep(state);
+    }
   }
 };
 

@@ -157,7 +157,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     if (guard) guard->push_apart(state);
     certify(state, dt);
   } else if (guard) {
-    guard->respond_alone(state, dt);
+    guard->respond_alone(state, dt, profile);
   }
   first_substep_ = false;
   move_colliders(dt);
@@ -166,11 +166,11 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
 template <class Real>
 void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
                            ClothGuard<Real>* guard) {
+  const StageTimer timer(profile, Stage::contact, rows_.size());
   if (rows_.empty()) {
     if (guard) guard->sweep(state);
     return;
   }
-  const StageTimer timer(profile, Stage::contact, rows_.size());
   measure_way(state, dt);
   find_busy_rows();
   aim_rows(state, dt);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/contact/cloth_guard.h"
+#include "core/contact/travel.h"
 
 namespace weft {
 namespace {
@@ -20,6 +21,9 @@ constexpr std::size_t kManyStrays = 6;
 /// Neither side of a gap gets less than this part of it.
 constexpr double kLeastPart = 0.05;
 
+/// A vector is at most so many times as long as its largest component; rounded up.
+constexpr double kDiagonal = 1.7321;
+
 /// Particles stop so much before their plane, as a part of their way to it.
 constexpr double kStopShort = 1e-4;
 
@@ -28,16 +32,23 @@ constexpr double kStopShort = 1e-4;
 template <class Real>
 void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profile) {
   ++substep_;
+  elapsed_ += dt;
+  if (calm_) {
+    if (stays_calm(state, dt)) {
+      off_path_now_ = off_path_;
+      return;
+    }
+    for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(x_before_[i]);
+  }
   for (std::size_t i = 0; i < step_.size(); ++i)
     step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
-  elapsed_ += dt;
   strays_.clear();
   anchored_.clear();
   bool collected = collected_ && elapsed_ <= horizon_;
   if (collected) find_strays();
   for (int attempt = 0;; ++attempt) {
     collected =
-        collected && strays_.size() <= step_.size() / kManyStrays && pairs_.size() <= most_pairs_;
+        collected && strays_.size() <= awake_count_ / kManyStrays && pairs_.size() <= most_pairs_;
     if (!collected)
       collect(dt, profile);
     else if (!strays_.empty())
@@ -55,7 +66,32 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     truncate(state, dt, attempt >= kRetries);
     if (strays_.empty()) break;
   }
+  if (active_.empty()) note_paths();
   count_motion();
+}
+
+/// Whether, while there are no pairs, all stay in the balls around their paths in the coming step.
+template <class Real>
+bool ClothGuard<Real>::stays_calm(const ClothState<Real>& state, Real dt) const {
+  if (!collected_ || !(elapsed_ <= horizon_)) return false;
+  PathPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.base = path_base_.data()->data();
+  pass.velocity = path_velocity_.data()->data();
+  pass.time = elapsed_;
+  return largest_deviation(pass) * static_cast<Real>(kDiagonal) <= reach_;
+}
+
+/// Writes down the paths for `stays_calm`.
+template <class Real>
+void ClothGuard<Real>::note_paths() {
+  for (std::size_t i = 0; i < path_base_.size(); ++i) {
+    path_base_[i] = to_vector(on_path(i, 0) + off_path_);
+    path_velocity_[i] = to_vector(velocity_[i]);
+  }
 }
 
 /// Certifies or stops the steps of particles that have no room for them.
@@ -231,14 +267,16 @@ void ClothGuard<Real>::count_motion() {
   lost_ = 0;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                \
-  template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&); \
-  template void ClothGuard<Real>::stop_crossings();                           \
-  template bool ClothGuard<Real>::find_critical();                            \
-  template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);            \
-  template bool ClothGuard<Real>::holds(const Critical&) const;               \
-  template void ClothGuard<Real>::fix(Critical&);                             \
-  template void ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);    \
+#define WEFT_INSTANTIATE(Real)                                                     \
+  template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&);      \
+  template bool ClothGuard<Real>::stays_calm(const ClothState<Real>&, Real) const; \
+  template void ClothGuard<Real>::note_paths();                                    \
+  template void ClothGuard<Real>::stop_crossings();                                \
+  template bool ClothGuard<Real>::find_critical();                                 \
+  template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);                 \
+  template bool ClothGuard<Real>::holds(const Critical&) const;                    \
+  template void ClothGuard<Real>::fix(Critical&);                                  \
+  template void ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);         \
   template void ClothGuard<Real>::count_motion();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -26,22 +26,19 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   const std::size_t n = legal_.size();
   // A motion common to all changes nothing between them.
-  Quad<Real> common;
-  for (const Quad<Real>& step : step_) common += step;
-  common = common * (Real(1) / static_cast<Real>(n));
+  const Quad<Real> common = mean_awake([&](std::size_t i) { return step_[i]; });
   common_velocity_ = common * (Real(1) / dt);
   QuadBox<Real> all;
-  Real sum2 = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    all.add(legal_[i]);
+  for (const Quad<Real>& p : legal_) all.add(p);
+  const Quad<Real> mean_squares = mean_awake([&](std::size_t i) {
     const Quad<Real> own = step_[i] - common;
-    sum2 += dot(own, own);
-  }
+    return Quad<Real>{own.lanes * own.lanes};
+  });
   Real largest = 0;
   for (int k = 0; k < 3; ++k) largest = std::max({largest, -all.lower[k], all.upper[k]});
   smallest_gap_ = std::max(static_cast<Real>(kSmallestGap),
                            largest * std::numeric_limits<Real>::epsilon() * Real(kRoundings));
-  const Real speed = std::sqrt(sum2 / static_cast<Real>(n)) / dt;
+  const Real speed = std::sqrt(mean_squares[0] + mean_squares[1] + mean_squares[2]) / dt;
   const Real shortest = dt * Real(kFewestSubsteps);
   horizon_ = std::clamp(finest_ * Real(kHorizonPart) / std::max(speed, Real(1e-6)), shortest,
                         std::max(static_cast<Real>(kLongestHorizon), shortest));

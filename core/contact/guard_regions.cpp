@@ -43,13 +43,11 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
 template <class Real>
 void ClothGuard<Real>::find_strays() {
   const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
-  Quad<Real> sum;
   bool left = false;
   strays_.clear();
+  const auto off = [&](std::size_t i) { return legal_[i] + step_[i] - on_path(i, elapsed_); };
   for (std::size_t i = 0; i < step_.size(); ++i) {
-    const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_);
-    sum += off;
-    const Quad<Real> own = off - off_path_;
+    const Quad<Real> own = off(i) - off_path_;
     const Real off2 = dot(own, own);
     if (off2 <= soon) continue;
     strays_.push_back(static_cast<Index>(i));
@@ -58,7 +56,7 @@ void ClothGuard<Real>::find_strays() {
   if (!left) strays_.clear();
   off_path_before_ = off_path_now_;
   off_path_now_ = off_path_;
-  off_path_ = sum * (Real(1) / static_cast<Real>(step_.size()));
+  off_path_ = mean_awake(off);
 }
 
 /// Particles that would leave the room around their anchors.

@@ -37,13 +37,15 @@ constexpr double kPushSlack = 0.1;
 
 template <class Real>
 void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
-  for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
   const Real kicked = std::exchange(closed_, false) ? dt / 2 : dt;
-  if (pairs_.empty()) {
+  calm_ = active_.empty();
+  if (calm_) {
+    x_before_ = state.x;
     rows_.clear();
     busy_rows_.clear();
     return;
   }
+  for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
   rows_time_ += dt;
   ++rows_steps_;
   if (!rows_built_ || !rows_hold()) build_rows(state, profile);
@@ -127,7 +129,9 @@ Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
 }
 
 template <class Real>
-void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
+void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt, Profile& profile) {
+  if (rows_.empty()) return;
+  const StageTimer timer(profile, Stage::contact, 0);
   const Real enough = thickest_ * Real(kResidual) / dt;
   for (int k = 0; k < kMostSweeps; ++k) {
     if (!(sweep(state) > enough)) break;
@@ -237,19 +241,19 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   closed_ = true;
 }
 
-#define WEFT_INSTANTIATE(Real)                                               \
-  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);  \
-  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);        \
-  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;       \
-  template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
-  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
-  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
-  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
-  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
-  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
-  template void ClothGuard<Real>::find_busy_rows(Real);                      \
-  template void ClothGuard<Real>::warm_rows(Real, Real);                     \
-  template Real ClothGuard<Real>::sweep_rows();                              \
+#define WEFT_INSTANTIATE(Real)                                                      \
+  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);         \
+  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);               \
+  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;              \
+  template void ClothGuard<Real>::finish(ClothState<Real>&);                        \
+  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&);        \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;                 \
+  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                       \
+  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                         \
+  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real, Profile&); \
+  template void ClothGuard<Real>::find_busy_rows(Real);                             \
+  template void ClothGuard<Real>::warm_rows(Real, Real);                            \
+  template Real ClothGuard<Real>::sweep_rows();                                     \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -16,6 +16,7 @@ namespace weft {
 
 /// Contact of cloths with themselves and each other.
 enum class SelfContact {
+  automatic,  ///< the guard with Weft's contact, none with the seed's
   none,
   particles,            ///< particle pairs, eq. (11)
   triangles,            ///< particle-triangle pairs, eq. (12)
@@ -38,19 +39,24 @@ enum class Correction {
 /// Settings of the seed's contact. Thickness h, friction k_f and dissipation k_diss are the
 /// fabric's.
 struct SeedContactDef {
-  SelfContact self = SelfContact::none;
+  SelfContact self = SelfContact::automatic;  ///< here as none
   ObjectContact objects = ObjectContact::particles;
   Correction correction = Correction::projection;
   double lift = 0;           ///< eps: distance from the surface after correction [m]; 0 is eq. (9)
   double fold_depth = 0.02;  ///< tau: what is nearer to an object than this is lifted with the rest
                              ///< [m]
   int passes = 1;            ///< over all pairs of self-contact, a substep
+
+  bool has_self_contact() const {
+    return self != SelfContact::automatic && self != SelfContact::none;
+  }
 };
 
 /// The words of SelfContact.
 inline FieldInfo self_contact_info() {
-  return choice("self", "none|particles|triangles|triangles_and_edges|guard",
-                "pairs of the cloth with itself");
+  return choice("self", "automatic|none|particles|triangles|triangles_and_edges|guard",
+                "cloth against itself and other cloths; automatic: the guard, or none with the "
+                "seed's contact");
 }
 
 /// Describes each field to `visit(info, value)`.

@@ -36,7 +36,7 @@ Real SeedContact<Real>::thickness_between(Index i, Index j) const {
 
 template <class Real>
 void SeedContact<Real>::prepare_self_contact() {
-  if (def_.self != SelfContact::none) pairs_.reserve(kPairsPerParticle * rest_positions_.size());
+  if (def_.has_self_contact()) pairs_.reserve(kPairsPerParticle * rest_positions_.size());
 }
 
 /// Particle pairs, eq. (11).
@@ -123,7 +123,7 @@ void SeedContact<Real>::take_approach(const SelfPair& pair, ClothState<Real>& st
 
 template <class Real>
 void SeedContact<Real>::separate(ClothState<Real>& state, Profile& profile) {
-  if (def_.self == SelfContact::none) return;
+  if (!def_.has_self_contact()) return;
   pairs_.clear();
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);

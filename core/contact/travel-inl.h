@@ -45,6 +45,34 @@ HWY_INLINE bool travel(const TravelPass<Real>& p) {
   return within;
 }
 
+/// The largest number that is the same for any width of vectors.
+template <class Real>
+HWY_INLINE Real deviation(const PathPass<Real>& p) {
+  const hn::ScalableTag<Real> wide;
+  const hn::CappedTag<Real, 1> single;
+  const std::size_t count = 3 * p.particles;
+  const auto at = [&](auto d, std::size_t k) HWY_ATTR {
+    const auto path = hn::Mul(hn::LoadU(d, p.velocity + k), hn::Set(d, p.time));
+    const auto way = hn::Mul(hn::LoadU(d, p.v + k), hn::Set(d, p.dt));
+    const auto off = hn::Sub(hn::LoadU(d, p.x + k), hn::LoadU(d, p.base + k));
+    return hn::Abs(hn::Add(off, hn::Sub(way, path)));
+  };
+  auto most = hn::Zero(wide);
+  auto rest = hn::Zero(single);
+  std::size_t k = 0;
+  for (; k + hn::Lanes(wide) <= count; k += hn::Lanes(wide)) most = hn::Max(at(wide, k), most);
+  for (; k < count; ++k) rest = hn::Max(at(single, k), rest);
+  const Real whole = hn::GetLane(hn::MaxOfLanes(wide, most)), last = hn::GetLane(rest);
+  return last > whole ? last : whole;
+}
+
+HWY_ATTR float deviation_f32(const PathPass<float>& pass) {
+  return deviation(pass);
+}
+HWY_ATTR double deviation_f64(const PathPass<double>& pass) {
+  return deviation(pass);
+}
+
 HWY_ATTR bool travel_f32(const TravelPass<float>& pass) {
   return travel(pass);
 }

@@ -13,6 +13,8 @@ namespace weft {
 
 HWY_EXPORT(travel_f32);
 HWY_EXPORT(travel_f64);
+HWY_EXPORT(deviation_f32);
+HWY_EXPORT(deviation_f64);
 
 bool measure_travel(const TravelPass<float>& pass) {
   return HWY_DYNAMIC_DISPATCH(travel_f32)(pass);
@@ -20,6 +22,14 @@ bool measure_travel(const TravelPass<float>& pass) {
 
 bool measure_travel(const TravelPass<double>& pass) {
   return HWY_DYNAMIC_DISPATCH(travel_f64)(pass);
+}
+
+float largest_deviation(const PathPass<float>& pass) {
+  return HWY_DYNAMIC_DISPATCH(deviation_f32)(pass);
+}
+
+double largest_deviation(const PathPass<double>& pass) {
+  return HWY_DYNAMIC_DISPATCH(deviation_f64)(pass);
 }
 
 }  // namespace weft

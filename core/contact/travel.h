@@ -24,4 +24,21 @@ struct TravelPass {
 bool measure_travel(const TravelPass<float>& pass);
 bool measure_travel(const TravelPass<double>& pass);
 
+/// Where particles are before a drift, and the straight paths that they are held against; three
+/// numbers a particle.
+template <class Real>
+struct PathPass {
+  std::size_t particles = 0;
+  const Real* x = nullptr;         ///< [m]
+  const Real* v = nullptr;         ///< [m/s]
+  Real dt = 0;                     ///< of the drift [s]
+  const Real* base = nullptr;      ///< where the paths are at time 0 [m]
+  const Real* velocity = nullptr;  ///< along them [m/s]
+  Real time = 0;                   ///< at the end of the drift [s]
+};
+
+/// The largest component of anybody's way off his path after the drift [m]; NaN does not count.
+float largest_deviation(const PathPass<float>& pass);
+double largest_deviation(const PathPass<double>& pass);
+
 }  // namespace weft

@@ -73,10 +73,10 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
   const bool something_to_meet =
-      !def_.colliders.empty() || def_.contact.seed.self != SelfContact::none;
+      !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
-  if (def_.contact.seed.self == SelfContact::guard) guard_.emplace(model_);
+  if (has_guard(def_)) guard_.emplace(model_);
   prepare_solver();
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);

@@ -52,6 +52,12 @@ ContactModel contact_of(const WorldDef& def) {
   return def.model == Model::seed ? ContactModel::seed : ContactModel::weft;
 }
 
+bool has_guard(const WorldDef& def) {
+  const SelfContact self = def.contact.seed.self;
+  return contact_of(def) == ContactModel::weft &&
+         (self == SelfContact::automatic || self == SelfContact::guard);
+}
+
 const char* solver_name(const WorldDef& def) {
   return solver_of(def) == SolverKind::relaxation ? "relaxation" : "verlet";
 }
@@ -126,10 +132,10 @@ void validate(const WorldDef& def) {
                             "less than contact.fold_depth, " + number_text(seed.fold_depth) + " m",
                             "the map lifts the deepest particle to it");
     if (self == SelfContact::guard)
-      refuse_self("none, particles, triangles or triangles_and_edges",
+      refuse_self("automatic, none, particles, triangles or triangles_and_edges",
                   "set contact.model to weft for the guard");
-  } else if (self != SelfContact::none && self != SelfContact::guard) {
-    refuse_self("none or guard",
+  } else if (self != SelfContact::none && !has_guard(def)) {
+    refuse_self("automatic, none or guard",
                 "set contact.model to seed for the seed's contact of the cloth "
                 "with itself");
   }

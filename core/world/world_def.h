@@ -103,6 +103,9 @@ SolverKind solver_of(const WorldDef& def);
 /// The contact that the definition asks for: weft or seed.
 ContactModel contact_of(const WorldDef& def);
 
+/// Whether the definition asks for the guard of cloths against themselves and each other.
+bool has_guard(const WorldDef& def);
+
 /// Name of the solver, as reports give it.
 const char* solver_name(const WorldDef& def);
 

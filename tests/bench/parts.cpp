@@ -49,7 +49,7 @@ std::vector<Variant> variants(const WorldDef& def) {
             for (ClothDef& c : d.cloths) c.fabric.friction = 0;
           });
   without("contact with objects", !def.colliders.empty(), [](WorldDef& d) { d.colliders.clear(); });
-  without("self-contact", def.contact.seed.self != SelfContact::none,
+  without("self-contact", has_guard(def) || def.contact.seed.has_self_contact(),
           [](WorldDef& d) { d.contact.seed.self = SelfContact::none; });
   return all;
 }
