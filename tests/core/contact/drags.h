@@ -1,0 +1,173 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/diagnostics/crossings.h"
+#include "core/world/world.h"
+#include "tests/support/random.h"
+
+namespace weft::test {
+
+// Hands that take hold of a cloth anywhere, pull it about and let go, and an exact count of what
+// passed through what after each tick.
+
+/// Pairs of an edge and a triangle that meet: of the cloths with themselves and each other, with
+/// the meshes and boxes of the scene, and triangles of the cloths that a needle's axis passes.
+class CrossingCount {
+ public:
+  explicit CrossingCount(const WorldDef& def) : def_(def) {
+    for (const ColliderDef& collider : def.colliders) {
+      if (const auto* box = std::get_if<BoxDef>(&collider.shape))
+        meshes_.push_back(world_mesh(*box));
+      if (const auto* given = std::get_if<MeshDef>(&collider.shape)) meshes_.push_back(given->mesh);
+    }
+  }
+
+  std::size_t operator()(const World<float>& world) {
+    const ClothModel<float>& model = world.model();
+    const Vec3Array<float>& x = world.state().x;
+    const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
+    std::size_t count = self.proper + self.touching;
+    for (const TriangleMesh& mesh : meshes_) {
+      const Crossings with = count_crossings(x, model.edges, model.triangles, mesh);
+      count += with.proper + with.touching;
+    }
+    for (const ColliderDef& collider : def_.colliders) {
+      if (const auto* needle = std::get_if<CapsuleDef>(&collider.shape))
+        count += pierced(world, needle->a, needle->b);
+    }
+    return count;
+  }
+
+ private:
+  static std::size_t pierced(const World<float>& world, const Vec3d& from, const Vec3d& to) {
+    Aabb<double> axis;
+    axis.add(from);
+    axis.add(to);
+    std::size_t count = 0;
+    for (const Triangle& t : world.model().triangles) {
+      std::array<Vec3d, 3> corner;
+      Aabb<double> box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        corner[k] = world.state().x[static_cast<std::size_t>(t[k])].cast<double>();
+        box.add(corner[k]);
+      }
+      if (!box.overlaps(axis)) continue;
+      const Crossings with = crossing_of(from, to, corner[0], corner[1], corner[2]);
+      count += with.proper + with.touching;
+    }
+    return count;
+  }
+
+  const WorldDef& def_;
+  std::vector<TriangleMesh> meshes_;
+  Bvh<double> tree_;
+};
+
+/// A hand on its way through points at random, each reached at a speed of its own.
+class WanderingHand {
+ public:
+  /// Takes hold of a random point of a random triangle.
+  WanderingHand(World<float>& world, Random& random) {
+    GrabDef def;
+    def.triangle = random.index(static_cast<Index>(world.model().triangles.size()));
+    double a = random.uniform(0, 1), b = random.uniform(0, 1);
+    if (a + b > 1) {
+      a = 1 - a;
+      b = 1 - b;
+    }
+    def.barycentric = {1 - a - b, a, b};
+    def.radius = random.uniform(0, 1) < 0.2 ? 0 : random.uniform(0.01, 0.08);
+    def.stiffness = random.uniform(100, 2000);
+    def.max_force = random.uniform(2, 50);
+    const Triangle& t = world.model().triangles[static_cast<std::size_t>(def.triangle)];
+    for (std::size_t k = 0; k < 3; ++k)
+      at_ += def.barycentric[k] * world.state().x[static_cast<std::size_t>(t[k])].cast<double>();
+    def.target = at_;
+    id_ = world.grab(def);
+    first_ = static_cast<int>(random.index(6));
+    last_ = first_ + 8 + static_cast<int>(random.index(25));
+    turn(random);
+  }
+
+  /// Before each tick of a drag, which is counted from 0.
+  /// @returns whether it still holds
+  bool move(int tick, World<float>& world, Random& random) {
+    if (tick > last_) {
+      if (id_ != 0) world.release(id_);
+      id_ = 0;
+      return false;
+    }
+    if (tick < first_) return true;
+    double way = speed_ * world.tick_seconds();
+    if ((goal_ - at_).norm() <= way) turn(random);
+    way = std::min(speed_ * world.tick_seconds(), (goal_ - at_).norm());
+    if (way > 0) at_ += (goal_ - at_).normalized() * way;
+    world.move_grab(id_, at_);
+    return true;
+  }
+
+ private:
+  /// The objects are around the middle, the ground is at 0: as often as not the way is barred.
+  void turn(Random& random) {
+    goal_ = Vec3d(random.uniform(-0.7, 0.7), random.uniform(-0.2, 1), random.uniform(-0.7, 0.7));
+    speed_ = random.uniform(0.5, 5);
+  }
+
+  GrabId id_ = 0;
+  int first_ = 0, last_ = 0;
+  double speed_ = 0;  ///< [m/s]
+  Vec3d at_ = Vec3d::Zero(), goal_ = Vec3d::Zero();
+};
+
+/// What was seen while hands dragged.
+struct DragFigures {
+  std::size_t crossings = 0;
+  int crossed_ticks = 0, first_tick = -1, ticks = 0, blow_ups = 0;
+  double deepest = 0, strain = 0, lost = 0;
+
+  void look(const World<float>& world, CrossingCount& count) {
+    const std::size_t found = count(world);
+    crossings += found;
+    if (found > 0 && first_tick < 0) first_tick = static_cast<int>(world.tick());
+    crossed_ticks += found > 0 ? 1 : 0;
+    ++ticks;
+    blow_ups += world.report().divergence ? 1 : 0;
+    deepest = std::max(deepest, world.deepest_penetration());
+    strain = std::max(strain, world.report().largest_strain);
+    const GuardCounts& counts = world.guard()->counts();
+    lost = counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
+  }
+};
+
+/// Lets the scene come down, then one to ten hands at a time drag its cloth, `drags` times.
+inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, unsigned seed) {
+  constexpr Index kMostHands = 10;
+  constexpr int kPause = 6;
+  Random random(seed);
+  World<float> world(def);
+  for (Vec3f& v : world.state().v) v += random.vector(0.05).cast<float>();
+  world.accept_state();
+  CrossingCount count(world.def());
+  DragFigures figures;
+  for (int tick = 0; tick < settle_ticks; ++tick) {
+    world.step();
+    figures.look(world, count);
+  }
+  for (int drag = 0; drag < drags; ++drag) {
+    std::vector<WanderingHand> hands;
+    for (Index k = 1 + random.index(kMostHands); k > 0; --k) hands.emplace_back(world, random);
+    int idle = 0;
+    for (int tick = 0; idle < kPause; ++tick) {
+      bool held = false;
+      for (WanderingHand& hand : hands) held = hand.move(tick, world, random) || held;
+      idle += held ? 0 : 1;
+      world.step();
+      figures.look(world, count);
+    }
+  }
+  return figures;
+}
+
+}  // namespace weft::test

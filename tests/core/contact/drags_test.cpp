@@ -1,0 +1,101 @@
+#include "tests/core/contact/drags.h"
+
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "core/cloth/fabric_presets.h"
+#include "core/scenes/scenes.h"
+
+// Random hands pull a cloth about over what it lies on. A seed decides all of it.
+
+using namespace weft;
+using namespace weft::test;
+
+namespace {
+
+/// Where the build puts the meshes of installed packages; not there when only core is built.
+std::string mesh_directory() {
+  const char* build = std::getenv("WEFT_BUILD_DIR");
+  return build ? std::string(build) + "/meshes" : std::string();
+}
+
+bool has_bunny() {
+  return static_cast<bool>(std::ifstream(mesh_directory() + "/bunny.ply"));
+}
+
+/// A sheet of cotton, thick by a quarter of its edges, that falls upright and crumples.
+WorldDef pile(int n) {
+  WorldDef def;
+  def.name = "pile";
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = n;
+  cloth.width = cloth.height = 0.8;
+  cloth.origin = Vec3d(-0.4, 0.85, 0);
+  cloth.u = Vec3d::UnitX();
+  cloth.v = Vec3d(0, -1, -0.12).normalized();
+  cloth.fabric = make_fabric("cotton");
+  cloth.fabric.thickness = 0.25 * cloth.width / (n - 1);
+  def.environment.drag = 0.5;
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+/// A built-in scene with as many particles a side.
+WorldDef scene(const char* name, int n) {
+  WorldDef def = make_scene(name, mesh_directory());
+  def.cloths[0].rows = def.cloths[0].columns = n;
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
+/// `WEFT_SEED` chooses one of the seeds; without it all are taken.
+bool is_chosen(unsigned seed) {
+  const char* text = std::getenv("WEFT_SEED");
+  return text == nullptr || std::strtoul(text, nullptr, 10) == seed;
+}
+
+void check_drags(const char* test, const WorldDef& def, int settle_ticks, int drags,
+                 unsigned seed) {
+  if (!is_chosen(seed)) return;
+  const std::clock_t start = std::clock();
+  const DragFigures seen = drag_about(def, settle_ticks, drags, seed);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  INFO("repeat with: WEFT_BUILD_DIR=build WEFT_SEED=" << seed << " build/weft_core_drags_tests \""
+                                                      << test << '"');
+  INFO(def.name << ": " << drags << " drags, " << seen.ticks << " ticks, " << seen.crossings
+                << " crossings in " << seen.crossed_ticks << " ticks from tick " << seen.first_tick
+                << " on, lost " << seen.lost << ", strain " << seen.strain << ", inside "
+                << seen.deepest << " m, " << 1000 * seconds / seen.ticks << " ms a tick");
+  CHECK(seen.crossings == 0);
+  CHECK(seen.deepest == 0);
+  CHECK(seen.blow_ups == 0);
+  CHECK(seen.lost < 0.2);
+}
+
+}  // namespace
+
+TEST_CASE("a few drags of up to ten hands at up to 5 m/s leave no crossing anywhere") {
+  constexpr auto kName = "a few drags of up to ten hands at up to 5 m/s leave no crossing anywhere";
+  check_drags(kName, pile(21), 40, 3, 1);
+  check_drags(kName, scene("hard-needles", 17), 20, 2, 2);
+  if (has_bunny())
+    check_drags(kName, scene("drop-on-bunny", 21), 30, 2, 3);
+  else
+    WARN("the bunny's package is not installed");
+}
+
+TEST_CASE("200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere", "[.long]") {
+  constexpr auto kName = "200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere";
+  constexpr int kDrags = 10;
+  for (unsigned seed = 101; seed <= 107; ++seed) check_drags(kName, pile(41), 60, kDrags, seed);
+  for (unsigned seed = 201; seed <= 206; ++seed)
+    check_drags(kName, scene("hard-needles", 33), 40, kDrags, seed);
+  REQUIRE(has_bunny());
+  for (unsigned seed = 301; seed <= 307; ++seed)
+    check_drags(kName, scene("drop-on-bunny", 49), 60, kDrags, seed);
+}
