@@ -100,7 +100,6 @@ ClothModel<Real> build_cut_grid(const ClothDef& def) {
   ClothModel<Real> model;
   model.parts.emplace_back();
   ClothPart<Real>& part = model.parts.front();
-  part.longest_edge = std::hypot(cut.cell_u, cut.cell_v);
   place_particles(def, cut, model);
   const double area = 0.5 * cut.cell_u * cut.cell_v;
   split_cells(cut.cells, area, 0, model);

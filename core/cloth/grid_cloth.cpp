@@ -129,8 +129,6 @@ ClothModel<Real> build_grid_cloth(const ClothDef& def) {
   part.columns = def.columns;
   part.cell_u = static_cast<Real>(def.width / (def.columns - 1));
   part.cell_v = static_cast<Real>(def.height / (def.rows - 1));
-  part.longest_edge =
-      std::hypot(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v));
   place_particles(def, model);
   lump_masses(def, model);
   part.cells = whole_grid(def.rows, def.columns);

@@ -19,17 +19,19 @@ std::string at(const char* list, std::size_t index) {
   return std::string("cloth.mesh.") + list + "[" + std::to_string(index) + "]";
 }
 
+/// Places are compared as they will be kept: what falls together then has no length.
+template <class Real>
 void refuse_unused_and_coincident(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.positions.size(), false);
   for (const Triangle& t : mesh.triangles) {
     for (const Index i : t) used[static_cast<std::size_t>(i)] = true;
   }
-  std::map<std::array<double, 3>, std::size_t> places;
+  std::map<std::array<Real, 3>, std::size_t> places;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (!used[i])
       throw DefinitionError(at("positions", i), "in no triangle", "vertices of triangles alone",
                             "a particle that nothing holds is no cloth");
-    const Vec3d& p = mesh.positions[i];
+    const Vec3<Real> p = mesh.positions[i].template cast<Real>();
     const auto [there, is_new] = places.insert({{p[0], p[1], p[2]}, i});
     if (!is_new)
       throw DefinitionError(at("positions", i),
@@ -186,8 +188,6 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
     const double length2 =
         (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
     const double stiffness = stiffness_along(fabric, cos2) * area.at(edge) / length2;
-    model.parts.front().longest_edge =
-        std::max(model.parts.front().longest_edge, std::sqrt(length2));
     if (stiffness == 0) continue;
     Spring<Real> spring;
     spring.i = edge[0];
@@ -275,7 +275,7 @@ template <class Real>
 ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   const TriangleMesh& mesh = def.mesh->mesh;
   validate(mesh, "cloth.mesh.");
-  refuse_unused_and_coincident(mesh);
+  refuse_unused_and_coincident<Real>(mesh);
   refuse_crowded_edges(mesh);
   if (!def.mesh->uv.empty() && def.mesh->uv.size() != mesh.positions.size())
     throw DefinitionError("cloth.mesh.uv", std::to_string(def.mesh->uv.size()) + " pairs",

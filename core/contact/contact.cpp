@@ -9,15 +9,19 @@
 namespace weft {
 namespace {
 
-/// Where two particles of an edge keep the thickness, the edge between them may sink by this part
-/// of it before it needs pairs of its own.
-constexpr double kHiddenRise = 0.75;
-
 /// What is nearer than this part of the thickness touches, as others are told.
 constexpr double kTouching = 1.05;
 
 /// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
 constexpr int kClosingSweeps = 4;
+
+/// No point of an edge or a triangle is farther from its nearest corner than this part of its
+/// longest side; by the square of it the distance of a point from anything may fall short of that
+/// of the corners.
+constexpr double kEdgeSpan = 0.5, kTriangleSpan = 0.578;
+
+/// What may be missing in a distance, by rounding, where nobody looks closer [m].
+constexpr double kUnseen = 1e-5;
 
 bool is_thinner(const ContactDef& a, const ContactDef& b) {
   return a.thickness < b.thickness;
@@ -28,11 +32,10 @@ bool is_thinner(const ContactDef& a, const ContactDef& b) {
 template <class Real>
 Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
                        const std::vector<ColliderDef>& colliders, ClothPatches patches,
-                       double longest_edge, Executor* executor)
+                       Executor* executor)
     : cloths_(cloths), executor_(executor), patches_(std::move(patches)) {
-  const auto [thinnest, thickest] = std::minmax_element(cloths.begin(), cloths.end(), is_thinner);
-  thickness_ = static_cast<Real>(thickest->thickness);
-  hidden_ = {kHiddenRise * thinnest->thickness, longest_edge};
+  thickness_ =
+      static_cast<Real>(std::max_element(cloths.begin(), cloths.end(), is_thinner)->thickness);
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     add_shape(colliders[k].shape, k);
@@ -60,24 +63,49 @@ void Contact<Real>::add_shape(const ShapeDef& shape, std::size_t collider) {
     const Vec3d n = plane->normal.normalized();
     planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point)), collider});
   } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
-    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius),
-                      is_smooth(sphere->radius), collider});
+    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius), collider});
   } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
     rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
-                     static_cast<Real>(capsule->radius), is_smooth(capsule->radius), collider});
+                     static_cast<Real>(capsule->radius), collider});
   } else {
     const auto* box = std::get_if<BoxDef>(&shape);
-    meshes_.push_back(
-        prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh, hidden_));
+    meshes_.push_back(prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh));
     mesh_collider_.push_back(collider);
   }
 }
 
-/// Whether a round surface of this radius rises so little between particles that they alone keep
-/// the cloth off it.
+/// What the corners of an edge or a triangle keep to while the rows hold.
 template <class Real>
-bool Contact<Real>::is_smooth(double radius) const {
-  return hidden_.longest * hidden_.longest / (8 * radius) <= hidden_.rise;
+typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>& state,
+                                                          const Index* first, int count) const {
+  Corners corners;
+  Real longest = 0, reach = 0;
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(first[k]),
+               j = static_cast<std::size_t>(first[(k + 1) % count]);
+    longest = std::max(longest, (state.x[i] - state.x[j]).squaredNorm());
+    reach = std::max(reach, row_reach_[i]);
+    corners.gap = std::min(corners.gap, gap_[i] - row_reach_[i]);
+  }
+  corners.reach = reach;
+  corners.span = (std::sqrt(longest) + 2 * reach) * Real(count == 2 ? kEdgeSpan : kTriangleSpan);
+  return corners;
+}
+
+/// Whether corners alone keep off a round object, as they are so far from its core: of points at
+/// x_i with weights w_i the middle is off any point q by less than the corners are, in squares, by
+/// sum w_i w_j |x_i - x_j|^2 over pairs.
+/// @param core  of the nearest corner, when the rows are built [m]
+template <class Real>
+bool Contact<Real>::Corners::clear(Real core, Real radius) const {
+  const Real least = core - reach, most = radius + Real(kUnseen);
+  return least > 0 && least * least - span * span > most * most;
+}
+
+/// Whether corners alone keep off a ridge or corner of a mesh.
+template <class Real>
+bool Contact<Real>::Corners::clear(const Rise<Real>& rise) const {
+  return gap > rise.over(span) + Real(kUnseen);
 }
 
 template <class Real>

@@ -97,11 +97,10 @@ class Contact {
 
   /// @param cloths        settings of each cloth, in the order of their particles; at least one
   /// @param patches       the features of all cloths
-  /// @param longest_edge  of all cloths at rest [m]
   /// @param executor      runs the collection in chunks; may be null
   /// Throws DefinitionError if a collider is out of range.
   Contact(const std::vector<ContactDef>& cloths, const std::vector<ColliderDef>& colliders,
-          ClothPatches patches, double longest_edge, Executor* executor);
+          ClothPatches patches, Executor* executor);
 
   /// Forgets everything about where the cloth is.
   void reset();
@@ -165,13 +164,11 @@ class Contact {
   struct Ball {
     Vec3<Real> centre;
     Real radius;
-    bool smooth;  ///< particles alone keep the cloth off it
     std::size_t collider;
   };
   struct Rod {
     Vec3<Real> a, b;
     Real radius;
-    bool smooth;
     std::size_t collider;
   };
   using Pairs = std::vector<ContactCandidate<Real>>;
@@ -211,13 +208,21 @@ class Contact {
     std::size_t patch = 0;
     IndexRange particles, edges, triangles;
   };
+  /// What the corners of an edge or a triangle keep to while the rows hold.
+  struct Corners {
+    Real span = 0;   ///< no point is farther from the nearest of them [m]
+    Real reach = 0;  ///< that none goes beyond [m]
+    Real gap = std::numeric_limits<Real>::infinity();  ///< from all meshes, at least [m]
+
+    bool clear(Real core, Real radius) const;
+    bool clear(const Rise<Real>& rise) const;
+  };
   static constexpr int kChunks = 8;
 
   bool empty() const {
     return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty();
   }
   void add_shape(const ShapeDef& shape, std::size_t collider);
-  bool is_smooth(double radius) const;
 
   // contact_collect.cpp
   void collect(const ClothState<Real>& state, Real dt, Profile& profile);
@@ -255,6 +260,7 @@ class Contact {
   void add_edge_rows(const ClothState<Real>& state, Profile& profile);
   void add_triangle_rows(const ClothState<Real>& state, Profile& profile);
   std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i);
+  Corners corners_of(const ClothState<Real>& state, const Index* first, int count) const;
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
                std::size_t collider, bool responds = true);
@@ -313,7 +319,6 @@ class Contact {
   Real thickness_ = 0;  ///< the largest of all cloths, for reaches [m]
   Executor* executor_ = nullptr;
   ClothPatches patches_;
-  HiddenRidges hidden_;
   std::vector<Plane> planes_;
   std::vector<Ball> balls_;
   std::vector<Rod> rods_;
@@ -335,6 +340,7 @@ class Contact {
   std::vector<Real> skin_;       ///< how far each may move before the next collection
   std::vector<Real> moved_;      ///< of each since the collection, when the rows are built [m]
   std::vector<Real> row_reach_;  ///< how far each may move before the next rows
+  std::vector<Real> gap_;        ///< of each from all meshes when the rows are built, at least [m]
   std::vector<Real>
       span_;  ///< farthest that a point of an edge or triangle is from its nearest corner
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is

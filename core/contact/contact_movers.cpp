@@ -158,14 +158,23 @@ Real Contact<Real>::least_height(const ContactRow<Real>& row, bool moves) const 
   return moves ? std::max(Real(kSmallestGap), row.thickness * Real(kMoverGap)) : Real(kSmallestGap);
 }
 
-/// Between objects that close, one pushes cloth out into the other: who came too near to any plane
-/// goes back to where it was.
+/// Between objects that close, or where cloth is drawn between two, one pushes it out into the
+/// other: who came too near to any plane goes back to where it was. What started inside is led out
+/// however its edges lie.
 template <class Real>
 void Contact<Real>::take_back_pushes(ClothState<Real>& state) {
+  const auto still_leaves = [this](const ContactRow<Real>& row) {
+    return row.mover == kNone &&
+           std::any_of(exits_.begin(), exits_.end(), [&row](const BadStart<Real>& exit) {
+             return static_cast<Index>(exit.collider) == row.collider && exit.cloth == row.cloth;
+           });
+  };
   for (const ContactRow<Real>& row : rows_) {
+    if (!exits_.empty() && still_leaves(row)) continue;
     const Real wanted = least_height(row, row.mover != kNone);
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
       const auto i = static_cast<std::size_t>(row.particle[k]);
+      if (state.x[i] == x_unpushed_[i]) continue;
       const Real before = row.normal.dot(x_unpushed_[i]) - row.offset;
       if (row.normal.dot(state.x[i]) - row.offset < std::min(before, wanted))
         state.x[i] = x_unpushed_[i];

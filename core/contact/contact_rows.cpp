@@ -78,6 +78,8 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   rows_.clear();
   moving_rows_.clear();
   travel2_.resize(n);
+  gap_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) gap_[i] = thickness_ + row_reach_[i];
   add_particle_rows(state, profile);
   add_edge_rows(state, profile);
   add_triangle_rows(state, profile);
@@ -147,6 +149,7 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
       nearest = nearby_.size() - 1;
   }
   if (nearby_.empty()) return 0;
+  gap_[p] = std::min(gap_[p], nearby_[nearest].distance);
   if (nearby_[nearest].distance < 0) {
     inside_[p] = 1;
     add_inside(state, i, frame.world_direction(nearby_[nearest].normal), nearby_[nearest].distance,
@@ -208,6 +211,9 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
                                  row_reach_[static_cast<std::size_t>(e[1])]);
   };
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
+  const auto from_axis = [](const Vec3<Real>& p, const Rod& rod) {
+    return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
+  };
   const auto between_ends = [](Real s) { return s > Real(kEdgeEnd) && s < Real(1 - kEdgeEnd); };
   const auto add = [&](const Edge& e, Real s, const Separation<Real>& d, Real radius,
                        std::size_t collider, bool responds) {
@@ -228,15 +234,19 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
   for (const Index k : near_edges_) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
     if (is_inside(e[0]) || is_inside(e[1])) continue;
+    const Corners ends = corners_of(state, e.data(), 2);
     for (const Ball& ball : balls_) {
-      if (ball.smooth) continue;
+      const Real core = std::sqrt(
+          std::min((x(e[0]) - ball.centre).squaredNorm(), (x(e[1]) - ball.centre).squaredNorm()));
+      if (ends.clear(core, ball.radius)) continue;
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
       const Vec3<Real> p = x(e[0]) + (x(e[1]) - x(e[0])) * s;
       add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY()), ball.radius, ball.collider,
           between_ends(s));
     }
     for (const Rod& rod : rods_) {
-      if (rod.smooth) continue;
+      if (ends.clear(std::min(from_axis(x(e[0]), rod), from_axis(x(e[1]), rod)), rod.radius))
+        continue;
       const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]), rod.a, rod.b);
       add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY()), rod.radius, rod.collider,
           between_ends(c.s));
@@ -252,6 +262,9 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       const Real moved =
           std::max(moved_[static_cast<std::size_t>(e[0])], moved_[static_cast<std::size_t>(e[1])]);
       if (pair.distance - moved - frame.way_collected > reach_of(e)) continue;
+      if (corners_of(state, e.data(), 2)
+              .clear(mesh.edge_rises[static_cast<std::size_t>(pair.feature)]))
+        continue;
       const MeshEdge& other = mesh.edges[static_cast<std::size_t>(pair.feature)];
       const auto c = closest_of_segments<Real>(own[static_cast<std::size_t>(e[0])],
                                                own[static_cast<std::size_t>(e[1])],
@@ -274,6 +287,9 @@ template <class Real>
 void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& profile) {
   std::uint64_t tests = 0;
   const auto x = [&](Index i) -> const Vec3<Real>& { return state.x[static_cast<std::size_t>(i)]; };
+  const auto from_axis = [](const Vec3<Real>& p, const Rod& rod) {
+    return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
+  };
   const auto is_inside = [&](Index i) { return inside_[static_cast<std::size_t>(i)] != 0; };
   const auto over = [&](const Triangle& t, const std::vector<Real>& values) {
     return std::max({values[static_cast<std::size_t>(t[0])], values[static_cast<std::size_t>(t[1])],
@@ -292,11 +308,18 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   for (const Index k : near_triangles_) {
     const Triangle& t = patches_.triangles[static_cast<std::size_t>(k)];
     if (std::any_of(t.begin(), t.end(), is_inside)) continue;
+    const Corners corners = corners_of(state, t.data(), 3);
     for (const Ball& ball : balls_) {
-      if (!ball.smooth) add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
+      const Real core = std::sqrt(
+          std::min({(x(t[0]) - ball.centre).squaredNorm(), (x(t[1]) - ball.centre).squaredNorm(),
+                    (x(t[2]) - ball.centre).squaredNorm()}));
+      if (!corners.clear(core, ball.radius))
+        add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
     }
     for (const Rod& rod : rods_) {
-      if (rod.smooth) continue;
+      const Real core =
+          std::min({from_axis(x(t[0]), rod), from_axis(x(t[1]), rod), from_axis(x(t[2]), rod)});
+      if (corners.clear(core, rod.radius)) continue;
       add(t, rod.a, rod.radius, Vec3<Real>::UnitY(), rod.collider);
       add(t, rod.b, rod.radius, Vec3<Real>::UnitY(), rod.collider);
     }
@@ -310,6 +333,7 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
       const Real moved = over(t, moved_) + frame.way_collected;
       if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
       const auto v = static_cast<std::size_t>(pair.feature);
+      if (corners_of(state, t.data(), 3).clear(mesh.vertex_rises[v])) continue;
       add(t, frame.world(mesh.positions[v]), Real(0), frame.world_direction(mesh.vertex_normals[v]),
           mesh_collider_[m]);
     }

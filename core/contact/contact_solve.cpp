@@ -132,8 +132,7 @@ void Contact<Real>::find_busy_rows() {
 
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
-  const bool pinched = !moving_rows_.empty();
-  if (pinched) x_unpushed_ = state.x;
+  x_unpushed_ = state.x;
   for (const std::size_t r : busy_rows_) {
     const ContactRow<Real>& row = rows_[r];
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
@@ -142,7 +141,7 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
     share_out<Real>(row, row.normal * step, state.x);
     pushed_rows_.push_back(r);
   }
-  if (pinched) take_back_pushes(state);
+  if (!pushed_rows_.empty()) take_back_pushes(state);
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,

@@ -9,6 +9,10 @@
 namespace weft {
 namespace {
 
+/// Ridges that turn less are flat: over a metre they rise less than what contact leaves between the
+/// cloth and an object [rad].
+constexpr double kFlat = 1e-5;
+
 /// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
@@ -31,11 +35,28 @@ double width_across(const TriangleMesh& mesh, Index triangle, const MeshEdge& ed
   return doubled_area / (at(edge.b) - at(edge.a)).norm();
 }
 
-bool is_hidden(const TriangleMesh& mesh, const MeshEdge& edge, const HiddenRidges& hidden) {
-  const double turn = outward_turn(mesh, edge), length = hidden.longest;
+/// How steep the faces about each vertex fall from it, as a slope; less where some of them rise.
+std::vector<double> slopes_at_vertices(const TriangleMesh& mesh) {
+  const std::vector<Vec3d> normals = vertex_normals(mesh);
+  std::vector<double> slopes(mesh.positions.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3d n = unit_normal(mesh, static_cast<Index>(t));
+    for (const Index i : mesh.triangles[t]) {
+      const Vec3d& up = normals[static_cast<std::size_t>(i)];
+      const double along = n.dot(up);
+      const double slope = along > 0 ? n.cross(up).norm() / along : INFINITY;
+      slopes[static_cast<std::size_t>(i)] = std::max(slopes[static_cast<std::size_t>(i)], slope);
+    }
+  }
+  return slopes;
+}
+
+/// @param slope  of the steeper of its ends
+Rise<double> rise_of(const TriangleMesh& mesh, const MeshEdge& edge, double slope) {
+  const double turn = outward_turn(mesh, edge);
   const double width = std::min(width_across(mesh, edge.triangle[0], edge),
                                 width_across(mesh, edge.triangle[1], edge));
-  return turn * length / 4 <= hidden.rise && turn * length * length / (8 * width) <= hidden.rise;
+  return {std::max(std::tan(turn / 2), slope), turn / width};
 }
 
 /// Sorts features by the triangle that each is with; kNone for those left out.
@@ -57,8 +78,10 @@ OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t 
 }
 
 template <class Real>
-void find_sharp_features(const TriangleMesh& mesh, const HiddenRidges& hidden,
-                         MeshShape<Real>& shape) {
+void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
+  const std::vector<double> slopes = slopes_at_vertices(mesh);
+  shape.edge_rises.resize(shape.edges.size());
+  shape.vertex_rises.resize(mesh.positions.size());
   std::vector<Index> of_edge(shape.edges.size(), kNone), of_vertex(mesh.positions.size(), kNone);
   for (std::size_t e = 0; e < shape.edges.size(); ++e) {
     const MeshEdge& edge = shape.edges[e];
@@ -68,10 +91,19 @@ void find_sharp_features(const TriangleMesh& mesh, const HiddenRidges& hidden,
     const Vec3d sum = n1 + n2;
     shape.edge_normals.push_back(
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
-    if (shape.closed && !rim && is_hidden(mesh, edge, hidden)) continue;
+    const bool solid = shape.closed && !rim;
+    if (solid && outward_turn(mesh, edge) <= kFlat) continue;
+    const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
+    const Rise<double> rise =
+        solid ? rise_of(mesh, edge, std::max(slopes[a], slopes[b])) : Rise<double>{INFINITY, 0};
+    shape.edge_rises[e] = {static_cast<Real>(rise.slope), static_cast<Real>(rise.curvature)};
     of_edge[e] = edge.triangle[0];
-    of_vertex[static_cast<std::size_t>(edge.a)] = edge.triangle[0];
-    of_vertex[static_cast<std::size_t>(edge.b)] = edge.triangle[0];
+    for (const std::size_t v : {a, b}) {
+      Rise<Real>& of_corner = shape.vertex_rises[v];
+      of_corner.slope = static_cast<Real>(solid ? slopes[v] : INFINITY);
+      of_corner.curvature = std::max(of_corner.curvature, shape.edge_rises[e].curvature);
+      of_vertex[v] = edge.triangle[0];
+    }
   }
   shape.sharp_edges = with_triangles(of_edge, mesh.triangles.size());
   shape.sharp_vertices = with_triangles(of_vertex, mesh.triangles.size());
@@ -109,7 +141,7 @@ Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
 }  // namespace
 
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidden) {
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
   MeshShape<Real> shape;
   shape.closed = is_closed(mesh);
   shape.triangle_size = static_cast<Real>(
@@ -120,7 +152,7 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidde
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
-  find_sharp_features(mesh, hidden, shape);
+  find_sharp_features(mesh, shape);
   build_tree(shape);
   return shape;
 }
@@ -168,10 +200,10 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   return distance_to_triangle(mesh, best, p);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                     \
-  template MeshShape<Real> prepare_mesh(const TriangleMesh&, const HiddenRidges&); \
-  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index,  \
-                                                   const Vec3<Real>&);             \
+#define WEFT_INSTANTIATE(Real)                                                    \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&);                     \
+  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, \
+                                                   const Vec3<Real>&);            \
   template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/geometry/bvh.h"
@@ -14,6 +15,16 @@ struct OwnedFeatures {
   std::vector<Index> list;
 };
 
+/// How high a ridge or a corner may rise over points of a cloth that are at most R beside it: the
+/// larger of slope R and curvature R^2 / 2.
+template <class Real>
+struct Rise {
+  Real slope = 0;      ///< infinite where the mesh has a rim
+  Real curvature = 0;  ///< [1/m]
+
+  Real over(Real beside) const { return std::max(slope * beside, curvature * beside * beside / 2); }
+};
+
 /// A triangle mesh prepared for contact: positions in Real, normals of every feature, and a
 /// hierarchy of the triangles. Edges and vertices that cannot touch a cloth before their triangles
 /// do (flat or concave ones of a closed mesh) are not sharp.
@@ -26,21 +37,16 @@ struct MeshShape {
   Vec3Array<Real> face_normals;
   Vec3Array<Real> vertex_normals;  ///< angle-weighted
   std::vector<MeshEdge> edges;
-  Vec3Array<Real> edge_normals;               ///< mean of the two faces, unit
-  OwnedFeatures sharp_edges, sharp_vertices;  ///< each with one of its triangles
+  Vec3Array<Real> edge_normals;                      ///< mean of the two faces, unit
+  OwnedFeatures sharp_edges, sharp_vertices;         ///< each with one of its triangles
+  std::vector<Rise<Real>> edge_rises, vertex_rises;  ///< of sharp ones
   Bvh<Real> triangle_tree;
 };
 
-/// What lets ridges of a smooth solid go without pairs of their own.
-struct HiddenRidges {
-  double rise = 0;     ///< how high a ridge may rise between two particles beside it [m]
-  double longest = 1;  ///< distance of two such particles at most [m], positive
-};
-
-/// @param hidden  a ridge that turns by an angle a and has faces of width w rises a L/4 between
-///                particles L apart, or a L^2 / (8 w) if the surface goes on turning like that
+/// A ridge that turns by an angle a and has faces of width w rises a/2 R over points that are R
+/// beside it, or a/w R^2 / 2 if the surface goes on turning like that; a corner as it is steep.
 template <class Real>
-MeshShape<Real> prepare_mesh(const TriangleMesh& mesh, const HiddenRidges& hidden);
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh);
 
 /// Nearest point of a mesh with the side that it is seen from.
 template <class Real>

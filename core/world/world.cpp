@@ -24,15 +24,12 @@ template <class Real>
 Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                            const Runtime& runtime) {
   std::vector<ContactDef> cloths;
-  double longest_edge = 0;
-  for (const ClothPart<Real>& part : model.parts) {
+  for (const ClothPart<Real>& part : model.parts)
     cloths.push_back({part.fabric.thickness, part.fabric.friction, part.fabric.restitution,
                       part.particles.first});
-    longest_edge = std::max(longest_edge, part.longest_edge);
-  }
   return Contact<Real>(cloths, def.colliders,
                        make_patches(model.rest_positions, model.edges, model.triangles),
-                       longest_edge, runtime.executor);
+                       runtime.executor);
 }
 
 /// The definition, once it is known to be valid, with the jaws of grippers among its colliders;

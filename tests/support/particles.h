@@ -49,12 +49,6 @@ struct Particles {
   Vec3d velocity(Index i) const {
     return state.v[static_cast<std::size_t>(i)].template cast<double>();
   }
-  double longest_edge() const {
-    double longest = 1e-3;
-    for (const Edge& e : edges)
-      longest = std::max(longest, (position(e[0]) - position(e[1])).norm());
-    return longest;
-  }
   double dt() const { return tick_seconds / substeps; }
   double kinetic_energy() const {
     double sum = 0;
@@ -66,8 +60,7 @@ struct Particles {
   }
   Contact<Real> meet(const ContactDef& def, const std::vector<ColliderDef>& colliders,
                      Executor* executor = nullptr) const {
-    return Contact<Real>({def}, colliders, make_patches(state.x, edges, triangles), longest_edge(),
-                         executor);
+    return Contact<Real>({def}, colliders, make_patches(state.x, edges, triangles), executor);
   }
 
   void kick() {

@@ -319,3 +319,62 @@ TEST_CASE("degenerate meshes are refused with the name of what is wrong") {
   quadratic.mesh->mesh.positions[5][2] += 0.01;
   CHECK(refused(quadratic) == "cloth.bending_model");
 }
+
+TEST_CASE("vertices that fall together in the precision of the solver are refused by name") {
+  ClothDef def = sheet_cloth(4, 4, 0.1);
+  def.mesh->mesh.positions.push_back(def.mesh->mesh.positions[3] + Vec3d(1e-10, 0, 0));
+  def.mesh->mesh.positions.push_back(def.mesh->mesh.positions[3] + Vec3d(0, 0.1, 0));
+  def.mesh->mesh.triangles.push_back({3, 16, 17});
+  CHECK(refused(def) == "nothing");  // in double
+  try {
+    build_cloth<float>(def);
+    FAIL("not refused");
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "cloth.mesh.positions[16]");
+  }
+}
+
+namespace {
+
+/// A strip of triangles `width` across, whose long edges are `ratio` times as long.
+ClothDef needles(double width, double ratio) {
+  ClothDef def;
+  ClothMesh strip;
+  for (int k = 0; k < 6; ++k) {
+    strip.mesh.positions.emplace_back(0, -width * k, 0);
+    strip.mesh.positions.emplace_back(width * ratio, -width * k, 0);
+    if (k == 0) continue;
+    const Index a = 2 * k - 2, b = a + 1, c = a + 2, d = a + 3;
+    strip.mesh.triangles.push_back({a, c, b});
+    strip.mesh.triangles.push_back({b, c, d});
+  }
+  def.mesh = strip;
+  return def;
+}
+
+}  // namespace
+
+TEST_CASE("triangles of aspect 1e4 hang from their edge and stay whole, with and without guard") {
+  WorldDef def;
+  def.cloths[0] = needles(1e-3, 1e4);
+  def.cloths[0].fabric.thickness = 2e-4;
+  def.pins = {{Corner::top_left, 0.0}, {Corner::top_right, 0.0}};
+  def.contact.seed.self = GENERATE(SelfContact::none, SelfContact::guard);
+  World<float> world(def);
+  for (int tick = 0; tick < 30; ++tick) REQUIRE_FALSE(world.step().divergence);
+  for (const Vec3f& x : world.state().x) REQUIRE(x.allFinite());
+  CHECK(world.report().largest_strain < 1);
+}
+
+TEST_CASE("a rest shape that would take too small substeps is refused, and told what would help") {
+  WorldDef def;
+  def.cloths[0] = needles(1e-5, 1e4);
+  try {
+    World<float> world(def);
+    FAIL("not refused");
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "fabric");
+    CHECK(error.limit.find("substeps") != std::string::npos);
+    CHECK(error.hint.find("tick_rate") != std::string::npos);
+  }
+}
