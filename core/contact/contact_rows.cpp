@@ -16,6 +16,20 @@ constexpr double kRowSubsteps = 14;
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
 
+/// The part of its longest side beyond which no point of an edge or a triangle is from a corner.
+constexpr double kEdgeSpan = 0.5, kTriangleSpan = 0.578;
+
+/// What keeps corners off now, while what they may come to is only certified: at rest particles
+/// alone carry the cloth on a smooth object.
+template <class Corners>
+Corners as_now(Corners corners, double part) {
+  using Real = decltype(corners.reach);
+  corners.span -= 2 * corners.reach * static_cast<Real>(part);
+  corners.gap += corners.reach;
+  corners.reach = 0;
+  return corners;
+}
+
 /// Direction from q to p, and their distance.
 template <class Real>
 struct Separation {
@@ -234,7 +248,7 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
   for (const Index k : near_edges_) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
     if (is_inside(e[0]) || is_inside(e[1])) continue;
-    const Corners ends = corners_of(state, e.data(), 2);
+    const Corners ends = corners_of(state, e.data(), 2), now = as_now(ends, kEdgeSpan);
     for (const Ball& ball : balls_) {
       const Real core = std::sqrt(
           std::min((x(e[0]) - ball.centre).squaredNorm(), (x(e[1]) - ball.centre).squaredNorm()));
@@ -242,14 +256,14 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       const Real s = closest_on_segment(ball.centre, x(e[0]), x(e[1]));
       const Vec3<Real> p = x(e[0]) + (x(e[1]) - x(e[0])) * s;
       add(e, s, separate<Real>(p, ball.centre, Vec3<Real>::UnitY()), ball.radius, ball.collider,
-          between_ends(s));
+          between_ends(s) && !now.clear(core, ball.radius));
     }
     for (const Rod& rod : rods_) {
-      if (ends.clear(std::min(from_axis(x(e[0]), rod), from_axis(x(e[1]), rod)), rod.radius))
-        continue;
+      const Real core = std::min(from_axis(x(e[0]), rod), from_axis(x(e[1]), rod));
+      if (ends.clear(core, rod.radius)) continue;
       const auto c = closest_of_segments<Real>(x(e[0]), x(e[1]), rod.a, rod.b);
       add(e, c.s, separate<Real>(c.p, c.q, Vec3<Real>::UnitY()), rod.radius, rod.collider,
-          between_ends(c.s));
+          between_ends(c.s) && !now.clear(core, rod.radius));
     }
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -262,9 +276,9 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       const Real moved =
           std::max(moved_[static_cast<std::size_t>(e[0])], moved_[static_cast<std::size_t>(e[1])]);
       if (pair.distance - moved - frame.way_collected > reach_of(e)) continue;
-      if (corners_of(state, e.data(), 2)
-              .clear(mesh.edge_rises[static_cast<std::size_t>(pair.feature)]))
-        continue;
+      const Corners ends = corners_of(state, e.data(), 2);
+      const Rise<Real>& rise = mesh.edge_rises[static_cast<std::size_t>(pair.feature)];
+      if (ends.clear(rise)) continue;
       const MeshEdge& other = mesh.edges[static_cast<std::size_t>(pair.feature)];
       const auto c = closest_of_segments<Real>(own[static_cast<std::size_t>(e[0])],
                                                own[static_cast<std::size_t>(e[1])],
@@ -277,7 +291,7 @@ void Contact<Real>::add_edge_rows(const ClothState<Real>& state, Profile& profil
       if (mesh.closed && between && d.normal.dot(outward) < 0 && still_leaves(e[0], m))
         d = {-d.normal, -d.distance};
       d.normal = frame.world_direction(d.normal);
-      add(e, c.s, d, Real(0), mesh_collider_[m], between);
+      add(e, c.s, d, Real(0), mesh_collider_[m], between && !as_now(ends, kEdgeSpan).clear(rise));
     }
   }
   profile[Stage::narrow_phase].work += tests;
@@ -297,31 +311,33 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
   };
   /// A point of the object with a radius against the inside of a cloth triangle.
   const auto add = [&](const Triangle& t, const Vec3<Real>& q, Real radius,
-                       const Vec3<Real>& outward, std::size_t collider) {
+                       const Vec3<Real>& outward, std::size_t collider, bool responds) {
     const TrianglePoint<Real> c = closest_on_triangle<Real>(q, x(t[0]), x(t[1]), x(t[2]));
     ++tests;
     const Separation<Real> d = separate<Real>(c.point, q, outward);
     if (d.distance - radius > thickness_ + over(t, row_reach_)) return;
     add_row(state, {t[0], t[1], t[2]}, c.barycentric, d.normal, d.distance - radius, collider,
-            c.feature == 0);
+            responds && c.feature == 0);
   };
   for (const Index k : near_triangles_) {
     const Triangle& t = patches_.triangles[static_cast<std::size_t>(k)];
     if (std::any_of(t.begin(), t.end(), is_inside)) continue;
-    const Corners corners = corners_of(state, t.data(), 3);
+    const Corners corners = corners_of(state, t.data(), 3), now = as_now(corners, kTriangleSpan);
     for (const Ball& ball : balls_) {
       const Real core = std::sqrt(
           std::min({(x(t[0]) - ball.centre).squaredNorm(), (x(t[1]) - ball.centre).squaredNorm(),
                     (x(t[2]) - ball.centre).squaredNorm()}));
       if (!corners.clear(core, ball.radius))
-        add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider);
+        add(t, ball.centre, ball.radius, Vec3<Real>::UnitY(), ball.collider,
+            !now.clear(core, ball.radius));
     }
     for (const Rod& rod : rods_) {
       const Real core =
           std::min({from_axis(x(t[0]), rod), from_axis(x(t[1]), rod), from_axis(x(t[2]), rod)});
       if (corners.clear(core, rod.radius)) continue;
-      add(t, rod.a, rod.radius, Vec3<Real>::UnitY(), rod.collider);
-      add(t, rod.b, rod.radius, Vec3<Real>::UnitY(), rod.collider);
+      const bool responds = !now.clear(core, rod.radius);
+      add(t, rod.a, rod.radius, Vec3<Real>::UnitY(), rod.collider, responds);
+      add(t, rod.b, rod.radius, Vec3<Real>::UnitY(), rod.collider, responds);
     }
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -333,9 +349,10 @@ void Contact<Real>::add_triangle_rows(const ClothState<Real>& state, Profile& pr
       const Real moved = over(t, moved_) + frame.way_collected;
       if (pair.distance - moved > thickness_ + over(t, row_reach_)) continue;
       const auto v = static_cast<std::size_t>(pair.feature);
-      if (corners_of(state, t.data(), 3).clear(mesh.vertex_rises[v])) continue;
+      const Corners corners = corners_of(state, t.data(), 3);
+      if (corners.clear(mesh.vertex_rises[v])) continue;
       add(t, frame.world(mesh.positions[v]), Real(0), frame.world_direction(mesh.vertex_normals[v]),
-          mesh_collider_[m]);
+          mesh_collider_[m], !as_now(corners, kTriangleSpan).clear(mesh.vertex_rises[v]));
     }
   }
   profile[Stage::narrow_phase].work += tests;
