@@ -260,6 +260,10 @@ void describe_scene(Io& io, WorldDef& def) {
           [](Io& in, InsultDef& insult) {
             in.fields([&](auto&& visit) { visit_fields_of_insult(insult, visit); });
           });
+  io.list(ListInfo{"winds", 0, kMostWinds, "winds that blow one after the other"}, def.winds,
+          [](Io& in, WindKey& key) {
+            in.fields([&](auto&& visit) { visit_fields_of_wind_key(key, visit); });
+          });
   io.list(ListInfo{"grippers", 0, kMostGrippers, "pairs of jaws that close with bounded force"},
           def.grippers, [](Io& in, GripperDef& gripper) { describe_gripper(in, gripper); });
 }

@@ -9,4 +9,7 @@ namespace weft {
 /// Scenes that are hard to keep free of crossings, each with what it must keep to.
 std::vector<SceneEntry> hard_cases();
 
+/// The second list of them: ratios, ticks, forces and winds far beyond use.
+std::vector<SceneEntry> more_hard_cases();
+
 }  // namespace weft

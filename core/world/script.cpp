@@ -25,6 +25,20 @@ void validate(const InsultDef& def, const std::string& path) {
       def, [&path](const FieldInfo& info, const auto& value) { check_field(path, info, value); });
 }
 
+void validate(const std::vector<WindKey>& winds) {
+  check_field("", {"winds", 0, kMostWinds, "", "number of winds"},
+              static_cast<double>(winds.size()));
+  for (std::size_t k = 0; k < winds.size(); ++k) {
+    const std::string at = "winds[" + std::to_string(k) + "].";
+    visit_fields_of_wind_key(winds[k], [&at](const FieldInfo& info, const auto& value) {
+      check_field(at, info, value);
+    });
+    if (k > 0 && !(winds[k].time > winds[k - 1].time))
+      throw DefinitionError(at + "time", number_text(winds[k].time),
+                            "more than that of the wind before");
+  }
+}
+
 Vec3d offset_at(const HandDef& def, double time) {
   std::size_t next = 0;
   while (next < def.path.size() && def.path[next].time <= time) ++next;

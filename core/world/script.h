@@ -29,9 +29,18 @@ struct InsultDef {
   double time = 0;               ///< [s], 0 to 3600
   double noise = 0;              ///< added to each component of all velocities, at most [m/s]
   Vec3d pinned = Vec3d::Zero();  ///< by which the targets of all pins jump [m], within 100
+  double pin_speed = 2;          ///< with which pins then go there [m/s], 0.001 to 20
+  double gather = 0;  ///< radius of a ball into which all that is free is put [m], 0 to 10; 0: not
 };
 
-inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostInsults = 100;
+/// A wind that blows from an instant on, until the next one.
+struct WindKey {
+  double time = 0;             ///< [s], 0 to 3600, growing from one to the next
+  Vec3d wind = Vec3d::Zero();  ///< mean velocity [m/s], components within 100
+};
+
+inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostInsults = 100,
+                             kMostWinds = 1000;
 
 /// What a hard case must keep to while it runs.
 struct VerdictDef {
@@ -45,6 +54,7 @@ struct VerdictDef {
 /// Throws DefinitionError if a field is out of range; `path` stands before the name of the field.
 void validate(const HandDef& def, const std::string& path);
 void validate(const InsultDef& def, const std::string& path);
+void validate(const std::vector<WindKey>& winds);
 
 /// Where the hand pulls to, from where it took hold [m].
 Vec3d offset_at(const HandDef& def, double time);
@@ -74,6 +84,14 @@ void visit_fields_of_insult(Def& insult, Visitor&& visit) {
         insult.noise);
   visit(FieldInfo{"pinned", -100, 100, "m", "by which the targets of all pins jump"},
         insult.pinned);
+  visit(FieldInfo{"pin_speed", 1e-3, 20, "m/s", "with which pins then go there"}, insult.pin_speed);
+  visit(FieldInfo{"gather", 0, 10, "m", "radius of a ball into which all that is free is put"},
+        insult.gather);
+}
+template <class Def, class Visitor>
+void visit_fields_of_wind_key(Def& key, Visitor&& visit) {
+  visit(FieldInfo{"time", 0, 3600, "s", "from when on"}, key.time);
+  visit(FieldInfo{"wind", -100, 100, "m/s", "mean wind velocity"}, key.wind);
 }
 template <class Def, class Visitor>
 void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {

@@ -104,6 +104,7 @@ void World<Real>::reset() {
     }
   }
   tick_ = 0;
+  if (!def_.winds.empty()) environment_.wind = def_.environment.wind;
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;
   accept_state();
@@ -163,9 +164,9 @@ void World<Real>::prepare_solver() {
 /// Arrays for air and hands, as soon as there are any: no tick allocates.
 template <class Real>
 void World<Real>::make_room() {
-  if (has_air(environment_)) surroundings_.wind.resize(model_.mass.size());
-  if (solver_of(def_) == SolverKind::verlet)
-    verlet_.make_room(model_, has_air(environment_), !idle(grabs_));
+  const bool air = has_air(environment_) || !def_.winds.empty();
+  if (air) surroundings_.wind.resize(model_.mass.size());
+  if (solver_of(def_) == SolverKind::verlet) verlet_.make_room(model_, air, !idle(grabs_));
 }
 
 template <class Real>

@@ -87,7 +87,8 @@ class World {
   /// Advances by one tick of 1 / tick_rate seconds.
   const TickReport& step();
 
-  /// Back to the start: pins as defined, no grabs, tick 0. The environment stays as it was set.
+  /// Back to the start: pins as defined, no grabs, tick 0. The environment stays as it was set, but
+  /// for a wind that the scene itself changes.
   void reset();
 
   PinId pin(const PinDef& def);
@@ -194,6 +195,7 @@ class World {
   World copy() const;
   void take_reactions();
   void insult(const InsultDef& insult, std::uint64_t seed);
+  void gather(double radius, std::uint64_t seed);
   void run_script();
   void finish_pins();
   void masses_changed();

@@ -93,6 +93,7 @@ void validate_script(const WorldDef& def) {
   }
   for (std::size_t k = 0; k < def.insults.size(); ++k)
     validate(def.insults[k], "insults[" + std::to_string(k) + "].");
+  validate(def.winds);
 }
 
 void validate_grippers(const WorldDef& def) {

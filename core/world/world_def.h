@@ -57,6 +57,7 @@ struct WorldDef {
   std::vector<PinDef> pins;          ///< made at the start
   std::vector<HandDef> hands;        ///< of the scene itself, at most kMostSceneHands
   std::vector<InsultDef> insults;    ///< what is done to it, at most kMostInsults
+  std::vector<WindKey> winds;        ///< that blow one after the other, at most kMostWinds
   VerdictDef verdict;                ///< what it must keep to
   std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need the contact weft
 };

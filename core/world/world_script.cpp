@@ -32,6 +32,27 @@ GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
 
 }  // namespace
 
+/// Puts all that is free into a ball about its middle.
+template <class Real>
+void World<Real>::gather(double radius, std::uint64_t seed) {
+  Vec3d middle = Vec3d::Zero();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < state_.x.size(); ++i) {
+    if (pins_.pin_count[i] > 0) continue;
+    middle += state_.x[i].template cast<double>();
+    ++count;
+  }
+  if (count == 0) return;
+  middle /= static_cast<double>(count);
+  const double within = radius / std::sqrt(3.0);
+  for (std::size_t i = 0; i < state_.x.size(); ++i) {
+    if (pins_.pin_count[i] > 0) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      state_.x[i][axis] = static_cast<Real>(
+          middle[axis] + within * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
+  }
+}
+
 template <class Real>
 void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
   for (std::size_t i = 0; i < state_.x.size(); ++i) {
@@ -40,7 +61,8 @@ void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
       state_.v[i][axis] +=
           static_cast<Real>(insult.noise * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
   }
-  if (insult.noise > 0) {
+  if (insult.gather > 0) gather(insult.gather, seed);
+  if (insult.noise > 0 || insult.gather > 0) {
     const double before = report_.energies.total();
     accept_state();
     report_.brought += report_.energies.total() - before;
@@ -51,6 +73,7 @@ void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
     move.target = pin.path ? pin.path->move.target
                            : state_.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
     move.target += insult.pinned;
+    move.speed = insult.pin_speed;
     move_pin(pin.id, move);
   }
 }
@@ -62,6 +85,11 @@ void World<Real>::run_script() {
   };
   for (std::size_t k = 0; k < def_.insults.size(); ++k) {
     if (tick_of(def_.insults[k].time) == tick_) insult(def_.insults[k], k);
+  }
+  for (const WindKey& key : def_.winds) {
+    if (tick_of(key.time) != tick_) continue;
+    environment_.wind = key.wind;
+    wake_all();
   }
   for (std::size_t k = 0; k < def_.hands.size(); ++k) {
     const HandDef& hand = def_.hands[k];
@@ -87,6 +115,7 @@ void World<Real>::run_script() {
 }
 
 #define WEFT_INSTANTIATE(Real)                                        \
+  template void World<Real>::gather(double, std::uint64_t);           \
   template void World<Real>::insult(const InsultDef&, std::uint64_t); \
   template void World<Real>::run_script();
 WEFT_INSTANTIATE(float)

@@ -1,0 +1,87 @@
+#include "core/world/script.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/world/world.h"
+#include "tests/support/cloths.h"
+
+using namespace weft;
+
+namespace {
+
+/// A cloth that hangs by its upper edge.
+WorldDef hanging() {
+  WorldDef def;
+  def.cloths[0] = test::flat_cloth(6, 6);
+  def.cloths[0].v = -Vec3d::UnitY();
+  def.pins = {{EdgeStrip{Side::top, 0.0}, 0.0, {}}};
+  return def;
+}
+
+std::string refused(const WorldDef& def) {
+  try {
+    validate(def);
+  } catch (const DefinitionError& error) {
+    return error.field;
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the winds of a scene blow one after the other from their ticks on, again after a reset") {
+  WorldDef def = hanging();
+  def.winds = {{0.1, Vec3d(0, 0, 60)}, {0.2, Vec3d(0, 0, -60)}, {0.3, Vec3d::Zero()}};
+  World<float> world(def);
+  for (int run = 0; run < 2; ++run) {
+    CHECK(world.environment().wind.isZero(0));
+    for (int tick = 1; tick <= 24; ++tick) {
+      REQUIRE_FALSE(world.step().divergence);
+      const double expected = tick <= 6 ? 0 : tick <= 12 ? 60 : tick <= 18 ? -60 : 0;
+      CHECK(world.environment().wind[2] == expected);
+      CHECK((world.report().profile[Stage::air].work > 0) == (expected != 0));
+    }
+    world.reset();
+  }
+}
+
+TEST_CASE("an insult gathers all that is free in a ball of its radius, and pins go as it says") {
+  WorldDef def = hanging();
+  InsultDef insult;
+  insult.gather = 1e-3;
+  insult.pinned = Vec3d(0, 0, 10);
+  insult.pin_speed = 15;
+  def.insults = {insult};
+  def.environment.gravity.setZero();
+  def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = 1e-3;
+  def.cloths[0].fabric.shear = 1e-4;
+  World<float> world(def);
+  world.step();
+  Vec3f low = Vec3f::Constant(9), high = Vec3f::Constant(-9);
+  for (std::size_t i = 6; i < 36; ++i) {
+    low = low.cwiseMin(world.state().x[i]);
+    high = high.cwiseMax(world.state().x[i]);
+  }
+  CHECK((high - low).norm() < 4e-3f);
+  for (int tick = 1; tick < 60; ++tick) world.step();
+  CHECK(world.state().x[0][2] > 3);  // at 2 m/s it would be less than 2
+}
+
+TEST_CASE("winds and insults out of range are refused by name, and winds out of order") {
+  WorldDef def = hanging();
+  def.winds = {{1, Vec3d(0, 0, 101)}};
+  CHECK(refused(def).starts_with("winds[0].wind"));
+  def.winds = {{1, Vec3d::Zero()}, {1, Vec3d::Zero()}};
+  CHECK(refused(def) == "winds[1].time");
+  def.winds.assign(kMostWinds + 1, {});
+  CHECK(refused(def) == "winds");
+  def.winds.clear();
+  def.insults.resize(1);
+  def.insults[0].gather = 11;
+  CHECK(refused(def) == "insults[0].gather");
+  def.insults[0].gather = 0;
+  def.insults[0].pin_speed = 21;
+  CHECK(refused(def) == "insults[0].pin_speed");
+}
