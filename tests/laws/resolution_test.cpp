@@ -27,6 +27,7 @@ World<float> hung(int n, const std::string& fabric, double drag) {
   def.pins = {{EdgeStrip{Side::top, 0.0501}, 0, {}}};
   def.environment.air_density = 0;
   def.environment.drag = drag;
+  def.contact.seed.self = SelfContact::none;
   return World<float>(def);
 }
 
