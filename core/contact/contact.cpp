@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/contact/cloth_guard.h"
+#include "core/contact/corner_span.h"
 
 namespace weft {
 namespace {
@@ -14,11 +15,6 @@ constexpr double kTouching = 1.05;
 
 /// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
 constexpr int kClosingSweeps = 4;
-
-/// No point of an edge or a triangle is farther from its nearest corner than this part of its
-/// longest side; by the square of it the distance of a point from anything may fall short of that
-/// of the corners.
-constexpr double kEdgeSpan = 0.5, kTriangleSpan = 0.578;
 
 /// What may be missing in a distance, by rounding, where nobody looks closer [m].
 constexpr double kUnseen = 1e-5;

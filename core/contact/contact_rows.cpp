@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/contact/contact.h"
+#include "core/contact/corner_span.h"
 
 namespace weft {
 namespace {
@@ -15,9 +16,6 @@ constexpr double kRowSubsteps = 14;
 
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
-
-/// The part of its longest side beyond which no point of an edge or a triangle is from a corner.
-constexpr double kEdgeSpan = 0.5, kTriangleSpan = 0.578;
 
 /// What keeps corners off now, while what they may come to is only certified: at rest particles
 /// alone carry the cloth on a smooth object.

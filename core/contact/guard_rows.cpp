@@ -13,9 +13,10 @@ namespace {
 /// they come nearer in twice the time that rows last.
 constexpr double kRowMargin = 0.1;
 
-/// Rows are made anew after this time [s], or when a particle moved by this part of the thickness,
-/// which is looked at every so many steps.
-constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5;
+/// Rows are made anew when a particle moved by this part of the thickness, which is looked at every
+/// so many steps; after this time [s], by a smaller part, within the margin: what rests keeps its
+/// rows, which turn with their features.
+constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 constexpr int kStepsBetweenMotions = 4;
 
 /// No row is made for a gap beyond this part of the thickness.
@@ -31,9 +32,9 @@ constexpr double kFabricPart = 0.8;
 
 template <class Real>
 bool ClothGuard<Real>::rows_hold() const {
-  if (rows_time_ > static_cast<Real>(kLongestRows)) return false;
   if (rows_steps_ % kStepsBetweenMotions != 0) return true;
-  const Real most = thickest_ * Real(kRowMotion);
+  const bool old = rows_time_ > static_cast<Real>(kLongestRows);
+  const Real most = thickest_ * static_cast<Real>(old ? kRestMotion : kRowMotion);
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
     const Quad<Real> way = legal_[i] - x_rows_[i];

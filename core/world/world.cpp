@@ -69,8 +69,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
-  const bool something_to_meet =
-      !def_.colliders.empty() || def_.contact.seed.has_self_contact();
+  const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
   if (has_guard(def_)) guard_.emplace(model_);
