@@ -130,7 +130,8 @@ std::string describe_mismatch(const CLI::App& command, const std::string& wrong)
 
 void add_scenes(CLI::App& app, ScenesOptions& o) {
   CLI::App& scenes = *app.add_subcommand("scenes", "List the built-in scenes");
-  scenes.add_option("NAME", o.name, "With --json: this scene, or file, with all that it leaves to defaults");
+  scenes.add_option("NAME", o.name,
+                    "With --json: this scene, or file, with all that it leaves to defaults");
   add_switch(scenes, "--json", o.json, "Print JSON");
   add_switch(scenes, "--schema", o.schema, "Print the JSON Schema of scene files");
 }
