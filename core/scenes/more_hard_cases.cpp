@@ -224,8 +224,7 @@ std::vector<SceneEntry> more_hard_cases() {
        build_far_teleport},
       {{"hard-meganewton",
         "A hand of up to a million newtons tears at a cloth through a ball: it stretches, and "
-        "stays "
-        "on its side."},
+        "stays on its side."},
        build_meganewton},
       {{"hard-pinch",
         "Two fingers pinch a cloth, pull it about and let it go, twice: it comes off whole."},
