@@ -45,6 +45,8 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (Vec3Array<Real>* array : {&path_base_, &path_velocity_})
     array->assign(n, Vec3<Real>::Zero());
   in_rows_.assign(n, 0);
+  is_moved_.assign(n, 0);
+  first_row_.assign(n, kNone);
   is_active_.assign(n, 0);
   for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));
   fraction_.assign(n, Real(1));

@@ -120,6 +120,12 @@ class ClothGuard {
   std::size_t open_pairs() const { return open_pairs_; }
 
  private:
+  /// A particle nearest to the border of a triangle.
+  struct Border {
+    Index pair;
+    PairSeparation<Real> separation;
+  };
+
   /// A pair whose coming step is certified by itself.
   struct Critical {
     Index pair;
@@ -201,8 +207,14 @@ class ClothGuard {
   void count_motion();
 
   // guard_rows.cpp
-  bool rows_hold() const;
-  void build_rows(const ClothState<Real>& state, Profile& profile);
+  bool find_moved();
+  void renew_rows(const ClothState<Real>& state, Profile& profile);
+  bool has_moved(const std::array<Index, 4>& particles) const;
+  void drop_moved_rows();
+  void list_row(std::size_t r);
+  void add_near_rows(const ClothState<Real>& state, Profile& profile);
+  bool is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
+  bool has_row(const GuardedPair<Real>& pair) const;
   void turn_rows(const ClothState<Real>& state, Profile& profile);
   void turn(const ClothState<Real>& state, const PairSeparation<Real>& s, GuardRow<Real>& row);
   bool weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
@@ -283,8 +295,8 @@ class ClothGuard {
 
   // Rows.
   bool rows_built_ = false;
-  QuadArray<Real> x_rows_;  ///< when rows were built [m]
-  Real rows_time_ = 0;      ///< since rows were built [s]
+  QuadArray<Real> x_rows_;  ///< when the rows of each particle were made [m]
+  Real rows_time_ = 0;      ///< since all were looked at more closely [s]
   int rows_steps_ = 0;
   Real kicked_ = 0;       ///< time of the forces that the rows' impulses stand against [s]
   bool upwards_ = false;  ///< which way the last sweep went
@@ -294,6 +306,11 @@ class ClothGuard {
   std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
   std::vector<Index> row_particles_;        ///< of all rows
   std::vector<char> in_rows_;
+  std::vector<Index> first_row_;  ///< for each particle the last row whose first one it is
+  std::vector<Index> next_row_;   ///< and for each row the one before
+  std::vector<Index> moved_particles_;
+  std::vector<char> is_moved_;
+  std::vector<Border> borders_;
   QuadArray<Real> quad_v_;        ///< their velocities while rows are solved [m/s]
   QuadArray<Real> extra_;         ///< velocity of the push [m/s]
   std::vector<Index> busy_rows_;  ///< that push or soon may

@@ -13,11 +13,19 @@ namespace {
 /// they come nearer in twice the time that rows last.
 constexpr double kRowMargin = 0.1;
 
-/// Rows are made anew when a particle moved by this part of the thickness, which is looked at every
-/// so many steps; after this time [s], by a smaller part, within the margin: what rests keeps its
-/// rows, which turn with their features.
+/// The rows of a particle are made anew when it moved by this part of the thickness, which is looked
+/// at every so many steps; after this time [s], by a smaller part, within the margin: what rests
+/// keeps its rows, which turn with their features.
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 constexpr int kStepsBetweenMotions = 4;
+
+/// A particle that is nearest to the border of a triangle has no row there if it has one that lies
+/// alike, no farther away: cosine between their normals. Where layers lie on each other most
+/// triangles beside the one below a particle are nearest at their borders.
+constexpr double kAlike = 0.8;
+
+/// If more than this part of all have moved, all pairs are gone through.
+constexpr std::size_t kManyMoved = 8;
 
 /// No row is made for a gap beyond this part of the thickness.
 constexpr double kRowReach = 1.3;
@@ -30,55 +38,145 @@ constexpr double kFabricPart = 0.8;
 
 }  // namespace
 
+/// Lists the particles whose rows have to be made anew.
+/// @return whether there are any
 template <class Real>
-bool ClothGuard<Real>::rows_hold() const {
-  if (rows_steps_ % kStepsBetweenMotions != 0) return true;
+bool ClothGuard<Real>::find_moved() {
+  moved_particles_.clear();
+  if (!rows_built_) {
+    moved_particles_ = active_;
+    rows_time_ = 0;
+    rows_steps_ = 0;
+    return true;
+  }
+  if (rows_steps_ % kStepsBetweenMotions != 0) return false;
   const bool old = rows_time_ > static_cast<Real>(kLongestRows);
+  if (old) rows_time_ = 0;
   const Real most = thickest_ * static_cast<Real>(old ? kRestMotion : kRowMotion);
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
     const Quad<Real> way = legal_[i] - x_rows_[i];
-    if (!(dot(way, way) <= most * most)) return false;
+    if (!(dot(way, way) <= most * most)) moved_particles_.push_back(k);
   }
-  return true;
+  return !moved_particles_.empty();
+}
+
+/// Makes the rows anew of the particles that have moved.
+template <class Real>
+void ClothGuard<Real>::renew_rows(const ClothState<Real>& state, Profile& profile) {
+  const StageTimer timer(profile, Stage::narrow_phase, 0);
+  for (const Index k : moved_particles_) is_moved_[static_cast<std::size_t>(k)] = 1;
+  drop_moved_rows();
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    moved_[i] = length(legal_[i] - anchor_[i]);
+  }
+  const auto look_at = [&](const GuardedPair<Real>& pair) {
+    if (!is_beyond(pair))
+      columns_of(pair.kind).add(static_cast<Index>(&pair - pairs_.data()), 0, pair.particle);
+  };
+  if (moved_particles_.size() > active_.size() / kManyMoved) {
+    for (const GuardedPair<Real>& pair : pairs_) {
+      if (!pair.open && !pair.gone && has_moved(pair.particle)) look_at(pair);
+    }
+  } else {
+    ++listing_;
+    for (const Index k : moved_particles_) {
+      for_pairs_of(static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+        if (std::exchange(pair.listed, listing_) != listing_) look_at(pair);
+      });
+    }
+  }
+  for (const Index k : moved_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    is_moved_[i] = 0;
+    x_rows_[i] = legal_[i];
+  }
+  if (!rows_built_) arrived_.clear();
+  rows_built_ = true;
+  add_near_rows(state, profile);
 }
 
 template <class Real>
-void ClothGuard<Real>::build_rows(const ClothState<Real>& state, Profile& profile) {
-  const StageTimer timer(profile, Stage::narrow_phase, 0);
-  rows_.swap(old_rows_);
-  rows_.clear();
+bool ClothGuard<Real>::has_moved(const std::array<Index, 4>& particles) const {
+  return std::any_of(particles.begin(), particles.end(),
+                     [&](Index i) { return is_moved_[static_cast<std::size_t>(i)] != 0; });
+}
+
+/// Drops the rows of particles that have moved, and notes what they pushed.
+template <class Real>
+void ClothGuard<Real>::drop_moved_rows() {
+  old_rows_.clear();
   old_keys_.clear();
-  for (std::size_t k = 0; k < old_rows_.size(); ++k) {
-    if (old_rows_[k].push > 0) old_keys_.push_back({old_rows_[k].key, static_cast<Index>(k)});
+  std::size_t kept = 0;
+  for (const GuardRow<Real>& row : rows_) {
+    if (rows_built_ && !has_moved(row.particle)) {
+      rows_[kept++] = row;
+    } else if (row.push > 0) {
+      old_keys_.push_back({row.key, static_cast<Index>(old_rows_.size())});
+      old_rows_.push_back(row);
+    }
   }
+  rows_.resize(kept);
   std::sort(old_keys_.begin(), old_keys_.end());
-  for (const Index k : active_) {
+  for (const Index k : row_particles_) {
     const auto i = static_cast<std::size_t>(k);
-    x_rows_[i] = legal_[i];
-    moved_[i] = length(legal_[i] - anchor_[i]);
+    in_rows_[i] = 0;
+    first_row_[i] = kNone;
   }
-  for (const Index i : row_particles_) in_rows_[static_cast<std::size_t>(i)] = 0;
   row_particles_.clear();
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const GuardedPair<Real>& pair = pairs_[k];
-    if (!pair.open && !pair.gone && !is_beyond(pair))
-      columns_of(pair.kind).add(static_cast<Index>(k), 0, pair.particle);
+  next_row_.clear();
+  for (std::size_t r = 0; r < rows_.size(); ++r) list_row(r);
+}
+
+/// Lists a row with its first particle, and its particles.
+template <class Real>
+void ClothGuard<Real>::list_row(std::size_t r) {
+  const auto first = static_cast<std::size_t>(rows_[r].particle[0]);
+  next_row_.push_back(std::exchange(first_row_[first], static_cast<Index>(r)));
+  for (const Index i : rows_[r].particle) {
+    if (!std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) row_particles_.push_back(i);
   }
+}
+
+/// Adds the rows of the pairs in the columns: first those of particles over the inside of a
+/// triangle, then, the nearest first, of what is not held by these.
+template <class Real>
+void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& profile) {
+  borders_.clear();
   for (PairColumns<Real>& columns : columns_) {
+    profile[Stage::narrow_phase].work += columns.size();
     separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(columns.a[k])];
-      if (!(columns.gap[k] > thickest_ * Real(kRowReach)))
-        add_row(state, pair, columns.separation(k, legal_));
+      if (columns.gap[k] > thickest_ * Real(kRowReach)) continue;
+      const PairSeparation<Real> s = columns.separation(k, legal_);
+      if (s.inside)
+        add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], s);
+      else if (columns.kind == PairKind::vertex_triangle)
+        borders_.push_back({columns.a[k], s});
     }
     columns.clear();
   }
-  arrived_.clear();
-  profile[Stage::narrow_phase].work += pairs_.size();
-  rows_built_ = true;
-  rows_time_ = 0;
-  rows_steps_ = 0;
+  std::sort(borders_.begin(), borders_.end(), [](const Border& a, const Border& b) {
+    const Real one = a.separation.gap, other = b.separation.gap;
+    return one < other || (one == other && a.pair < b.pair);
+  });
+  for (const Border& border : borders_)
+    add_row(state, pairs_[static_cast<std::size_t>(border.pair)], border.separation);
+}
+
+/// Whether the particle of a pair has a row that lies alike and is no farther away.
+template <class Real>
+bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair,
+                               const PairSeparation<Real>& s) const {
+  const auto particle = static_cast<std::size_t>(pair.particle[0]);
+  for (Index r = first_row_[particle]; r != kNone; r = next_row_[static_cast<std::size_t>(r)]) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(r)];
+    if (kind_of(row) == PairKind::vertex_triangle && row.gap <= s.gap &&
+        dot(row.normal, to_quad(s.normal)) > static_cast<Real>(kAlike))
+      return true;
+  }
+  return false;
 }
 
 /// Distance that the features of a pair shall keep: the mean of their thicknesses, but no more than
@@ -101,10 +199,20 @@ void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profi
   const StageTimer timer(profile, Stage::narrow_phase, arrived_.size());
   for (const GuardedPair<Real>& pair : arrived_) {
     const std::size_t before = rows_.size();
+    if (has_row(pair)) continue;
     add_row(state, pair, separate_pair(pair.kind, points(pair, legal_)));
     if (rows_.size() > before) busy_rows_.push_back(static_cast<Index>(before));
   }
   arrived_.clear();
+}
+
+template <class Real>
+bool ClothGuard<Real>::has_row(const GuardedPair<Real>& pair) const {
+  const std::uint64_t key = key_of(pair);
+  Index r = first_row_[static_cast<std::size_t>(pair.particle[0])];
+  while (r != kNone && rows_[static_cast<std::size_t>(r)].key != key)
+    r = next_row_[static_cast<std::size_t>(r)];
+  return r != kNone;
 }
 
 /// Whether the gap that a pair had, less what its particles have moved since, is too much for a
@@ -129,7 +237,7 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
     approach -= s.weight[k] * s.normal.dot(state.v[static_cast<std::size_t>(pair.particle[k])]);
   const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
   const Real margin = std::max(thickest_ * Real(kRowMargin), soon);
-  if (s.gap > thickest_ + margin) return;
+  if (s.gap > thickest_ + margin || (!s.inside && is_held(pair, s))) return;
   const Index p = part_of(pair.particle[0]), q = part_of(pair.particle[2]);
   GuardRow<Real> row;
   row.radius = radius_of(pair, p, q);
@@ -140,11 +248,10 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
   row.key = key_of(pair);
   row.apart = weighted(row, legal_);
+  row.gap = s.gap;
   remember(row);
   rows_.push_back(row);
-  for (const Index i : row.particle) {
-    if (!std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) row_particles_.push_back(i);
-  }
+  list_row(rows_.size() - 1);
 }
 
 /// Direction and weights of a row.
@@ -215,8 +322,15 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
                                        GuardRow<Real>&);                                      \
   template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
                                         GuardRow<Real>&) const;                               \
-  template bool ClothGuard<Real>::rows_hold() const;                                          \
-  template void ClothGuard<Real>::build_rows(const ClothState<Real>&, Profile&);              \
+  template bool ClothGuard<Real>::find_moved();                                               \
+  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);              \
+  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;               \
+  template void ClothGuard<Real>::drop_moved_rows();                                          \
+  template void ClothGuard<Real>::list_row(std::size_t);                                      \
+  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);           \
+  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&,                           \
+                                          const PairSeparation<Real>&) const;                 \
+  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                    \
   template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
   template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \
   template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \

@@ -48,7 +48,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
   rows_time_ += dt;
   ++rows_steps_;
-  if (!rows_built_ || !rows_hold()) build_rows(state, profile);
+  if (find_moved()) renew_rows(state, profile);
   if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) {
     busy_rows_.clear();
