@@ -38,17 +38,19 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   }
   reach_ = std::min(thickest_ * Real(kReachPart), finest_ * Real(kMostReach));
   reach_ = std::max(reach_, finest_ * Real(0.1));
+  calm_paths_.reach = reach_;
   const std::size_t n = model.mass.size();
   for (QuadArray<Real>* array : {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_,
                                  &anchor_, &x_rows_, &quad_v_, &extra_})
     array->assign(n, {});
-  for (Vec3Array<Real>* array : {&path_base_, &path_velocity_})
+  for (Vec3Array<Real>* array : {&calm_paths_.base, &calm_paths_.velocity})
     array->assign(n, Vec3<Real>::Zero());
   in_rows_.assign(n, 0);
   is_moved_.assign(n, 0);
   first_row_.assign(n, kNone);
   is_active_.assign(n, 0);
-  for (std::vector<Real>* array : {&room_, &moved_, &since_}) array->assign(n, Real(0));
+  for (std::vector<Real>* array : {&room_, &moved_, &since_, &step_length_})
+    array->assign(n, Real(0));
   fraction_.assign(n, Real(1));
   wave_of_.assign(n, 0);
   anchored_at_.assign(n, 0);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -43,6 +44,19 @@ struct GuardCounts {
   std::uint64_t collections = 0;  ///< of all pairs
   std::uint64_t renewals = 0;     ///< of the pairs of some particles
   std::uint64_t anchored = 0, critical = 0;
+};
+
+/// Straight paths of all particles. While no two features can meet that go along them, all that is
+/// to be looked at is that everybody stays near his path, but for a way that all have in common.
+template <class Real>
+struct CalmPaths {
+  Vec3Array<Real> base;      ///< where each path is at time 0 [m]
+  Vec3Array<Real> velocity;  ///< along it [m/s]
+  Real fastest = 0;          ///< the largest of these [m/s]
+  Real time = 0;             ///< now [s]
+  Real horizon = 0;          ///< until then the paths hold [s]
+  Real reach = 0;            ///< that nobody may be farther off his path [m]
+  std::uint64_t number = 0;  ///< of these paths; others have another one
 };
 
 /// Contact of cloths with themselves and each other, with the promise that no particle passes a
@@ -100,6 +114,18 @@ class ClothGuard {
   /// After the drift: takes the push out of the velocities again.
   void finish(ClothState<Real>& state);
 
+  /// Paths along which nothing can meet, for steps without the calls above; null if there are none.
+  const CalmPaths<Real>* calm_paths() const {
+    return collected_ && active_.empty() && open_pairs_ == 0 && pushed_.empty() ? &calm_paths_
+                                                                                : nullptr;
+  }
+
+  /// Says that steps went by without the calls above.
+  /// @param time    at their end, as in the calm paths [s]
+  /// @param common  by how much all are off their paths then, in common [m]
+  /// @param renew   look for other paths in the coming step
+  void leave_calm_paths(Real time, const Vec3<Real>& common, bool renew);
+
   /// At the end of a tick, whose last kick is half of one: stands against that with half the
   /// impulses. `sweep` makes the velocities admissible.
   void settle(ClothState<Real>& state, Real dt, Profile& profile);
@@ -120,6 +146,14 @@ class ClothGuard {
   std::size_t open_pairs() const { return open_pairs_; }
 
  private:
+  /// A pair of a particle that is being anchored.
+  struct Claim {
+    Index pair = 0, particle = 0;
+    Real own = 0, other = 0;  ///< rooms of those who keep their anchors, on its side and across [m]
+    bool on_first = false;    ///< the particle is on the first side
+    bool ample = false;       ///< the bound is far more than anybody needs
+  };
+
   /// A particle nearest to the border of a triangle.
   struct Border {
     Index pair;
@@ -186,6 +220,7 @@ class ClothGuard {
   struct Speeds {
     Real first, second;
   };
+  void measure_steps();
   Speeds speeds(const GuardedPair<Real>& pair) const;
   void find_strays();
   void find_loose();
@@ -193,7 +228,9 @@ class ClothGuard {
   void anchor_wave(bool first);
   void anchor_all();
   void measure(GuardedPair<Real>& pair);
-  Real claim(Index particle, bool first);
+  void list_claims(Index particle);
+  void measure_claimed();
+  Real share_claims(std::span<const Claim> claims, bool first);
 
   // guard_critical.cpp
   bool stays_calm(const ClothState<Real>& state, Real dt) const;
@@ -264,10 +301,9 @@ class ClothGuard {
   Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
   bool calm_ = false;               ///< there was no pair when the step began
   Vec3Array<Real> x_before_;        ///< then, where each was when it began [m]
-  /// Where the paths were at time 0, with off_path_ [m], and their velocities [m/s], number by
-  /// number.
-  Vec3Array<Real> path_base_, path_velocity_;
-  Real smallest_gap_ = 0;  ///< that is left between features after every step [m]
+  CalmPaths<Real> calm_paths_;      ///< if there was no pair then; bases with noted_off_path_
+  Quad<Real> noted_off_path_;       ///< off_path_ when these were noted [m]
+  Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
   PatchBoxes<Real> boxes_;
   PatchOverlaps overlaps_;                    ///< of the patches that are being tested
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
@@ -287,6 +323,9 @@ class ClothGuard {
   std::vector<std::uint64_t> anchored_at_;  ///< step in which each was anchored last
   std::uint32_t wave_ = 0;
   std::uint64_t substep_ = 0;
+  std::uint64_t measured_steps_ = 0;  ///< step in which step_length_ was measured last
+  std::vector<Real> step_length_;     ///< of step_ [m]
+  std::vector<Claim> claims_;         ///< of the particles of a wave
   std::vector<Index> loose_, next_, wave_list_, anchored_, dirty_, tight_;
   double lost_ = 0;  ///< motion truncated in this step [m]
   std::uint32_t listing_ = 0;

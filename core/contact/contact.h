@@ -131,6 +131,10 @@ class Contact {
   void resolve(ClothState<Real>& state, Real dt, Profile& profile,
                ClothGuard<Real>* guard = nullptr);
 
+  /// How far every particle may go from where it is with nothing that it could meet [m]; 0 if
+  /// something is near or moves.
+  Real calm_room(const ClothState<Real>& state) const;
+
   /// Makes the velocities at the end of a tick admissible.
   /// @param guard  as above
   void settle(ClothState<Real>& state, Real dt, Profile& profile,

@@ -154,6 +154,15 @@ void Contact<Real>::measure_clearance(const ClothState<Real>& state, Real dt, Pr
   for (const std::uint64_t count : tests) profile[Stage::broad_phase].work += count;
 }
 
+template <class Real>
+Real Contact<Real>::calm_room(const ClothState<Real>& state) const {
+  if (!collected_ || !rows_built_ || !rows_.empty() || !exits_.empty() || !stands_still()) return 0;
+  Real room = std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    room = std::min(room, row_reach_[i] - (state.x[i] - x_rows_[i]).norm());
+  return std::max(room, Real(0));
+}
+
 /// A particle is near if it, or a point of an edge or triangle at it, can touch something within
 /// its skin. Those joined to it are kept on as short a leash; the others may go as far as they are
 /// clear.
@@ -272,6 +281,7 @@ void Contact<Real>::mark_paired() {
 
 #define WEFT_INSTANTIATE(Real)                                                                \
   template void Contact<Real>::mark_paired();                                                 \
+  template Real Contact<Real>::calm_room(const ClothState<Real>&) const;                      \
   template Real Contact<Real>::analytic_clearance(const Vec3<Real>&, Real) const;             \
   template Real Contact<Real>::clearance(const Vec3<Real>&, Real) const;                      \
   template Real Contact<Real>::least_clearance(const Vec3<Real>&, Real) const;                \

@@ -36,6 +36,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   if (calm_) {
     if (stays_calm(state, dt)) {
       off_path_now_ = off_path_;
+      calm_paths_.time = elapsed_;
       return;
     }
     for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(x_before_[i]);
@@ -79,19 +80,33 @@ bool ClothGuard<Real>::stays_calm(const ClothState<Real>& state, Real dt) const 
   pass.x = state.x.data()->data();
   pass.v = state.v.data()->data();
   pass.dt = dt;
-  pass.base = path_base_.data()->data();
-  pass.velocity = path_velocity_.data()->data();
+  pass.base = calm_paths_.base.data()->data();
+  pass.velocity = calm_paths_.velocity.data()->data();
   pass.time = elapsed_;
   return largest_deviation(pass) * static_cast<Real>(kDiagonal) <= reach_;
 }
 
-/// Writes down the paths for `stays_calm`.
+/// Writes down the paths of steps without pairs.
 template <class Real>
 void ClothGuard<Real>::note_paths() {
-  for (std::size_t i = 0; i < path_base_.size(); ++i) {
-    path_base_[i] = to_vector(on_path(i, 0) + off_path_);
-    path_velocity_[i] = to_vector(velocity_[i]);
+  noted_off_path_ = off_path_;
+  Real fastest2 = 0;
+  for (std::size_t i = 0; i < calm_paths_.base.size(); ++i) {
+    calm_paths_.base[i] = to_vector(on_path(i, 0) + off_path_);
+    calm_paths_.velocity[i] = to_vector(velocity_[i]);
+    fastest2 = std::max(fastest2, dot(velocity_[i], velocity_[i]));
   }
+  calm_paths_.fastest = std::sqrt(fastest2);
+  calm_paths_.time = elapsed_;
+  calm_paths_.horizon = horizon_;
+  ++calm_paths_.number;
+}
+
+template <class Real>
+void ClothGuard<Real>::leave_calm_paths(Real time, const Vec3<Real>& common, bool renew) {
+  elapsed_ = calm_paths_.time = time;
+  off_path_ = off_path_now_ = noted_off_path_ + to_quad(common);
+  if (renew) collected_ = false;
 }
 
 /// Certifies or stops the steps of particles that have no room for them.
@@ -271,6 +286,7 @@ void ClothGuard<Real>::count_motion() {
   template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&);      \
   template bool ClothGuard<Real>::stays_calm(const ClothState<Real>&, Real) const; \
   template void ClothGuard<Real>::note_paths();                                    \
+  template void ClothGuard<Real>::leave_calm_paths(Real, const Vec3<Real>&, bool); \
   template void ClothGuard<Real>::stop_crossings();                                \
   template bool ClothGuard<Real>::find_critical();                                 \
   template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);                 \

@@ -169,6 +169,7 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
       pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
     columns.clear();
   }
+  measure_steps();
   for_new([&](GuardedPair<Real>& pair) {
     const Real room = std::max(Real(0), pair.bound - smallest_gap_);
     const auto [one, other] = speeds(pair);
@@ -261,6 +262,7 @@ void ClothGuard<Real>::list_pairs(std::size_t first) {
 /// Shares the gap of each pair by the speeds of its sides.
 template <class Real>
 void ClothGuard<Real>::share_all_gaps() {
+  measure_steps();
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
     room_[i] = std::numeric_limits<Real>::infinity();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/contact/cloth_guard.h"
 
@@ -18,10 +19,20 @@ constexpr int kMostWaves = 48;
 /// the faster one's.
 constexpr double kLeastShare = 0.08;
 
+/// Each side gets at least this part of a gap.
+constexpr double kLeastOfGap = kLeastShare / (1 + 2 * kLeastShare) * 0.999;
+
 /// Part of the reach beyond which a particle is given a new path with those that have left theirs.
 constexpr double kSoon = 0.6;
 
 }  // namespace
+
+/// How far everybody in a pair wants to move in the coming step.
+template <class Real>
+void ClothGuard<Real>::measure_steps() {
+  if (std::exchange(measured_steps_, substep_) == substep_) return;
+  for (std::size_t i = 0; i < step_.size(); ++i) step_length_[i] = length(step_[i]);
+}
 
 /// How far the sides of a pair want to move in the coming step, both a little.
 template <class Real>
@@ -29,12 +40,10 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
   Real side[2] = {0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    const Quad<Real>& step = step_[static_cast<std::size_t>(pair.particle[k])];
-    most = std::max(most, dot(step, step));
+    most = std::max(most, step_length_[static_cast<std::size_t>(pair.particle[k])]);
   }
-  const Real first = std::sqrt(side[0]), second = std::sqrt(side[1]);
-  const Real both = std::max(first, second) * Real(kLeastShare) + Real(1e-9);
-  return {first + both, second + both};
+  const Real both = std::max(side[0], side[1]) * Real(kLeastShare) + Real(1e-9);
+  return {side[0] + both, side[1] + both};
 }
 
 /// Lists the particles that leave the balls around their predicted paths in the coming step, and
@@ -83,6 +92,7 @@ void ClothGuard<Real>::measure(GuardedPair<Real>& pair) {
 /// than the gap now has is anchored anew as well.
 template <class Real>
 void ClothGuard<Real>::anchor(const std::vector<Index>& list) {
+  measure_steps();
   wave_list_ = list;
   for (int wave = 0; !wave_list_.empty(); ++wave) {
     if (wave == kMostWaves) {
@@ -114,49 +124,85 @@ void ClothGuard<Real>::anchor_wave(bool first) {
     if (moved == 0) continue;
     for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
   }
-  for (const Index k : wave_list_) room_[static_cast<std::size_t>(k)] = claim(k, first);
+  claims_.clear();
+  for (const Index k : wave_list_) list_claims(k);
+  measure_claimed();
+  auto claim = claims_.begin();
+  for (const Index k : wave_list_) {
+    const auto begin = claim;
+    while (claim != claims_.end() && claim->particle == k) ++claim;
+    room_[static_cast<std::size_t>(k)] = share_claims({begin, claim}, first);
+  }
 }
 
-/// The room that all pairs leave a particle: its side's share of the gap, and no more than what the
-/// other side has not taken. Lists who has taken too much.
+/// Lists the pairs of a particle with the rooms that others have in them, and for measuring those
+/// whose bound may not be enough.
 template <class Real>
-Real ClothGuard<Real>::claim(Index k, bool first) {
+void ClothGuard<Real>::list_claims(Index k) {
   const auto i = static_cast<std::size_t>(k);
-  const Real step = length(step_[i]);
-  Real room = std::numeric_limits<Real>::infinity();
+  const Real ahead = step_length_[i] * Real(2 * kStepsOfRoom) + smallest_gap_;
   for_pairs_of(i, [&](GuardedPair<Real>& pair) {
     const std::size_t middle = first_side(pair.kind);
     std::size_t at = 0;
     while (pair.particle[at] != k) ++at;
-    const bool on_first = at < middle;
-    Real own = 0, other = 0;  // rooms of those who keep their anchors
+    Claim c;
+    c.pair = static_cast<Index>(&pair - pairs_.data());
+    c.particle = k;
+    c.on_first = at < middle;
     for (std::size_t m = 0; m < 4; ++m) {
       const auto j = static_cast<std::size_t>(pair.particle[m]);
       if (wave_of_[j] == wave_) continue;
-      Real& most = (m < middle) == on_first ? own : other;
+      Real& most = (m < middle) == c.on_first ? c.own : c.other;
       most = std::max(most, room_[j]);
     }
-    const Real wanted = smallest_gap_ + std::max(own, other) + other;
-    if (pair.measured != wave_ && !(pair.bound > wanted + step * Real(2 * kStepsOfRoom)))
-      measure(pair);
+    c.ample = pair.bound > std::max(c.own, c.other) + c.other + ahead;
+    if (!c.ample && std::exchange(pair.measured, wave_) != wave_)
+      columns_of(pair.kind).add(c.pair, 0, pair.particle);
+    claims_.push_back(c);
+  });
+}
+
+/// Measures the pairs in the columns.
+template <class Real>
+void ClothGuard<Real>::measure_claimed() {
+  for (PairColumns<Real>& columns : columns_) {
+    if (columns.size() == 0) continue;
+    separate_pairs(anchor_, anchor_, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+    columns.clear();
+  }
+}
+
+/// The room that all pairs leave a particle: its side's share of the gap, and no more than what the
+/// other side has not taken. Lists who has taken too much.
+/// @param claims  all of one particle
+template <class Real>
+Real ClothGuard<Real>::share_claims(std::span<const Claim> claims, bool first) {
+  Real room = std::numeric_limits<Real>::infinity();
+  for (const Claim& claim : claims) {
+    const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(claim.pair)];
     const Real gap = std::max(Real(0), pair.bound - smallest_gap_);
+    // What is far apart, even if its side gets the least share, changes nothing.
+    if (claim.ample && gap * Real(kLeastOfGap) >= room) continue;
     const Speeds speed = speeds(pair);
     const Real share =
-        gap * ((on_first ? speed.first : speed.second) / (speed.first + speed.second));
-    const Real left = gap - other;
+        gap * ((claim.on_first ? speed.first : speed.second) / (speed.first + speed.second));
+    const Real left = gap - claim.other;
     room = std::min(room, std::max(Real(0), std::min(share, left)));
     // The others' rooms alone are too much for the gap, or they leave less than the next steps
     // need.
-    const bool too_much = own + other > gap;
+    const Real step = step_length_[static_cast<std::size_t>(claim.particle)];
+    const bool too_much = claim.own + claim.other > gap;
     const bool greedy = first && left < share && left < 2 * step;
-    if (!too_much && !greedy) return;
+    if (!too_much && !greedy) continue;
     for (const Index j : pair.particle) {
       if (wave_of_[static_cast<std::size_t>(j)] != wave_ &&
           (room_[static_cast<std::size_t>(j)] > 0 || greedy))
         next_.push_back(j);
     }
-    next_.push_back(k);
-  });
+    next_.push_back(claim.particle);
+  }
   return room;
 }
 
@@ -177,6 +223,7 @@ void ClothGuard<Real>::anchor_all() {
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                  \
+  template void ClothGuard<Real>::measure_steps();                                              \
   template typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>&) \
       const;                                                                                    \
   template void ClothGuard<Real>::find_strays();                                                \
@@ -184,7 +231,9 @@ void ClothGuard<Real>::anchor_all() {
   template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
   template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \
   template void ClothGuard<Real>::anchor_wave(bool);                                            \
-  template Real ClothGuard<Real>::claim(Index, bool);                                           \
+  template void ClothGuard<Real>::list_claims(Index);                                           \
+  template void ClothGuard<Real>::measure_claimed();                                            \
+  template Real ClothGuard<Real>::share_claims(std::span<const Claim>, bool);                   \
   template void ClothGuard<Real>::anchor_all();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -13,9 +13,9 @@ namespace {
 /// they come nearer in twice the time that rows last.
 constexpr double kRowMargin = 0.1;
 
-/// The rows of a particle are made anew when it moved by this part of the thickness, which is looked
-/// at every so many steps; after this time [s], by a smaller part, within the margin: what rests
-/// keeps its rows, which turn with their features.
+/// The rows of a particle are made anew when it moved by this part of the thickness, which is
+/// looked at every so many steps; after this time [s], by a smaller part, within the margin: what
+/// rests keeps its rows, which turn with their features.
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 constexpr int kStepsBetweenMotions = 4;
 
@@ -167,8 +167,7 @@ void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& pro
 
 /// Whether the particle of a pair has a row that lies alike and is no farther away.
 template <class Real>
-bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair,
-                               const PairSeparation<Real>& s) const {
+bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const {
   const auto particle = static_cast<std::size_t>(pair.particle[0]);
   for (Index r = first_row_[particle]; r != kNone; r = next_row_[static_cast<std::size_t>(r)]) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(r)];
@@ -316,26 +315,26 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
   row.slip = tangential(row, old.slip + (weighted(old, legal_) - old.apart));
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);               \
-  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,  \
-                                       GuardRow<Real>&);                                      \
-  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
-                                        GuardRow<Real>&) const;                               \
-  template bool ClothGuard<Real>::find_moved();                                               \
-  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);              \
-  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;               \
-  template void ClothGuard<Real>::drop_moved_rows();                                          \
-  template void ClothGuard<Real>::list_row(std::size_t);                                      \
-  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);           \
-  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&,                           \
-                                          const PairSeparation<Real>&) const;                 \
-  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                    \
-  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
-  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \
-  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \
-                                          const PairSeparation<Real>&);                       \
-  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);                  \
+  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,     \
+                                       GuardRow<Real>&);                                         \
+  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&,    \
+                                        GuardRow<Real>&) const;                                  \
+  template bool ClothGuard<Real>::find_moved();                                                  \
+  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);                 \
+  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;                  \
+  template void ClothGuard<Real>::drop_moved_rows();                                             \
+  template void ClothGuard<Real>::list_row(std::size_t);                                         \
+  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);              \
+  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&, const PairSeparation<Real>&) \
+      const;                                                                                     \
+  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                       \
+  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);                \
+  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                     \
+  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,     \
+                                          const PairSeparation<Real>&);                          \
+  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;       \
   template void ClothGuard<Real>::remember(GuardRow<Real>&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -8,6 +8,7 @@
 
 #include "core/forces/grid_air-inl.h"
 #include "core/forces/grid_energy-inl.h"
+#include "core/forces/grid_paths-inl.h"
 #include "core/forces/grid_step-inl.h"
 
 // The names that Highway's dispatch goes by, without templates.
@@ -40,6 +41,10 @@ namespace HWY_NAMESPACE {
   }                                                                                             \
   HWY_ATTR void air_forces_##Kind(const GridView<Real>& grid, Real pressure, Real skin) {       \
     air_forces(grid, pressure, skin);                                                           \
+  }                                                                                             \
+  HWY_ATTR void box_paths_##Kind(const GridView<Real>& grid, const Real* paths, Real time,      \
+                                 Real* box) {                                                   \
+    box_paths(grid, paths, time, box);                                                          \
   }
 WEFT_GRID_KERNELS(float, f32)
 WEFT_GRID_KERNELS(double, f64)

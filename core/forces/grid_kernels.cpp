@@ -21,6 +21,7 @@ namespace weft {
   HWY_EXPORT(advance_##Kind);                                                                   \
   HWY_EXPORT(drift_##Kind);                                                                     \
   HWY_EXPORT(air_forces_##Kind);                                                                \
+  HWY_EXPORT(box_paths_##Kind);                                                                 \
   void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                  \
                        std::ptrdiff_t pitch) {                                                  \
     HWY_DYNAMIC_DISPATCH(take_apart_##Kind)(grid, from, to, pitch);                             \
@@ -43,6 +44,9 @@ namespace weft {
   }                                                                                             \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                  \
     HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                              \
+  }                                                                                             \
+  void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box) {    \
+    HWY_DYNAMIC_DISPATCH(box_paths_##Kind)(grid, paths, time, box);                             \
   }
 WEFT_DISPATCH(float, f32)
 WEFT_DISPATCH(double, f64)

@@ -8,26 +8,29 @@ namespace weft {
 // The vector code behind GridPass, chosen for the processor when the program runs. Arrays of the
 // whole model take three numbers a particle.
 
-#define WEFT_GRID_KERNELS(Real)                                                                 \
-  /** Takes three numbers a particle apart into three lines of every row. @param to  at (0, 0)  \
-   * @param pitch  from row to row, in numbers */                                               \
-  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                  \
-                       std::ptrdiff_t pitch);                                                   \
-  /** The way back. */                                                                          \
-  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,    \
-                         Real* to);                                                             \
-  /** Forces of springs, dashpots and bending into `external`. */                               \
-  void grid_internal_forces(const GridView<Real>& grid);                                        \
-  /** Energies of springs and bending and the largest strain. */                                \
-  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid);                                \
-  /** All forces, kick and drift in one pass. @returns power of the external forces [W] */      \
-  double grid_advance(const GridView<Real>& grid, const GridStep<Real>& step);                  \
-  /** Drift with velocities and positions of the model, which are taken over. @returns power of \
-   * the external forces [W], 0 if not pulled */                                                \
-  double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x);  \
-  /** Forces of the air into `external`. @param pressure  1/2 rho C_n [kg/m^3]                  \
-   * @param skin  c_t [kg/(m^2 s)] */                                                           \
-  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin);
+#define WEFT_GRID_KERNELS(Real)                                                                    \
+  /** Takes three numbers a particle apart into three lines of every row. @param to  at (0, 0)     \
+   * @param pitch  from row to row, in numbers */                                                  \
+  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                     \
+                       std::ptrdiff_t pitch);                                                      \
+  /** The way back. */                                                                             \
+  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,       \
+                         Real* to);                                                                \
+  /** Forces of springs, dashpots and bending into `external`. */                                  \
+  void grid_internal_forces(const GridView<Real>& grid);                                           \
+  /** Energies of springs and bending and the largest strain. */                                   \
+  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid);                                   \
+  /** All forces, kick and drift in one pass. @returns power of the external forces [W] */         \
+  double grid_advance(const GridView<Real>& grid, const GridStep<Real>& step);                     \
+  /** Drift with velocities and positions of the model, which are taken over. @returns power of    \
+   * the external forces [W], 0 if not pulled */                                                   \
+  double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x);     \
+  /** Forces of the air into `external`. @param pressure  1/2 rho C_n [kg/m^3]                     \
+   * @param skin  c_t [kg/(m^2 s)] */                                                              \
+  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin);                      \
+  /** The box around the ways of all particles off straight paths [m]. @param paths  six lines     \
+   * a row: where they are at time 0 [m], and velocities [m/s] @param box  receives its corners */ \
+  void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box);
 WEFT_GRID_KERNELS(float)
 WEFT_GRID_KERNELS(double)
 #undef WEFT_GRID_KERNELS

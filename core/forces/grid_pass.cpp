@@ -78,8 +78,7 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   air_normal_ = static_cast<Real>(part.fabric.air_normal);
   air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
   view_.motion = allocate(motion_, (view_.rows + 2) * GridView<Real>::kMotionLines);
-  external_.clear();
-  wind_.clear();
+  for (AlignedVector<Real>* array : {&external_, &wind_, &paths_, &kept_}) array->clear();
   scratch_.assign(static_cast<std::size_t>(kGridScratchLines * view_.scratch_line()), Real(0));
   view_.scratch = scratch_.data();
   allocate(odd_, 1);
@@ -99,6 +98,26 @@ template <class Real>
 void GridPass<Real>::make_room(bool air) {
   if (external_.empty()) view_.external = allocate(external_, view_.rows * 3);
   if (air && wind_.empty()) view_.wind = allocate(wind_, (view_.rows + 1) * 3);
+}
+
+template <class Real>
+void GridPass<Real>::make_room_for_paths() {
+  allocate(paths_, view_.rows * 6);
+  kept_ = motion_;
+}
+
+template <class Real>
+void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Real>& velocity) {
+  const std::ptrdiff_t pitch = 6 * view_.line;
+  grid_take_apart(view_, base.data()->data(), paths_.data(), pitch);
+  grid_take_apart(view_, velocity.data()->data(), paths_.data() + 3 * view_.line, pitch);
+}
+
+template <class Real>
+Aabb<Real> GridPass<Real>::box_off_paths(Real time) const {
+  std::array<Real, 6> corners;
+  grid_box_paths(view_, paths_.data(), time, corners.data());
+  return {{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
 }
 
 template <class Real>
@@ -180,7 +199,7 @@ template <class Real>
 std::size_t GridPass<Real>::bytes() const {
   std::size_t numbers = 0;
   for (const AlignedVector<Real>* array :
-       {&motion_, &external_, &wind_, &coefficients_, &odd_, &scratch_})
+       {&motion_, &external_, &wind_, &coefficients_, &odd_, &scratch_, &paths_, &kept_})
     numbers += array->capacity();
   return numbers * sizeof(Real) + rows_.capacity() * sizeof(GridRow<Real>);
 }

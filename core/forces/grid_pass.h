@@ -6,6 +6,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_view.h"
+#include "core/geometry/aabb.h"
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
@@ -28,6 +29,9 @@ class GridPass {
   /// needs them may be called.
   void make_room(bool air);
 
+  /// Sizes what `load_paths` and `keep` fill. Until then neither may be called.
+  void make_room_for_paths();
+
   bool fits() const { return view_.rows > 0; }
 
   /// Takes positions and velocities of the whole model for the calls below.
@@ -35,6 +39,19 @@ class GridPass {
   void load_inverse_mass(const std::vector<Real>& inverse_mass);
   void load_wind(const Vec3Array<Real>& wind);
   void load_external(const Vec3Array<Real>& force);
+
+  /// Takes over straight paths of the whole model's particles.
+  /// @param base      where they are at time 0 [m]
+  /// @param velocity  along them [m/s]
+  void load_paths(const Vec3Array<Real>& base, const Vec3Array<Real>& velocity);
+
+  /// The box around the ways of all particles off their paths [m].
+  /// @param time  at which they are where they are [s]
+  Aabb<Real> box_off_paths(Real time) const;
+
+  /// Keeps positions and velocities as they are, for `take_back`.
+  void keep() { kept_ = motion_; }
+  void take_back() { motion_ = kept_; }
 
   void store_positions(Vec3Array<Real>& x) const;
   void store_velocities(Vec3Array<Real>& v) const;
@@ -74,6 +91,7 @@ class GridPass {
   Real air_normal_ = 0, air_tangential_ = 0;
   std::vector<GridRow<Real>> rows_;
   AlignedVector<Real> motion_, external_, wind_, coefficients_, odd_, scratch_;
+  AlignedVector<Real> paths_, kept_;
 };
 
 /// Name of the instruction set that the kernels use on this processor, e.g. "AVX2".

@@ -3,62 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
+#include "core/solver/verlet_tick.h"
 
 namespace weft {
 namespace {
-
-/// v <- keep v + push (f/m + g)
-template <class Real>
-struct Kick {
-  Real keep, push;
-};
-
-/// The three kicks of a tick. The opening and the closing one together are one full kick.
-template <class Real>
-struct Kicks {
-  Kick<Real> opening, full, closing;
-
-  Kicks(double dt, double drag) {
-    const double lost = 0.5 * drag * dt;
-    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
-    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
-    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt)};
-  }
-};
-
-/// One tick's constant inputs together with what it changes.
-template <class Real>
-struct Tick {
-  const ClothModel<Real>& model;
-  const Surroundings<Real>& surroundings;
-  const SolverDef& solver;
-  Real dt;
-  Grabs<Real>& grabs;
-  const Collision<Real>& collision;
-  ClothState<Real>& state;
-  VerletWorkspace<Real>& work;
-  Profile& profile;
-  bool hands, pulled;  // anybody pulls; hands or the air do
-
-  const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
-  GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }
-  bool by_rows(std::size_t p) const { return work.grids[p].fits(); }
-  std::size_t parts() const { return model.parts.size(); }
-  bool sleeps(std::size_t p) const { return state.is_asleep(p); }
-  /// It sleeps, and its energy is known.
-  bool rests(std::size_t p) const { return sleeps(p) && work.at_rest[p]; }
-};
-
-std::size_t size_of(const IndexRange& range) {
-  return static_cast<std::size_t>(range.count);
-}
-
-/// The numbers of a range of particles, three each.
-template <class Array>
-auto* numbers(const IndexRange& range, Array& array) {
-  return (array.data() + range.first)->data();
-}
 
 /// Springs and quadratic bending of a part by gathering, booked under stretch, or element by
 /// element.
@@ -151,20 +101,6 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
   pass.keep = k.keep;
   pass.push = k.push;
   run_kick(pass);
-}
-
-/// Springs, bending, kick and drift of a grid in one pass, all booked under stretch.
-/// @returns work of the external forces over the drift [J]
-template <class Real>
-double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real drift) {
-  const ClothPart<Real>& part = tick.part(p);
-  const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
-  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
-  tick.profile[Stage::integration].work += size_of(part.particles);
-  const Vec3<Real>& g = tick.surroundings.gravity;
-  const double power =
-      tick.grid(p).advance({k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.pulled});
-  return power * static_cast<double>(drift);
 }
 
 /// Forces and kick of all parts, with positions and velocities of the model up to date.
@@ -269,11 +205,13 @@ double drift(Tick<Real>& tick) {
 }
 
 template <class Real>
-void load_grids(Tick<Real>& tick) {
-  const StageTimer timer(tick.profile, Stage::integration, 0);
-  for (std::size_t p = 0; p < tick.parts(); ++p) {
-    if (tick.by_rows(p) && !tick.rests(p)) tick.grid(p).load(tick.state.x, tick.state.v);
+void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
+  if (tick.solver.damping_sweeps == 1) {
+    advance_kick(tick, k, Real(0));
+    return;
   }
+  evaluate_forces(tick, Real(0), tick.state.v);
+  kick_awake(tick, k, tick.state.v, tick.state.v);
 }
 
 /// The substeps of a tick where hands or contact see the particles between kick and drift.
@@ -283,45 +221,21 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
   ClothState<Real>& state = tick.state;
   const Collision<Real>& collision = tick.collision;
   double work = 0;
-  if (tick.solver.damping_sweeps == 1) {
-    advance_kick(tick, kicks.opening, Real(0));
-  } else {
-    evaluate_forces(tick, Real(0), state.v);
-    kick_awake(tick, kicks.opening, state.v, state.v);
-  }
+  CalmSpell spell;
   for (int s = 0; s < substeps; ++s) {
+    work += advance_calm(tick, kicks, substeps, s, spell);
+    if (s == substeps) break;
+    if (s == 0)
+      opening_kick(tick, kicks.opening);
+    else
+      swept_kick(tick, kicks.full, Real(0.5), static_cast<Real>(s) / static_cast<Real>(substeps));
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
     collision.after_drift(state, tick.dt, tick.profile);
     if (collision.seed || collision.guard) load_grids(tick);
-    const bool last = s + 1 == substeps;
-    const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
-    swept_kick(tick, last ? kicks.closing : kicks.full, last ? Real(1) : Real(0.5), progress);
   }
+  swept_kick(tick, kicks.closing, Real(1), Real(1));
   collision.settle(state, tick.dt, tick.profile);
-  return work;
-}
-
-/// All substeps of a grid that nobody else touches: the particles stay in its own arrays.
-/// @returns work of the air [J]
-template <class Real>
-double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
-  GridPass<Real>& grid = tick.grid(p);
-  double work = 0;
-  for (int s = 0; s <= substeps; ++s) {
-    if (tick.pulled) {
-      const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
-      grid.compute_air_forces(tick.surroundings.air_density);
-    }
-    const bool last = s == substeps;
-    work += advance_grid(tick, p,
-                         s == 0 ? kicks.opening
-                         : last ? kicks.closing
-                                : kicks.full,
-                         last ? Real(0) : tick.dt);
-  }
-  grid.store_positions(tick.state.x);
-  grid.store_velocities(tick.state.v);
   return work;
 }
 

@@ -73,12 +73,19 @@ struct VerletWorkspace {
   std::vector<GridPass<Real>> grids;   ///< for each part its row-wise form, if it fits
   std::vector<MeshPass<Real>> meshes;  ///< for each other part its form by gathering, likewise
   bool all_grids = false;              ///< every part fits as a grid
+  std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths that the grids have; 0: none
 
   /// Sizes the arrays for a cloth on which neither air nor hands act.
   void prepare(const ClothModel<Real>& model, const SolverDef& solver);
 
   /// Sizes what air and hands need besides. To be called before a tick that has them.
   void make_room(const ClothModel<Real>& model, bool air, bool hands);
+
+  /// Sizes what the steps without contact need, in a world with a guard (fused_steps.h).
+  void make_room_for_paths();
+
+  /// Gives the grids these paths, if they have others.
+  void load_paths(const CalmPaths<Real>& paths);
 
   /// What the arrays take [B].
   std::size_t bytes() const;

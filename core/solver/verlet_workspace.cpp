@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "core/solver/verlet.h"
 
 namespace weft {
@@ -29,6 +31,19 @@ void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, b
     if (grid.fits()) grid.make_room(air);
   }
   if (hands || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
+}
+
+template <class Real>
+void VerletWorkspace<Real>::make_room_for_paths() {
+  if (!all_grids) return;
+  for (GridPass<Real>& grid : grids) grid.make_room_for_paths();
+  loaded_paths = 0;
+}
+
+template <class Real>
+void VerletWorkspace<Real>::load_paths(const CalmPaths<Real>& paths) {
+  if (std::exchange(loaded_paths, paths.number) == paths.number) return;
+  for (GridPass<Real>& grid : grids) grid.load_paths(paths.base, paths.velocity);
 }
 
 template <class Real>

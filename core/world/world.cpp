@@ -156,6 +156,7 @@ void World<Real>::prepare_solver() {
     verlet_.prepare(model_, def_.solver);
   else
     relaxation_.prepare(model_);
+  if (guard_ && solver_of(def_) == SolverKind::verlet) verlet_.make_room_for_paths();
   verlet_.elastic.reset();
   make_room();
 }

@@ -1,0 +1,178 @@
+#include "core/solver/fused_steps.h"
+
+#include <algorithm>
+
+namespace weft {
+namespace {
+
+/// Substeps after which positions are kept, to go back to if somebody left his path since.
+constexpr int kKeptSteps = 8;
+
+/// Paths are left when somebody is off by this part of what is allowed: better ones cost less than
+/// going back.
+constexpr double kNearlyOff = 0.9;
+
+/// A part of the room for rounding.
+constexpr double kSureOf = 0.999;
+
+/// What keeps a spell of steps without contact together.
+template <class Real>
+struct Spell {
+  const CalmPaths<Real>& paths;
+  Real room;          ///< that every particle may go, from where it is when it begins [m]
+  Real begun;         ///< time then, as in the paths [s]
+  Vec3<Real> common;  ///< way off the paths that all had in common then [m]
+};
+
+/// The box around the ways off the paths of all grids.
+template <class Real>
+Aabb<Real> box_off_paths(const Tick<Real>& tick, Real time) {
+  Aabb<Real> box;
+  for (std::size_t p = 0; p < tick.parts(); ++p) box.add(tick.grid(p).box_off_paths(time));
+  return box;
+}
+
+template <class Real>
+Real half_diagonal(const Aabb<Real>& box) {
+  return (box.upper - box.lower).norm() / 2;
+}
+
+/// How far anybody may have gone since the spell began: along his path, with all in common, and
+/// off both.
+template <class Real>
+Real farthest(const Spell<Real>& spell, const Aabb<Real>& box, Real time) {
+  return spell.paths.fastest * (time - spell.begun) + (box.centre() - spell.common).norm() +
+         2 * spell.paths.reach;
+}
+
+/// One substep of all grids, from kick to drift. @returns work of the air [J]
+template <class Real>
+double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
+  double work = 0;
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.pulled) {
+      const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
+      tick.grid(p).compute_air_forces(tick.surroundings.air_density);
+    }
+    work += advance_grid(tick, p, kick, tick.dt);
+  }
+  return work;
+}
+
+/// Whether a spell may begin: nobody but grids, the guard and objects take part, and all are awake.
+template <class Real>
+bool may_be_calm(const Tick<Real>& tick) {
+  const Collision<Real>& c = tick.collision;
+  if (!c.guard || c.seed || c.pins || tick.hands || !tick.work.all_grids) return false;
+  if (tick.solver.damping_sweeps > 1) return false;
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.sleeps(p)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+/// Springs, bending, kick and drift of a grid in one pass, all booked under stretch.
+/// @returns work of the external forces over the drift [J]
+template <class Real>
+double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real drift) {
+  const ClothPart<Real>& part = tick.part(p);
+  const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
+  tick.profile[Stage::integration].work += size_of(part.particles);
+  const Vec3<Real>& g = tick.surroundings.gravity;
+  const double power =
+      tick.grid(p).advance({k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.pulled});
+  return power * static_cast<double>(drift);
+}
+
+template <class Real>
+void load_grids(Tick<Real>& tick) {
+  const StageTimer timer(tick.profile, Stage::integration, 0);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.by_rows(p) && !tick.rests(p)) tick.grid(p).load(tick.state.x, tick.state.v);
+  }
+}
+
+/// All substeps of a grid that nobody else touches: the particles stay in its own arrays.
+/// @returns work of the air [J]
+template <class Real>
+double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
+  GridPass<Real>& grid = tick.grid(p);
+  double work = 0;
+  for (int s = 0; s <= substeps; ++s) {
+    if (tick.pulled) {
+      const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
+      grid.compute_air_forces(tick.surroundings.air_density);
+    }
+    const bool last = s == substeps;
+    work += advance_grid(tick, p,
+                         s == 0 ? kicks.opening
+                         : last ? kicks.closing
+                                : kicks.full,
+                         last ? Real(0) : tick.dt);
+  }
+  grid.store_positions(tick.state.x);
+  grid.store_velocities(tick.state.v);
+  return work;
+}
+
+template <class Real>
+double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, int& s,
+                    CalmSpell& spell) {
+  if (s < spell.after || !may_be_calm(tick)) return 0;
+  ClothGuard<Real>& guard = *tick.collision.guard;
+  const CalmPaths<Real>* paths = guard.calm_paths();
+  const Contact<Real>* objects = tick.collision.weft;
+  if (!paths || !(paths->time + tick.dt <= paths->horizon)) return 0;
+  const Real room = objects ? objects->calm_room(tick.state) * Real(kSureOf)
+                            : std::numeric_limits<Real>::infinity();
+  if (!(room > 3 * paths->reach)) {
+    spell.after = s + kKeptSteps;
+    return 0;
+  }
+  tick.work.load_paths(*paths);
+  Real time = paths->time, kept_time = time;
+  Aabb<Real> box = box_off_paths(tick, time), kept_box = box;
+  const Spell<Real> begin{*paths, room, time, box.centre()};
+  const int first = s;
+  int kept = s;
+  double work = 0, kept_work = 0;
+  bool renew = false;
+  for (; s < substeps && !renew && time + tick.dt <= paths->horizon; ++s) {
+    if ((s - first) % kKeptSteps == 0) {
+      for (GridPass<Real>& grid : tick.work.grids) grid.keep();
+      kept = s, kept_time = time, kept_box = box, kept_work = work;
+    }
+    work += advance_grids(tick, s == 0 ? kicks.opening : kicks.full);
+    time += tick.dt;
+    box = box_off_paths(tick, time);
+    const Real off = half_diagonal(box);
+    if (!(off <= paths->reach && farthest(begin, box, time) <= room)) {
+      // Somebody may have met something: back, and the same steps with contact.
+      for (GridPass<Real>& grid : tick.work.grids) grid.take_back();
+      spell.after = s + 1;
+      s = kept, time = kept_time, box = kept_box, work = kept_work;
+      break;
+    }
+    renew = off > paths->reach * static_cast<Real>(kNearlyOff);
+  }
+  guard.leave_calm_paths(time, box.centre(), renew);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    tick.grid(p).store_positions(tick.state.x);
+    tick.grid(p).store_velocities(tick.state.v);
+  }
+  return work;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                      \
+  template double advance_grid(Tick<Real>&, std::size_t, const Kick<Real>&, Real);  \
+  template void load_grids(Tick<Real>&);                                            \
+  template double advance_alone(Tick<Real>&, std::size_t, const Kicks<Real>&, int); \
+  template double advance_calm(Tick<Real>&, const Kicks<Real>&, int, int&, CalmSpell&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/solver/verlet.h"
+
+// What the files of verlet share: the kicks of a tick and everything that it works on.
+
+namespace weft {
+
+/// v <- keep v + push (f/m + g)
+template <class Real>
+struct Kick {
+  Real keep, push;
+};
+
+/// The three kicks of a tick. The opening and the closing one together are one full kick.
+template <class Real>
+struct Kicks {
+  Kick<Real> opening, full, closing;
+
+  Kicks(double dt, double drag) {
+    const double lost = 0.5 * drag * dt;
+    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
+    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
+    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt)};
+  }
+};
+
+/// One tick's constant inputs together with what it changes.
+template <class Real>
+struct Tick {
+  const ClothModel<Real>& model;
+  const Surroundings<Real>& surroundings;
+  const SolverDef& solver;
+  Real dt;
+  Grabs<Real>& grabs;
+  const Collision<Real>& collision;
+  ClothState<Real>& state;
+  VerletWorkspace<Real>& work;
+  Profile& profile;
+  bool hands, pulled;  // anybody pulls; hands or the air do
+
+  const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
+  GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }
+  bool by_rows(std::size_t p) const { return work.grids[p].fits(); }
+  std::size_t parts() const { return model.parts.size(); }
+  bool sleeps(std::size_t p) const { return state.is_asleep(p); }
+  /// It sleeps, and its energy is known.
+  bool rests(std::size_t p) const { return sleeps(p) && work.at_rest[p]; }
+};
+
+inline std::size_t size_of(const IndexRange& range) {
+  return static_cast<std::size_t>(range.count);
+}
+
+/// The numbers of a range of particles, three each.
+template <class Array>
+auto* numbers(const IndexRange& range, Array& array) {
+  return (array.data() + range.first)->data();
+}
+
+}  // namespace weft
