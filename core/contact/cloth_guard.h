@@ -44,6 +44,7 @@ struct GuardCounts {
   std::uint64_t collections = 0;  ///< of all pairs
   std::uint64_t renewals = 0;     ///< of the pairs of some particles
   std::uint64_t anchored = 0, critical = 0;
+  std::uint64_t calm = 0;  ///< steps that went by along calm paths, without a look at any particle
 };
 
 /// Straight paths of all particles. While no two features can meet that go along them, all that is
@@ -121,10 +122,11 @@ class ClothGuard {
   }
 
   /// Says that steps went by without the calls above.
+  /// @param steps   so many
   /// @param time    at their end, as in the calm paths [s]
   /// @param common  by how much all are off their paths then, in common [m]
   /// @param renew   look for other paths in the coming step
-  void leave_calm_paths(Real time, const Vec3<Real>& common, bool renew);
+  void leave_calm_paths(int steps, Real time, const Vec3<Real>& common, bool renew);
 
   /// At the end of a tick, whose last kick is half of one: stands against that with half the
   /// impulses. `sweep` makes the velocities admissible.

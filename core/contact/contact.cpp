@@ -200,7 +200,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   aim_rows(state, dt);
   if (any_jaw_) share_squeeze(state, dt / 2);
   solve_rows(state, dt, profile, guard);
-  if (!guard) return;
+  if (!guard || guard->rows().empty()) return;
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {
     guard->sweep(state);

@@ -103,7 +103,9 @@ void ClothGuard<Real>::note_paths() {
 }
 
 template <class Real>
-void ClothGuard<Real>::leave_calm_paths(Real time, const Vec3<Real>& common, bool renew) {
+void ClothGuard<Real>::leave_calm_paths(int steps, Real time, const Vec3<Real>& common,
+                                        bool renew) {
+  counts_.calm += static_cast<std::uint64_t>(steps);
   elapsed_ = calm_paths_.time = time;
   off_path_ = off_path_now_ = noted_off_path_ + to_quad(common);
   if (renew) collected_ = false;
@@ -282,17 +284,17 @@ void ClothGuard<Real>::count_motion() {
   lost_ = 0;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                     \
-  template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&);      \
-  template bool ClothGuard<Real>::stays_calm(const ClothState<Real>&, Real) const; \
-  template void ClothGuard<Real>::note_paths();                                    \
-  template void ClothGuard<Real>::leave_calm_paths(Real, const Vec3<Real>&, bool); \
-  template void ClothGuard<Real>::stop_crossings();                                \
-  template bool ClothGuard<Real>::find_critical();                                 \
-  template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);                 \
-  template bool ClothGuard<Real>::holds(const Critical&) const;                    \
-  template void ClothGuard<Real>::fix(Critical&);                                  \
-  template void ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);         \
+#define WEFT_INSTANTIATE(Real)                                                          \
+  template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&);           \
+  template bool ClothGuard<Real>::stays_calm(const ClothState<Real>&, Real) const;      \
+  template void ClothGuard<Real>::note_paths();                                         \
+  template void ClothGuard<Real>::leave_calm_paths(int, Real, const Vec3<Real>&, bool); \
+  template void ClothGuard<Real>::stop_crossings();                                     \
+  template bool ClothGuard<Real>::find_critical();                                      \
+  template bool ClothGuard<Real>::is_critical(GuardedPair<Real>&);                      \
+  template bool ClothGuard<Real>::holds(const Critical&) const;                         \
+  template void ClothGuard<Real>::fix(Critical&);                                       \
+  template void ClothGuard<Real>::truncate(ClothState<Real>&, Real, bool);              \
   template void ClothGuard<Real>::count_motion();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

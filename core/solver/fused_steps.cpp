@@ -158,7 +158,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     }
     renew = off > paths->reach * static_cast<Real>(kNearlyOff);
   }
-  guard.leave_calm_paths(time, box.centre(), renew);
+  guard.leave_calm_paths(s - first, time, box.centre(), renew);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     tick.grid(p).store_positions(tick.state.x);
     tick.grid(p).store_velocities(tick.state.v);
