@@ -16,9 +16,9 @@ constexpr double kGravity = 9.81, kFriction = 0.4;
 /// A cloth that lies on a slope of the given tangent. The ground is level and gravity leans
 /// instead, so that downhill is +x.
 template <class Real>
-World<Real> cloth_on_slope(double tangent) {
+World<Real> cloth_on_slope(double tangent, double friction = kFriction) {
   ClothDef cloth = test::flat_cloth(8, 10, 0.9, 0.7);
-  cloth.fabric.friction = kFriction;
+  cloth.fabric.friction = friction;
   cloth.origin = Vec3d(0, cloth.fabric.thickness, 0);
   WorldDef def = test::empty_world(cloth);
   const double angle = std::atan(tangent);
@@ -58,4 +58,21 @@ TEMPLATE_TEST_CASE("a cloth on a slope above the threshold slides with g (sin - 
   CHECK(moved[0] == Approx(acceleration / 2).epsilon(0.01));
   CHECK(std::abs(moved[1]) < 1e-4);
   CHECK(std::abs(moved[2]) < 1e-4);
+}
+
+TEMPLATE_TEST_CASE("at mu = 0.2 and 0.5 a cloth sticks 1 degree below atan(mu), slides 1 above", "",
+                   float, double) {
+  const double friction = GENERATE(0.2, 0.5);
+  const double threshold = std::atan(friction), degree = std::atan(1.0) / 45;
+  World<TestType> below = cloth_on_slope<TestType>(std::tan(threshold - degree), friction);
+  const Vec3Array<TestType> start = below.state().x;
+  test::advance(below, 2.0);
+  CHECK(largest_move(below, start) < 1e-5);
+
+  const double angle = threshold + degree;
+  World<TestType> above = cloth_on_slope<TestType>(std::tan(angle), friction);
+  const Vec3d before = test::centre_of_mass(above);
+  test::advance(above, 2.0);
+  const double acceleration = kGravity * (std::sin(angle) - friction * std::cos(angle));
+  CHECK((test::centre_of_mass(above) - before)[0] == Approx(2 * acceleration).epsilon(0.01));
 }
