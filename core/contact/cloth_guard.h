@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -212,6 +213,7 @@ class ClothGuard {
 
   // guard_patches.cpp
   std::uint64_t test_patches(Index p, Index q, bool all);
+  void test_near_patches(bool all, Profile& profile);
   std::uint64_t test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
   std::uint64_t test_edges(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
   typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
@@ -306,6 +308,7 @@ class ClothGuard {
   CalmPaths<Real> calm_paths_;      ///< if there was no pair then; bases with noted_off_path_
   Quad<Real> noted_off_path_;       ///< off_path_ when these were noted [m]
   Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
+  std::vector<std::pair<Index, Index>> near_patches_;  ///< whose features are to be tested
   PatchBoxes<Real> boxes_;
   PatchOverlaps overlaps_;                    ///< of the patches that are being tested
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together

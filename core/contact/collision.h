@@ -24,6 +24,7 @@ struct Collision {
   /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
+    const StageTimer timer(profile, Stage::contact, 0);
     if (guard) guard->solve(state, dt, profile);
     if (weft)
       weft->resolve(state, dt, profile, guard);
@@ -34,6 +35,7 @@ struct Collision {
   }
   /// After the drift: puts back what got in.
   void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+    const StageTimer timer(profile, Stage::contact, 0);
     if (guard) guard->finish(state);
     if (seed) seed->collide(state, dt, profile);
   }

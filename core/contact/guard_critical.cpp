@@ -31,6 +31,7 @@ constexpr double kStopShort = 1e-4;
 
 template <class Real>
 void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profile) {
+  const StageTimer timer(profile, Stage::regions, 0);
   ++substep_;
   elapsed_ += dt;
   if (calm_) {
@@ -55,7 +56,6 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     else if (!strays_.empty())
       collect_strays(dt, profile);
     collected = true;
-    const StageTimer timer(profile, Stage::narrow_phase, 0);
     const std::uint64_t before = counts_.anchored;
     find_loose();
     if (loose_.empty()) break;
@@ -63,7 +63,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     anchored_.clear();
     anchor(loose_);
     stop_crossings();
-    profile[Stage::narrow_phase].work += counts_.anchored - before;
+    profile[Stage::regions].work += counts_.anchored - before;
     truncate(state, dt, attempt >= kRetries);
     if (strays_.empty()) break;
   }

@@ -53,11 +53,10 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   tree_.refit(motion_, true);
   pairs_.clear();
   open_pairs_ = 0;
-  std::uint64_t tests = 0;
   changed_.assign(n, 1);
-  tree_.for_each_near_pair([&](Index p, Index q) { tests += test_patches(p, q, true); });
-  for (PairColumns<Real>& columns : columns_) keep_near(columns);
-  profile[Stage::broad_phase].work += tests;
+  near_patches_.clear();
+  tree_.for_each_near_pair([&](Index p, Index q) { near_patches_.push_back({p, q}); });
+  test_near_patches(true, profile);
   join_pairs();
   most_pairs_ = 2 * pairs_.size() + legal_.size();
   for (const Index i : active_) {
@@ -103,10 +102,9 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   for (std::size_t p = 0; p < tree_.patch_count(); ++p) {
     if (tree_.is_marked(static_cast<Index>(p))) boxes_.forget(static_cast<Index>(p));
   }
-  std::uint64_t tests = 0;
-  tree_.for_each_changed_pair([&](Index p, Index q) { tests += test_patches(p, q, false); });
-  for (PairColumns<Real>& columns : columns_) keep_near(columns);
-  profile[Stage::broad_phase].work += tests;
+  near_patches_.clear();
+  tree_.for_each_changed_pair([&](Index p, Index q) { near_patches_.push_back({p, q}); });
+  test_near_patches(false, profile);
   admit_pairs(kept);
   list_pairs(kept);
   // The rows of pairs that were found again hold as before.

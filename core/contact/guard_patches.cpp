@@ -46,6 +46,18 @@ std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
   return tests + test_edges(p, q, all, overlaps_.first_edges);
 }
 
+/// Tests the features of all patches that are near each other.
+/// @param all  see test_patches
+template <class Real>
+void ClothGuard<Real>::test_near_patches(bool all, Profile& profile) {
+  const StageTimer timer(profile, Stage::pairs, 0);
+  profile[Stage::broad_phase].work += near_patches_.size();
+  std::uint64_t tests = 0;
+  for (const auto& [p, q] : near_patches_) tests += test_patches(p, q, all);
+  for (PairColumns<Real>& columns : columns_) keep_near(columns);
+  profile[Stage::pairs].work += tests;
+}
+
 /// Particles of one patch against triangles of another one.
 template <class Real>
 std::uint64_t ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
@@ -116,6 +128,7 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;      \
   template std::uint64_t ClothGuard<Real>::test_patches(Index, Index, bool);                      \
+  template void ClothGuard<Real>::test_near_patches(bool, Profile&);                              \
   template std::uint64_t ClothGuard<Real>::test_triangles(Index, Index, bool,                     \
                                                           const PatchOverlaps::Bits&);            \
   template std::uint64_t ClothGuard<Real>::test_edges(Index, Index, bool,                         \

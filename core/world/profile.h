@@ -16,19 +16,23 @@ enum class Stage : std::uint8_t {
   bending,       ///< work: hinges evaluated
   integration,   ///< work: particles kicked and moved
   broad_phase,   ///< work: candidate pairs collected
+  pairs,         ///< work: features of near patches of cloths tested against each other
   narrow_phase,  ///< work: closest points computed
+  regions,       ///< work: particles of cloths anchored
   contact,       ///< work: contact rows solved
   friction,      ///< work: friction evaluations (their time is part of contact)
   diagnostics,   ///< work: checks made
   relaxation,    ///< work: springs relaxed, over all sweeps (solver relaxation)
   self_contact,  ///< work: pairs of the cloth with itself answered, over all passes (model seed)
 };
-inline constexpr std::size_t kStageCount = 13;
+inline constexpr std::size_t kStageCount = 15;
 
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "attachments", "fans",        "air",          "stretch", "bending",
-    "integration", "broad_phase", "narrow_phase", "contact", "friction",
-    "diagnostics", "relaxation",  "self_contact"};
+    "attachments", "fans",        "air",         "stretch",      "bending",
+    "integration", "broad_phase", "pairs",       "narrow_phase", "regions",
+    "contact",     "friction",    "diagnostics", "relaxation",   "self_contact"};
+
+class StageTimer;
 
 struct StageProfile {
   double seconds = 0;      ///< by the given clock; 0 without one
@@ -39,7 +43,8 @@ struct StageProfile {
 /// people and never decide anything.
 struct Profile {
   std::array<StageProfile, kStageCount> stages{};
-  double (*clock)() = nullptr;  ///< seconds from any origin, given from outside; may be null
+  double (*clock)() = nullptr;    ///< seconds from any origin, given from outside; may be null
+  StageTimer* running = nullptr;  ///< the innermost; null between steps
 
   StageProfile& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
   const StageProfile& operator[](Stage stage) const {
@@ -48,23 +53,35 @@ struct Profile {
   void clear() { stages = {}; }
 };
 
-/// Times its own life into a stage and counts its work.
+/// Times its own life into a stage and counts its work. The life of another one within it belongs
+/// to that one's stage alone.
 class StageTimer {
  public:
-  StageTimer(Profile& profile, Stage stage, std::size_t work)
-      : profile_(profile), stage_(stage), start_(profile.clock ? profile.clock() : 0) {
+  StageTimer(Profile& profile, Stage stage, std::size_t work) : profile_(profile), stage_(stage) {
     profile_[stage_].work += work;
+    if (!profile_.clock) return;
+    outer_ = profile_.running;
+    profile_.running = this;
+    start_ = profile_.clock();
+    if (outer_) outer_->book(start_);
   }
   ~StageTimer() {
-    if (profile_.clock) profile_[stage_].seconds += profile_.clock() - start_;
+    if (!profile_.clock) return;
+    const double end = profile_.clock();
+    book(end);
+    if (outer_) outer_->start_ = end;
+    profile_.running = outer_;
   }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
+  void book(double until) { profile_[stage_].seconds += until - start_; }
+
   Profile& profile_;
   Stage stage_;
-  double start_;
+  StageTimer* outer_ = nullptr;
+  double start_ = 0;
 };
 
 }  // namespace weft
