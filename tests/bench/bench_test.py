@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+import contact_tables  # noqa: E402
 import tables  # noqa: E402
 
 PROGRAM = os.environ["WEFT_BUILD_DIR"] + "/weft_bench"
@@ -119,6 +120,34 @@ class Bench(unittest.TestCase):
         self.assertIn("**no**", tables.threads(slow))
         fast = [{**rows[0], "wall_ratio": 0.6}, *slow[1:]]
         self.assertIn(f"1 of {len(rows)} ({rows[0]['scene']})", tables.threads(fast))
+
+    def test_contact_is_measured_in_every_state_and_leaves_other_tables_alone(self):
+        directory = Path(tempfile.mkdtemp())
+        (directory / "accuracy.csv").write_text("old")
+        subprocess.run([PROGRAM, "--out", directory, "--quick", "--parts", "contact", "contact-cases"],
+                       check=True, capture_output=True, timeout=300)
+        self.assertEqual((directory / "accuracy.csv").read_text(), "old")
+        speed = {row["state"]: row for row in tables.read(directory, "contact")}
+        self.assertEqual(list(speed), ["flat", "wrinkled", "folded", "crumpled"])
+        for name, row in speed.items():
+            self.assertEqual((row["missing"], row["crossings"]), ("", 0))
+            self.assertGreater(row["tick_ms"], row["elastic_ms"])
+            self.assertEqual(row["rows"] > 0, name in ("folded", "crumpled"))
+        cases = tables.read(directory, "contact_cases")
+        counts = [row["value"] for row in cases if "crossings" in row["figure"]]
+        self.assertEqual(counts, [0] * 5)
+        self.assertEqual([row["value"] for row in cases if "same bits" in row["figure"]], [1])
+        self.assertGreaterEqual(len({row["scene"] for row in cases}), 4)
+
+    def test_bars_of_contact_are_held_or_missed_by_the_figures(self):
+        row = {"scene": "pile", "figure": "a tick", "value": 8, "unit": "ms", "wanted": "at most", "bar": 8.5,
+               "runs": 5, "vectors": "AVX2", "load": "0", "commit": "x"}
+        rows = [row, {**row, "value": 9}, {**row, "wanted": "at least"}, {**row, "wanted": ""}]
+        self.assertEqual([contact_tables.verdict(r) for r in rows], ["held", "**missed**", "**missed**", "–"])
+        self.assertIn("Of 3 bars 1 are held and 2 missed.", contact_tables.cases(rows))
+        missing = {"n": 257, "state": "folded", "how": "in layers", "missing": "one tick takes 30 CPU s", **{
+            key: row[key] for key in ("vectors", "load", "commit")}}
+        self.assertIn("not measured: one tick takes 30 CPU s", contact_tables.speed([missing]))
 
     def test_a_commit_is_not_taken_for_a_number(self):
         self.assertEqual([tables.number(text) for text in ("5311e71", "1.5e-05", "3e+20", "-2", "yes")],

@@ -58,7 +58,8 @@ int measure(const Options& options) {
   std::filesystem::create_directories(options.out);
   Tables tables(options.out, options.commit);
   const std::string load = load_average();
-  tables.write_machine(load, 0);
+  const bool accuracy = wanted(options.parts, "accuracy");
+  if (accuracy) tables.write_machine(load, 0);
   const bool quick = options.effort.quick;
   if (wanted(options.parts, "kernels")) {
     std::cerr << "bench: kernels" << std::endl;
@@ -76,7 +77,11 @@ int measure(const Options& options) {
     std::cerr << "bench: hard shaking" << std::endl;
     tables.write_shaking(measure_shaking(quick));
   }
-  if (wanted(options.parts, "accuracy")) measure_accuracy(options, tables);
+  if (wanted(options.parts, "contact-cases"))
+    tables.write_contact_cases(measure_contact_cases(quick));
+  if (wanted(options.parts, "contact")) tables.write_contact(measure_contact_speed(quick));
+  if (!accuracy) return 0;
+  measure_accuracy(options, tables);
   tables.write_machine(load, cpu_seconds());
   return 0;
 }
@@ -91,8 +96,9 @@ int main(int argc, char** argv) {
   app.add_flag("--list-settings", list, "print all settings of the accuracy, one a line");
   app.add_option("--commit", options.commit, "written into each row");
   app.add_option("--meshes", options.meshes, "directory of installed meshes");
-  app.add_option("--parts", options.parts,
-                 "kernels, parts, threads, shaking, accuracy; default: all");
+  app.add_option(
+      "--parts", options.parts,
+      "kernels, parts, threads, shaking, contact-cases, contact, accuracy; default: all");
   app.add_option("--scenes", options.scenes, "of the accuracy; default: all");
   app.add_option("--fabrics", options.fabrics, "soft, stiff, cotton; default: all");
   app.add_option("--sizes", options.sizes, "particles a side, ascending");

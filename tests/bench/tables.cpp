@@ -79,18 +79,25 @@ void Csv::end_row(std::size_t count) {
 }
 
 Tables::Tables(const std::string& directory, const std::string& commit)
-    : directory_(directory), commit_(commit),
-      cells_(directory + "/accuracy.csv",
-             {"scene",          "fabric",         "n",        "solver",  "setting", "factor",
-              "damping_sweeps", "least_substeps", "sweeps",   "outcome", "reason",  "substeps",
-              "cpu_per_second", "timed_runs",     "position", "strain",  "energy",  "momentum",
-              "mean_shape",     "penetration_m",  "commit"}),
-      references_(
+    : directory_(directory), commit_(commit) {}
+
+Tables::Accuracy::Accuracy(const std::string& directory)
+    : cells(directory + "/accuracy.csv",
+            {"scene",          "fabric",         "n",        "solver",  "setting", "factor",
+             "damping_sweeps", "least_substeps", "sweeps",   "outcome", "reason",  "substeps",
+             "cpu_per_second", "timed_runs",     "position", "strain",  "energy",  "momentum",
+             "mean_shape",     "penetration_m",  "commit"}),
+      references(
           directory + "/references.csv",
           {"scene", "fabric", "n", "how", "self_error", "growth_of_1um", "mean_shape_floor",
            "compared_from_s", "compared_to_s", "horizon_s", "cpu_seconds", "missing", "commit"}),
-      spatial_(directory + "/spatial.csv",
-               {"scene", "fabric", "n", "against", "position", "commit"}) {}
+      spatial(directory + "/spatial.csv",
+              {"scene", "fabric", "n", "against", "position", "commit"}) {}
+
+Tables::Accuracy& Tables::accuracy() {
+  if (!accuracy_) accuracy_.emplace(directory_);
+  return *accuracy_;
+}
 
 void Tables::write_machine(const std::string& load_at_start, double cpu_seconds) {
   Csv csv(directory_ + "/machine.csv", {"key", "value"});
@@ -113,17 +120,17 @@ void Tables::write_machine(const std::string& load_at_start, double cpu_seconds)
 void Tables::add_case(const CaseResult& result) {
   const Reference& r = result.reference;
   const double sample = result.scene->sample_every / result.def.tick_rate;
-  references_.row(result.scene->name, result.fabric, result.n, r.how, r.self_error, r.growth,
-                  r.mean_floor, static_cast<double>(r.first) * sample,
-                  static_cast<double>(r.last) * sample, result.scene->ticks / result.def.tick_rate,
-                  r.cpu_seconds, r.missing, commit_);
+  accuracy().references.row(
+      result.scene->name, result.fabric, result.n, r.how, r.self_error, r.growth, r.mean_floor,
+      static_cast<double>(r.first) * sample, static_cast<double>(r.last) * sample,
+      result.scene->ticks / result.def.tick_rate, r.cpu_seconds, r.missing, commit_);
   for (const Cell& c : result.cells) {
     const ErrorVector& e = c.error;
     const Setting& s = c.setting;
-    cells_.row(c.scene, c.fabric, c.n, s.solver, s.name, s.factor, s.damping_sweeps, s.substeps,
-               s.sweeps, outcome_name(c.outcome), c.reason, c.substeps, c.cpu_per_second,
-               c.timed_runs, e.position, e.strain, e.energy, e.momentum, e.mean_shape,
-               e.penetration, commit_);
+    accuracy().cells.row(c.scene, c.fabric, c.n, s.solver, s.name, s.factor, s.damping_sweeps,
+                         s.substeps, s.sweeps, outcome_name(c.outcome), c.reason, c.substeps,
+                         c.cpu_per_second, c.timed_runs, e.position, e.strain, e.energy, e.momentum,
+                         e.mean_shape, e.penetration, commit_);
   }
 }
 
@@ -132,10 +139,10 @@ void Tables::add_spatial(const CaseResult& coarse, const CaseResult& fine) {
   const std::size_t first = std::max(coarse.reference.first, fine.reference.first);
   const std::size_t last = std::min(coarse.reference.last, fine.reference.last);
   if (last < first) return;
-  spatial_.row(coarse.scene->name, coarse.fabric, coarse.n, fine.n,
-               spatial_error(coarse.def.cloths[0], coarse.reference.path, fine.def.cloths[0],
-                             fine.reference.path, first, last),
-               commit_);
+  accuracy().spatial.row(coarse.scene->name, coarse.fabric, coarse.n, fine.n,
+                         spatial_error(coarse.def.cloths[0], coarse.reference.path,
+                                       fine.def.cloths[0], fine.reference.path, first, last),
+                         commit_);
 }
 
 void Tables::write_kernels(const std::vector<KernelFigure>& figures) {
@@ -171,6 +178,28 @@ void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {
   for (const ShakingFigure& f : figures)
     csv.row(f.solver, f.setting, f.fabric, f.n, f.insult, f.from_rest, f.gained_energy, f.rescues,
             commit_);
+}
+
+void Tables::write_contact(const std::vector<ContactSpeed>& figures) {
+  Csv csv(directory_ + "/contact.csv",
+          {"state",      "n",       "how",          "substeps",       "pairs",
+           "rows",       "tick_ms", "elastic_ms",   "broad_phase_ms", "pairs_ms",
+           "regions_ms", "rows_ms", "repulsion_ms", "friction_ms",    "crossings",
+           "ticks",      "runs",    "missing",      "vectors",        "load",
+           "commit"});
+  for (const ContactSpeed& f : figures)
+    csv.row(f.state, f.n, f.how, f.substeps, f.pairs, f.rows, f.tick, f.elastic, f.broad_phase,
+            f.pair_tests, f.regions, f.row_making, f.repulsion, f.friction, f.crossings, f.ticks,
+            f.runs, f.missing, std::string(simd_level()), load_average(), commit_);
+}
+
+void Tables::write_contact_cases(const std::vector<CaseFigure>& figures) {
+  static constexpr const char* kWanted[] = {"", "at most", "at least"};
+  Csv csv(directory_ + "/contact_cases.csv", {"scene", "figure", "value", "unit", "wanted", "bar",
+                                              "runs", "vectors", "load", "commit"});
+  for (const CaseFigure& f : figures)
+    csv.row(f.scene, f.name, f.value, f.unit, kWanted[static_cast<int>(f.kind)], f.bar, f.runs,
+            std::string(simd_level()), load_average(), commit_);
 }
 
 }  // namespace weft::bench

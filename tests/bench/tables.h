@@ -1,10 +1,13 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/bench/cells.h"
+#include "tests/bench/contact_cases.h"
+#include "tests/bench/contact_speed.h"
 #include "tests/bench/kernels.h"
 #include "tests/bench/parts.h"
 #include "tests/bench/shaking.h"
@@ -54,10 +57,19 @@ class Tables {
   void write_parts(const std::vector<PartFigure>& figures);
   void write_threads(const std::vector<ThreadFigure>& figures);
   void write_shaking(const std::vector<ShakingFigure>& figures);
+  void write_contact(const std::vector<ContactSpeed>& figures);
+  void write_contact_cases(const std::vector<CaseFigure>& figures);
 
  private:
+  /// Of the accuracy, whose rows are written as they come: made anew with the first.
+  struct Accuracy {
+    explicit Accuracy(const std::string& directory);
+    Csv cells, references, spatial;
+  };
+  Accuracy& accuracy();
+
   std::string directory_, commit_;
-  Csv cells_, references_, spatial_;
+  std::optional<Accuracy> accuracy_;
 };
 
 }  // namespace weft::bench

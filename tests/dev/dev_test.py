@@ -246,6 +246,11 @@ class DevScript(unittest.TestCase):
         lines = (self.machine / "calls").read_text().splitlines()
         self.assertIn(f"report {self.tree}/build/report", lines)
         self.assertTrue(any(f"--out {self.tree}/build/report/data --quick" in line for line in lines))
+        (self.machine / "calls").write_text("")
+        status, _, error = self.dev("report", "--contact")
+        self.assertEqual(status, 0, error)
+        lines = (self.machine / "calls").read_text().splitlines()
+        self.assertTrue(any(f"--out {folder}/data --parts contact-cases contact" in line for line in lines))
 
     def test_unknown_words_are_refused_with_what_is_allowed(self):
         for words, allowed in (("deploy",), "usage"), (("build", "--fast"), "--sanitize"), \

@@ -123,3 +123,28 @@ TEST_CASE("no hand counts no hand, and one that was let go leaves nothing to com
   REQUIRE(world.release(hand));
   CHECK(world.step().profile[Stage::attachments].work == 0);
 }
+
+TEST_CASE("the time of a stage within another one is its own alone") {
+  static double now;
+  now = 0;
+  Profile profile;
+  profile.clock = [] { return now; };
+  {
+    const StageTimer outer(profile, Stage::contact, 0);
+    now += 1;
+    {
+      const StageTimer inner(profile, Stage::regions, 0);
+      now += 10;
+      {
+        const StageTimer innermost(profile, Stage::pairs, 0);
+        now += 100;
+      }
+      now += 20;
+    }
+    now += 2;
+  }
+  CHECK(profile[Stage::contact].seconds == 3);
+  CHECK(profile[Stage::regions].seconds == 30);
+  CHECK(profile[Stage::pairs].seconds == 100);
+  CHECK(profile.running == nullptr);
+}
