@@ -113,6 +113,9 @@ class ClothGuard {
   /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.
   void certify(ClothState<Real>& state, Real dt, Profile& profile);
 
+  /// After `certify`: says that all stay where they were instead, off the paths that were expected.
+  void stand_still() { collected_ = false; }
+
   /// After the drift: takes the push out of the velocities again.
   void finish(ClothState<Real>& state);
 

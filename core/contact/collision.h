@@ -31,7 +31,10 @@ struct Collision {
     else if (guard)
       guard->respond_alone(state, dt, profile);
     if (seed) seed->separate(state, profile);
+    const double truncated = guard ? guard->counts().truncated : 0;
     if (guard) guard->certify(state, dt, profile);
+    if (weft && !weft->move_objects(state, dt, guard && guard->counts().truncated > truncated))
+      guard->stand_still();
   }
   /// After the drift: puts back what got in.
   void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {

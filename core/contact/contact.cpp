@@ -16,9 +16,6 @@ constexpr double kTouching = 1.05;
 /// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
 constexpr int kClosingSweeps = 4;
 
-/// What may be missing in a distance, by rounding, where nobody looks closer [m].
-constexpr double kUnseen = 1e-5;
-
 bool is_thinner(const ContactDef& a, const ContactDef& b) {
   return a.thickness < b.thickness;
 }
@@ -75,6 +72,7 @@ template <class Real>
 typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>& state,
                                                           const Index* first, int count) const {
   Corners corners;
+  corners.unseen = smallest_gap_;
   Real longest = 0, reach = 0;
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(first[k]),
@@ -94,14 +92,15 @@ typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>
 /// @param core  of the nearest corner, when the rows are built [m]
 template <class Real>
 bool Contact<Real>::Corners::clear(Real core, Real radius) const {
-  const Real least = core - reach, most = radius + Real(kUnseen);
+  const Real least = core - reach, most = radius + unseen;
   return least > 0 && least * least - span * span > most * most;
 }
 
-/// Whether corners alone keep off a ridge or corner of a mesh.
+/// Whether corners alone keep off a ridge or corner of a mesh, if it goes on as it is there: an
+/// estimate, and nothing to rely on.
 template <class Real>
 bool Contact<Real>::Corners::clear(const Rise<Real>& rise) const {
-  return gap > rise.over(span) + Real(kUnseen);
+  return gap > rise.over(span) + unseen;
 }
 
 template <class Real>
@@ -179,12 +178,15 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
     solve_rows(state, dt, profile, guard);
     if (guard) guard->push_apart(state);
-    certify(state, dt);
+    certify(state, dt, guard != nullptr);
   } else if (guard) {
     guard->respond_alone(state, dt, profile);
+    certify(state, dt, true);
   }
   first_substep_ = false;
-  move_colliders(dt);
+  if (!any_tracked_ || !guard) return;
+  x_certified_ = state.x;
+  v_certified_ = state.v;
 }
 
 template <class Real>

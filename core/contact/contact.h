@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -124,8 +126,9 @@ class Contact {
   /// to wake what an object will meet.
   void let_rest(const ClothState<Real>& state);
 
-  /// Makes the velocities admissible for the coming drift of `dt` [s]. Positions change only by
-  /// pushing out what is nearer than the thickness, slowly and without giving it velocity.
+  /// Makes the velocities admissible for the coming drift of `dt` [s], in which objects move as
+  /// planned. Positions change only by pushing out what is nearer than the thickness, slowly and
+  /// without giving it velocity. `move_objects` must follow.
   /// @param guard  of the cloths, whose rows are swept in turn with these, and again while either
   ///               still changes velocities much; null: none
   void resolve(ClothState<Real>& state, Real dt, Profile& profile,
@@ -134,6 +137,13 @@ class Contact {
   /// How far every particle may go from where it is with nothing that it could meet [m]; 0 if
   /// something is near or moves.
   Real calm_room(const ClothState<Real>& state) const;
+
+  /// Right before the drift: moves the objects on. Where somebody has been stopped since `resolve`
+  /// before one that comes, it stands still; and where that is not enough, as others follow it, all
+  /// do.
+  /// @param truncated  whether anybody may have been stopped since
+  /// @return false if all had to stand still, wherever they wanted to go
+  bool move_objects(ClothState<Real>& state, Real dt, bool truncated);
 
   /// Makes the velocities at the end of a tick admissible.
   /// @param guard  as above
@@ -212,16 +222,28 @@ class Contact {
     std::size_t patch = 0;
     IndexRange particles, edges, triangles;
   };
+  /// A plane with a convex feature of an object below it.
+  struct Barrier {
+    Vec3<Real> normal = Vec3<Real>::UnitY();  ///< out of the object
+    double top = 0;                           ///< normal.x of the feature's highest point [m]
+    Real distance = 0;                        ///< of the cloth's feature from it [m]
+  };
+  /// Who is inside what, when the rows are built: number of the collider.
+  static constexpr Index kOutside = -1, kInsideSeveral = -2;
   /// What the corners of an edge or a triangle keep to while the rows hold.
   struct Corners {
     Real span = 0;   ///< no point is farther from the nearest of them [m]
     Real reach = 0;  ///< that none goes beyond [m]
     Real gap = std::numeric_limits<Real>::infinity();  ///< from all meshes, at least [m]
+    Real unseen = 0;                                   ///< that may be missing in a distance [m]
 
     bool clear(Real core, Real radius) const;
     bool clear(const Rise<Real>& rise) const;
   };
   static constexpr int kChunks = 8;
+  /// A particle that is pushed out may go so much farther than its reach; more than a push does
+  /// [part of the thickness].
+  static constexpr double kRoomForPush = 0.125;
 
   bool empty() const {
     return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty();
@@ -261,13 +283,24 @@ class Contact {
   bool rows_hold(const ClothState<Real>& state, Real dt);
   void rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void add_particle_rows(const ClothState<Real>& state, Profile& profile);
-  void add_edge_rows(const ClothState<Real>& state, Profile& profile);
-  void add_triangle_rows(const ClothState<Real>& state, Profile& profile);
   std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i);
   Corners corners_of(const ClothState<Real>& state, const Index* first, int count) const;
+  void add_edges_on_rounds(const ClothState<Real>& state, Profile& profile);
+  void add_edges_on_meshes(const ClothState<Real>& state, Profile& profile);
+  void add_triangles_on_rounds(const ClothState<Real>& state, Profile& profile);
+  void add_triangles_on_meshes(const ClothState<Real>& state, Profile& profile);
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
-               const std::array<Real, 3>& weights, const Vec3<Real>& normal, Real distance,
-               std::size_t collider, bool responds = true);
+               const std::array<Real, 3>& weights, const Barrier& barrier, std::size_t collider,
+               bool responds = true);
+  double top_of(std::size_t mesh, const Vec3<Real>& normal,
+                std::initializer_list<Index> vertices) const;
+  void note_inside(Index particle, std::size_t collider);
+  bool is_inside(Index particle, std::size_t collider) const;
+  bool still_leaves(Index particle, std::size_t collider);
+  /// Beyond this distance two features cannot meet while the rows hold [m].
+  Real beyond_reach(Real reach) const {
+    return reach + smallest_gap_ + thickness_ * Real(kRoomForPush);
+  }
 
   // contact_exits.cpp
   Real distance_from(std::size_t collider, const Vec3<Real>& p) const;
@@ -285,12 +318,17 @@ class Contact {
   void measure_rooms();
   Real farthest2(const RowRoom& room) const;
   void find_busy_rows();
+  /// How high above a plane who moves must be after the coming drift, who is at a height now [m].
+  /// What is nearer than the smallest gap must not come nearer, rounding included.
+  Real least_end(Real now) const {
+    return now < 0 ? now : std::min(now + smallest_gap_ / 16, smallest_gap_);
+  }
   void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
   void aim_rows(const ClothState<Real>& state, Real dt);
   Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations);
   void solve_rows(ClothState<Real>& state, Real dt, Profile& profile, ClothGuard<Real>* guard);
-  void certify(ClothState<Real>& state, Real dt);
+  void certify(ClothState<Real>& state, Real dt, bool others);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt);
   void log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
                 const ClothState<Real>& state);
@@ -305,7 +343,7 @@ class Contact {
   void move_colliders(Real dt);
   void take_to_own(const Vec3Array<Real>& x);
   const Vec3Array<Real>& in_frame_of(std::size_t mesh, const Vec3Array<Real>& x) const;
-  void follow(const ContactRow<Real>& row, std::size_t collider, Real mobility);
+  void follow(const ContactRow<Real>& row, double top, std::size_t collider, Real mobility);
   void take_reaction(const ContactRow<Real>& row, const Vec3<Real>& point,
                      const Vec3<Real>& change);
   Real height_after(const ContactRow<Real>& row, const Vec3<Real>& end) const;
@@ -317,10 +355,19 @@ class Contact {
   Real least_height(const ContactRow<Real>& row, bool moves) const;
   void take_back_pushes(ClothState<Real>& state);
 
+  // contact_stops.cpp
+  bool find_stopped(const ClothState<Real>& state);
+  bool ends_legally(const ContactRow<Real>& row, std::size_t k, const ClothState<Real>& state,
+                    Real dt) const;
+  bool block_before_stopped(const ClothState<Real>& state, Real dt);
+  bool may_stand(const ClothState<Real>& state, Real dt) const;
+  void halt(ClothState<Real>& state, Real dt);
+
   Index cloth_of(Index particle) const;
 
   std::vector<ContactDef> cloths_;
-  Real thickness_ = 0;  ///< the largest of all cloths, for reaches [m]
+  Real thickness_ = 0;     ///< the largest of all cloths, for reaches [m]
+  Real smallest_gap_ = 0;  ///< that is left between cloth and objects after every step [m]
   Executor* executor_ = nullptr;
   ClothPatches patches_;
   std::vector<Plane> planes_;
@@ -356,8 +403,8 @@ class Contact {
   std::array<Found, kChunks> found_;
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
   std::vector<MeshDistance<Real>>
-      nearby_;                ///< triangles near one particle, while its rows are built
-  std::vector<char> inside_;  ///< particles inside a closed mesh, or where they started
+      nearby_;                 ///< triangles near one particle, while its rows are built
+  std::vector<Index> inside_;  ///< of each particle the collider that it is inside of
   std::vector<BadStart<Real>> exits_;
   std::vector<ContactRow<Real>> rows_;
   std::vector<Real> travel2_;             ///< see measure_way [m^2]
@@ -380,6 +427,9 @@ class Contact {
   std::vector<Vec3Array<Real>> x_own_;  ///< active particles in the frame of each mesh
   std::vector<MovingRow<Real>> moving_rows_;
   Vec3Array<Real> x_unpushed_;  ///< before the push-out
+  /// As certified, while objects move: whoever is elsewhere then was stopped by somebody else.
+  Vec3Array<Real> x_certified_, v_certified_;
+  std::vector<char> is_stopped_;
   double work_ = 0;
   ContactLog log_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/contact.h"
 
@@ -24,6 +25,10 @@ constexpr double kSkinSubsteps = 4;
 
 /// Clearance of what sleeps [m]: no list ever has it.
 constexpr double kOutOfReach = 1e9;
+
+/// What is left between cloth and objects at least [m]; where single precision does not reach so
+/// far, so many of its roundings.
+constexpr double kSmallestGap = 1e-5, kRoundings = 64;
 
 /// Collections between two measurements of a particle that is near without having pairs.
 constexpr std::size_t kTurns = 8;
@@ -88,6 +93,10 @@ Real Contact<Real>::least_clearance(const Vec3<Real>& p, Real reach) const {
 template <class Real>
 void Contact<Real>::collect(const ClothState<Real>& state, Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
+  Real farthest = 0;
+  for (const Vec3<Real>& x : state.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  const Real rounding = farthest * std::numeric_limits<Real>::epsilon();
+  smallest_gap_ = std::max(Real(kSmallestGap), rounding * Real(kRoundings));
   measure_clearance(state, dt, profile);
   ++collections_;
   mark_near(state);

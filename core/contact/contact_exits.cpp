@@ -53,6 +53,31 @@ Real Contact<Real>::gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x
   return distance < Real(kFar) ? distance : row.normal.dot(p) - row.offset;
 }
 
+template <class Real>
+void Contact<Real>::note_inside(Index particle, std::size_t collider) {
+  Index& known = inside_[static_cast<std::size_t>(particle)];
+  const auto number = static_cast<Index>(collider);
+  known = known == kOutside || known == number ? number : kInsideSeveral;
+}
+
+template <class Real>
+bool Contact<Real>::is_inside(Index particle, std::size_t collider) const {
+  const Index known = inside_[static_cast<std::size_t>(particle)];
+  return known == static_cast<Index>(collider) || known == kInsideSeveral;
+}
+
+/// Whether a particle's cloth is just leaving an object in which it started: what cuts a corner of
+/// that goes on outward.
+template <class Real>
+bool Contact<Real>::still_leaves(Index particle, std::size_t collider) {
+  for (BadStart<Real>& exit : exits_) {
+    if (exit.collider != collider || exit.cloth != cloth_of(particle)) continue;
+    ++exit.particles;
+    return true;
+  }
+  return false;
+}
+
 /// Adds the row of a particle inside a solid. Pressed in a little it goes back to the nearest
 /// surface. What started inside is led out in one direction with all of the cloth that is inside
 /// too: the ways to the nearest surface would part it on two sides.
@@ -63,18 +88,21 @@ void Contact<Real>::add_inside(const ClothState<Real>& state, Index i, const Vec
   auto exit = std::find_if(exits_.begin(), exits_.end(), [&](const BadStart<Real>& e) {
     return e.collider == collider && e.cloth == cloth;
   });
+  const auto add = [&](const Vec3<Real>& outward, Real from) {
+    const Vec3d n = outward.template cast<double>();
+    const double height = n.dot(state.x[static_cast<std::size_t>(i)].template cast<double>());
+    const double top = height - static_cast<double>(from);
+    add_row(state, {i}, {Real(1), 0, 0}, {outward, top, from}, collider);
+  };
   if (exit == exits_.end()) {
     const Real thickness = static_cast<Real>(cloths_[static_cast<std::size_t>(cloth)].thickness);
-    if (!(distance < -thickness)) {
-      add_row(state, {i}, {Real(1), 0, 0}, normal, distance, collider);
-      return;
-    }
+    if (!(distance < -thickness)) return add(normal, distance);
     exits_.push_back({collider, cloth, find_way_out(state, collider, cloth), 0});
     exit = exits_.end() - 1;
   }
   ++exit->particles;
   const auto p = static_cast<std::size_t>(i);
-  inside_[p] = 1;
+  note_inside(i, collider);
   const Vec3<Real>& x = state.x[p];
   Real way = 0;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -82,7 +110,7 @@ void Contact<Real>::add_inside(const ClothState<Real>& state, Index i, const Vec
     if (!(left > 0)) break;
     way += std::max(left, static_cast<Real>(kLeastStep));
   }
-  add_row(state, {i}, {Real(1), 0, 0}, exit->direction, -way, collider);
+  add(exit->direction, -way);
 }
 
 /// The direction in which the part of a cloth that is inside an object leaves it: across the cloth,
@@ -135,6 +163,9 @@ Vec3<Real> Contact<Real>::find_way_out(const ClothState<Real>& state, std::size_
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
+  template void Contact<Real>::note_inside(Index, std::size_t);                                    \
+  template bool Contact<Real>::is_inside(Index, std::size_t) const;                                \
+  template bool Contact<Real>::still_leaves(Index, std::size_t);                                   \
   template Real Contact<Real>::distance_from(std::size_t, const Vec3<Real>&) const;                \
   template Real Contact<Real>::gap_of(const ContactRow<Real>&, const Vec3Array<Real>&) const;      \
   template void Contact<Real>::add_inside(const ClothState<Real>&, Index, const Vec3<Real>&, Real, \

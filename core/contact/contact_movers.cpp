@@ -16,9 +16,6 @@ constexpr int kCertifyRounds = 3;
 /// that cloth in a pinch stops it before there is no room for rounding [part of the thickness].
 constexpr double kMoverGap = 0.25;
 
-/// What must be left in any case, as with objects at rest [m].
-constexpr double kSmallestGap = 1e-5;
-
 /// Rounding of a particle that is carried along [m].
 constexpr double kCarrySlack = 1e-6;
 
@@ -115,7 +112,8 @@ const Vec3Array<Real>& Contact<Real>::in_frame_of(std::size_t mesh,
 
 /// Makes the row about to be added go with its object.
 template <class Real>
-void Contact<Real>::follow(const ContactRow<Real>& row, std::size_t collider, Real mobility) {
+void Contact<Real>::follow(const ContactRow<Real>& row, double top, std::size_t collider,
+                           Real mobility) {
   const ColliderFrame<Real>& frame = frames_[collider];
   const Vec3d normal = row.normal.template cast<double>();
   const Vec3d shift = frame.pose.position - frame.pose.rotation * frame.pivot;
@@ -123,7 +121,7 @@ void Contact<Real>::follow(const ContactRow<Real>& row, std::size_t collider, Re
   moving.row = rows_.size();
   moving.collider = collider;
   moving.own_normal = frame.pose.rotation.conjugate() * normal;
-  moving.own_offset = static_cast<double>(row.offset) - normal.dot(shift);
+  moving.own_offset = top - normal.dot(shift);
   moving.mobility = mobility;
   moving_rows_.push_back(moving);
 }
@@ -155,7 +153,7 @@ Real Contact<Real>::height_after(const ContactRow<Real>& row, const Vec3<Real>& 
 /// What must be left above a row's plane, unless it is less already [m].
 template <class Real>
 Real Contact<Real>::least_height(const ContactRow<Real>& row, bool moves) const {
-  return moves ? std::max(Real(kSmallestGap), row.thickness * Real(kMoverGap)) : Real(kSmallestGap);
+  return moves ? std::max(smallest_gap_, row.thickness * Real(kMoverGap)) : smallest_gap_;
 }
 
 /// Between objects that close, or where cloth is drawn between two, one pushes it out into the
@@ -230,8 +228,7 @@ void Contact<Real>::certify_with_movers(ClothState<Real>& state, Real dt) {
 template <class Real>
 bool Contact<Real>::hold_or_block(bool carry, ClothState<Real>& state, Real dt) {
   bool changed = false;
-  for (const Index k : active_particles_) {
-    const auto i = static_cast<std::size_t>(k);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec3<Real> end = state.x[i] + state.v[i] * dt;
     const Real reach = row_reach_[i] - way_rows_;
     if ((end - x_rows_[i]).squaredNorm() <= reach * std::abs(reach) || state.v[i].isZero(0))
@@ -255,7 +252,7 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = height_after(row, state.x[i] + state.v[i] * dt);
     const bool moves = mover && frames_[collider].moves;
-    Real least = std::min(now, Real(kSmallestGap));
+    Real least = moves ? std::min(now, smallest_gap_) : least_end(now);
     if (moves) least = std::max(least, std::min(now, least_height(row, true)) - Real(kCarrySlack));
     if (end >= least) continue;
     const bool held = state.inverse_mass[i] == 0;
@@ -297,7 +294,7 @@ void Contact<Real>::block(std::size_t collider) {
   template void Contact<Real>::take_to_own(const Vec3Array<Real>&);                               \
   template const Vec3Array<Real>& Contact<Real>::in_frame_of(std::size_t, const Vec3Array<Real>&) \
       const;                                                                                      \
-  template void Contact<Real>::follow(const ContactRow<Real>&, std::size_t, Real);                \
+  template void Contact<Real>::follow(const ContactRow<Real>&, double, std::size_t, Real);        \
   template void Contact<Real>::take_reaction(const ContactRow<Real>&, const Vec3<Real>&,          \
                                              const Vec3<Real>&);                                  \
   template Real Contact<Real>::height_after(const ContactRow<Real>&, const Vec3<Real>&) const;    \

@@ -34,9 +34,6 @@ constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
 /// Rounds of projection on violated planes before a particle is held.
 constexpr int kCertifyRounds = 3;
 
-/// What must be left between a particle and an object after every step [m].
-constexpr double kSmallestGap = 1e-5;
-
 /// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
 /// particle, of weight 1.
 template <class Real>
@@ -104,7 +101,7 @@ void Contact<Real>::measure_rooms() {
       room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
     room.touch2 = row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * kRoom)
                                : std::numeric_limits<Real>::infinity();
-    room.cross2 = square(row.least_height - Real(kSmallestGap));
+    room.cross2 = square(row.least_height - smallest_gap_);
     rooms_.push_back(room);
   }
 }
@@ -251,8 +248,8 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
     const auto i = static_cast<std::size_t>(row.particle[k]);
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
-    const Real least = std::min(now, Real(kSmallestGap));
-    if (end >= least || state.inverse_mass[i] == 0) continue;
+    const Real least = least_end(now);
+    if (end >= least || state.inverse_mass[i] == 0 || state.v[i].isZero(0)) continue;
     kept = true;
     const Vec3<Real> before = state.v[i];
     if (hold)
@@ -268,8 +265,7 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
 /// is always allowed.
 template <class Real>
 void Contact<Real>::hold_within_reach(ClothState<Real>& state, Real dt) {
-  for (const Index k : active_particles_) {
-    const auto i = static_cast<std::size_t>(k);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec3<Real> end = state.x[i] + state.v[i] * dt;
     const Real reach = row_reach_[i] - way_rows_;
     if (!((end - x_rows_[i]).squaredNorm() <= reach * std::abs(reach))) state.v[i].setZero();
@@ -277,11 +273,12 @@ void Contact<Real>::hold_within_reach(ClothState<Real>& state, Real dt) {
 }
 
 /// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach.
+/// @param others  have changed velocities since everybody was measured, and not by rows
 template <class Real>
-void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
+void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
   if (!moving_rows_.empty()) return certify_with_movers(state, dt);
   const bool still = stands_still();
-  if (!still || !measure_pushed_way(state, dt)) {
+  if (!still || !(others ? measure_way(state, dt) : measure_pushed_way(state, dt))) {
     hold_within_reach(state, dt);
     measure_way(state, dt);
   }
@@ -315,7 +312,7 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt) {
   template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \
   template void Contact<Real>::log_stop(const ContactRow<Real>&, std::size_t, const Vec3<Real>&, \
                                         const ClothState<Real>&);                                \
-  template void Contact<Real>::certify(ClothState<Real>&, Real);
+  template void Contact<Real>::certify(ClothState<Real>&, Real, bool);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -157,26 +157,26 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
   return shape;
 }
 
+/// In double precision: at a sharp ridge or corner a small error would change sides.
 template <class Real>
 MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-  const auto corner = [&](std::size_t k) {
-    return mesh.positions[static_cast<std::size_t>(triangle[k])];
+  const auto corner = [&](std::size_t k) -> Vec3d {
+    return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
   };
-  const TrianglePoint<Real> nearest = closest_on_triangle<Real>(p, corner(0), corner(1), corner(2));
-  const Vec3<Real> away = p - nearest.point;
-  const Real distance = away.norm();
+  const Vec3d point = p.template cast<double>();
+  const auto nearest = closest_on_triangle<double>(point, corner(0), corner(1), corner(2));
+  const Vec3d away = point - nearest.point;
+  const double distance = away.norm();
   const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
   MeshDistance<Real> result;
   result.triangle = t;
   // So near the surface that the direction is rounding, the feature's normal serves.
-  constexpr Real kTouching = Real(1e-6);
-  const bool inside = mesh.closed && away.dot(outward) < 0;
-  result.distance = inside ? -distance : distance;
-  if (distance > kTouching)
-    result.normal = away * ((inside ? Real(-1) : Real(1)) / distance);
-  else
-    result.normal = outward;
+  constexpr double kTouching = 1e-6;
+  const double sign = mesh.closed && away.dot(outward.template cast<double>()) < 0 ? -1 : 1;
+  result.distance = static_cast<Real>(sign * distance);
+  result.normal = outward;
+  if (distance > kTouching) result.normal = (away * (sign / distance)).template cast<Real>();
   return result;
 }
 

@@ -115,7 +115,8 @@ SegmentPoints<Real> closest_of_segments(const Vec3<Real>& a, const Vec3<Real>& b
   const Real determinant = uu * vv - uv * uv;
   SegmentPoints<Real> result;
   // Relative to uu vv the determinant is the squared sine of the angle between the segments.
-  if (determinant > uu * vv * Real(1e-10))
+  constexpr Real kParallel = std::numeric_limits<Real>::digits > 30 ? Real(1e-14) : Real(1e-10);
+  if (determinant > uu * vv * kParallel)
     result.s = std::clamp((uv * v.dot(r) - ur * vv) / determinant, Real(0), Real(1));
   result.t = closest_on_segment<Real>(a + u * result.s, c, d);
   result.q = c + v * result.t;

@@ -93,6 +93,7 @@ struct Particles {
       kick();
       const ClothState<Real> before = state;
       contact.resolve(state, static_cast<Real>(dt()), profile);
+      contact.move_objects(state, static_cast<Real>(dt()), false);
       drift();
       watch(before);
     }

@@ -268,7 +268,7 @@ bool has_row(const Contact<Real>& contact, const ClothState<Real>& state,
 
 }  // namespace
 
-TEST_CASE("rows exist for exactly the pairs that brute force finds within reach of the thickness") {
+TEST_CASE("rows exist for the pairs that brute force finds within reach of the thickness") {
   Random random(31);
   const TriangleMesh box = box_mesh(Vec3d(0.08, 0.02, 0.06)), needle = test::needle(0.01, 0.1, 5);
   int pairs = 0;
@@ -307,6 +307,9 @@ TEST_CASE("rows exist for exactly the pairs that brute force finds within reach 
     ClothState<double> state = cloth.state;
     contact.resolve(state, cloth.dt(), profile);
     INFO("round " << round);
+    // Edges and corners that particles keep off need rows only where they may meet while the rows
+    // hold: until somebody at rest has gone so far.
+    const double way = def.thickness / 2;
     for (std::size_t i = 0; i < cloth.state.x.size(); ++i) {
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const double distance = triangle_distance(mesh, t, cloth.state.x[i]);
@@ -323,7 +326,7 @@ TEST_CASE("rows exist for exactly the pairs that brute force finds within reach 
                                                    mesh.positions[static_cast<std::size_t>(m.a)],
                                                    mesh.positions[static_cast<std::size_t>(m.b)]);
         const double distance = (c.p - c.q).norm();
-        if (distance > def.thickness) continue;
+        if (distance > way) continue;
         ++pairs;
         CHECK(has_row(contact, cloth.state, {e[0], e[1]}, distance));
       }
@@ -333,7 +336,7 @@ TEST_CASE("rows exist for exactly the pairs that brute force finds within reach 
       const auto c = closest_on_triangle<double>(tip, cloth.position(t[0]), cloth.position(t[1]),
                                                  cloth.position(t[2]));
       const double distance = (c.point - tip).norm();
-      if (distance > def.thickness) continue;
+      if (distance > way) continue;
       ++pairs;
       CHECK(has_row(contact, cloth.state, {t[0], t[1], t[2]}, distance));
     }

@@ -62,6 +62,7 @@ struct Mill {
       for (int s = 0; s < particles.substeps; ++s) {
         particles.kick();
         contact.resolve(particles.state, static_cast<Real>(particles.dt()), particles.profile);
+        contact.move_objects(particles.state, static_cast<Real>(particles.dt()), false);
         particles.drift();
       }
       finish_motion(defs, tick_seconds, states);
@@ -327,6 +328,7 @@ TEST_CASE("nothing is allocated while objects move through what they have met") 
   mill.contact.begin_tick(cloth.tick_seconds, &mill.states);
   for (int s = 0; s < cloth.substeps; ++s) {
     mill.contact.resolve(mill.particles.state, static_cast<float>(cloth.dt()), cloth.profile);
+    mill.contact.move_objects(mill.particles.state, static_cast<float>(cloth.dt()), false);
     mill.particles.drift();
   }
   finish_motion(mill.defs, cloth.tick_seconds, mill.states);
