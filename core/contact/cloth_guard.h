@@ -229,7 +229,7 @@ class ClothGuard {
   };
   void measure_steps();
   Speeds speeds(const GuardedPair<Real>& pair) const;
-  void find_strays();
+  void find_strays(const ClothState<Real>& state, Real dt);
   void find_loose();
   void anchor(const std::vector<Index>& list);
   void anchor_wave(bool first);

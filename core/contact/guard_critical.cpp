@@ -42,12 +42,9 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     }
     for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(x_before_[i]);
   }
-  for (std::size_t i = 0; i < step_.size(); ++i)
-    step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
-  strays_.clear();
   anchored_.clear();
+  find_strays(state, dt);
   bool collected = collected_ && elapsed_ <= horizon_;
-  if (collected) find_strays();
   for (int attempt = 0;; ++attempt) {
     collected =
         collected && strays_.size() <= awake_count_ / kManyStrays && pairs_.size() <= most_pairs_;

@@ -46,26 +46,36 @@ typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Rea
   return {side[0] + both, side[1] + both};
 }
 
-/// Lists the particles that leave the balls around their predicted paths in the coming step, and
-/// with them those that soon will. What all leave their paths by in common changes nothing between
-/// them, and is told from the step before.
+/// Tells how far everybody wants to move in the coming step. Lists the particles that leave the
+/// balls around their predicted paths in it, and with them those that soon will. What all leave
+/// their paths by in common changes nothing between them, and is told from the step before.
 template <class Real>
-void ClothGuard<Real>::find_strays() {
+void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
   const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
   bool left = false;
   strays_.clear();
-  const auto off = [&](std::size_t i) { return legal_[i] + step_[i] - on_path(i, elapsed_); };
-  for (std::size_t i = 0; i < step_.size(); ++i) {
-    const Quad<Real> own = off(i) - off_path_;
+  const auto look = [&](std::size_t i) {
+    step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
+    const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_), own = off - off_path_;
     const Real off2 = dot(own, own);
-    if (off2 <= soon) continue;
-    strays_.push_back(static_cast<Index>(i));
-    left |= !(off2 <= limit);
+    if (off2 > soon) {
+      strays_.push_back(static_cast<Index>(i));
+      left |= !(off2 <= limit);
+    }
+    return off;
+  };
+  Quad<Real> sum;
+  std::size_t i = 0;
+  for (const IndexRange& range : awake_) {
+    for (; i < static_cast<std::size_t>(range.first); ++i) look(i);
+    for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
   }
+  for (; i < step_.size(); ++i) look(i);
   if (!left) strays_.clear();
+  if (!collected_ || !(elapsed_ <= horizon_)) return;
   off_path_before_ = off_path_now_;
   off_path_now_ = off_path_;
-  off_path_ = mean_awake(off);
+  off_path_ = sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake_count_, 1)));
 }
 
 /// Particles that would leave the room around their anchors.
@@ -226,7 +236,7 @@ void ClothGuard<Real>::anchor_all() {
   template void ClothGuard<Real>::measure_steps();                                              \
   template typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>&) \
       const;                                                                                    \
-  template void ClothGuard<Real>::find_strays();                                                \
+  template void ClothGuard<Real>::find_strays(const ClothState<Real>&, Real);                   \
   template void ClothGuard<Real>::find_loose();                                                 \
   template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
   template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \
