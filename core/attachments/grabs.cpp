@@ -201,6 +201,23 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
     share_force(shot.particles, shot.weights, shot.force, force);
 }
 
+template <class Real>
+void hold_back(Real seconds, ClothState<Real>& state, Grabs<Real>& grabs) {
+  constexpr Real kMost = static_cast<Real>(kFastestHeld);
+  for (Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode == GrabMode::sling) continue;
+    for (const Index i : grab.particles) {
+      Vec3<Real>& v = state.v[static_cast<std::size_t>(i)];
+      const Real inverse_mass = state.inverse_mass[static_cast<std::size_t>(i)];
+      const Real speed2 = v.squaredNorm();
+      if (!(speed2 > kMost * kMost) || inverse_mass == 0) continue;
+      const Vec3<Real> kept = v * (kMost / std::sqrt(speed2));
+      grab.force -= (v - kept) / (inverse_mass * seconds);
+      v = kept;
+    }
+  }
+}
+
 #define WEFT_INSTANTIATE(Real)                                                               \
   template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&, \
                            Grabs<Real>&);                                                    \
@@ -210,6 +227,7 @@ void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& 
                                                 Grabs<Real>&);                               \
   template void finish_tick(Grabs<Real>&);                                                   \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
+  template void hold_back(Real, ClothState<Real>&, Grabs<Real>&);                            \
   template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -21,6 +21,12 @@ enum class GrabMode : std::uint8_t {
 /// its whole impulse to the few grams of the held disc before the cloth around them can follow.
 inline constexpr double kSlingSeconds = 0.1;
 
+/// No live hand makes the cloth that it holds faster than this [m/s]: who jumps by metres comes
+/// after at this speed, as if it pulled less. Where the cloth cannot follow, a strong hand's force
+/// would else throw its few grams about at thousands of metres a second, and nothing near would be
+/// far enough from them not to matter.
+inline constexpr double kFastestHeld = 30;
+
 /// A hand that holds the cloth at a point of a triangle. A live one pulls it towards a target with
 /// a damped spring of bounded force. A sling gives, when fired, the constant force stiffness
 /// (target - held point) for kSlingSeconds, bounded too. Neither sets a position.
@@ -111,5 +117,11 @@ Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x);
 template <class Real>
 void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
                      Vec3Array<Real>& force);
+
+/// After the forces have changed the velocities: takes back what is above kFastestHeld, and what
+/// that took of the force.
+/// @param seconds  for which the forces acted
+template <class Real>
+void hold_back(Real seconds, ClothState<Real>& state, Grabs<Real>& grabs);
 
 }  // namespace weft

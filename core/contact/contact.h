@@ -192,11 +192,12 @@ class Contact {
     std::vector<Index> number;
     std::vector<Real> values;
     std::vector<Real> reach2;       ///< of the cloth's: how near the other of a pair is [m^2]
+    std::vector<Real> rounding;     ///< by which distances may come out too large [m]
     std::vector<Aabb<Real>> boxes;  ///< of the cloth's
     Aabb<Real> around;              ///< the reach of all
 
     void clear();
-    void add(Index feature, Real reach, const Aabb<Real>& box,
+    void add(Index feature, Real reach, Real error, const Aabb<Real>& box,
              std::initializer_list<Vec3<Real>> vectors);
   };
   /// What a mesh has about a patch of the cloth; serves until the patch leaves the box.
@@ -266,8 +267,10 @@ class Contact {
   void collect_pairs(const ClothState<Real>& state, Profile& profile);
   void mark_paired();
   void join_found(std::size_t mesh, Profile& profile);
-  void load_particles(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
-  void load_edges(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
+  void load_particles(const MeshShape<Real>& mesh, const NearPatch& near, const Vec3Array<Real>& x,
+                      Features& into);
+  void load_edges(const MeshShape<Real>& mesh, const NearPatch& near, const Vec3Array<Real>& x,
+                  Features& into);
   void load_triangles(const NearPatch& near, const Vec3Array<Real>& x, Features& into);
   void load_mesh(const MeshShape<Real>& mesh, Neighbourhood& about) const;
   void pair_patch(std::size_t m, const NearPatch& near, const Vec3Array<Real>& x, Found& found);

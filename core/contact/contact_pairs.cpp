@@ -100,10 +100,11 @@ void Contact<Real>::join_found(std::size_t mesh, Profile& profile) {
 }
 
 template <class Real>
-void Contact<Real>::Features::add(Index feature, Real reach, const Aabb<Real>& box,
+void Contact<Real>::Features::add(Index feature, Real reach, Real error, const Aabb<Real>& box,
                                   std::initializer_list<Vec3<Real>> vectors) {
   number.push_back(feature);
   reach2.push_back(reach * reach);
+  rounding.push_back(error);
   boxes.push_back(box);
   around.add(box.grown(reach));
   for (const Vec3<Real>& v : vectors) values.insert(values.end(), {v[0], v[1], v[2]});
@@ -114,14 +115,15 @@ void Contact<Real>::Features::clear() {
   number.clear();
   values.clear();
   reach2.clear();
+  rounding.clear();
   boxes.clear();
   around = {};
 }
 
 /// The near particles of a patch that may have pairs.
 template <class Real>
-void Contact<Real>::load_particles(const NearPatch& near, const Vec3Array<Real>& x,
-                                   Features& into) {
+void Contact<Real>::load_particles(const MeshShape<Real>& mesh, const NearPatch& near,
+                                   const Vec3Array<Real>& x, Features& into) {
   into.clear();
   for (Index k = near.particles.first; k < near.particles.end(); ++k) {
     const Index i = active_particles_[static_cast<std::size_t>(k)];
@@ -133,13 +135,14 @@ void Contact<Real>::load_particles(const NearPatch& near, const Vec3Array<Real>&
     }
     Aabb<Real> box;
     box.add(x[p]);
-    into.add(i, reach, box, {x[p]});
+    into.add(i, reach, mesh.rounding, box, {x[p]});
   }
 }
 
 /// The near edges of a patch that may have pairs.
 template <class Real>
-void Contact<Real>::load_edges(const NearPatch& near, const Vec3Array<Real>& x, Features& into) {
+void Contact<Real>::load_edges(const MeshShape<Real>& mesh, const NearPatch& near,
+                               const Vec3Array<Real>& x, Features& into) {
   into.clear();
   for (Index k = near.edges.first; k < near.edges.end(); ++k) {
     const Index e = near_edges_[static_cast<std::size_t>(k)];
@@ -148,7 +151,7 @@ void Contact<Real>::load_edges(const NearPatch& near, const Vec3Array<Real>& x, 
     const Real reach = thickness_ + std::max(skin_[i], skin_[j]);
     const Vec3<Real> way = x[j] - x[i];
     // No point of the edge is nearer than this, by the clearances of its ends.
-    const Real clear = (clearance_[i] + clearance_[j] - way.norm()) / 2;
+    const Real length = way.norm(), clear = (clearance_[i] + clearance_[j] - length) / 2;
     if (clear > reach) {
       edge_room_[static_cast<std::size_t>(e)] = clear - thickness_;
       continue;
@@ -156,7 +159,7 @@ void Contact<Real>::load_edges(const NearPatch& near, const Vec3Array<Real>& x, 
     Aabb<Real> box;
     box.add(x[i]);
     box.add(x[j]);
-    into.add(e, reach, box, {x[i], way});
+    into.add(e, reach, rounding_of_segments(length, mesh.longest_edge), box, {x[i], way});
   }
 }
 
@@ -179,7 +182,10 @@ void Contact<Real>::load_triangles(const NearPatch& near, const Vec3Array<Real>&
     }
     Aabb<Real> box;
     for (const std::size_t corner : {a, b, c}) box.add(x[corner]);
-    into.add(t, reach, box, {x[a], x[b] - x[a], x[c] - x[a]});
+    const Vec3<Real> ab = x[b] - x[a], ac = x[c] - x[a];
+    const Real longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const Real error = rounding_of_triangle(std::sqrt(longest2), ab.cross(ac).norm());
+    into.add(t, reach, error, box, {x[a], ab, ac});
   }
 }
 
@@ -228,8 +234,8 @@ template <class Real>
 void Contact<Real>::pair_patch(std::size_t m, const NearPatch& near, const Vec3Array<Real>& x,
                                Found& found) {
   const MeshShape<Real>& mesh = meshes_[m];
-  load_particles(near, x, found.particles);
-  load_edges(near, x, found.edges);
+  load_particles(mesh, near, x, found.particles);
+  load_edges(mesh, near, x, found.edges);
   load_triangles(near, x, found.triangles);
   Aabb<Real> around = found.particles.around;
   around.add(found.edges.around);
@@ -268,7 +274,7 @@ FeatureTable<Real> Contact<Real>::measure_all(const Features& cloth, const Featu
     const Real beyond =
         std::min(std::sqrt(table.beyond2[f]), distance_to_border(cloth.boxes[f], box));
     Real& known = room[static_cast<std::size_t>(cloth.number[f])];
-    known = std::min(known, beyond - thickness_);
+    known = std::min(known, beyond - cloth.rounding[f] - thickness_);
   }
   return table;
 }
@@ -280,7 +286,7 @@ void Contact<Real>::pair_all(const Features& cloth, const Features& mesh, const 
   const FeatureTable<Real> table = measure_all(cloth, mesh, box, measure, found, room);
   for (std::size_t f = 0; f < table.count; ++f) {
     for_each_near(table, f, mesh.number.size(), [&](std::size_t n, Real distance) {
-      pairs.push_back({cloth.number[f], mesh.number[n], distance});
+      pairs.push_back({cloth.number[f], mesh.number[n], distance - cloth.rounding[f]});
     });
   }
 }
@@ -298,7 +304,7 @@ void Contact<Real>::pair_particles(const MeshShape<Real>& mesh, const Vec3Array<
     ContactCandidate<Real> best;
     best.feature = kNone;
     for_each_near(table, f, triangles.number.size(), [&](std::size_t n, Real distance) {
-      pairs.push_back({particles.number[f], triangles.number[n], distance});
+      pairs.push_back({particles.number[f], triangles.number[n], distance - particles.rounding[f]});
       if (best.feature == kNone || distance < best.distance) best = pairs.back();
     });
     MeshDistance<Real> nearest;
@@ -317,7 +323,7 @@ void Contact<Real>::pair_particles(const MeshShape<Real>& mesh, const Vec3Array<
       continue;
     }
     has_pairs_[p] = 1;
-    fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest.distance);
+    fresh_clearance_[p] = std::min(fresh_clearance_[p], nearest.distance - particles.rounding[f]);
   }
 }
 
@@ -351,11 +357,12 @@ void Contact<Real>::extend_skins() {
   template void Contact<Real>::collect_pairs(const ClothState<Real>&, Profile&);                 \
   template void Contact<Real>::join_found(std::size_t, Profile&);                                \
   template void Contact<Real>::Features::clear();                                                \
-  template void Contact<Real>::Features::add(Index, Real, const Aabb<Real>&,                     \
+  template void Contact<Real>::Features::add(Index, Real, Real, const Aabb<Real>&,               \
                                              std::initializer_list<Vec3<Real>>);                 \
-  template void Contact<Real>::load_particles(const NearPatch&, const Vec3Array<Real>&,          \
-                                              Features&);                                        \
-  template void Contact<Real>::load_edges(const NearPatch&, const Vec3Array<Real>&, Features&);  \
+  template void Contact<Real>::load_particles(const MeshShape<Real>&, const NearPatch&,          \
+                                              const Vec3Array<Real>&, Features&);                \
+  template void Contact<Real>::load_edges(const MeshShape<Real>&, const NearPatch&,              \
+                                          const Vec3Array<Real>&, Features&);                    \
   template void Contact<Real>::load_triangles(const NearPatch&, const Vec3Array<Real>&,          \
                                               Features&);                                        \
   template void Contact<Real>::load_mesh(const MeshShape<Real>&, Neighbourhood&) const;          \

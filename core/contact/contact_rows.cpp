@@ -179,9 +179,14 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
     return thickness_ + row_reach_[static_cast<std::size_t>(i)];
   };
   /// The axis of the object from a to b, and a radius about it.
-  const auto add_round = [&](Index i, const Vec3d& a, const Vec3d& b, Real radius,
+  const auto add_round = [&](Index i, const Vec3<Real>& from, const Vec3<Real>& to, Real radius,
                              std::size_t collider) {
-    const Vec3d p = state.x[static_cast<std::size_t>(i)].template cast<double>();
+    const Vec3<Real>& x = state.x[static_cast<std::size_t>(i)];
+    const Real far = radius + reach_of(i) + smallest_gap_;
+    if ((x - from - (to - from) * closest_on_segment(x, from, to)).squaredNorm() > far * far)
+      return;
+    const Vec3d p = x.template cast<double>(), a = from.template cast<double>(),
+                b = to.template cast<double>();
     const Vec3d q = a + (b - a) * closest_on_segment<double>(p, a, b);
     const Separation<Real> s = separate<Real>(p, q);
     const Real distance = s.distance - radius;
@@ -202,13 +207,9 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
         add_row(state, {i}, {Real(1), 0, 0},
                 {plane.normal, static_cast<double>(plane.offset), distance}, plane.collider);
     }
-    for (const Ball& ball : balls_) {
-      const Vec3d centre = ball.centre.template cast<double>();
-      add_round(i, centre, centre, ball.radius, ball.collider);
-    }
-    for (const Rod& rod : rods_)
-      add_round(i, rod.a.template cast<double>(), rod.b.template cast<double>(), rod.radius,
-                rod.collider);
+    for (const Ball& ball : balls_)
+      add_round(i, ball.centre, ball.centre, ball.radius, ball.collider);
+    for (const Rod& rod : rods_) add_round(i, rod.a, rod.b, rod.radius, rod.collider);
     tests += planes_.size() + balls_.size() + rods_.size();
     for (std::size_t m = 0; m < meshes_.size(); ++m) tests += add_mesh_rows(state, m, i);
   }

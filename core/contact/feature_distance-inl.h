@@ -90,7 +90,9 @@ HWY_INLINE V from_triangle(D d, const Triple<V>& ap, const PreparedTriangle<V>& 
   const V height = dot(ap, t.normal), zero = hn::Zero(d);
   const auto over = hn::And(hn::And(hn::Gt(weight_a, zero), hn::Gt(weight_b, zero)),
                             hn::And(hn::Gt(weight_c, zero), hn::Gt(t.normal2, zero)));
-  return hn::IfThenElse(over, hn::Mul(hn::Mul(height, height), t.inverse_normal2), sides);
+  // The height over a thin one is rounding for the most part; no side is nearer than its inside.
+  const V height2 = hn::Mul(hn::Mul(height, height), t.inverse_normal2);
+  return hn::IfThenElse(over, hn::Min(height2, sides), sides);
 }
 
 /// Squared distance of segments a + s u and c + t v, from r = a - c: the best s of the lines, the

@@ -9,9 +9,9 @@
 namespace weft {
 namespace {
 
-/// Ridges that turn less are flat: over a metre they rise less than what contact leaves between the
-/// cloth and an object [rad].
-constexpr double kFlat = 1e-5;
+/// What all ridges that count as flat rise together at most, across the whole mesh: less than what
+/// contact leaves between the cloth and an object [m].
+constexpr double kFlatRise = 2e-6;
 
 /// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
@@ -59,6 +59,26 @@ Rise<double> rise_of(const TriangleMesh& mesh, const MeshEdge& edge, double slop
   return {std::max(std::tan(turn / 2), slope), turn / width};
 }
 
+/// Angle up to which ridges of a closed mesh are flat [rad]: the least angles that rise together by
+/// no more than `kFlatRise`.
+double flat_turn(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
+  std::vector<double> turns;
+  for (const MeshEdge& edge : edges) {
+    if (edge.triangle[1] != kNone) turns.push_back(outward_turn(mesh, edge));
+  }
+  Aabb<double> box;
+  for (const Vec3d& p : mesh.positions) box.add(p);
+  const double most = kFlatRise / (box.upper - box.lower).norm();
+  std::sort(turns.begin(), turns.end());
+  double sum = 0, flat = 0;
+  for (const double turn : turns) {
+    sum += std::max(turn, 0.0);
+    if (sum > most) break;
+    flat = std::max(turn, 0.0);
+  }
+  return flat;
+}
+
 /// Sorts features by the triangle that each is with; kNone for those left out.
 OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t triangles) {
   OwnedFeatures owned;
@@ -80,6 +100,7 @@ OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t 
 template <class Real>
 void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
   const std::vector<double> slopes = slopes_at_vertices(mesh);
+  const double flat = shape.closed ? flat_turn(mesh, shape.edges) : 0;
   shape.edge_rises.resize(shape.edges.size());
   shape.vertex_rises.resize(mesh.positions.size());
   std::vector<Index> of_edge(shape.edges.size(), kNone), of_vertex(mesh.positions.size(), kNone);
@@ -92,7 +113,7 @@ void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
     shape.edge_normals.push_back(
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
     const bool solid = shape.closed && !rim;
-    if (solid && outward_turn(mesh, edge) <= kFlat) continue;
+    if (solid && outward_turn(mesh, edge) <= flat) continue;
     const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
     const Rise<double> rise =
         solid ? rise_of(mesh, edge, std::max(slopes[a], slopes[b])) : Rise<double>{INFINITY, 0};
@@ -152,6 +173,20 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
+  for (const MeshEdge& e : shape.edges) {
+    const double length = (mesh.positions[static_cast<std::size_t>(e.a)] -
+                           mesh.positions[static_cast<std::size_t>(e.b)])
+                              .norm();
+    shape.longest_edge = std::max(shape.longest_edge, static_cast<Real>(length));
+  }
+  for (const Triangle& t : mesh.triangles) {
+    const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(t[k])]; };
+    const Vec3d ab = at(1) - at(0), ac = at(2) - at(0);
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    shape.rounding = std::max(
+        shape.rounding,
+        rounding_of_triangle(static_cast<Real>(longest), static_cast<Real>(ab.cross(ac).norm())));
+  }
   find_sharp_features(mesh, shape);
   build_tree(shape);
   return shape;

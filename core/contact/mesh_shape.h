@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/geometry/bvh.h"
@@ -32,6 +34,8 @@ template <class Real>
 struct MeshShape {
   bool closed = false;
   Real triangle_size = 0;  ///< side of a square of two triangles of mean area [m]
+  Real longest_edge = 0;   ///< [m]
+  Real rounding = 0;  ///< by which distances from its thinnest triangles come out too large [m]
   Vec3Array<Real> positions;
   std::vector<Triangle> triangles;
   Vec3Array<Real> face_normals;
@@ -42,6 +46,26 @@ struct MeshShape {
   std::vector<Rise<Real>> edge_rises, vertex_rises;  ///< of sharp ones
   Bvh<Real> triangle_tree;
 };
+
+/// By how much the distance of a point from a triangle may come out too large in the precision of
+/// Real: the normal of a thin one is lost in rounding, but no point of it is far from its sides
+/// [m].
+/// @param longest       of its sides [m]
+/// @param doubled_area  [m^2]
+template <class Real>
+Real rounding_of_triangle(Real longest, Real doubled_area) {
+  const Real noise = 8 * std::numeric_limits<Real>::epsilon() * longest * longest * longest;
+  return longest > 0 ? std::min(noise / std::max(doubled_area, std::numeric_limits<Real>::min()),
+                                doubled_area / longest)
+                     : Real(0);
+}
+
+/// The same of the distance between two segments: where these are nearly parallel, their nearest
+/// points are lost in rounding [m].
+template <class Real>
+Real rounding_of_segments(Real length, Real other) {
+  return std::sqrt(8 * std::numeric_limits<Real>::epsilon() * length * (length + other));
+}
 
 /// A ridge that turns by an angle a and has faces of width w rises a/2 R over points that are R
 /// beside it, or a/w R^2 / 2 if the surface goes on turning like that; a corner as it is steep.

@@ -229,12 +229,14 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
       opening_kick(tick, kicks.opening);
     else
       swept_kick(tick, kicks.full, Real(0.5), static_cast<Real>(s) / static_cast<Real>(substeps));
+    hold_back(s == 0 ? tick.dt / 2 : tick.dt, state, tick.grabs);
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
     collision.after_drift(state, tick.dt, tick.profile);
     if (collision.seed || collision.guard) load_grids(tick);
   }
   swept_kick(tick, kicks.closing, Real(1), Real(1));
+  hold_back(tick.dt / 2, state, tick.grabs);
   collision.settle(state, tick.dt, tick.profile);
   return work;
 }
