@@ -34,7 +34,7 @@ What failed: {failed}
 
 Not among the cases: degenerate rest shapes (no area, no length, coincident particles), which are refused
 when a scene is loaded (`tests/core/cloth/mesh_cloth_test.cpp`); a hand of 1e5 N/m that jumps by metres in a
-tenth of a second, under which a tick takes seconds; a reef knot; an hour's soak.
+tenth of a second, under which a tick takes a sixth of a second; a reef knot; an hour's soak.
 """
 
 

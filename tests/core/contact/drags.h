@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostics/crossings.h"
@@ -13,14 +14,15 @@ namespace weft::test {
 // passed through what after each tick.
 
 /// Pairs of an edge and a triangle that meet: of the cloths with themselves and each other, with
-/// the meshes and boxes of the scene, and triangles of the cloths that a needle's axis passes.
+/// the meshes and boxes of the scene where they are now, and triangles of the cloths that a
+/// needle's axis passes.
 class CrossingCount {
  public:
   explicit CrossingCount(const WorldDef& def) : def_(def) {
-    for (const ColliderDef& collider : def.colliders) {
-      if (const auto* box = std::get_if<BoxDef>(&collider.shape))
-        meshes_.push_back(world_mesh(*box));
-      if (const auto* given = std::get_if<MeshDef>(&collider.shape)) meshes_.push_back(given->mesh);
+    for (std::size_t k = 0; k < def.colliders.size(); ++k) {
+      const ShapeDef& shape = def.colliders[k].shape;
+      if (const auto* box = std::get_if<BoxDef>(&shape)) meshes_.push_back({k, world_mesh(*box)});
+      if (const auto* given = std::get_if<MeshDef>(&shape)) meshes_.push_back({k, given->mesh});
     }
   }
 
@@ -29,8 +31,14 @@ class CrossingCount {
     const Vec3Array<float>& x = world.state().x;
     const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
     std::size_t count = self.proper + self.touching;
-    for (const TriangleMesh& mesh : meshes_) {
-      const Crossings with = count_crossings(x, model.edges, model.triangles, mesh);
+    for (const auto& [collider, mesh] : meshes_) {
+      const Pose& pose = world.colliders()[collider].pose;
+      const Vec3d pivot = pivot_of(def_.colliders[collider].shape);
+      TriangleMesh moved = mesh;
+      if (!(pose == rest_pose(def_.colliders[collider].shape))) {
+        for (Vec3d& p : moved.positions) p = pose.rotation * (p - pivot) + pose.position;
+      }
+      const Crossings with = count_crossings(x, model.edges, model.triangles, moved);
       count += with.proper + with.touching;
     }
     for (const ColliderDef& collider : def_.colliders) {
@@ -61,7 +69,7 @@ class CrossingCount {
   }
 
   const WorldDef& def_;
-  std::vector<TriangleMesh> meshes_;
+  std::vector<std::pair<std::size_t, TriangleMesh>> meshes_;  ///< with their colliders
   Bvh<double> tree_;
 };
 

@@ -1,5 +1,6 @@
 #include "tests/core/contact/drags.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/cloth/fabric_presets.h"
+#include "core/scenes/scene_parts.h"
 #include "core/scenes/scenes.h"
 
 // Random hands pull a cloth about over what it lies on. A seed decides all of it.
@@ -53,6 +55,51 @@ WorldDef scene(const char* name, int n) {
   return def;
 }
 
+/// A thin star with five points, of triangles that are sharp on all sides.
+TriangleMesh star(double size) {
+  constexpr Index kPoints = 5;
+  TriangleMesh mesh;
+  mesh.positions = {Vec3d(0, 0.08 * size, 0), Vec3d(0, -0.08 * size, 0)};
+  for (Index k = 0; k < 2 * kPoints; ++k) {
+    const double radius = size * (k % 2 == 0 ? 1 : 0.3), angle = 3.14159265358979 * k / kPoints;
+    mesh.positions.emplace_back(radius * std::cos(angle), 0, radius * std::sin(angle));
+    const Index a = 2 + k, b = 2 + (k + 1) % (2 * kPoints);
+    mesh.triangles.push_back({0, b, a});
+    mesh.triangles.push_back({1, a, b});
+  }
+  return mesh;
+}
+
+/// A weak sheet over a star that jumps and turns about in it, strong enough to tear along what it
+/// meets.
+WorldDef stirred(int n, double thickness, unsigned seed) {
+  Random random(seed);
+  WorldDef def;
+  def.name = "stirred";
+  ClothDef& cloth = def.cloths[0];
+  cloth = lying_cloth(n, 0.8, 0.56);
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 40;
+  cloth.fabric.shear = 8;
+  cloth.fabric.thickness = thickness;
+  def.environment.drag = 0.5;
+  TriangleMesh mesh = star(0.25);
+  for (Vec3d& p : mesh.positions) p += Vec3d(0, 0.5, 0);
+  ColliderDef spoon{"star", MeshDef{mesh}};
+  spoon.max_force = 3000;
+  spoon.motion.keyframes = {{0.2}};
+  for (double time = 0.2; time < 4;) {
+    time += random.uniform(0.1, 0.4);
+    Keyframe key;
+    key.time = time;
+    key.offset = random.vector(0.15);
+    key.rotation = Eigen::AngleAxisd(random.uniform(-2, 2), random.vector(1).normalized());
+    spoon.motion.keyframes.push_back(key);
+  }
+  def.colliders = {spoon, {"ground", PlaneDef{}}};
+  def.contact.seed.self = SelfContact::guard;
+  return def;
+}
+
 /// `WEFT_SEED` chooses one of the seeds; without it all are taken.
 bool is_chosen(unsigned seed) {
   const char* text = std::getenv("WEFT_SEED");
@@ -89,12 +136,22 @@ TEST_CASE("a few drags of up to ten hands at up to 5 m/s leave no crossing anywh
     WARN("the bunny's package is not installed");
 }
 
+TEST_CASE("a sharp object that is stirred about in dragged cloth does not pass through it") {
+  constexpr auto kName =
+      "a sharp object that is stirred about in dragged cloth does not pass through it";
+  check_drags(kName, stirred(9, 3e-4, 401), 30, 2, 401);
+  check_drags(kName, stirred(17, 4e-4, 402), 30, 1, 402);
+  check_drags(kName, stirred(13, 2e-3, 403), 30, 2, 403);
+}
+
 TEST_CASE("200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere", "[.long]") {
   constexpr auto kName = "200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere";
   constexpr int kDrags = 10;
   for (unsigned seed = 101; seed <= 107; ++seed) check_drags(kName, pile(41), 60, kDrags, seed);
   for (unsigned seed = 201; seed <= 206; ++seed)
     check_drags(kName, scene("hard-needles", 33), 40, kDrags, seed);
+  for (unsigned seed = 411; seed <= 420; ++seed)
+    check_drags(kName, stirred(seed % 2 ? 9 : 17, seed % 3 ? 4e-4 : 3e-3, seed), 30, 3, seed);
   REQUIRE(has_bunny());
   for (unsigned seed = 301; seed <= 307; ++seed)
     check_drags(kName, scene("drop-on-bunny", 49), 60, kDrags, seed);

@@ -54,6 +54,24 @@ TEST_CASE("the hash sees one bit of one velocity, a pin, a hand and its target")
   CHECK(world.hash() != held);
 }
 
+TEST_CASE("what a hand of 1e5 N/m holds comes after a jump of metres at 30 m/s, and it says so") {
+  World<float> world(hung_cloth());
+  const GrabId hand = world.grab({50, {0.2, 0.3, 0.5}, 0.05, 1e5, 1e6, Vec3d(0, 0, 0)});
+  world.move_grab(hand, Vec3d(2, 1, 0));
+  double fastest = 0, strongest = 0;
+  for (int tick = 0; tick < 20; ++tick) {
+    world.step();
+    const Grab<float>& grab = world.grabs().list[0];
+    for (const Index i : grab.particles)
+      fastest = std::max(fastest,
+                         static_cast<double>(world.state().v[static_cast<std::size_t>(i)].norm()));
+    strongest = std::max(strongest, static_cast<double>(grab.force.norm()));
+  }
+  CHECK(fastest > 10);
+  CHECK(fastest < kFastestHeld * 1.001);
+  CHECK(strongest < 1e5);  // and not 2e5, that of its spring
+}
+
 TEST_CASE("pins hold their particles to the bit; freed, they fall; shared ones need both freed") {
   World<float> world(hung_cloth());
   const PinId first = world.pin({60, 0.1}), second = world.pin({61, 0.1});
