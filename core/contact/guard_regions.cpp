@@ -58,7 +58,7 @@ void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
     step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
     const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_), own = off - off_path_;
     const Real off2 = dot(own, own);
-    if (off2 > soon) {
+    if (!(off2 <= soon)) {
       strays_.push_back(static_cast<Index>(i));
       left |= !(off2 <= limit);
     }
@@ -71,8 +71,9 @@ void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
     for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
   }
   for (; i < step_.size(); ++i) look(i);
-  if (!left) strays_.clear();
-  if (!collected_ || !(elapsed_ <= horizon_)) return;
+  const bool collected = collected_ && elapsed_ <= horizon_;
+  if (!left || !collected) strays_.clear();
+  if (!collected) return;
   off_path_before_ = off_path_now_;
   off_path_now_ = off_path_;
   off_path_ = sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake_count_, 1)));
