@@ -367,6 +367,9 @@ class Contact {
   void halt(ClothState<Real>& state, Real dt);
 
   Index cloth_of(Index particle) const;
+  Real thickness_of(Index particle) const {
+    return static_cast<Real>(cloths_[static_cast<std::size_t>(cloth_of(particle))].thickness);
+  }
 
   std::vector<ContactDef> cloths_;
   Real thickness_ = 0;     ///< the largest of all cloths, for reaches [m]

@@ -22,13 +22,13 @@ bool between_ends(double s) {
   return s > kEdgeEnd && s < 1 - kEdgeEnd;
 }
 
-/// What keeps corners off now, while what they may come to is only certified: at rest particles
-/// alone carry the cloth on a smooth object.
-template <class Corners>
-Corners as_now(Corners corners, double part) {
-  using Real = decltype(corners.reach);
+/// What keeps corners off where they lie, while what they may come to is only certified: at rest
+/// particles alone carry the cloth on a smooth object. From a mesh they lie off by the thickness,
+/// whatever their gap is now: what carries in one step and not in the next never rests.
+template <class Corners, class Real>
+Corners as_lying(Corners corners, double part, Real thickness) {
   corners.span -= 2 * corners.reach * static_cast<Real>(part);
-  corners.gap += corners.reach;
+  corners.gap = thickness;
   corners.reach = 0;
   return corners;
 }
@@ -73,7 +73,7 @@ void Contact<Real>::add_edges_on_rounds(const ClothState<Real>& state, Profile&)
   };
   for (const Index k : near_edges_) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(k)];
-    const Corners ends = corners_of(state, e.data(), 2), now = as_now(ends, kEdgeSpan);
+    const Corners ends = corners_of(state, e.data(), 2), now = as_lying(ends, kEdgeSpan, Real(0));
     const Vec3<Real>&a = state.x[static_cast<std::size_t>(e[0])],
           &b = state.x[static_cast<std::size_t>(e[1])];
     const Vec3d from = in_double(a), to = in_double(b);
@@ -128,7 +128,8 @@ void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>& state, Profi
     const auto barred = [&](std::size_t collider) {
       return is_inside(t[0], collider) || is_inside(t[1], collider) || is_inside(t[2], collider);
     };
-    const Corners corners = corners_of(state, t.data(), 3), now = as_now(corners, kTriangleSpan);
+    const Corners corners = corners_of(state, t.data(), 3),
+                  now = as_lying(corners, kTriangleSpan, Real(0));
     const std::array<Vec3d, 3> at = {in_double(x(0)), in_double(x(1)), in_double(x(2))};
     for (const Ball& ball : balls_) {
       const Real core = std::sqrt(
@@ -169,7 +170,7 @@ void Contact<Real>::add_edges_on_meshes(const ClothState<Real>& state, Profile& 
       if (bound > thickness_ + reach || is_inside(e[0], collider) || is_inside(e[1], collider))
         continue;
       const auto ridge = static_cast<std::size_t>(pair.feature);
-      const Corners now = as_now(corners_of(state, e.data(), 2), kEdgeSpan);
+      const Corners now = as_lying(corners_of(state, e.data(), 2), kEdgeSpan, thickness_of(e[0]));
       const bool carried = now.clear(mesh.edge_rises[ridge]);
       if (carried && bound > beyond_reach(reach)) continue;
       const MeshEdge& other = mesh.edges[ridge];
@@ -220,7 +221,8 @@ void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profi
       if (is_inside(t[0], collider) || is_inside(t[1], collider) || is_inside(t[2], collider))
         continue;
       const auto v = static_cast<std::size_t>(pair.feature);
-      const Corners now = as_now(corners_of(state, t.data(), 3), kTriangleSpan);
+      const Corners now =
+          as_lying(corners_of(state, t.data(), 3), kTriangleSpan, thickness_of(t[0]));
       const bool carried = now.clear(mesh.vertex_rises[v]);
       if (carried && bound > beyond_reach(reach)) continue;
       ++tests;

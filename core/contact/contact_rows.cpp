@@ -13,6 +13,19 @@ namespace {
 /// Substeps of a particle's present motion for which rows shall hold.
 constexpr double kRowSubsteps = 14;
 
+/// Whether a triangle has the corner, or both corners of the edge, that another one is nearest at.
+template <class Real>
+bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, Index t) {
+  const Triangle &own = mesh.triangles[static_cast<std::size_t>(d.triangle)],
+                 &other = mesh.triangles[static_cast<std::size_t>(t)];
+  const auto has = [&](int corner) {
+    return std::find(other.begin(), other.end(), own[static_cast<std::size_t>(corner % 3)]) !=
+           other.end();
+  };
+  if (d.feature == 0) return false;
+  return d.feature <= 3 ? has(d.feature - 1) : has(d.feature - 4) && has(d.feature - 3);
+}
+
 /// Direction from q to p, and their distance.
 template <class Real>
 struct Separation {
@@ -167,7 +180,14 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
                     distance};
     const Triangle& t = meshes_[m].triangles[static_cast<std::size_t>(d.triangle)];
     barrier.top = top_of(m, barrier.normal, {t[0], t[1], t[2]});
-    add_row(state, {i}, {Real(1), 0, 0}, barrier, collider);
+    // Where the surface goes on from the border of a triangle, nearer to the particle, what lies
+    // beyond carries: a plane at the border would stand in the way of whatever slides over it.
+    const bool goes_on =
+        std::any_of(nearby_.begin(), nearby_.end(), [&](const MeshDistance<Real>& other) {
+          return std::abs(other.distance) < distance &&
+                 shares_nearest(meshes_[m], d, other.triangle);
+        });
+    add_row(state, {i}, {Real(1), 0, 0}, barrier, collider, !goes_on);
   }
   return nearby_.size();
 }

@@ -206,6 +206,7 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
   const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
   MeshDistance<Real> result;
   result.triangle = t;
+  result.feature = nearest.feature;
   // So near the surface that the direction is rounding, the feature's normal serves.
   constexpr double kTouching = 1e-6;
   const double sign = mesh.closed && away.dot(outward.template cast<double>()) < 0 ? -1 : 1;

@@ -77,6 +77,7 @@ template <class Real>
 struct MeshDistance {
   Index triangle = kNone;
   Real distance = 0;  ///< [m]; negative inside a closed mesh
+  int feature = 0;    ///< of the triangle that is nearest, as TrianglePoint has it
   Vec3<Real> normal;  ///< unit, out of the solid (or towards the point, if the mesh is open)
 };
 
