@@ -15,7 +15,7 @@ constexpr double kReachPart = 0.65, kMostReach = 0.28;
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
     : edges_(model.edges), triangles_(model.triangles), tree_(model),
-      boxes_(tree_, edges_, triangles_) {
+      boxes_(tree_, edges_, triangles_), tangles_(model) {
   for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
   finest_ = std::numeric_limits<Real>::infinity();
   for (const ClothPart<Real>& part : model.parts) {
@@ -84,6 +84,8 @@ void ClothGuard<Real>::reset() {
   }
   pushed_.clear();
   open_pairs_ = 0;
+  tangles_.clear();
+  unseen_ = true;
   kicked_ = 0;
   closed_ = true;
   upwards_ = false;

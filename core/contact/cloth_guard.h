@@ -8,6 +8,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/contact/cloth_tangles.h"
 #include "core/contact/feature_pair.h"
 #include "core/contact/guard_row.h"
 #include "core/contact/pair_separation.h"
@@ -20,7 +21,7 @@ namespace weft {
 template <class Real>
 struct GuardedPair {
   PairKind kind = PairKind::vertex_triangle;
-  bool open = false;  ///< not apart when collected: nothing is promised about it
+  bool open = false;  ///< not apart, or free to part (ClothTangles): nothing is promised about it
   bool gone = false;  ///< looked at again since, as one of its particles left its path
   std::array<Index, 4> particle = {0, 0, 0, 0};
   Index a = 0, b = 0;          ///< particle and triangle, or two edges, the lower one first
@@ -148,8 +149,15 @@ class ClothGuard {
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
   /// Time of the forces that the rows' impulses stand against [s].
   Real kicked() const { return kicked_; }
-  /// Pairs that were not apart when they were collected.
-  std::size_t open_pairs() const { return open_pairs_; }
+  /// Pairs about which nothing is promised: features that cross or touch since the start, and
+  /// those around them.
+  std::size_t open_pairs() const { return open_pairs_ + tangles_.size(); }
+  /// Says that a tick begins, of whose work `work` shall tell.
+  void begin_tick() { tangles_.begin_tick(); }
+  /// Work since then on what started through each other [J].
+  double work() const { return tangles_.work(); }
+  /// What started through each other and is not apart yet.
+  const ClothTangles<Real>& tangles() const { return tangles_; }
 
  private:
   /// A pair of a particle that is being anchored.
@@ -175,7 +183,7 @@ class ClothGuard {
   };
 
   // guard_pairs.cpp
-  void collect(Real dt, Profile& profile);
+  void collect(const ClothState<Real>& state, Real dt, Profile& profile);
   void collect_strays(Real dt, Profile& profile);
   void drop_pairs_of_strays();
   void admit_pairs(std::size_t first);
@@ -222,6 +230,11 @@ class ClothGuard {
   typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
   void keep_near(PairColumns<Real>& columns);
+
+  // guard_tangles.cpp
+  void find_tangles(const ClothState<Real>& state);
+  void look_through(Index p, Index q);
+  void note_touches();
 
   // guard_regions.cpp
   struct Speeds {
@@ -317,6 +330,8 @@ class ClothGuard {
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
+  ClothTangles<Real> tangles_;
+  bool unseen_ = true;  ///< nobody has looked yet whether something crosses
   std::size_t most_pairs_ = 0;  ///< with those that are gone, until all are collected anew
   std::vector<Index> pairs_begin_, pairs_end_, pairs_of_;  ///< for each particle its pairs
   std::vector<Index> later_;   ///< for each the last that came later, as GuardedPair::next

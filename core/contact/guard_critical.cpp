@@ -49,7 +49,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     collected =
         collected && strays_.size() <= awake_count_ / kManyStrays && pairs_.size() <= most_pairs_;
     if (!collected)
-      collect(dt, profile);
+      collect(state, dt, profile);
     else if (!strays_.empty())
       collect_strays(dt, profile);
     collected = true;

@@ -18,11 +18,14 @@ constexpr double kSmallestGap = 1e-5, kRoundings = 64;
 /// these seconds nor shorter than these substeps.
 constexpr double kHorizonPart = 0.2, kLongestHorizon = 0.25, kFewestSubsteps = 4;
 
+/// While something crosses it is looked at again so often [s].
+constexpr double kLookAgain = 1.0 / 120;
+
 }  // namespace
 
 /// Collects pairs anew around the paths on which all particles go on as they move now.
 template <class Real>
-void ClothGuard<Real>::collect(Real dt, Profile& profile) {
+void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   const std::size_t n = legal_.size();
   // A motion common to all changes nothing between them.
@@ -51,12 +54,17 @@ void ClothGuard<Real>::collect(Real dt, Profile& profile) {
   boxes_.forget();
   ++counts_.collections;
   tree_.refit(motion_, true);
+  if (std::exchange(unseen_, false) || open_pairs() > 0) find_tangles(state);
   pairs_.clear();
   open_pairs_ = 0;
   changed_.assign(n, 1);
   near_patches_.clear();
   tree_.for_each_near_pair([&](Index p, Index q) { near_patches_.push_back({p, q}); });
   test_near_patches(true, profile);
+  if (open_pairs() > 0) {
+    note_touches();
+    horizon_ = std::min(horizon_, std::max(static_cast<Real>(kLookAgain), dt));
+  }
   join_pairs();
   most_pairs_ = 2 * pairs_.size() + legal_.size();
   for (const Index i : active_) {
@@ -279,7 +287,7 @@ void ClothGuard<Real>::share_all_gaps() {
 }
 
 #define WEFT_INSTANTIATE(Real)                                                              \
-  template void ClothGuard<Real>::collect(Real, Profile&);                                  \
+  template void ClothGuard<Real>::collect(const ClothState<Real>&, Real, Profile&);         \
   template void ClothGuard<Real>::collect_strays(Real, Profile&);                           \
   template void ClothGuard<Real>::admit_pairs(std::size_t);                                 \
   template Quad<Real> ClothGuard<Real>::path_velocity(std::size_t, Real) const;             \

@@ -118,7 +118,7 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
     pair.a = columns.a[k];
     pair.b = columns.b[k];
     pair.bound = columns.separation(k, motion_.start).gap;
-    pair.open = !(pair.bound > 0);
+    pair.open = !(pair.bound > 0) || tangles_.frees(pair.kind, pair.particle);
     open_pairs_ += pair.open ? 1 : 0;
     pairs_.push_back(pair);
   }

@@ -38,7 +38,7 @@ constexpr double kPushSlack = 0.1;
 template <class Real>
 void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
   const Real kicked = std::exchange(closed_, false) ? dt / 2 : dt;
-  calm_ = active_.empty();
+  calm_ = active_.empty() && open_pairs() == 0;
   if (calm_) {
     x_before_ = state.x;
     rows_.clear();
@@ -46,6 +46,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
     return;
   }
   for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
+  tangles_.draw(state, dt);
   rows_time_ += dt;
   ++rows_steps_;
   if (find_moved()) renew_rows(state, profile);

@@ -273,6 +273,7 @@ AdvanceResult World<Real>::advance(int substeps) {
   contact_.begin_tick(tick_seconds(), &colliders_);
   if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
+  if (guard_) guard_->begin_tick();
   AdvanceResult result =
       solver_of(def_) == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
@@ -280,6 +281,7 @@ AdvanceResult World<Real>::advance(int substeps) {
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
                                collision(), state_, relaxation_, report_.profile);
   result.work += contact_.work() + pin_drive_.work();
+  if (guard_) result.work += guard_->work();
   return result;
 }
 
