@@ -84,7 +84,7 @@ void ClothGuard<Real>::reset() {
   }
   pushed_.clear();
   open_pairs_ = 0;
-  tangles_.clear();
+  tangles_.reset();
   unseen_ = true;
   kicked_ = 0;
   closed_ = true;

@@ -331,7 +331,7 @@ class ClothGuard {
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
   ClothTangles<Real> tangles_;
-  bool unseen_ = true;  ///< nobody has looked yet whether something crosses
+  bool unseen_ = true;          ///< nobody has looked yet whether something crosses
   std::size_t most_pairs_ = 0;  ///< with those that are gone, until all are collected anew
   std::vector<Index> pairs_begin_, pairs_end_, pairs_of_;  ///< for each particle its pairs
   std::vector<Index> later_;   ///< for each the last that came later, as GuardedPair::next

@@ -27,7 +27,10 @@ class ClothTangles {
   ClothTangles() = default;
   explicit ClothTangles(const ClothModel<Real>& model);
 
-  /// Forgets all crossings.
+  /// Forgets everything.
+  void reset();
+
+  /// Begins to look again.
   void clear();
 
   /// Notes that an edge passes through a triangle, if it does. They have no particle in common.
@@ -54,6 +57,7 @@ class ClothTangles {
   void begin_tick() { work_ = 0; }
 
  private:
+  // tangle_rows.cpp
   /// Two features with the direction in which the first is drawn past the second.
   struct Row {
     std::array<Index, 5> particle = {0, 0, 0, 0, 0};
@@ -61,6 +65,9 @@ class ClothTangles {
     Vec3<Real> direction = Vec3<Real>::Zero();
     Real inertia = 0;  ///< 1 / (sum of weight^2 / mass) [kg]
     Real pull = 0;     ///< impulse in this step [N s]
+    Real wanted = 0;   ///< speed along the direction [m/s]
+    Real speed = 0;    ///< along the direction before this step's kick, and now [m/s]
+    Vec3<Real> apart;  ///< sum of weight x position a step ago [m]
   };
 
   Vec3d at(Index particle, const QuadArray<Real>& x) const {
@@ -71,6 +78,9 @@ class ClothTangles {
   Vec3d point_of(const TangleCrossing& crossing, const QuadArray<Real>& x) const;
   Vec3d way_along(const TangleContour& contour, std::size_t place, const QuadArray<Real>& x) const;
   void free_around(const TangleContour& contour);
+  void place(Row& row, const QuadArray<Real>& x) const;
+  Real speed_of(const Row& row, const ClothState<Real>& state) const;
+  void begin_row(Row& row, const ClothState<Real>& state, Real dt) const;
   void add_rows(const TangleContour& contour, const QuadArray<Real>& x);
 
   std::vector<Edge> edges_;
@@ -81,9 +91,9 @@ class ClothTangles {
   std::vector<char> is_held_;
   /// Of each particle a bit for each contour near by whose first or second sheet it belongs to.
   std::array<std::vector<std::uint64_t>, 2> near_;
-  std::vector<Index> ring_;  ///< particles that have just been marked
   std::vector<Row> rows_;
-  double work_ = 0;  ///< [J]
+  double drawn_ = 0;  ///< for how long [s]
+  double work_ = 0;   ///< [J]
 };
 
 extern template class ClothTangles<float>;

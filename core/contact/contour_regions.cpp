@@ -37,6 +37,7 @@ ContourRegions::ContourRegions(const ClothModel<Real>& model) : edges_(model.edg
 }
 
 void ContourRegions::seed(Index particle, std::size_t side, const std::vector<char>& is_held) {
+  if (particle == through_[0] || particle == through_[1]) return;
   const auto i = static_cast<std::size_t>(particle);
   const std::uint32_t mark = 2 * search_ + static_cast<std::uint32_t>(side);
   if (reached_[i] == mark) return;
@@ -70,9 +71,7 @@ bool ContourRegions::fill(std::size_t side, const std::vector<char>& is_held) {
   return !meet_;
 }
 
-ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
-                                                  const std::vector<char>& is_held) {
-  if (cuts.empty()) return {};
+void ContourRegions::begin() {
   ++search_;
   meet_ = false;
   for (Flood& flood : floods_) {
@@ -81,6 +80,14 @@ ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
     flood.area = 0;
     flood.held = false;
   }
+}
+
+ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
+                                                  const std::array<Index, 2>& through,
+                                                  const std::vector<char>& is_held) {
+  if (cuts.empty()) return {};
+  begin();
+  through_ = through;
   std::sort(cuts.begin(), cuts.end(), [](const EdgeCut& a, const EdgeCut& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.along < b.along;
   });

@@ -29,15 +29,14 @@ class ContourRegions {
     double area = 0;  ///< at rest [m^2]; a metre squared more for each particle that is held
   };
   /// @param cuts     all of the line, in any order; sorted
+  /// @param through  particles that the line passes through; kNone: none
   /// @param is_held  of each particle 1 if it cannot be moved
-  Part smaller_part(std::vector<EdgeCut>& cuts, const std::vector<char>& is_held);
+  Part smaller_part(std::vector<EdgeCut>& cuts, const std::array<Index, 2>& through,
+                    const std::vector<char>& is_held);
 
-  /// Calls visit(neighbour) for all that an edge joins to a particle.
-  template <class Visit>
-  void for_neighbours(Index particle, Visit&& visit) const {
-    const auto i = static_cast<std::size_t>(particle);
-    for (Index k = first_joined_[i]; k < first_joined_[i + 1]; ++k)
-      visit(joined_[static_cast<std::size_t>(k)].particle);
+  /// Whether a particle next to the line that was looked at last is on this side of it.
+  bool is_on(Index particle, int side) const {
+    return reached_[static_cast<std::size_t>(particle)] == 2 * search_ + (side > 0 ? 1 : 0);
   }
 
  private:
@@ -53,6 +52,7 @@ class ContourRegions {
 
   void seed(Index particle, std::size_t side, const std::vector<char>& is_held);
   bool spread(std::size_t side, const std::vector<char>& is_held);
+  void begin();
   bool fill(std::size_t side, const std::vector<char>& is_held);
 
   std::vector<Edge> edges_;
@@ -61,6 +61,7 @@ class ContourRegions {
   std::vector<double> area_;            ///< of each particle [m^2]
   std::vector<std::uint32_t> is_cut_;   ///< of each edge, the search that cut it
   std::vector<std::uint32_t> reached_;  ///< of each particle, search x 2 + side
+  std::array<Index, 2> through_ = {kNone, kNone};
   std::uint32_t search_ = 0;
   std::array<Flood, 2> floods_;  ///< below and above
   bool meet_ = false;            ///< both sides are one

@@ -65,9 +65,9 @@ void ClothGuard<Real>::note_touches() {
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                               \
-  template void ClothGuard<Real>::find_tangles(const ClothState<Real>&);     \
-  template void ClothGuard<Real>::look_through(Index, Index);                \
+#define WEFT_INSTANTIATE(Real)                                           \
+  template void ClothGuard<Real>::find_tangles(const ClothState<Real>&); \
+  template void ClothGuard<Real>::look_through(Index, Index);            \
   template void ClothGuard<Real>::note_touches();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

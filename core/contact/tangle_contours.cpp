@@ -10,11 +10,13 @@ std::uint64_t key_of_triangles(Index a, Index b) {
   return (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint64_t>(high);
 }
 
+constexpr std::array<Index, 2> kNoParticles = {kNone, kNone};
+
 }  // namespace
 
 template <class Real>
 TangleContours::TangleContours(const ClothModel<Real>& model)
-    : triangles_(model.triangles), regions_(model) {
+    : edges_(model.edges), triangles_(model.triangles), regions_(model) {
   std::vector<std::pair<Edge, Index>> sides;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -93,32 +95,81 @@ void TangleContours::follow(std::vector<TangleCrossing>& crossings, Index first)
   contours_.push_back(contour);
 }
 
+/// Cuts the first sheet along a contour, or the second one, or both.
+ContourRegions::Part TangleContours::cut(const std::vector<TangleCrossing>& crossings,
+                                         const std::vector<char>& is_held,
+                                         const TangleContour& contour, bool first, bool second) {
+  const std::array<Index, 2> folds = {
+      fold_at(crossings[static_cast<std::size_t>(order_[contour.begin])]),
+      fold_at(crossings[static_cast<std::size_t>(order_[contour.end - 1])])};
+  cuts_.clear();
+  for (std::size_t k = contour.begin; k < contour.end; ++k) {
+    const TangleCrossing& c = crossings[static_cast<std::size_t>(order_[k])];
+    if (c.side == 0 ? first : second) cuts_.push_back({c.edge, c.along, c.above});
+  }
+  return regions_.smaller_part(cuts_, first && second ? folds : kNoParticles, is_held);
+}
+
 void TangleContours::decide(const std::vector<TangleCrossing>& crossings,
                             const std::vector<char>& is_held, TangleContour& contour) {
-  double least = 0;
-  for (std::uint8_t side = 0; side < 2; ++side) {
-    cuts_.clear();
-    for (std::size_t k = contour.begin; k < contour.end; ++k) {
-      const TangleCrossing& c = crossings[static_cast<std::size_t>(order_[k])];
-      if (c.side == side) cuts_.push_back({c.edge, c.along, c.above});
-    }
-    const ContourRegions::Part part = regions_.smaller_part(cuts_, is_held);
-    if (part.side == 0 || (contour.wrong != 0 && part.area >= least)) continue;
-    contour.wrong = part.side;
-    contour.sheet = side;
-    least = part.area;
-  }
   const TangleCrossing& first = crossings[static_cast<std::size_t>(order_[contour.begin])];
   const TangleCrossing& last = crossings[static_cast<std::size_t>(order_[contour.end - 1])];
+  const auto is_fold = [&](const TangleCrossing& c) {
+    return c.link[1] == kNone && triangles_of(c.edge)[1] != kNone && fold_at(c) != kNone;
+  };
+  // Between two folds both halves of the contour lie in one sheet and enclose a part of it.
+  if (is_fold(first) && is_fold(last)) {
+    const ContourRegions::Part part = cut(crossings, is_held, contour, true, true);
+    if (part.side != 0) {
+      contour.way = TangleWay::unfold;
+      contour.wrong = part.side;
+      return set_free(crossings, contour);
+    }
+  }
+  const ContourRegions::Part parts[2] = {cut(crossings, is_held, contour, true, false),
+                                         cut(crossings, is_held, contour, false, true)};
+  if (parts[0].side != 0 || parts[1].side != 0) {
+    contour.way = TangleWay::back;
+    const bool take_first =
+        parts[1].side == 0 || (parts[0].side != 0 && parts[0].area <= parts[1].area);
+    contour.sheet = take_first ? 0 : 1;
+    contour.wrong = parts[contour.sheet].side;
+    if (take_first) cut(crossings, is_held, contour, true, false);
+    return set_free(crossings, contour);
+  }
   // At a fold both ends slide towards it.
   const bool from_fold = triangles_of(first.edge)[1] != kNone;
-  contour.slides = from_fold ? static_cast<std::uint8_t>(1 - last.side) : first.side;
+  contour.sheet = from_fold ? static_cast<std::uint8_t>(1 - last.side) : first.side;
+  set_free(crossings, contour);
+}
+
+/// Lists the particles of what crosses here; of the sheet that was cut last those on the wrong
+/// side.
+void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
+                              TangleContour& contour) {
+  contour.free_begin = free_.size();
+  const auto add = [&](std::uint8_t sheet, const auto& particles) {
+    const bool goes = contour.way == TangleWay::back && sheet == contour.sheet;
+    const auto is_wrong = [&](Index i) { return regions_.is_on(i, contour.wrong); };
+    // An edge that goes there and back has no end there.
+    const bool some = goes && std::any_of(particles.begin(), particles.end(), is_wrong);
+    for (const Index i : particles) {
+      if (!some || is_wrong(i)) free_.push_back({sheet, i});
+    }
+  };
+  for (std::size_t k = contour.begin; k < contour.end; ++k) {
+    const TangleCrossing& c = crossings[static_cast<std::size_t>(order_[k])];
+    add(c.side, edges_[static_cast<std::size_t>(c.edge)]);
+    add(static_cast<std::uint8_t>(1 - c.side), triangles_[static_cast<std::size_t>(c.triangle)]);
+  }
+  contour.free_end = free_.size();
 }
 
 void TangleContours::join(std::vector<TangleCrossing>& crossings,
                           const std::vector<char>& is_held) {
   contours_.clear();
   order_.clear();
+  free_.clear();
   link(crossings);
   const auto is_free = [&](std::size_t c) { return crossings[c].contour == kNone; };
   for (std::size_t c = 0; c < crossings.size(); ++c) {
