@@ -156,6 +156,9 @@ class ClothGuard {
   void begin_tick() { tangles_.begin_tick(); }
   /// Work since then on what started through each other [J].
   double work() const { return tangles_.work(); }
+  /// The cloths, two by two and each two once, that started through each other or themselves and
+  /// are not apart yet. Allocates.
+  std::vector<std::array<Index, 2>> tangled_cloths() const;
   /// What started through each other and is not apart yet.
   const ClothTangles<Real>& tangles() const { return tangles_; }
 

@@ -65,9 +65,28 @@ void ClothGuard<Real>::note_touches() {
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                           \
-  template void ClothGuard<Real>::find_tangles(const ClothState<Real>&); \
-  template void ClothGuard<Real>::look_through(Index, Index);            \
+template <class Real>
+std::vector<std::array<Index, 2>> ClothGuard<Real>::tangled_cloths() const {
+  std::vector<std::array<Index, 2>> list;
+  const auto add = [&](Index i, Index j) {
+    const auto [p, q] = std::minmax({part_of(i), part_of(j)});
+    list.push_back({p, q});
+  };
+  for (const TangleCrossing& c : tangles_.crossings())
+    add(edges_[static_cast<std::size_t>(c.edge)][0],
+        triangles_[static_cast<std::size_t>(c.triangle)][0]);
+  for (const GuardedPair<Real>& pair : pairs_) {
+    if (pair.open && !pair.gone) add(pair.particle[0], pair.particle[3]);
+  }
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                         \
+  template void ClothGuard<Real>::find_tangles(const ClothState<Real>&);               \
+  template void ClothGuard<Real>::look_through(Index, Index);                          \
+  template std::vector<std::array<Index, 2>> ClothGuard<Real>::tangled_cloths() const; \
   template void ClothGuard<Real>::note_touches();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

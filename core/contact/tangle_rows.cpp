@@ -14,7 +14,7 @@ namespace {
 constexpr double kDrawSpeed = 0.5, kUnfoldSpeed = 0.05, kMostAcceleration = 2000;
 
 /// What is tangled for so long [s] may be held so by pins: it is drawn more and more weakly.
-constexpr double kPatience = 8;
+constexpr double kPatience = 4;
 
 /// Sweeps over the rows a step.
 constexpr int kSweeps = 2;

@@ -171,13 +171,17 @@ double World<Real>::deepest_penetration() const {
 template <class Real>
 std::vector<std::string> World<Real>::bad_starts() const {
   std::vector<std::string> list;
+  const auto name_of = [&](Index k) {
+    const std::string& name = def_.cloths[static_cast<std::size_t>(k)].name;
+    return name.empty() ? "cloth " + std::to_string(k) : name;
+  };
   for (const BadStart<Real>& start : contact_.bad_starts()) {
     if (colliders_[start.collider].voided) continue;  // it was forced there
-    const std::string& cloth = def_.cloths[static_cast<std::size_t>(start.cloth)].name;
-    list.push_back((cloth.empty() ? "cloth " + std::to_string(start.cloth) : cloth) +
-                   " started inside " + def_.colliders[start.collider].name);
+    list.push_back(name_of(start.cloth) + " started inside " + def_.colliders[start.collider].name);
   }
-  if (guard_ && guard_->open_pairs() > 0) list.push_back("cloth started through cloth");
+  if (!guard_ || guard_->open_pairs() == 0) return list;
+  for (const auto& [one, other] : guard_->tangled_cloths())
+    list.push_back(name_of(one) + " started through " + (one == other ? "itself" : name_of(other)));
   return list;
 }
 
