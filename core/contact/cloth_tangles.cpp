@@ -81,6 +81,10 @@ void ClothTangles<Real>::decide(const QuadArray<Real>& x, const std::vector<Real
     drawn_ = 0;
     return;
   }
+  if (rows_.capacity() < 2 * crossings_.size()) {
+    rows_.reserve(4 * crossings_.size());
+    crossings_.reserve(4 * crossings_.size());
+  }
   for (std::size_t i = 0; i < is_held_.size(); ++i) is_held_[i] = inverse_mass[i] == 0 ? 1 : 0;
   contours_.join(crossings_, is_held_);
   for (const TangleContour& contour : contours_.list()) {

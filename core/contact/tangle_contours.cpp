@@ -167,6 +167,15 @@ void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
 
 void TangleContours::join(std::vector<TangleCrossing>& crossings,
                           const std::vector<char>& is_held) {
+  // Room for what comes while it is undone: steps shall not ask for more.
+  const std::size_t room = 4 * crossings.size();
+  if (order_.capacity() < 2 * crossings.size()) {
+    keys_.reserve(2 * room);
+    contours_.reserve(room);
+    order_.reserve(room);
+    free_.reserve(5 * room);
+    cuts_.reserve(room);
+  }
   contours_.clear();
   order_.clear();
   free_.clear();
