@@ -1,5 +1,7 @@
 #include "core/scenes/built_in_meshes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -17,16 +19,37 @@ TriangleMesh make_gable() {
           {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 4, 5}, {2, 5, 3}, {0, 4, 2}, {1, 3, 5}}};
 }
 
+/// A strip of a metre by 30 cm, bent round z to a loop whose ends cross and go askew.
+TriangleMesh make_loop() {
+  constexpr int kColumns = 41, kRows = 13;
+  constexpr double kCell = 0.025, kRadius = 0.08, kMost = 2.2, kSkew = 0.02;
+  TriangleMesh mesh;
+  for (int r = 0; r < kRows; ++r) {
+    for (int c = 0; c < kColumns; ++c) {
+      const double s = kCell * (c - kColumns / 2), z = kCell * (r - kRows / 2) + kSkew * s;
+      const double angle = std::clamp(s / kRadius, -kMost, kMost), straight = s - angle * kRadius;
+      mesh.positions.push_back({kRadius * std::sin(angle) + straight * std::cos(angle),
+                                -kRadius * std::cos(angle) + straight * std::sin(angle), z});
+      if (r == 0 || c == 0) continue;
+      const Index d = r * kColumns + c, b = d - kColumns;
+      mesh.triangles.push_back({b - 1, d - 1, d});
+      mesh.triangles.push_back({b - 1, d, b});
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 const std::vector<std::string>& built_in_mesh_names() {
-  static const std::vector<std::string> names = {"dress-form", "gable", "bunny"};
+  static const std::vector<std::string> names = {"dress-form", "gable", "loop", "bunny"};
   return names;
 }
 
 MeshFile built_in_mesh(const std::string& name, const std::string& directory) {
   if (name == "dress-form") return {make_dress_form(), {}};
   if (name == "gable") return {make_gable(), {}};
+  if (name == "loop") return {make_loop(), {}};
   if (name != "bunny") {
     std::string names;
     for (const std::string& each : built_in_mesh_names())

@@ -12,4 +12,7 @@ std::vector<SceneEntry> hard_cases();
 /// The second list of them: ratios, ticks, forces and winds far beyond use.
 std::vector<SceneEntry> more_hard_cases();
 
+/// The third list of them: starts with cloth through cloth.
+std::vector<SceneEntry> tangled_cases();
+
 }  // namespace weft
