@@ -122,8 +122,8 @@ class ClothGuard {
 
   /// Paths along which nothing can meet, for steps without the calls above; null if there are none.
   const CalmPaths<Real>* calm_paths() const {
-    return collected_ && active_.empty() && open_pairs_ == 0 && pushed_.empty() ? &calm_paths_
-                                                                                : nullptr;
+    return collected_ && active_.empty() && open_pairs() == 0 && pushed_.empty() ? &calm_paths_
+                                                                                 : nullptr;
   }
 
   /// Says that steps went by without the calls above.

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/types.h"
+
+// What Contact works on: pairs that may meet, and contacts of cloth with objects.
+
+namespace weft {
+
+/// Settings of the contact of a cloth with objects; each of several cloths has its own.
+struct ContactDef {
+  double thickness = 0.004;  ///< distance that the mid-surface keeps from objects [m]
+  double friction = 0.4;     ///< Coulomb coefficient
+  double restitution = 0;  ///< k_diss of the seed's eq. (10): part of the normal velocity returned
+  Index first_particle = 0;  ///< of the cloth
+};
+
+/// A pair that may come into contact before candidates are collected again.
+template <class Real>
+struct ContactCandidate {
+  Index cloth = 0;    ///< particle, edge or triangle of the cloth
+  Index feature = 0;  ///< triangle, edge or vertex of the mesh
+  Real distance = 0;  ///< when collected [m]
+};
+
+/// One contact of up to three particles with a fixed plane: gap = sum w n.x - offset. The plane
+/// separates the cloth's feature from the (convex) feature of the object, so whoever stays on its
+/// side has not crossed.
+template <class Real>
+struct ContactRow {
+  std::array<Index, 3> particle = {0, 0, 0};
+  std::array<Real, 3> weight = {0, 0, 0};
+  std::array<Real, 3> share = {0, 0, 0};  ///< of each in a change of the row's velocity, by mass
+  int count = 0;
+  Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
+  Real offset = 0;                         ///< [m]
+  Real distance = 0;                       ///< when the row was built [m]
+  Real least_height = 0;                   ///< of a particle over the plane, then [m]
+  Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
+  Real thickness = 0;                      ///< that the cloth keeps [m]
+  Index cloth = 0;                         ///< whose friction and restitution it has
+  Index mover = kNone;                     ///< number among the rows with moving objects
+  Index collider = 0;                      ///< the object
+  bool responds = true;                    ///< false: only certifies, another pair responds
+};
+
+/// What a row with an object that moves has besides.
+template <class Real>
+struct MovingRow {
+  std::size_t row = 0;
+  std::size_t collider = 0;
+  Vec3d own_normal = Vec3d::Zero();  ///< of the plane, in the object's own frame
+  double own_offset = 0;             ///< [m]
+  Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
+  Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
+  /// Friction that the squeeze of a jaw still allows in this step [m/s].
+  Real grip = 0;
+};
+
+/// A cloth that got into an object other than through contact: it started there. Until it is out
+/// nothing is promised about the two; it is led out in one direction, with its folds.
+template <class Real>
+struct BadStart {
+  std::size_t collider = 0;
+  Index cloth = 0;
+  Vec3<Real> direction = Vec3<Real>::UnitY();  ///< in which it leaves, unit
+  std::size_t particles = 0;                   ///< so many are still inside
+};
+
+}  // namespace weft
