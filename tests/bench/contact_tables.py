@@ -8,6 +8,8 @@ def milliseconds(value):
 
 
 def thousands(count):
+    if count < 1000:
+        return f"{count:g}"
     return f"{count / 1000:.3g} k" if count < 1e6 else f"{count / 1e6:.3g} M"
 
 
