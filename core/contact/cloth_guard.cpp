@@ -17,6 +17,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
     : edges_(model.edges), triangles_(model.triangles), tree_(model),
       boxes_(tree_, edges_, triangles_), tangles_(model) {
   for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
+  find_neighbours();
   finest_ = std::numeric_limits<Real>::infinity();
   for (const ClothPart<Real>& part : model.parts) {
     first_particle_.push_back(part.particles.first);

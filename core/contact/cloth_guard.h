@@ -273,7 +273,6 @@ class ClothGuard {
   void drop_moved_rows();
   void list_row(std::size_t r);
   void add_near_rows(const ClothState<Real>& state, Profile& profile);
-  bool is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
   bool has_row(const GuardedPair<Real>& pair) const;
   void turn_rows(const ClothState<Real>& state, Profile& profile);
   void turn(const ClothState<Real>& state, const PairSeparation<Real>& s, GuardRow<Real>& row);
@@ -285,6 +284,11 @@ class ClothGuard {
                const PairSeparation<Real>& s);
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   void remember(GuardRow<Real>& row) const;
+
+  // guard_borders.cpp
+  void find_neighbours();
+  bool owns_nearest(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
+  bool is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
 
   // guard_solve.cpp
   void load_rows(const ClothState<Real>& state);
@@ -299,6 +303,9 @@ class ClothGuard {
 
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
+  /// Of each triangle, who is across the edge opposite to a corner; none on a rim.
+  std::vector<std::array<Index, 3>> across_;
+  std::vector<Index> around_begin_, around_;  ///< of each particle its neighbours
   QuadArray<Real> rest_positions_;
   std::vector<Index> first_particle_;              ///< of each cloth
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]

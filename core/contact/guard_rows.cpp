@@ -19,11 +19,6 @@ constexpr double kRowMargin = 0.1;
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 constexpr int kStepsBetweenMotions = 4;
 
-/// A particle that is nearest to the border of a triangle has no row there if it has one that lies
-/// alike, no farther away: cosine between their normals. Where layers lie on each other most
-/// triangles beside the one below a particle are nearest at their borders.
-constexpr double kAlike = 0.8;
-
 /// If more than this part of all have moved, all pairs are gone through.
 constexpr std::size_t kManyMoved = 8;
 
@@ -152,7 +147,8 @@ void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& pro
       const PairSeparation<Real> s = columns.separation(k, legal_);
       if (s.inside)
         add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], s);
-      else if (columns.kind == PairKind::vertex_triangle)
+      else if (columns.kind == PairKind::vertex_triangle &&
+               owns_nearest(pairs_[static_cast<std::size_t>(columns.a[k])], s))
         borders_.push_back({columns.a[k], s});
     }
     columns.clear();
@@ -163,19 +159,6 @@ void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& pro
   });
   for (const Border& border : borders_)
     add_row(state, pairs_[static_cast<std::size_t>(border.pair)], border.separation);
-}
-
-/// Whether the particle of a pair has a row that lies alike and is no farther away.
-template <class Real>
-bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const {
-  const auto particle = static_cast<std::size_t>(pair.particle[0]);
-  for (Index r = first_row_[particle]; r != kNone; r = next_row_[static_cast<std::size_t>(r)]) {
-    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(r)];
-    if (kind_of(row) == PairKind::vertex_triangle && row.gap <= s.gap &&
-        dot(row.normal, to_quad(s.normal)) > static_cast<Real>(kAlike))
-      return true;
-  }
-  return false;
 }
 
 /// Distance that the features of a pair shall keep: the mean of their thicknesses, but no more than
@@ -291,6 +274,13 @@ template <class Real>
 void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
                             GuardRow<Real>& row) {
   if (!(s.gap > 0)) return;
+  // What has slid over a border goes on as it was until the triangle beyond has a row.
+  if (kind_of(row) == PairKind::vertex_triangle && !s.inside) {
+    GuardedPair<Real> pair;
+    pair.particle = row.particle;
+    pair.b = static_cast<Index>(row.key & 0x7fffffff);
+    if (!owns_nearest(pair, s)) return;
+  }
   const Quad<Real> slipped = row.slip + (weighted(row, legal_) - row.apart);
   // Edges that are nearest at an end leave it to the particle there.
   if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {
@@ -315,26 +305,24 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
   row.slip = tangential(row, old.slip + (weighted(old, legal_) - old.apart));
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);                  \
-  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,     \
-                                       GuardRow<Real>&);                                         \
-  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&,    \
-                                        GuardRow<Real>&) const;                                  \
-  template bool ClothGuard<Real>::find_moved();                                                  \
-  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);                 \
-  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;                  \
-  template void ClothGuard<Real>::drop_moved_rows();                                             \
-  template void ClothGuard<Real>::list_row(std::size_t);                                         \
-  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);              \
-  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&, const PairSeparation<Real>&) \
-      const;                                                                                     \
-  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                       \
-  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);                \
-  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                     \
-  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,     \
-                                          const PairSeparation<Real>&);                          \
-  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;       \
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);               \
+  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,  \
+                                       GuardRow<Real>&);                                      \
+  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
+                                        GuardRow<Real>&) const;                               \
+  template bool ClothGuard<Real>::find_moved();                                               \
+  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);              \
+  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;               \
+  template void ClothGuard<Real>::drop_moved_rows();                                          \
+  template void ClothGuard<Real>::list_row(std::size_t);                                      \
+  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);           \
+  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                    \
+  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
+  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \
+  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \
+                                          const PairSeparation<Real>&);                       \
+  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
   template void ClothGuard<Real>::remember(GuardRow<Real>&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

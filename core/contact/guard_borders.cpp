@@ -1,0 +1,106 @@
+// Where particles are nearest to the borders of triangles, and which of these carry them.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/contact/cloth_guard.h"
+
+namespace weft {
+namespace {
+
+/// A particle that is nearest to the border of a triangle has no row there if it has one that lies
+/// alike, no farther away: cosine between their normals.
+constexpr double kAlike = 0.8;
+
+}  // namespace
+
+/// Who is across each edge of a triangle, and around each particle.
+template <class Real>
+void ClothGuard<Real>::find_neighbours() {
+  across_.assign(triangles_.size(), {kNone, kNone, kNone});
+  std::vector<std::pair<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>>> sides;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto ends = std::minmax(triangles_[t][(k + 1) % 3], triangles_[t][(k + 2) % 3]);
+      sides.push_back({ends, {t, k}});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t n = 0; n + 1 < sides.size(); ++n) {
+    if (sides[n].first != sides[n + 1].first) continue;
+    const auto [t, k] = sides[n].second;
+    const auto [u, m] = sides[n + 1].second;
+    across_[t][k] = triangles_[u][m];
+    across_[u][m] = triangles_[t][k];
+  }
+  around_begin_.assign(rest_positions_.size() + 1, 0);
+  for (const Edge& e : edges_) {
+    for (const Index i : {e[0], e[1]}) ++around_begin_[static_cast<std::size_t>(i) + 1];
+  }
+  for (std::size_t i = 0; i < rest_positions_.size(); ++i) around_begin_[i + 1] += around_begin_[i];
+  around_.resize(2 * edges_.size());
+  std::vector<Index> at(around_begin_.begin(), around_begin_.end() - 1);
+  for (const Edge& e : edges_) {
+    around_[static_cast<std::size_t>(at[static_cast<std::size_t>(e[0])]++)] = e[1];
+    around_[static_cast<std::size_t>(at[static_cast<std::size_t>(e[1])]++)] = e[0];
+  }
+}
+
+/// Whether the nearest point of a triangle is the nearest of the surface around it: at a border
+/// that another triangle goes on from, nearer to the particle, it is that one's to respond.
+template <class Real>
+bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>& pair,
+                                    const PairSeparation<Real>& s) const {
+  Quad<Real> nearest;
+  std::size_t corner = 3, zeros = 0, kept = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    nearest += legal_[static_cast<std::size_t>(pair.particle[k + 1])] * -s.weight[k + 1];
+    if (s.weight[k + 1] == 0) {
+      corner = k;
+      ++zeros;
+    } else {
+      kept = k;
+    }
+  }
+  const Quad<Real> away = legal_[static_cast<std::size_t>(pair.particle[0])] - nearest;
+  const auto leads_nearer = [&](Index i) {
+    return i != pair.particle[0] && dot(away, legal_[static_cast<std::size_t>(i)] - nearest) > 0;
+  };
+  if (zeros == 1) {
+    const Index other = across_[static_cast<std::size_t>(pair.b)][corner];
+    return other == kNone || !leads_nearer(other);
+  }
+  if (zeros != 2) return true;
+  const auto i = static_cast<std::size_t>(pair.particle[kept + 1]);
+  for (auto n = static_cast<std::size_t>(around_begin_[i]);
+       n < static_cast<std::size_t>(around_begin_[i + 1]); ++n) {
+    if (leads_nearer(around_[n])) return false;
+  }
+  return true;
+}
+
+/// Whether the particle of a pair has a row that lies alike and is no farther away.
+template <class Real>
+bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const {
+  const auto particle = static_cast<std::size_t>(pair.particle[0]);
+  for (Index r = first_row_[particle]; r != kNone; r = next_row_[static_cast<std::size_t>(r)]) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(r)];
+    if (kind_of(row) == PairKind::vertex_triangle && row.gap <= s.gap &&
+        dot(row.normal, to_quad(s.normal)) > static_cast<Real>(kAlike))
+      return true;
+  }
+  return false;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template void ClothGuard<Real>::find_neighbours();                                             \
+  template bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>&,                         \
+                                               const PairSeparation<Real>&) const;               \
+  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&, const PairSeparation<Real>&) \
+      const;
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
