@@ -60,6 +60,8 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
   resting_.assign(tree_.patch_count(), 0);
+  is_heap_.assign(first_particle_.size(), 0);
+  crossings_of_.assign(first_particle_.size(), 0);
   let_rest({});
 }
 
@@ -86,6 +88,8 @@ void ClothGuard<Real>::reset() {
   pushed_.clear();
   open_pairs_ = 0;
   tangles_.reset();
+  is_heap_.assign(is_heap_.size(), 0);
+  heaps_ = 0;
   unseen_ = true;
   kicked_ = 0;
   closed_ = true;

@@ -151,7 +151,10 @@ class ClothGuard {
   Real kicked() const { return kicked_; }
   /// Pairs about which nothing is promised: features that cross or touch since the start, and
   /// those around them.
-  std::size_t open_pairs() const { return open_pairs_ + tangles_.size(); }
+  std::size_t open_pairs() const { return open_pairs_ + tangles_.size() + heaps_; }
+  /// Whether so much of a cloth crosses that it is not looked at: it passes through all cloth until
+  /// its springs have spread it out, and is untangled then.
+  bool is_heap(std::size_t cloth) const { return is_heap_[cloth] != 0; }
   /// Says that a tick begins, of whose work `work` shall tell.
   void begin_tick() { tangles_.begin_tick(); }
   /// Work since then on what started through each other [J].
@@ -237,6 +240,11 @@ class ClothGuard {
   // guard_tangles.cpp
   void find_tangles(const ClothState<Real>& state);
   void look_through(Index p, Index q);
+  void note_crossings(Index p, Index q, std::size_t count);
+  std::size_t cloth_of(Index patch) const {
+    return static_cast<std::size_t>(part_of(tree_.patch(patch).particles.front()));
+  }
+  bool in_heap(Index patch) const { return heaps_ > 0 && is_heap(cloth_of(patch)); }
   void note_touches();
 
   // guard_regions.cpp
@@ -341,6 +349,9 @@ class ClothGuard {
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
   ClothTangles<Real> tangles_;
+  std::vector<char> is_heap_;              ///< of each cloth
+  std::vector<std::size_t> crossings_of_;  ///< each cloth, until it is a heap
+  std::size_t heaps_ = 0;
   bool unseen_ = true;          ///< nobody has looked yet whether something crosses
   std::size_t most_pairs_ = 0;  ///< with those that are gone, until all are collected anew
   std::vector<Index> pairs_begin_, pairs_end_, pairs_of_;  ///< for each particle its pairs

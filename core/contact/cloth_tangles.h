@@ -36,6 +36,11 @@ class ClothTangles {
   /// Notes that an edge passes through a triangle, if it does. They have no particle in common.
   /// @param x  positions of all particles [m]
   void look_at(Index edge, Index triangle, const QuadArray<Real>& x);
+  /// Forgets crossings again for which unwanted(crossing) is true.
+  template <class Unwanted>
+  void leave_out(Unwanted&& unwanted) {
+    std::erase_if(crossings_, unwanted);
+  }
   /// Notes features that touch without a side, which are drawn apart too.
   /// @param particle  as GuardedPair has them
   void note_touch(PairKind kind, const std::array<Index, 4>& particle, const QuadArray<Real>& x);

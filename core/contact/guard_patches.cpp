@@ -38,6 +38,7 @@ typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index p, bool all)
 template <class Real>
 std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
   if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return 0;
+  if (in_heap(p) || in_heap(q)) return 0;
   boxes_.fit(p, tree_.patch(p), motion_, changed_);
   boxes_.fit(q, tree_.patch(q), motion_, changed_);
   overlap_patches(boxes_.columns(p), boxes_.columns(q), overlaps_);

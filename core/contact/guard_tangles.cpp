@@ -7,6 +7,10 @@
 namespace weft {
 namespace {
 
+/// A cloth with more crossings than this part of its particles, and than so many, is a heap: work
+/// would have no bound.
+constexpr std::size_t kHeapPart = 2, kFewCrossings = 600;
+
 bool share_particle(const Edge& edge, const Triangle& t) {
   return std::any_of(edge.begin(), edge.end(),
                      [&](Index i) { return i == t[0] || i == t[1] || i == t[2]; });
@@ -18,12 +22,41 @@ bool share_particle(const Edge& edge, const Triangle& t) {
 template <class Real>
 void ClothGuard<Real>::find_tangles(const ClothState<Real>& state) {
   tangles_.clear();
+  is_heap_.assign(is_heap_.size(), 0);
+  crossings_of_.assign(crossings_of_.size(), 0);
+  heaps_ = 0;
   tree_.for_each_near_pair([&](Index p, Index q) {
     if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return;
+    if (in_heap(p) || in_heap(q)) return;
+    const std::size_t before = tangles_.size();
     look_through(p, q);
     if (p != q) look_through(q, p);
+    if (tangles_.size() > before) note_crossings(p, q, tangles_.size() - before);
   });
+  if (heaps_ > 0) {
+    tangles_.leave_out([&](const TangleCrossing& c) {
+      const Index one = edges_[static_cast<std::size_t>(c.edge)][0],
+                  other = triangles_[static_cast<std::size_t>(c.triangle)][0];
+      return is_heap(static_cast<std::size_t>(part_of(one))) ||
+             is_heap(static_cast<std::size_t>(part_of(other)));
+    });
+  }
   tangles_.decide(legal_, state.inverse_mass);
+}
+
+/// Counts crossings for the cloths of two patches.
+template <class Real>
+void ClothGuard<Real>::note_crossings(Index p, Index q, std::size_t count) {
+  for (const std::size_t k : {cloth_of(p), cloth_of(q)}) {
+    const std::size_t end = k + 1 < first_particle_.size()
+                                ? static_cast<std::size_t>(first_particle_[k + 1])
+                                : legal_.size();
+    const std::size_t particles = end - static_cast<std::size_t>(first_particle_[k]);
+    crossings_of_[k] += count;
+    if (is_heap(k) || crossings_of_[k] <= std::max(kFewCrossings, particles / kHeapPart)) continue;
+    is_heap_[k] = 1;
+    ++heaps_;
+  }
 }
 
 /// Edges of one patch and triangles of another one.
@@ -78,6 +111,9 @@ std::vector<std::array<Index, 2>> ClothGuard<Real>::tangled_cloths() const {
   for (const GuardedPair<Real>& pair : pairs_) {
     if (pair.open && !pair.gone) add(pair.particle[0], pair.particle[3]);
   }
+  for (std::size_t k = 0; k < is_heap_.size(); ++k) {
+    if (is_heap(k)) list.push_back({static_cast<Index>(k), static_cast<Index>(k)});
+  }
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
@@ -85,6 +121,7 @@ std::vector<std::array<Index, 2>> ClothGuard<Real>::tangled_cloths() const {
 
 #define WEFT_INSTANTIATE(Real)                                                         \
   template void ClothGuard<Real>::find_tangles(const ClothState<Real>&);               \
+  template void ClothGuard<Real>::note_crossings(Index, Index, std::size_t);           \
   template void ClothGuard<Real>::look_through(Index, Index);                          \
   template std::vector<std::array<Index, 2>> ClothGuard<Real>::tangled_cloths() const; \
   template void ClothGuard<Real>::note_touches();

@@ -271,6 +271,27 @@ TEST_CASE("undoing a tangle allocates nothing the second time, and goes the same
   CHECK(world.hash() == first);
 }
 
+TEST_CASE("a cloth that is a heap is let through itself, unfolds, and has its guarantee back") {
+  WorldDef def;
+  def.cloths[0] = sheet("cloth", 25, 0.8, Vec3d(0, 1, 0), kX, -kY);
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
+  def.environment.drag = 5;
+  def.contact.seed.self = SelfContact::guard;
+  InsultDef gather;
+  gather.gather = 5e-4;
+  def.insults = {gather};
+  World<float> world(def);
+  world.step();
+  CHECK(world.guard()->is_heap(0));
+  CHECK(world.guard()->pairs().empty());  // work has a bound
+  CHECK(world.bad_starts() == std::vector<std::string>{"cloth started through itself"});
+  advance(world, 5);
+  CHECK_FALSE(world.guard()->is_heap(0));
+  CHECK(world.guard()->open_pairs() == 0);
+  CHECK(crossings(world) == 0);
+  CHECK(crossings_of_drag(world, 24 * 24) == 0);
+}
+
 TEST_CASE("a tangle that pins hold for ever neither explodes nor lets anything else cross") {
   std::vector<ClothDef> cloths = {sheet("one", 21, 0.6, Vec3d::Zero(), kX, kZ),
                                   sheet("two", 21, 0.4, Vec3d(0.01, 0.02, 0), kX + 0.1 * kZ, kY)};
