@@ -78,8 +78,8 @@ void build_ticks_of_a_second(WorldDef& def, const std::string&) {
   drop_in_ticks(def, 1);
 }
 
-/// It may pass through itself, as it cannot leave a point otherwise; when it hangs again, nothing
-/// is left of that. Its rigidity is such that it has one rest: without, it keeps tucks.
+/// It passes through itself, as it cannot leave a point otherwise; when it hangs again, nothing is
+/// left of that. Its rigidity is such that it has one rest: without, it keeps tucks.
 void build_point(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
   def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 4e-3;
@@ -91,7 +91,6 @@ void build_point(WorldDef& def, const std::string&) {
   gather.gather = 5e-4;
   def.insults = {gather};
   judge(def, 1000);  // the pinned row is as far from the point as it is
-  def.contact.seed.self = SelfContact::none;
   def.verdict.clear_after = 7;
   def.verdict.rest_at = 2;
   def.verdict.back_by = 7;
