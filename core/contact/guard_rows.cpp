@@ -274,13 +274,6 @@ template <class Real>
 void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
                             GuardRow<Real>& row) {
   if (!(s.gap > 0)) return;
-  // What has slid over a border goes on as it was until the triangle beyond has a row.
-  if (kind_of(row) == PairKind::vertex_triangle && !s.inside) {
-    GuardedPair<Real> pair;
-    pair.particle = row.particle;
-    pair.b = static_cast<Index>(row.key & 0x7fffffff);
-    if (!owns_nearest(pair, s)) return;
-  }
   const Quad<Real> slipped = row.slip + (weighted(row, legal_) - row.apart);
   // Edges that are nearest at an end leave it to the particle there.
   if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {

@@ -116,3 +116,52 @@ TEST_CASE("over a flat mesh a cloth slides 1 degree above atan(mu) as on a plane
   else
     CHECK(moved == Approx(acceleration / 2).epsilon(0.1));
 }
+
+namespace {
+
+/// A cloth on another one of other cells, which is pinned as a whole.
+WorldDef cloth_on_cloth(double angle, double friction) {
+  WorldDef def = test::empty_world(test::flat_cloth(8, 10, 0.5, 0.4));
+  def.cloths.push_back(test::flat_cloth(14, 25, 1.2, 0.7));
+  for (ClothDef& cloth : def.cloths) {
+    cloth.fabric.friction = friction;
+    cloth.fabric.thickness = 0.004;
+  }
+  def.cloths[0].name = "upper";
+  def.cloths[1].name = "lower";
+  def.cloths[0].origin = Vec3d(0, 0.004, 0);
+  def.cloths[1].origin = Vec3d(-0.11, 0, -0.13);
+  def.pins = {{MaterialPoint{0.5, 0.5}, 10, "lower"}};
+  def.contact.seed.self = SelfContact::guard;
+  def.environment.gravity = kGravity * Vec3d(std::sin(angle), -std::cos(angle), 0);
+  return def;
+}
+
+/// Mean place of the first cloth downhill [m].
+double upper_cloth(const World<float>& world) {
+  const IndexRange& range = world.model().parts[0].particles;
+  double sum = 0;
+  for (Index i = range.first; i < range.end(); ++i)
+    sum += static_cast<double>(world.state().x[static_cast<std::size_t>(i)][0]);
+  return sum / range.count;
+}
+
+}  // namespace
+
+TEST_CASE("over another cloth a cloth slides 1 degree above atan(mu) as on a plane, to 10 %") {
+  const double friction = GENERATE(0.0, 0.2, 0.5);
+  const double angle = std::atan(friction) + std::atan(1.0) / 45;
+  World<float> world(cloth_on_cloth(angle, friction));
+  const double before = upper_cloth(world);
+  test::advance(world, 1.5);
+  const double acceleration = kGravity * (std::sin(angle) - friction * std::cos(angle));
+  CHECK(upper_cloth(world) - before == Approx(acceleration * 1.5 * 1.5 / 2).epsilon(0.1));
+}
+
+TEST_CASE("over another cloth a cloth creeps 1 degree below atan(mu) by less than 2 mm in 1.5 s") {
+  const double friction = GENERATE(0.2, 0.5);
+  World<float> world(cloth_on_cloth(std::atan(friction) - std::atan(1.0) / 45, friction));
+  const double before = upper_cloth(world);
+  test::advance(world, 1.5);
+  CHECK(std::abs(upper_cloth(world) - before) < 0.002);
+}
