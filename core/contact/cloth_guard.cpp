@@ -78,6 +78,7 @@ void ClothGuard<Real>::reset() {
   rows_.clear();
   busy_rows_.clear();
   arrived_.clear();
+  passed_.clear();
   pairs_.clear();
   active_.clear();
   dirty_.clear();

@@ -130,12 +130,6 @@ class ClothGuard {
     bool ample = false;       ///< the bound is far more than anybody needs
   };
 
-  /// A particle nearest to the border of a triangle.
-  struct Border {
-    Index pair;
-    PairSeparation<Real> separation;
-  };
-
   /// A pair whose coming step is certified by itself.
   struct Critical {
     Index pair;
@@ -247,12 +241,12 @@ class ClothGuard {
   void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
                const PairSeparation<Real>& s);
   Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
-  void remember(GuardRow<Real>& row) const;
+  GuardRow<Real>* row_before(const GuardRow<Real>& row);
+  void remember(GuardRow<Real>& row);
 
   // guard_borders.cpp
   void find_neighbours();
   bool owns_nearest(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
-  bool is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
 
   // guard_solve.cpp
   void load_rows(const ClothState<Real>& state);
@@ -348,8 +342,8 @@ class ClothGuard {
   std::vector<Index> first_row_;  ///< for each particle the last row whose first one it is
   std::vector<Index> next_row_;   ///< and for each row the one before
   std::vector<Index> moved_particles_;
+  std::vector<Index> passed_;  ///< over the border of a triangle that carries them
   std::vector<char> is_moved_;
-  std::vector<Border> borders_;
   QuadArray<Real> quad_v_;        ///< their velocities while rows are solved [m/s]
   QuadArray<Real> extra_;         ///< velocity of the push [m/s]
   std::vector<Index> busy_rows_;  ///< that push or soon may

@@ -1,4 +1,4 @@
-// Where particles are nearest to the borders of triangles, and which of these carry them.
+// Which of the triangles that a particle is near to carries it.
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,6 @@
 #include "core/contact/cloth_guard.h"
 
 namespace weft {
-namespace {
-
-/// A particle that is nearest to the border of a triangle has no row there if it has one that lies
-/// alike, no farther away: cosine between their normals.
-constexpr double kAlike = 0.8;
-
-}  // namespace
-
 /// Who is across each edge of a triangle, and around each particle.
 template <class Real>
 void ClothGuard<Real>::find_neighbours() {
@@ -80,25 +72,10 @@ bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>& pair,
   return true;
 }
 
-/// Whether the particle of a pair has a row that lies alike and is no farther away.
-template <class Real>
-bool ClothGuard<Real>::is_held(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const {
-  const auto particle = static_cast<std::size_t>(pair.particle[0]);
-  for (Index r = first_row_[particle]; r != kNone; r = next_row_[static_cast<std::size_t>(r)]) {
-    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(r)];
-    if (kind_of(row) == PairKind::vertex_triangle && row.gap <= s.gap &&
-        dot(row.normal, to_quad(s.normal)) > static_cast<Real>(kAlike))
-      return true;
-  }
-  return false;
-}
-
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template void ClothGuard<Real>::find_neighbours();                                             \
-  template bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>&,                         \
-                                               const PairSeparation<Real>&) const;               \
-  template bool ClothGuard<Real>::is_held(const GuardedPair<Real>&, const PairSeparation<Real>&) \
-      const;
+#define WEFT_INSTANTIATE(Real)                                           \
+  template void ClothGuard<Real>::find_neighbours();                     \
+  template bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>&, \
+                                               const PairSeparation<Real>&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

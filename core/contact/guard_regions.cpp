@@ -115,7 +115,7 @@ void ClothGuard<Real>::anchor(const std::vector<Index>& list) {
     anchor_wave(wave == 0);
     std::sort(next_.begin(), next_.end());
     next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
-    wave_list_.swap(next_);
+    wave_list_ = next_;
   }
 }
 

@@ -22,7 +22,6 @@ struct GuardRow {
   Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
   Real radius = 0;                           ///< that the gap shall keep [m]
   Real friction = 0;
-  Real gap = 0;           ///< when it was made [m]
   Real room = 0;          ///< of the gap above the radius, now [m]
   Real least_speed = 0;   ///< that the normal velocity must reach now [m/s]
   Real push = 0;          ///< impulse along the normal in a substep [N s]

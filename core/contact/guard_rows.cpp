@@ -28,6 +28,10 @@ constexpr double kRowReach = 1.3;
 /// Edges keep less than the thickness, so that particles and triangles respond first.
 constexpr double kEdgeRadius = 0.85;
 
+/// A particle that goes over the border of a triangle takes its impulses along if the directions
+/// are so much alike: cosine between them.
+constexpr double kSameWay = 0.9;
+
 /// What lies so near in the fabric keeps no more than this part of its distance there.
 constexpr double kFabricPart = 0.8;
 
@@ -40,6 +44,7 @@ bool ClothGuard<Real>::find_moved() {
   moved_particles_.clear();
   if (!rows_built_) {
     moved_particles_ = active_;
+    passed_.clear();
     rows_time_ = 0;
     rows_steps_ = 0;
     return true;
@@ -53,6 +58,8 @@ bool ClothGuard<Real>::find_moved() {
     const Quad<Real> way = legal_[i] - x_rows_[i];
     if (!(dot(way, way) <= most * most)) moved_particles_.push_back(k);
   }
+  moved_particles_.insert(moved_particles_.end(), passed_.begin(), passed_.end());
+  passed_.clear();
   return !moved_particles_.empty();
 }
 
@@ -134,31 +141,18 @@ void ClothGuard<Real>::list_row(std::size_t r) {
   }
 }
 
-/// Adds the rows of the pairs in the columns: first those of particles over the inside of a
-/// triangle, then, the nearest first, of what is not held by these.
+/// Adds the rows of the pairs in the columns.
 template <class Real>
 void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& profile) {
-  borders_.clear();
   for (PairColumns<Real>& columns : columns_) {
     profile[Stage::narrow_phase].work += columns.size();
     separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (columns.gap[k] > thickest_ * Real(kRowReach)) continue;
-      const PairSeparation<Real> s = columns.separation(k, legal_);
-      if (s.inside)
-        add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], s);
-      else if (columns.kind == PairKind::vertex_triangle &&
-               owns_nearest(pairs_[static_cast<std::size_t>(columns.a[k])], s))
-        borders_.push_back({columns.a[k], s});
+      add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], columns.separation(k, legal_));
     }
     columns.clear();
   }
-  std::sort(borders_.begin(), borders_.end(), [](const Border& a, const Border& b) {
-    const Real one = a.separation.gap, other = b.separation.gap;
-    return one < other || (one == other && a.pair < b.pair);
-  });
-  for (const Border& border : borders_)
-    add_row(state, pairs_[static_cast<std::size_t>(border.pair)], border.separation);
 }
 
 /// Distance that the features of a pair shall keep: the mean of their thicknesses, but no more than
@@ -213,13 +207,13 @@ template <class Real>
 void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
                                const PairSeparation<Real>& s) {
   if (s.gap > thickest_ * Real(kRowReach) || !(s.gap > 0)) return;
-  if (pair.kind == PairKind::edge_edge && !s.inside) return;
+  if (!s.inside && (pair.kind == PairKind::edge_edge || !owns_nearest(pair, s))) return;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
     approach -= s.weight[k] * s.normal.dot(state.v[static_cast<std::size_t>(pair.particle[k])]);
   const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
   const Real margin = std::max(thickest_ * Real(kRowMargin), soon);
-  if (s.gap > thickest_ + margin || (!s.inside && is_held(pair, s))) return;
+  if (s.gap > thickest_ + margin) return;
   const Index p = part_of(pair.particle[0]), q = part_of(pair.particle[2]);
   GuardRow<Real> row;
   row.radius = radius_of(pair, p, q);
@@ -230,7 +224,6 @@ void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
   row.key = key_of(pair);
   row.apart = weighted(row, legal_);
-  row.gap = s.gap;
   remember(row);
   rows_.push_back(row);
   list_row(rows_.size() - 1);
@@ -264,8 +257,17 @@ void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile
   for (PairColumns<Real>& columns : columns_) {
     profile[Stage::narrow_phase].work += columns.size();
     separate_pairs(legal_, legal_, columns);
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      turn(state, columns.separation(k, legal_), rows_[static_cast<std::size_t>(columns.a[k])]);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      GuardRow<Real>& row = rows_[static_cast<std::size_t>(columns.a[k])];
+      const PairSeparation<Real> s = columns.separation(k, legal_);
+      turn(state, s, row);
+      if (columns.kind == PairKind::edge_edge || s.inside) continue;
+      // Who has gone over a border is carried by the triangle beyond, and by none that tilts.
+      GuardedPair<Real> pair;
+      pair.particle = row.particle;
+      pair.b = static_cast<Index>(row.key & 0x7fffffff);
+      if (!owns_nearest(pair, s)) passed_.push_back(row.particle[0]);
+    }
     columns.clear();
   }
 }
@@ -285,17 +287,35 @@ void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<
   row.apart = weighted(row, legal_);
 }
 
-/// Goes on with the impulses and the anchor that the pair had.
+/// The row that was there before: of the same pair or, where a particle went over the border of a
+/// triangle, of the same particle in nearly the same direction. Null if there was none.
 template <class Real>
-void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
-  const auto found = std::lower_bound(old_keys_.begin(), old_keys_.end(),
-                                      std::pair<std::uint64_t, Index>{row.key, 0});
-  if (found == old_keys_.end() || found->first != row.key) return;
-  const GuardRow<Real>& old = old_rows_[static_cast<std::size_t>(found->second)];
-  row.push = old.push;
-  row.drag = tangential(row, old.drag);
+GuardRow<Real>* ClothGuard<Real>::row_before(const GuardRow<Real>& row) {
+  const auto from = [&](std::uint64_t key) {
+    return std::lower_bound(old_keys_.begin(), old_keys_.end(),
+                            std::pair<std::uint64_t, Index>{key, 0});
+  };
+  const auto at = [&](auto found) { return &old_rows_[static_cast<std::size_t>(found->second)]; };
+  const auto same = from(row.key);
+  if (same != old_keys_.end() && same->first == row.key) return at(same);
+  if (kind_of(row) == PairKind::edge_edge) return nullptr;
+  const std::uint64_t particle = row.key >> 31;
+  for (auto found = from(particle << 31);
+       found != old_keys_.end() && found->first >> 31 == particle; ++found) {
+    if (dot(at(found)->normal, row.normal) > static_cast<Real>(kSameWay)) return at(found);
+  }
+  return nullptr;
+}
+
+/// Goes on with the impulses and the anchor of the row before, which are given once.
+template <class Real>
+void ClothGuard<Real>::remember(GuardRow<Real>& row) {
+  GuardRow<Real>* old = row_before(row);
+  if (!old || old->push == 0) return;
+  row.push = std::exchange(old->push, Real(0));
+  row.drag = tangential(row, old->drag);
   // What it slipped since it was last aimed counts too.
-  row.slip = tangential(row, old.slip + (weighted(old, legal_) - old.apart));
+  row.slip = tangential(row, old->slip + (weighted(*old, legal_) - old->apart));
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                \
@@ -316,7 +336,8 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) const {
   template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \
                                           const PairSeparation<Real>&);                       \
   template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
-  template void ClothGuard<Real>::remember(GuardRow<Real>&) const;
+  template GuardRow<Real>* ClothGuard<Real>::row_before(const GuardRow<Real>&);               \
+  template void ClothGuard<Real>::remember(GuardRow<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE
