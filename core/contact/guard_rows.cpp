@@ -30,7 +30,7 @@ constexpr double kEdgeRadius = 0.85;
 
 /// A particle that goes over the border of a triangle takes its impulses along if the directions
 /// are so much alike: cosine between them.
-constexpr double kSameWay = 0.9;
+constexpr double kSameWay = 0.99;
 
 /// What lies so near in the fabric keeps no more than this part of its distance there.
 constexpr double kFabricPart = 0.8;
