@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 
@@ -102,6 +103,71 @@ Vec3<Real> sling_force(const Grab<Real>& grab, const ClothState<Real>& state) {
   return bounded<Real>(pull * static_cast<Real>(grab.def.stiffness), grab.def.max_force);
 }
 
+/// Change of velocity of the held point by a unit impulse there [1/kg].
+template <class Real>
+Real mobility(const Grab<Real>& grab, const ClothState<Real>& state) {
+  Real sum = 0;
+  for (std::size_t n = 0; n < grab.particles.size(); ++n)
+    sum += grab.weights[n] * grab.weights[n] *
+           state.inverse_mass[static_cast<std::size_t>(grab.particles[n])];
+  return sum;
+}
+
+/// The damped spring of a live hand, found with the velocity that it leads to. Backward Euler in
+/// the spring alone: with the cloth's own forces explicit it is stable wherever these are, for any
+/// stiffness, and the bound of the force is part of it (a spring that yields is convex too).
+/// What rests stays at rest: there the others' kick is just what this one takes back. Hands that
+/// hold the same particles find their forces in turn, each from the others' last ones.
+/// @param velocity  of the held point when all others have acted [m/s]
+/// @param seconds   for which the force acts
+template <class Real>
+Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real seconds,
+                      const Vec3Array<Real>& x, const Vec3<Real>& velocity, Real mobility) {
+  const auto stiffness = static_cast<Real>(grab.def.stiffness);
+  const Vec3<Real> way = grab.target - grab.target_before;
+  const Vec3<Real> target = grab.target_before + way * step.progress;
+  const Vec3<Real> approach = way * step.rate - velocity;
+  const Vec3<Real> pull =
+      (target - held_point(grab, x) + approach * step.dt) * stiffness - velocity * grab.damping;
+  const Real resistance = (grab.damping + stiffness * step.dt) * seconds * mobility;
+  return bounded<Real>(pull / (1 + resistance), grab.def.max_force);
+}
+
+/// Gives the held particles a force for some time.
+template <class Real>
+void pull(const Grab<Real>& grab, const Vec3<Real>& force, Real seconds, ClothState<Real>& state) {
+  for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+    const auto i = static_cast<std::size_t>(grab.particles[n]);
+    state.v[i] += force * (grab.weights[n] * state.inverse_mass[i] * seconds);
+  }
+}
+
+/// Calls visit(grab) for all live hands; of slings it tells the force.
+template <class Real, class Visit>
+void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) {
+  for (Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode == GrabMode::live)
+      visit(grab);
+    else
+      grab.force = sling_force(grab, state);
+  }
+}
+
+/// Takes back what of the velocities is above kFastestHeld, and what that took of the force.
+template <class Real>
+void hold_back(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
+  constexpr Real kMost = static_cast<Real>(kFastestHeld);
+  for (const Index i : grab.particles) {
+    Vec3<Real>& v = state.v[static_cast<std::size_t>(i)];
+    const Real inverse_mass = state.inverse_mass[static_cast<std::size_t>(i)];
+    const Real speed2 = v.squaredNorm();
+    if (!(speed2 > kMost * kMost) || inverse_mass == 0) continue;
+    const Vec3<Real> kept = v * (kMost / std::sqrt(speed2));
+    grab.force -= (v - kept) / (inverse_mass * seconds);
+    v = kept;
+  }
+}
+
 template <class Real>
 void share_force(const std::vector<Index>& particles, const std::vector<Real>& weights,
                  const Vec3<Real>& shared, Vec3Array<Real>& force) {
@@ -135,7 +201,6 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   if (def.mode == GrabMode::live) {
     const double per_mass = inverse_held_mass(model, grab);
     grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
-    grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
   }
   grabs.list.push_back(std::move(grab));
   return grabs.list.back().id;
@@ -183,39 +248,69 @@ Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x) {
 }
 
 template <class Real>
-void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
-                     Vec3Array<Real>& force) {
-  for (Grab<Real>& grab : grabs.list) {
-    if (grab.def.mode == GrabMode::sling) {
-      grab.force = sling_force(grab, state);
-      continue;
-    }
-    const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
-    const Vec3<Real> pull =
-        (target - held_point(grab, state.x)) * static_cast<Real>(grab.def.stiffness) -
-        weighted_mean(grab, state.v) * grab.damping;
-    grab.force = bounded(pull, grab.def.max_force);
+void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& state,
+                  Grabs<Real>& grabs) {
+  for_live(grabs, state, [&](const Grab<Real>& grab) { pull(grab, grab.force, seconds, state); });
+  for_live(grabs, state, [&](Grab<Real>& grab) {
+    const Real own = mobility(grab, state);
+    const Vec3<Real> others = weighted_mean(grab, state.v) - grab.force * (own * seconds);
+    const Vec3<Real> force = hand_force(grab, step, seconds, state.x, others, own);
+    pull<Real>(grab, force - grab.force, seconds, state);
+    grab.force = force;
+  });
+  for_live(grabs, state, [&](Grab<Real>& grab) { hold_back(grab, seconds, state); });
+}
+
+template <class Real>
+void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gravity,
+                     const ClothState<Real>& state, Grabs<Real>& grabs, Vec3Array<Real>& force) {
+  for_live(grabs, state, [&](const Grab<Real>& grab) {
     share_force(grab.particles, grab.weights, grab.force, force);
-  }
+  });
+  for_live(grabs, state, [&](Grab<Real>& grab) {
+    const Real own = mobility(grab, state);
+    Vec3<Real> others = grab.force * (-own * step.dt);
+    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+      const auto i = static_cast<std::size_t>(grab.particles[n]);
+      const Real w = state.inverse_mass[i];
+      if (w == 0) continue;
+      others += (state.v[i] * keep + (force[i] * w + gravity) * step.dt) * grab.weights[n];
+    }
+    const Vec3<Real> found = hand_force(grab, step, step.dt, state.x, others, own);
+    share_force<Real>(grab.particles, grab.weights, found - grab.force, force);
+    grab.force = found;
+  });
+}
+
+template <class Real>
+void add_shot_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
   for (const Shot<Real>& shot : grabs.shots)
     share_force(shot.particles, shot.weights, shot.force, force);
 }
 
 template <class Real>
-void hold_back(Real seconds, ClothState<Real>& state, Grabs<Real>& grabs) {
-  constexpr Real kMost = static_cast<Real>(kFastestHeld);
-  for (Grab<Real>& grab : grabs.list) {
-    if (grab.def.mode == GrabMode::sling) continue;
-    for (const Index i : grab.particles) {
-      Vec3<Real>& v = state.v[static_cast<std::size_t>(i)];
-      const Real inverse_mass = state.inverse_mass[static_cast<std::size_t>(i)];
-      const Real speed2 = v.squaredNorm();
-      if (!(speed2 > kMost * kMost) || inverse_mass == 0) continue;
-      const Vec3<Real> kept = v * (kMost / std::sqrt(speed2));
-      grab.force -= (v - kept) / (inverse_mass * seconds);
-      v = kept;
-    }
+void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
+  for (const Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode == GrabMode::live)
+      share_force(grab.particles, grab.weights, grab.force, force);
   }
+  add_shot_forces(grabs, force);
+}
+
+template <class Real>
+void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) grab.velocity = weighted_mean(grab, v);
+}
+
+template <class Real>
+double work_of_hands(Real seconds, const Vec3Array<Real>& v, Grabs<Real>& grabs) {
+  double work = 0;
+  for (Grab<Real>& grab : grabs.list) {
+    const Vec3<Real> before = std::exchange(grab.velocity, weighted_mean(grab, v));
+    if (grab.def.mode == GrabMode::live)
+      work += static_cast<double>(grab.force.dot(before + grab.velocity) * seconds) / 2;
+  }
+  return work;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                               \
@@ -227,8 +322,13 @@ void hold_back(Real seconds, ClothState<Real>& state, Grabs<Real>& grabs) {
                                                 Grabs<Real>&);                               \
   template void finish_tick(Grabs<Real>&);                                                   \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
-  template void hold_back(Real, ClothState<Real>&, Grabs<Real>&);                            \
-  template void add_grab_forces(Real, const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);
+  template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \
+  template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,              \
+                                const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
+  template void add_shot_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
+  template void add_last_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
+  template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
+  template double work_of_hands(Real, const Vec3Array<Real>&, Grabs<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -7,7 +7,6 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/solver/substep_rule.h"
 
 namespace weft {
 
@@ -47,11 +46,11 @@ struct Grab {
   GrabId id = 0;
   GrabDef def;
   std::vector<Index> particles;
-  std::vector<Real> weights;         ///< of the particles, sum 1
-  Vec3<Real> offset;                 ///< held point minus weighted mean when taken [m]
-  Vec3<Real> target, target_before;  ///< at the end and at the start of the coming tick [m]
-  Real damping = 0;                  ///< of the spring [N s/m]
-  StabilityBound bound;              ///< what it adds to the substep rule
+  std::vector<Real> weights;                 ///< of the particles, sum 1
+  Vec3<Real> offset;                         ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target, target_before;          ///< at the end and at the start of the coming tick [m]
+  Real damping = 0;                          ///< of the spring [N s/m]
+  Vec3<Real> velocity = Vec3<Real>::Zero();  ///< of the held point when last seen [m/s]
   /// Of a live hand: on the cloth, in the last substep; of a sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();
 };
@@ -111,17 +110,45 @@ void finish_tick(Grabs<Real>& grabs);
 template <class Real>
 Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x);
 
-/// Adds the forces of hands and shots to `force` [N]: clamp(k (target - p) - c dp/dt) of a live
-/// hand, the constant force of a shot, shared by weight.
-/// @param progress  how much of the tick has passed, 0 to 1
+/// Where in a tick hands pull.
 template <class Real>
-void add_grab_forces(Real progress, const ClothState<Real>& state, Grabs<Real>& grabs,
-                     Vec3Array<Real>& force);
+struct HandStep {
+  Real progress = 0;  ///< how much of the tick has passed, 0 to 1
+  Real rate = 0;      ///< ticks a second [1/s]
+  Real dt = 0;        ///< to the next pull [s]
+};
 
-/// After the forces have changed the velocities: takes back what is above kFastestHeld, and what
-/// that took of the force.
+/// After all other forces have changed the velocities: so does each live hand, with
+/// clamp(k (target - p) - c dp/dt) shared by weight, where p and the target are those at the end of
+/// the step that this velocity leads to. No velocity goes beyond kFastestHeld.
+/// @param seconds  for which the force acts
+template <class Real>
+void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& state,
+                  Grabs<Real>& grabs);
+
+/// The same force for solvers that take forces: adds it to `force`, where all others are.
+/// @param keep     what a step without forces leaves of a velocity, 0 to 1
+/// @param gravity  [m/s^2]
+template <class Real>
+void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gravity,
+                     const ClothState<Real>& state, Grabs<Real>& grabs, Vec3Array<Real>& force);
+
+/// Adds the constant forces of shots, shared by weight [N].
+template <class Real>
+void add_shot_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
+
+/// Adds the forces that hands and shots had last [N].
+template <class Real>
+void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
+
+/// To be called when a tick begins: the held points have the velocities `v` [m/s].
+template <class Real>
+void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs);
+
+/// Work of the live hands' last forces while the velocities became `v`, whoever else had a part in
+/// that: the force acts along with the mean of those before and after [J].
 /// @param seconds  for which the forces acted
 template <class Real>
-void hold_back(Real seconds, ClothState<Real>& state, Grabs<Real>& grabs);
+double work_of_hands(Real seconds, const Vec3Array<Real>& v, Grabs<Real>& grabs);
 
 }  // namespace weft

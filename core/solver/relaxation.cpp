@@ -31,10 +31,16 @@ bool in_rows(const Tick<Real>& tick, std::size_t part) {
   return tick.compliant() && tick.work.grids[part].fits();
 }
 
+/// What a substep without forces leaves of a velocity.
+template <class Real>
+double kept(const Tick<Real>& tick) {
+  return (1 - tick.solver.damping) / (1 + tick.surroundings.drag * static_cast<double>(tick.dt));
+}
+
 /// Everything that is a force and no constraint, gravity excepted, and the bending of parts that
 /// are swept row by row.
 template <class Real>
-void evaluate_forces(Tick<Real>& tick, Real progress) {
+void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
   const ClothModel<Real>& model = tick.model;
   RelaxationWorkspace<Real>& work = tick.work;
   std::fill(work.force.begin(), work.force.end(), Vec3<Real>::Zero());
@@ -56,18 +62,19 @@ void evaluate_forces(Tick<Real>& tick, Real progress) {
                    tick.state.v, work.external);
   }
   if (!idle(tick.grabs)) {
-    const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
-    const StageTimer timer(tick.profile, Stage::attachments, hands);
-    add_grab_forces(progress, tick.state, tick.grabs, work.external);
+    const StageTimer timer(tick.profile, Stage::attachments,
+                           tick.grabs.list.size() + tick.grabs.shots.size());
+    add_shot_forces(tick.grabs, work.external);
   }
   for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.external[i];
+  add_hand_forces(hands, static_cast<Real>(kept(tick)), tick.surroundings.gravity, tick.state,
+                  tick.grabs, work.force);
 }
 
 template <class Real>
 Prediction<Real> prediction(const Tick<Real>& tick) {
-  const auto dt = static_cast<double>(tick.dt);
-  const double keep = (1 - tick.solver.damping) / (1 + tick.surroundings.drag * dt);
-  return {static_cast<Real>(keep), tick.dt * tick.dt, tick.surroundings.gravity, tick.pulled()};
+  return {static_cast<Real>(kept(tick)), tick.dt * tick.dt, tick.surroundings.gravity,
+          tick.pulled()};
 }
 
 /// Eq. (5), into `wanted`: the way of compliant springs, the place of rigid ones.
@@ -293,12 +300,14 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     advance_rows(tick, substeps);
     substeps = 0;
   }
+  see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
-    evaluate_forces(tick, static_cast<Real>(s + 1) / static_cast<Real>(substeps));
+    const auto count = static_cast<Real>(substeps);
+    evaluate_forces<Real>(tick, {static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt});
     predict(tick);
     relax(tick, s);
     move(tick);
-    result.work += external_work(tick);
+    result.work += external_work(tick) + work_of_hands(tick.dt, state.v, grabs);
   }
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;

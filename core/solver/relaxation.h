@@ -6,6 +6,7 @@
 #include "core/contact/collision.h"
 #include "core/definition.h"
 #include "core/solver/grid_relaxation.h"
+#include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
 #include "core/world/profile.h"
 

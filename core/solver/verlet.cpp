@@ -44,10 +44,10 @@ void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
 }
 
-/// Hands and air. A grid has them as its external forces; as numbers of the whole model they are
+/// Shots and air. A grid has them as its external forces; as numbers of the whole model they are
 /// there for all other parts, and for grids if `listed`.
 template <class Real>
-void pull(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity, bool listed) {
+void push(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
   if (!tick.pulled) return;
   const Surroundings<Real>& around = tick.surroundings;
   Vec3Array<Real>& force = tick.work.external;
@@ -66,10 +66,9 @@ void pull(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity, bool
       }
     }
   }
-  if (!tick.hands) return;
-  const std::size_t hands = tick.grabs.list.size() + tick.grabs.shots.size();
-  const StageTimer timer(tick.profile, Stage::attachments, hands);
-  add_grab_forces(progress, tick.state, tick.grabs, force);
+  if (!tick.shots) return;
+  const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.shots.size());
+  add_shot_forces(tick.grabs, force);
 }
 
 /// Spreads masses and gravity over the numbers of the cloth; pins change both.
@@ -105,13 +104,13 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
 
 /// Forces and kick of all parts, with positions and velocities of the model up to date.
 template <class Real>
-void advance_kick(Tick<Real>& tick, const Kick<Real>& k, Real progress) {
+void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
   Vec3Array<Real>& v = tick.state.v;
-  pull(tick, progress, v, tick.hands);
+  push(tick, v, tick.shots);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p)) {
-      if (tick.hands) tick.grid(p).load_external(tick.work.external);
+      if (tick.shots) tick.grid(p).load_external(tick.work.external);
       advance_grid(tick, p, k, Real(0));
       tick.grid(p).store_velocities(v);
     } else {
@@ -124,7 +123,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k, Real progress) {
 /// All forces at the present positions as numbers of the whole model, with `velocity` as seen by
 /// dashpots and air.
 template <class Real>
-void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& velocity) {
+void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const ClothPart<Real>& part = tick.part(p);
     if (tick.sleeps(p)) continue;
@@ -137,7 +136,7 @@ void evaluate_forces(Tick<Real>& tick, Real progress, const Vec3Array<Real>& vel
     tick.grid(p).load(tick.state.x, velocity);
     tick.grid(p).compute_internal_forces(tick.work.internal);
   }
-  pull(tick, progress, velocity, true);
+  push(tick, velocity, true);
 }
 
 /// Kicks all cloths that are awake.
@@ -152,15 +151,15 @@ void kick_awake(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& fr
 /// Kicks with the dashpots' velocity found by fixed-point sweeps.
 /// @param share  where between the old and the new velocity the instant of the forces lies
 template <class Real>
-void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share, Real progress) {
+void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   if (tick.solver.damping_sweeps == 1) {
-    advance_kick(tick, k, progress);
+    advance_kick(tick, k);
     return;
   }
   Vec3Array<Real>&v = tick.state.v, &estimate = tick.work.velocity;
   estimate = v;
   for (int sweep = 1; sweep <= tick.solver.damping_sweeps; ++sweep) {
-    evaluate_forces(tick, progress, estimate);
+    evaluate_forces(tick, estimate);
     if (sweep == tick.solver.damping_sweeps) break;
     kick_awake(tick, k, v, estimate);
     for (std::size_t i = 0; i < v.size(); ++i)
@@ -207,11 +206,21 @@ double drift(Tick<Real>& tick) {
 template <class Real>
 void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
   if (tick.solver.damping_sweeps == 1) {
-    advance_kick(tick, k, Real(0));
+    advance_kick(tick, k);
     return;
   }
-  evaluate_forces(tick, Real(0), tick.state.v);
+  evaluate_forces(tick, tick.state.v);
   kick_awake(tick, k, tick.state.v, tick.state.v);
+}
+
+/// Hands, after the kick before substep `s` of `substeps`.
+template <class Real>
+void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
+  if (tick.grabs.list.empty()) return;
+  const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
+  const auto count = static_cast<Real>(substeps);
+  pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.push, tick.state,
+               tick.grabs);
 }
 
 /// The substeps of a tick where hands or contact see the particles between kick and drift.
@@ -221,6 +230,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
   ClothState<Real>& state = tick.state;
   const Collision<Real>& collision = tick.collision;
   double work = 0;
+  see_velocities(state.v, tick.grabs);
   CalmSpell spell;
   for (int s = 0; s < substeps; ++s) {
     work += advance_calm(tick, kicks, substeps, s, spell);
@@ -228,16 +238,19 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     if (s == 0)
       opening_kick(tick, kicks.opening);
     else
-      swept_kick(tick, kicks.full, Real(0.5), static_cast<Real>(s) / static_cast<Real>(substeps));
-    hold_back(s == 0 ? tick.dt / 2 : tick.dt, state, tick.grabs);
+      swept_kick(tick, kicks.full, Real(0.5));
+    const Kick<Real>& k = s == 0 ? kicks.opening : kicks.full;
+    pull(tick, k, s, substeps);
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
+    work += work_of_hands(k.push, state.v, tick.grabs);
     collision.after_drift(state, tick.dt, tick.profile);
     if (collision.seed || collision.guard) load_grids(tick);
   }
-  swept_kick(tick, kicks.closing, Real(1), Real(1));
-  hold_back(tick.dt / 2, state, tick.grabs);
+  swept_kick(tick, kicks.closing, Real(1));
+  pull(tick, kicks.closing, substeps, substeps);
   collision.settle(state, tick.dt, tick.profile);
+  work += work_of_hands(kicks.closing.push, state.v, tick.grabs);
   return work;
 }
 
@@ -276,9 +289,10 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              const Collision<Real>& collision, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile) {
-  const bool hands = !idle(grabs);
-  Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt),    grabs, collision, state,
-                  work,  profile,      hands,  hands || surroundings.air};
+  const bool hands = !idle(grabs), shots = !grabs.shots.empty();
+  Tick<Real> tick{model,   surroundings, solver, static_cast<Real>(dt),
+                  grabs,   collision,    state,  work,
+                  profile, hands,        shots,  shots || surroundings.air};
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air) {
     for (GridPass<Real>& grid : work.grids) {

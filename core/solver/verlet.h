@@ -11,6 +11,7 @@
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/forces/mesh_pass.h"
+#include "core/solver/substep_rule.h"
 #include "core/world/profile.h"
 
 namespace weft {
@@ -61,9 +62,9 @@ struct AdvanceResult {
 template <class Real>
 struct VerletWorkspace {
   // Where all parts are grids and there are no sweeps, these are empty, but for the external forces
-  // if there are hands.
+  // if there are shots.
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
-  Vec3Array<Real> external;              ///< forces of hands and air [N]
+  Vec3Array<Real> external;              ///< forces of shots and air [N]
   Vec3Array<Real> velocity;              ///< estimate of the velocity that the dashpots see [m/s]
   Vec3Array<Real> inverse_mass;          ///< the same number three times [1/kg]
   Vec3Array<Real> gravity;               ///< of each particle, 0 if it is fixed [m/s^2]
@@ -75,11 +76,11 @@ struct VerletWorkspace {
   bool all_grids = false;              ///< every part fits as a grid
   std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths that the grids have; 0: none
 
-  /// Sizes the arrays for a cloth on which neither air nor hands act.
+  /// Sizes the arrays for a cloth on which neither air nor shots act.
   void prepare(const ClothModel<Real>& model, const SolverDef& solver);
 
-  /// Sizes what air and hands need besides. To be called before a tick that has them.
-  void make_room(const ClothModel<Real>& model, bool air, bool hands);
+  /// Sizes what air and shots need besides. To be called before a tick that has them.
+  void make_room(const ClothModel<Real>& model, bool air, bool shots);
 
   /// Sizes what the steps without contact need, in a world with a guard (fused_steps.h).
   void make_room_for_paths();

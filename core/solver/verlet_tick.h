@@ -37,7 +37,7 @@ struct Tick {
   ClothState<Real>& state;
   VerletWorkspace<Real>& work;
   Profile& profile;
-  bool hands, pulled;  // anybody pulls; hands or the air do
+  bool hands, shots, pulled;  // anybody holds; was shot; shots or the air push
 
   const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
   GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }

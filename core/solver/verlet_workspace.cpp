@@ -25,12 +25,12 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
 }
 
 template <class Real>
-void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool hands) {
-  if (!air && !hands) return;
+void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool shots) {
+  if (!air && !shots) return;
   for (GridPass<Real>& grid : grids) {
     if (grid.fits()) grid.make_room(air);
   }
-  if (hands || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
+  if (shots || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
 }
 
 template <class Real>

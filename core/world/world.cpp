@@ -161,12 +161,12 @@ void World<Real>::prepare_solver() {
   make_room();
 }
 
-/// Arrays for air and hands, as soon as there are any: no tick allocates.
+/// Arrays for air and shots, as soon as there are any: no tick allocates.
 template <class Real>
 void World<Real>::make_room() {
   const bool air = has_air(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
-  if (solver_of(def_) == SolverKind::verlet) verlet_.make_room(model_, air, !idle(grabs_));
+  if (solver_of(def_) == SolverKind::verlet) verlet_.make_room(model_, air, !grabs_.shots.empty());
 }
 
 template <class Real>
@@ -193,11 +193,6 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part) const {
   if (solver_of(def_) == SolverKind::verlet) {  // there the springs are forces too
     bound.omega2 += part.bounds.membrane_omega2;
     bound.damping_rate += part.bounds.membrane_damping_rate;
-  }
-  for (const Grab<Real>& grab : grabs_.list) {
-    if (!part.triangles.contains(grab.def.triangle)) continue;
-    bound.omega2 += grab.bound.omega2;
-    bound.damping_rate += grab.bound.damping_rate;
   }
   if (!has_air(environment_)) return bound;
   // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.

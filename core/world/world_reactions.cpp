@@ -32,7 +32,7 @@ void World<Real>::take_reactions() {
     Vec3Array<Real> pulled;
     if (!idle(grabs_)) {
       pulled.assign(model_.mass.size(), Vec3<Real>::Zero());
-      add_grab_forces(Real(1), state_, grabs_, pulled);
+      add_last_forces(grabs_, pulled);
     }
     add_pin_reactions(model_, state_, surroundings_, pulled, pins_, found);
   }
