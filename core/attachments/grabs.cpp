@@ -201,6 +201,7 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   if (def.mode == GrabMode::live) {
     const double per_mass = inverse_held_mass(model, grab);
     grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
+    grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
   }
   grabs.list.push_back(std::move(grab));
   return grabs.list.back().id;

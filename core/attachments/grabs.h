@@ -7,6 +7,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/solver/substep_rule.h"
 
 namespace weft {
 
@@ -50,6 +51,7 @@ struct Grab {
   Vec3<Real> offset;                         ///< held point minus weighted mean when taken [m]
   Vec3<Real> target, target_before;          ///< at the end and at the start of the coming tick [m]
   Real damping = 0;                          ///< of the spring [N s/m]
+  StabilityBound bound;                      ///< of its spring alone, were it an explicit one
   Vec3<Real> velocity = Vec3<Real>::Zero();  ///< of the held point when last seen [m/s]
   /// Of a live hand: on the cloth, in the last substep; of a sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();

@@ -20,6 +20,9 @@ double total_mass(const ClothModel<Real>& model) {
   return sum;
 }
 
+/// Hands get at most so many times the substeps that the cloth needs, or so many a tick.
+constexpr long kMostForHands = 2, kEnoughForHands = 40;
+
 template <class Real>
 Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                            const Runtime& runtime) {
@@ -184,6 +187,11 @@ int World<Real>::choose_substeps() const {
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
     count = std::max(count, substeps_for(stability_bound(part), tick_seconds(), fewest));
+  // No hand needs more to be stable, but what one presses against an object or into other cloth
+  // loses less of its motion.
+  const long most = std::max(count * kMostForHands, kEnoughForHands);
+  for (const Grab<Real>& grab : grabs_.list)
+    count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 

@@ -45,7 +45,6 @@ template <class Real>
 GrabId World<Real>::grab(const GrabDef& def) {
   const GrabId id = add_grab(model_, state_, def, grabs_);
   wake(grabs_.list.back().particles.front());
-  make_room();
   return id;
 }
 
@@ -64,6 +63,7 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
   const int ticks = std::max(1, static_cast<int>(std::lround(kSlingSeconds * def_.tick_rate)));
   const auto force = fire_sling(id, ticks, state_, grabs_);
   if (!force) return std::nullopt;
+  make_room();
   return force->template cast<double>() * (ticks * tick_seconds());
 }
 

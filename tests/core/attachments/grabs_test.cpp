@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -69,7 +70,8 @@ TEST_CASE("a hand moves a free cloth as a damped spring moves a mass, in first o
   CHECK(fine < coarse * 0.3);
 }
 
-TEST_CASE("a hand of any stiffness needs no further substep, and brings its point to the target") {
+TEST_CASE(
+    "a hand of any stiffness costs at most twice the substeps, and holds its point at the target") {
   WorldDef def;
   def.cloths[0] = test::flat_cloth(21, 21);
   def.pins = {{Corner::top_left, 0, {}}, {Corner::top_right, 0, {}}};
@@ -87,7 +89,8 @@ TEST_CASE("a hand of any stiffness needs no further substep, and brings its poin
   hand.target = world.state().x[middle] + Vec3d(0.02, 0.05, 0);
   world.grab(hand);
   world.step();
-  CHECK(world.report().substeps == substeps);
+  CHECK(world.report().substeps >= substeps);
+  CHECK(world.report().substeps <= std::max(2 * substeps, 40));
   CHECK(test::settle(world, 10, 6) < 1e-3);
   const Grab<double>& grab = world.grabs().list[0];
   const Vec3d lag = grab.target - held_point(grab, world.state().x);

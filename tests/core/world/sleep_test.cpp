@@ -154,7 +154,8 @@ TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awa
     for (const GuardedPair<float>& pair : both.guard()->pairs()) REQUIRE(pair.particle[0] >= 100);
   }
   REQUIRE(!both.contact().rows().empty());
-  CHECK(static_cast<double>(searched) < 1.2 * static_cast<double>(searched_alone));
+  // The two do not move alike to the bit; looking at the sleeper too would double the work.
+  CHECK(static_cast<double>(searched) < 1.5 * static_cast<double>(searched_alone));
   // The energies are those of all cloths.
   const EnergyReading all = read_energies(both.model(), both.state(), Vec3f(0, -9.81F, 0));
   CHECK(both.report().energies.total() == Approx(all.energies.total()).epsilon(1e-6));
