@@ -14,10 +14,10 @@ constexpr double kReachPart = 0.65, kMostReach = 0.28;
 
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
-    : edges_(model.edges), triangles_(model.triangles), tree_(model),
-      boxes_(tree_, edges_, triangles_), tangles_(model) {
+    : edges_(model.edges), triangles_(model.triangles), neighbours_(model.mass.size(), edges_),
+      tree_(model), boxes_(tree_, edges_, triangles_), tangles_(model) {
   for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
-  find_neighbours();
+  find_who_is_across();
   finest_ = std::numeric_limits<Real>::infinity();
   for (const ClothPart<Real>& part : model.parts) {
     first_particle_.push_back(part.particles.first);

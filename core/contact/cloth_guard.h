@@ -8,6 +8,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/cloth/neighbours.h"
 #include "core/contact/cloth_tangles.h"
 #include "core/contact/feature_pair.h"
 #include "core/contact/guard_pair.h"
@@ -245,7 +246,7 @@ class ClothGuard {
   void remember(GuardRow<Real>& row);
 
   // guard_borders.cpp
-  void find_neighbours();
+  void find_who_is_across();
   bool owns_nearest(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
 
   // guard_solve.cpp
@@ -263,7 +264,7 @@ class ClothGuard {
   std::vector<Triangle> triangles_;
   /// Of each triangle, who is across the edge opposite to a corner; none on a rim.
   std::vector<std::array<Index, 3>> across_;
-  std::vector<Index> around_begin_, around_;  ///< of each particle its neighbours
+  Neighbours neighbours_;
   QuadArray<Real> rest_positions_;
   std::vector<Index> first_particle_;              ///< of each cloth
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]

@@ -74,21 +74,6 @@ std::vector<Feature> in_groups(const std::vector<Feature>& features,
   return sorted;
 }
 
-void join_particles(std::size_t particles, const std::vector<Edge>& edges, ClothPatches& patches) {
-  patches.first_joined.assign(particles + 1, 0);
-  for (const Edge& e : edges) {
-    for (const Index i : e) ++patches.first_joined[static_cast<std::size_t>(i) + 1];
-  }
-  for (std::size_t i = 0; i < particles; ++i)
-    patches.first_joined[i + 1] += patches.first_joined[i];
-  patches.joined.resize(2 * edges.size());
-  std::vector<Index> next = patches.first_joined;
-  for (const Edge& e : edges) {
-    patches.joined[static_cast<std::size_t>(next[static_cast<std::size_t>(e[0])]++)] = e[1];
-    patches.joined[static_cast<std::size_t>(next[static_cast<std::size_t>(e[1])]++)] = e[0];
-  }
-}
-
 }  // namespace
 
 template <class Real>
@@ -118,7 +103,7 @@ ClothPatches make_patches(const Vec3Array<Real>& positions, const std::vector<Ed
   patches.edges = in_groups(edges, of_edge, groups, patches.list, &ClothPatch::edges);
   patches.triangles =
       in_groups(triangles, of_triangle, groups, patches.list, &ClothPatch::triangles);
-  join_particles(positions.size(), edges, patches);
+  patches.neighbours = Neighbours(positions.size(), edges);
   return patches;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/cloth/neighbours.h"
 #include "core/types.h"
 
 namespace weft {
@@ -19,9 +20,7 @@ struct ClothPatches {
   std::vector<Edge> edges;
   std::vector<Triangle> triangles;
   std::vector<ClothPatch> list;
-  /// Those joined to particle i by an edge are joined[first_joined[i]] to
-  /// joined[first_joined[i + 1] - 1].
-  std::vector<Index> first_joined, joined;
+  Neighbours neighbours;  ///< their edges count as given, not as in the list here
 };
 
 /// Groups triangles that are near each other by splitting at the median of the longest side, as

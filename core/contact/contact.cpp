@@ -238,8 +238,8 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
   for (std::size_t i = 0; i < x.size(); ++i) {
     // Nobody in the ball about a neighbour that reaches to the nearest surface needs measuring.
     Real known = 0, edge = 0;
-    for (Index k = patches_.first_joined[i]; k < patches_.first_joined[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(patches_.joined[static_cast<std::size_t>(k)]);
+    for (const auto& neighbour : patches_.neighbours.of(i)) {
+      const auto j = static_cast<std::size_t>(neighbour.particle);
       if (j >= i) continue;
       edge = std::max(edge, (x[i] - x[j]).norm());
       known = std::max(known, distance[j] - (x[i] - x[j]).norm());

@@ -238,8 +238,8 @@ template <class Real>
 bool Contact<Real>::renew_clearance(const ClothState<Real>& state, std::size_t i, Real dt) {
   if (active_[i]) return false;
   const auto joined = [&](auto&& visit) {
-    for (Index k = patches_.first_joined[i]; k < patches_.first_joined[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(patches_.joined[static_cast<std::size_t>(k)]);
+    for (const auto& neighbour : patches_.neighbours.of(i)) {
+      const auto j = static_cast<std::size_t>(neighbour.particle);
       visit(j, Real(kTriangleSpan) * (state.x[i] - state.x[j]).norm());
     }
   };

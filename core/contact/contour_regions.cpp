@@ -11,21 +11,9 @@ constexpr double kHeldArea = 1e3;
 }  // namespace
 
 template <class Real>
-ContourRegions::ContourRegions(const ClothModel<Real>& model) : edges_(model.edges) {
+ContourRegions::ContourRegions(const ClothModel<Real>& model)
+    : edges_(model.edges), neighbours_(model.mass.size(), model.edges) {
   const std::size_t n = model.mass.size();
-  first_joined_.assign(n + 1, 0);
-  for (const Edge& edge : edges_) {
-    for (const Index i : edge) ++first_joined_[static_cast<std::size_t>(i) + 1];
-  }
-  for (std::size_t i = 0; i < n; ++i) first_joined_[i + 1] += first_joined_[i];
-  joined_.resize(2 * edges_.size());
-  std::vector<Index> at(first_joined_.begin(), first_joined_.end() - 1);
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto i = static_cast<std::size_t>(edges_[e][k]);
-      joined_[static_cast<std::size_t>(at[i]++)] = {static_cast<Index>(e), edges_[e][1 - k]};
-    }
-  }
   area_.assign(n, 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     for (const Index i : model.triangles[t])
@@ -57,10 +45,9 @@ bool ContourRegions::spread(std::size_t side, const std::vector<char>& is_held) 
   Flood& flood = floods_[side];
   if (flood.next == flood.particles.size()) return false;
   const auto i = static_cast<std::size_t>(flood.particles[flood.next++]);
-  for (Index k = first_joined_[i]; k < first_joined_[i + 1]; ++k) {
-    const Joined& joined = joined_[static_cast<std::size_t>(k)];
-    if (is_cut_[static_cast<std::size_t>(joined.edge)] == search_) continue;
-    seed(joined.particle, side, is_held);
+  for (const auto& neighbour : neighbours_.of(i)) {
+    if (is_cut_[static_cast<std::size_t>(neighbour.edge)] == search_) continue;
+    seed(neighbour.particle, side, is_held);
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/cloth/neighbours.h"
 #include "core/types.h"
 
 namespace weft {
@@ -40,9 +41,6 @@ class ContourRegions {
   }
 
  private:
-  struct Joined {
-    Index edge, particle;
-  };
   struct Flood {
     std::vector<Index> particles;
     std::size_t next = 0;
@@ -56,8 +54,7 @@ class ContourRegions {
   bool fill(std::size_t side, const std::vector<char>& is_held);
 
   std::vector<Edge> edges_;
-  std::vector<Index> first_joined_;  ///< of each particle
-  std::vector<Joined> joined_;
+  Neighbours neighbours_;
   std::vector<double> area_;            ///< of each particle [m^2]
   std::vector<std::uint32_t> is_cut_;   ///< of each edge, the search that cut it
   std::vector<std::uint32_t> reached_;  ///< of each particle, search x 2 + side

@@ -7,9 +7,10 @@
 #include "core/contact/cloth_guard.h"
 
 namespace weft {
-/// Who is across each edge of a triangle, and around each particle.
+
+/// Who is across each edge of a triangle.
 template <class Real>
-void ClothGuard<Real>::find_neighbours() {
+void ClothGuard<Real>::find_who_is_across() {
   across_.assign(triangles_.size(), {kNone, kNone, kNone});
   std::vector<std::pair<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>>> sides;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -25,17 +26,6 @@ void ClothGuard<Real>::find_neighbours() {
     const auto [u, m] = sides[n + 1].second;
     across_[t][k] = triangles_[u][m];
     across_[u][m] = triangles_[t][k];
-  }
-  around_begin_.assign(rest_positions_.size() + 1, 0);
-  for (const Edge& e : edges_) {
-    for (const Index i : {e[0], e[1]}) ++around_begin_[static_cast<std::size_t>(i) + 1];
-  }
-  for (std::size_t i = 0; i < rest_positions_.size(); ++i) around_begin_[i + 1] += around_begin_[i];
-  around_.resize(2 * edges_.size());
-  std::vector<Index> at(around_begin_.begin(), around_begin_.end() - 1);
-  for (const Edge& e : edges_) {
-    around_[static_cast<std::size_t>(at[static_cast<std::size_t>(e[0])]++)] = e[1];
-    around_[static_cast<std::size_t>(at[static_cast<std::size_t>(e[1])]++)] = e[0];
   }
 }
 
@@ -65,15 +55,13 @@ bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>& pair,
   }
   if (zeros != 2) return true;
   const auto i = static_cast<std::size_t>(pair.particle[kept + 1]);
-  for (auto n = static_cast<std::size_t>(around_begin_[i]);
-       n < static_cast<std::size_t>(around_begin_[i + 1]); ++n) {
-    if (leads_nearer(around_[n])) return false;
-  }
-  return true;
+  const auto around = neighbours_.of(i);
+  return std::none_of(around.begin(), around.end(),
+                      [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }
 
 #define WEFT_INSTANTIATE(Real)                                           \
-  template void ClothGuard<Real>::find_neighbours();                     \
+  template void ClothGuard<Real>::find_who_is_across();                  \
   template bool ClothGuard<Real>::owns_nearest(const GuardedPair<Real>&, \
                                                const PairSeparation<Real>&) const;
 WEFT_INSTANTIATE(float)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cloth/neighbours.h"
+
 namespace weft {
 namespace {
 
@@ -158,9 +160,7 @@ Index PatchTree<Real>::add_patch(const ClothModel<Real>& model, Index part,
 /// Each particle and edge to the first patch that has it.
 template <class Real>
 void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
-  std::vector<std::vector<Index>> edges_from(model.mass.size());
-  for (std::size_t e = 0; e < model.edges.size(); ++e)
-    edges_from[static_cast<std::size_t>(model.edges[e][0])].push_back(static_cast<Index>(e));
+  const Neighbours neighbours(model.mass.size(), model.edges);
   std::vector<char> given(model.mass.size(), 0), edge_given(model.edges.size(), 0);
   for (Patch& patch : patches_) {
     for (const Index i : patch.particles) {
@@ -169,11 +169,10 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
     for (const Index t : patch.triangles) {
       const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto [i, j] = std::minmax(corners[k], corners[(k + 1) % 3]);
-        for (const Index e : edges_from[static_cast<std::size_t>(i)]) {
-          const auto edge = static_cast<std::size_t>(e);
-          if (model.edges[edge][1] == j && !std::exchange(edge_given[edge], 1))
-            patch.edges.push_back(e);
+        for (const auto& [edge, other] : neighbours.of(static_cast<std::size_t>(corners[k]))) {
+          if (other == corners[(k + 1) % 3] &&
+              !std::exchange(edge_given[static_cast<std::size_t>(edge)], 1))
+            patch.edges.push_back(edge);
         }
       }
     }

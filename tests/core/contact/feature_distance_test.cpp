@@ -241,13 +241,14 @@ TEST_CASE("every feature of a cloth is in one patch, and patches are small") {
   CHECK(last.triangles.end() == static_cast<Index>(triangles.size()));
   // 722 triangles by eights, and the lonely particle.
   CHECK(patches.list.size() <= 92);
-  for (const Edge& e : edges) {
-    const auto begin = patches.joined.begin();
+  for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto joined_to = [&](Index i, Index j) {
-      const auto k = static_cast<std::size_t>(i);
-      return std::count(begin + patches.first_joined[k], begin + patches.first_joined[k + 1], j);
+      const auto around = patches.neighbours.of(static_cast<std::size_t>(i));
+      return std::count_if(around.begin(), around.end(), [&](const auto& neighbour) {
+        return neighbour.particle == j && neighbour.edge == static_cast<Index>(e);
+      });
     };
-    CHECK(joined_to(e[0], e[1]) == 1);
-    CHECK(joined_to(e[1], e[0]) == 1);
+    CHECK(joined_to(edges[e][0], edges[e][1]) == 1);
+    CHECK(joined_to(edges[e][1], edges[e][0]) == 1);
   }
 }
