@@ -1,43 +1,19 @@
 #include "core/cloth/hinges.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/forces/hinge.h"
+#include "core/geometry/triangle_sides.h"
 
 namespace weft {
 namespace {
-
-/// An edge as one triangle sees it, for finding the other triangle.
-struct TriangleSide {
-  Index low, high;  // ends, sorted
-  Index triangle;
-  int corner;  // the corner opposite to the edge
-  bool operator<(const TriangleSide& o) const {
-    if (low != o.low) return low < o.low;
-    return high != o.high ? high < o.high : triangle < o.triangle;
-  }
-};
-
-std::vector<TriangleSide> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<TriangleSide> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const auto a = triangles[t][static_cast<std::size_t>((corner + 1) % 3)];
-      const auto b = triangles[t][static_cast<std::size_t>((corner + 2) % 3)];
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<Index>(t), corner});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
 
 template <class Real>
 void add_hinge(const HingeSettings& settings, const TriangleSide& first, const TriangleSide& second,
                ClothModel<Real>& model) {
   const auto& material = model.material;
-  const auto i = static_cast<std::size_t>(first.low), j = static_cast<std::size_t>(first.high);
+  const auto i = static_cast<std::size_t>(first.ends[0]),
+             j = static_cast<std::size_t>(first.ends[1]);
   const double rigidity = settings.rigidity(
       std::abs(static_cast<double>(material[j][0]) - static_cast<double>(material[i][0])),
       std::abs(static_cast<double>(material[j][1]) - static_cast<double>(material[i][1])));
@@ -76,9 +52,8 @@ void connect_triangles(const HingeSettings& settings, ClothModel<Real>& model) {
   const std::vector<TriangleSide> sides = sorted_sides(model.triangles);
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const TriangleSide& first = sides[s];
-    model.edges.push_back({first.low, first.high});
-    if (s + 1 == sides.size() || sides[s + 1].low != first.low || sides[s + 1].high != first.high)
-      continue;
+    model.edges.push_back(first.ends);
+    if (s + 1 == sides.size() || sides[s + 1].ends != first.ends) continue;
     add_hinge(settings, first, sides[++s], model);
   }
 }

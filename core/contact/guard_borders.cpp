@@ -1,10 +1,9 @@
 // Which of the triangles that a particle is near to carries it.
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "core/contact/cloth_guard.h"
+#include "core/geometry/triangle_sides.h"
 
 namespace weft {
 
@@ -12,20 +11,15 @@ namespace weft {
 template <class Real>
 void ClothGuard<Real>::find_who_is_across() {
   across_.assign(triangles_.size(), {kNone, kNone, kNone});
-  std::vector<std::pair<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>>> sides;
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto ends = std::minmax(triangles_[t][(k + 1) % 3], triangles_[t][(k + 2) % 3]);
-      sides.push_back({ends, {t, k}});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
+  const std::vector<TriangleSide> sides = sorted_sides(triangles_);
+  const auto across = [](const TriangleSide& side, auto& list) -> Index& {
+    return list[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.corner)];
+  };
   for (std::size_t n = 0; n + 1 < sides.size(); ++n) {
-    if (sides[n].first != sides[n + 1].first) continue;
-    const auto [t, k] = sides[n].second;
-    const auto [u, m] = sides[n + 1].second;
-    across_[t][k] = triangles_[u][m];
-    across_[u][m] = triangles_[t][k];
+    const TriangleSide &one = sides[n], &other = sides[n + 1];
+    if (one.ends != other.ends) continue;
+    across(one, across_) = across(other, triangles_);
+    across(other, across_) = across(one, triangles_);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/triangle_sides.h"
+
 namespace weft {
 namespace {
 
@@ -17,21 +19,14 @@ constexpr std::array<Index, 2> kNoParticles = {kNone, kNone};
 template <class Real>
 TangleContours::TangleContours(const ClothModel<Real>& model)
     : edges_(model.edges), triangles_(model.triangles), regions_(model) {
-  std::vector<std::pair<Edge, Index>> sides;
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3]);
-      sides.push_back({{a, b}, static_cast<Index>(t)});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  for (const Edge& e : model.edges) {
-    const auto [a, b] = std::minmax(e[0], e[1]);
-    const Edge sorted = {a, b};
-    auto found = std::lower_bound(sides.begin(), sides.end(), std::pair<Edge, Index>{sorted, 0});
+  const std::vector<TriangleSide> sides = sorted_sides(triangles_);
+  for (const Edge& edge : model.edges) {
+    auto found = std::lower_bound(
+        sides.begin(), sides.end(), edge,
+        [](const TriangleSide& side, const Edge& ends) { return side.ends < ends; });
     std::array<Index, 2> at = {kNone, kNone};
-    for (std::size_t k = 0; k < 2 && found != sides.end() && found->first == sorted; ++k, ++found)
-      at[k] = found->second;
+    for (std::size_t k = 0; k < 2 && found != sides.end() && found->ends == edge; ++k, ++found)
+      at[k] = found->triangle;
     triangles_of_.push_back(at);
   }
 }

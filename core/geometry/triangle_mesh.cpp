@@ -1,11 +1,11 @@
 #include "core/geometry/triangle_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/definition.h"
 #include "core/error.h"
+#include "core/geometry/triangle_sides.h"
 #include "core/math/angle.h"
 
 namespace weft {
@@ -32,22 +32,13 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
 }
 
 std::vector<MeshEdge> edges_of(const TriangleMesh& mesh) {
-  std::map<Edge, MeshEdge> found;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index i = mesh.triangles[t][k], j = mesh.triangles[t][(k + 1) % 3];
-      MeshEdge& edge = found[{std::min(i, j), std::max(i, j)}];
-      edge.a = std::min(i, j);
-      edge.b = std::max(i, j);
-      if (edge.triangle[0] == kNone)
-        edge.triangle[0] = static_cast<Index>(t);
-      else if (edge.triangle[1] == kNone)
-        edge.triangle[1] = static_cast<Index>(t);
-    }
-  }
   std::vector<MeshEdge> edges;
-  edges.reserve(found.size());
-  for (const auto& [ends, edge] : found) edges.push_back(edge);
+  for (const TriangleSide& side : sorted_sides(mesh.triangles)) {
+    if (edges.empty() || Edge{edges.back().a, edges.back().b} != side.ends)
+      edges.push_back({side.ends[0], side.ends[1], {side.triangle, kNone}});
+    else if (edges.back().triangle[1] == kNone)
+      edges.back().triangle[1] = side.triangle;
+  }
   return edges;
 }
 
