@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace weft {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kLargestGamma = 1000;
 constexpr int kSteps = 500, kHalvings = 36;
 
@@ -37,7 +38,7 @@ Curve shoot(double gamma, double tip_angle) {
 }  // namespace
 
 double elastica_chord_angle(double gamma) {
-  double low = 0, high = kPi / 2;
+  double low = 0, high = pi / 2;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (low + high);
     (shoot(gamma, middle).clamp_angle < 0 ? low : high) = middle;
@@ -59,7 +60,7 @@ CantileverMeasurement measure_cantilever(const Vec3d& clamp, const Vec3d& tip, d
   CantileverMeasurement result;
   result.droop = clamp[1] - tip[1];
   const double angle = std::atan2(result.droop, std::hypot(tip[0] - clamp[0], tip[2] - clamp[2]));
-  result.chord_angle = angle * 180 / kPi;
+  result.chord_angle = angle * 180 / pi;
   const double gamma = elastica_gamma(angle);
   if (gamma > 0) result.bending_length = overhang / std::cbrt(gamma);
   return result;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace weft {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kPointDistance = 5e-4;  // of the points on which the shadow is counted [m]
 constexpr int kDirections = 180;         // around the hem
 constexpr double kCrestHeight = 2e-3;    // least rise of a fold [m]
@@ -131,7 +132,7 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
     flat += static_cast<double>(model.triangle_area[static_cast<std::size_t>(n)]);
   }
   DrapeMeasurement result;
-  const double disc = kPi * kDrapeSupportRadius * kDrapeSupportRadius;
+  const double disc = pi * kDrapeSupportRadius * kDrapeSupportRadius;
   result.coefficient = 100 * (shadow.area() - disc) / (flat - disc);
 
   // The hem in even directions. What hangs over is stretched to the overhang of a round specimen,
@@ -155,7 +156,7 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
         kDrapeSupportRadius + (std::hypot(p[0], p[2]) - kDrapeSupportRadius) *
                                   (kDrapeSpecimenRadius - kDrapeSupportRadius) /
                                   (own - kDrapeSupportRadius);
-    const double place = (std::atan2(p[2], p[0]) / (2 * kPi) + 1) * kDirections;
+    const double place = (std::atan2(p[2], p[0]) / (2 * pi) + 1) * kDirections;
     constexpr int kReach = 6;
     for (int k = -kReach; k <= kReach; ++k) {
       const double direction = std::round(place) + k, off = (direction - place) / 3;

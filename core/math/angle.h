@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 // Inverse tangent from + - * / alone. The C library picks other code on other processors, and its
 // last bit with it; ours gives the same bits everywhere.
@@ -28,7 +29,7 @@ inline Real atan_series(Real t) {
 /// loops over it become vector code.
 template <class Real>
 inline Real angle_of(Real y, Real x) {
-  constexpr Real kPi = Real(3.14159265358979323846);
+  constexpr Real kPi = std::numbers::pi_v<Real>;
   constexpr Real kTanEighth = Real(0.41421356237309504880);  // tan(pi/8)
   const Real ax = std::abs(x), ay = std::abs(y);
   const Real large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;

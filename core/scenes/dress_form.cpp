@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace weft {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A horizontal section: an ellipse in two halves.
 struct Section {
@@ -73,7 +74,7 @@ class Loft {
   template <class Point>
   void add_ring(int count, Point&& point) {
     const auto start = static_cast<Index>(mesh_.positions.size());
-    for (int n = 0; n < count; ++n) mesh_.positions.push_back(point(2 * kPi * n / count));
+    for (int n = 0; n < count; ++n) mesh_.positions.push_back(point(2 * pi * n / count));
     if (count_ == 0)
       fan(start, count, 0, false);
     else
@@ -137,7 +138,7 @@ TriangleMesh make_dress_form() {
     const Section s = section_at(11.0 * n / (kBodyRings - 1));
     loft.add_ring(28, [&](double phi) {
       const double depth = std::cos(phi) > 0 ? s.front : s.back;
-      const double hill = bust(s.height, phi > kPi ? phi - 2 * kPi : phi);
+      const double hill = bust(s.height, phi > pi ? phi - 2 * pi : phi);
       return Vec3d((s.width + 0.3 * hill) * std::sin(phi), s.height, depth * std::cos(phi) + hill);
     });
   }

@@ -1,18 +1,14 @@
 #include "core/scenes/hard_cases.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_presets.h"
 
 namespace weft {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-void judge(WorldDef& def, double strain, double lost_motion = 0.2, double clear_after = 0) {
-  def.contact.seed.self = SelfContact::guard;
-  def.verdict = {strain, lost_motion, clear_after, 0, 0};
-}
+using std::numbers::pi;
 
 Eigen::Quaterniond turn(double angle, const Vec3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
@@ -120,7 +116,7 @@ void build_rotating_sphere(WorldDef& def, const std::string&) {
   ball.motion.loop = true;
   for (int k = 0; k <= 4; ++k)
     ball.motion.keyframes.push_back(
-        {1 + kPeriod / 4 * k, Vec3d::Zero(), turn(k * kPi / 2, Vec3d::UnitY())});
+        {1 + kPeriod / 4 * k, Vec3d::Zero(), turn(k * pi / 2, Vec3d::UnitY())});
   def.colliders = {ground(), ball};
   def.environment.drag = 0.3;
   judge(def, 0.5);
@@ -142,7 +138,7 @@ void build_twist(WorldDef& def, const std::string&) {
     const double z = (v - 0.5) * kWidth;
     HandDef hand = hand_at(1, v, {{0, Vec3d::Zero()}});
     for (int k = 0; k <= kKeys; ++k) {
-      const double angle = 2 * kPi * kTurns * k / kKeys;
+      const double angle = 2 * pi * kTurns * k / kKeys;
       hand.path.push_back(
           {0.5 + kSeconds * k / kKeys, Vec3d(0, z * std::sin(angle), z * (std::cos(angle) - 1))});
     }
@@ -164,7 +160,7 @@ void build_funnel(WorldDef& def, const std::string&) {
   def.colliders = {ground()};
   const double middle = kHole + kHalfLength * std::cos(kSlope);
   for (int k = 0; k < kPlates; ++k) {
-    const Eigen::Quaterniond around = turn(2 * kPi * k / kPlates, Vec3d::UnitY());
+    const Eigen::Quaterniond around = turn(2 * pi * k / kPlates, Vec3d::UnitY());
     BoxDef plate;
     plate.centre = around * Vec3d(middle, 0.6 + kHalfLength * std::sin(kSlope), 0);
     plate.half_extents = Vec3d(kHalfLength, 0.005, 0.14);
@@ -201,7 +197,7 @@ void build_ten_hands(WorldDef& def, const std::string&) {
   def.cloths[0].fabric = make_fabric("cotton");
   def.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.4, 0), 0.2}}};
   for (int k = 0; k < kHands; ++k) {
-    const double angle = 2 * kPi * k / kHands;
+    const double angle = 2 * pi * k / kHands;
     const Vec3d out(std::cos(angle), 0.4 * std::sin(3 * angle), std::sin(angle));
     HandDef hand = hand_at(0.5 + 0.4 * std::cos(angle), 0.5 + 0.4 * std::sin(angle), {});
     hand.path = {{1.5, Vec3d::Zero()}, {1.7, out},  {2.2, out},
@@ -221,6 +217,11 @@ void build_start_inside(WorldDef& def, const std::string&) {
 }
 
 }  // namespace
+
+void judge(WorldDef& def, double strain, double lost_motion, double clear_after) {
+  def.contact.seed.self = SelfContact::guard;
+  def.verdict = {strain, lost_motion, clear_after, 0, 0};
+}
 
 std::vector<SceneEntry> hard_cases() {
   return {

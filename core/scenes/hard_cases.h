@@ -6,6 +6,12 @@
 
 namespace weft {
 
+/// Guards a scene's cloth against itself, and says what it must keep to (see VerdictDef).
+/// @param strain       largest one allowed, above 0 to 1000
+/// @param lost_motion  part of the wanted motion that the guard may take, 0 to 1
+/// @param clear_after  from when on nothing may cross [s], 0 to 3600
+void judge(WorldDef& def, double strain, double lost_motion = 0.2, double clear_after = 0);
+
 /// Scenes that are hard to keep free of crossings, each with what it must keep to.
 std::vector<SceneEntry> hard_cases();
 

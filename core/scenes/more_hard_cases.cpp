@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/hard_cases.h"
@@ -7,13 +8,6 @@
 
 namespace weft {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-void judge(WorldDef& def, double strain, double lost_motion = 0.2) {
-  def.contact.seed.self = SelfContact::guard;
-  def.verdict = {strain, lost_motion, 0, 0, 0};
-}
 
 FabricDef weave(double areal_density, double warp, double weft, double shear) {
   FabricDef fabric;
@@ -176,7 +170,7 @@ void build_ring(WorldDef& def, const std::string&) {
   def.cloths[0].fabric = make_fabric("silk");
   def.colliders = {ground()};
   const auto at = [&](int k) {
-    const double angle = 2 * kPi * k / kParts;
+    const double angle = 2 * std::numbers::pi * k / kParts;
     return Vec3d(kCircle * std::cos(angle), kHeight, kCircle * std::sin(angle));
   };
   for (int k = 0; k < kParts; ++k)

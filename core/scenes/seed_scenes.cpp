@@ -1,9 +1,11 @@
 #include "core/scenes/seed_scenes.h"
 
+#include <numbers>
+
 namespace weft {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 
 /// What all of them have: the seed's model, particles of equal mass, and rigid springs.
 void use_seed(WorldDef& def) {

@@ -8,11 +8,10 @@ namespace {
 
 constexpr double kClearAfter = 2;  ///< [s]
 
-void judge(WorldDef& def) {
+void fall_and_come_apart(WorldDef& def) {
   def.colliders = {ground()};
   def.environment.drag = 1;
-  def.contact.seed.self = SelfContact::guard;
-  def.verdict = {0.5, 0.2, kClearAfter, 0, 0};
+  judge(def, 0.5, 0.2, kClearAfter);
 }
 
 ClothDef sheet(const std::string& name, double side, const Vec3d& centre, const Vec3d& u,
@@ -37,7 +36,7 @@ void build_start_through(WorldDef& def, const std::string&) {
       sheet("corner", 0.4, middle + Vec3d(0.013, 0.22, 0.25), x + y, Vec3d(-1, 1, 0.3)),
       sheet("border", 0.4, middle + Vec3d(0.4, 0.03, 0.02), x - 0.2 * z, y),
       sheet("parallel", 0.3, middle + Vec3d(0.01, 0.003, -0.25), x + 0.1 * y, z + 0.05 * y)};
-  judge(def);
+  fall_and_come_apart(def);
 }
 
 /// A strip whose ends go through each other; it is at rest as it lies.
@@ -48,7 +47,7 @@ void build_start_fold(WorldDef& def, const std::string&) {
   placement.position = Vec3d(0, 0.5, 0);
   const MeshFile loop = built_in_mesh("loop", {});
   cloth.mesh = ClothMesh{placed(loop.mesh, placement), loop.uv, placement};
-  judge(def);
+  fall_and_come_apart(def);
 }
 
 }  // namespace
