@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/contact/contact.h"
+#include "core/contact/corner_span.h"
 
 namespace weft {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 /// How far beyond the distance that matters a clearance is searched for, so that a cloth that comes
 /// nearer is not measured at every step [m].
 constexpr double kClearanceHorizon = 0.1;
-
-/// No point of a triangle is farther from its nearest corner than this part of its longest edge; it
-/// is 1/sqrt(3), for the centre of an equilateral one.
-constexpr double kTriangleSpan = 0.578;
 
 /// Ticks of a particle's present motion for which candidates shall hold.
 constexpr double kSkinTicks = 2.5;
