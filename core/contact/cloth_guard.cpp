@@ -20,7 +20,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   find_who_is_across();
   finest_ = std::numeric_limits<Real>::infinity();
   for (const ClothPart<Real>& part : model.parts) {
-    first_particle_.push_back(part.particles.first);
+    particles_of_.push_back(part.particles);
     thickness_.push_back(static_cast<Real>(part.fabric.thickness));
     friction_.push_back(static_cast<Real>(part.fabric.friction));
     thickest_ = std::max(thickest_, thickness_.back());
@@ -60,15 +60,15 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
   resting_.assign(tree_.patch_count(), 0);
-  is_heap_.assign(first_particle_.size(), 0);
-  crossings_of_.assign(first_particle_.size(), 0);
+  is_heap_.assign(particles_of_.size(), 0);
+  crossings_of_.assign(particles_of_.size(), 0);
   let_rest({});
 }
 
 template <class Real>
 Index ClothGuard<Real>::part_of(Index particle) const {
-  std::size_t part = first_particle_.size() - 1;
-  while (part > 0 && particle < first_particle_[part]) --part;
+  std::size_t part = particles_of_.size() - 1;
+  while (part > 0 && particle < particles_of_[part].first) --part;
   return static_cast<Index>(part);
 }
 
@@ -108,13 +108,10 @@ void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
   }
   awake_.clear();
   awake_count_ = 0;
-  for (std::size_t k = 0; k < first_particle_.size(); ++k) {
-    const Index first = first_particle_[k], end = k + 1 < first_particle_.size()
-                                                      ? first_particle_[k + 1]
-                                                      : static_cast<Index>(is_active_.size());
+  for (std::size_t k = 0; k < particles_of_.size(); ++k) {
     if (sleeps(k)) continue;
-    awake_.push_back({first, end - first});
-    awake_count_ += static_cast<std::size_t>(end - first);
+    awake_.push_back(particles_of_[k]);
+    awake_count_ += static_cast<std::size_t>(particles_of_[k].count);
   }
 }
 

@@ -266,7 +266,7 @@ class ClothGuard {
   std::vector<std::array<Index, 3>> across_;
   Neighbours neighbours_;
   QuadArray<Real> rest_positions_;
-  std::vector<Index> first_particle_;              ///< of each cloth
+  std::vector<IndexRange> particles_of_;           ///< each cloth
   std::vector<Real> thickness_, friction_, cell_;  ///< of each cloth; cell: length of its edges [m]
   Real thickest_ = 0, reach_ = 0, finest_ = 0;
   PatchTree<Real> tree_;

@@ -48,10 +48,7 @@ void ClothGuard<Real>::find_tangles(const ClothState<Real>& state) {
 template <class Real>
 void ClothGuard<Real>::note_crossings(Index p, Index q, std::size_t count) {
   for (const std::size_t k : {cloth_of(p), cloth_of(q)}) {
-    const std::size_t end = k + 1 < first_particle_.size()
-                                ? static_cast<std::size_t>(first_particle_[k + 1])
-                                : legal_.size();
-    const std::size_t particles = end - static_cast<std::size_t>(first_particle_[k]);
+    const auto particles = static_cast<std::size_t>(particles_of_[k].count);
     crossings_of_[k] += count;
     if (is_heap(k) || crossings_of_[k] <= std::max(kFewCrossings, particles / kHeapPart)) continue;
     is_heap_[k] = 1;
