@@ -247,7 +247,8 @@ class ClothGuard {
 
   // guard_borders.cpp
   void find_who_is_across();
-  bool owns_nearest(const GuardedPair<Real>& pair, const PairSeparation<Real>& s) const;
+  bool owns_nearest(Index triangle, const std::array<Index, 4>& particles,
+                    const PairSeparation<Real>& s) const;
 
   // guard_solve.cpp
   void load_rows(const ClothState<Real>& state);

@@ -43,10 +43,16 @@ Quad<Real> tangential(const GuardRow<Real>& row, const Quad<Real>& v) {
   return v - row.normal * dot(row.normal, v);
 }
 
-/// Kind of the row's pair, which its key tells (see key_of in cloth_guard.h).
+/// Kind of the row's pair, which its key tells (see key_of in guard_pair.h).
 template <class Real>
 PairKind kind_of(const GuardRow<Real>& row) {
   return (row.key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;
+}
+
+/// The triangle, if it is a pair of one and a particle.
+template <class Real>
+Index triangle_of(const GuardRow<Real>& row) {
+  return static_cast<Index>(row.key & 0x7fffffff);
 }
 
 /// Gives an impulse [N s] to the particles of a row, or what else is shared out like that.

@@ -207,7 +207,8 @@ template <class Real>
 void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
                                const PairSeparation<Real>& s) {
   if (s.gap > thickest_ * Real(kRowReach) || !(s.gap > 0)) return;
-  if (!s.inside && (pair.kind == PairKind::edge_edge || !owns_nearest(pair, s))) return;
+  if (!s.inside && (pair.kind == PairKind::edge_edge || !owns_nearest(pair.b, pair.particle, s)))
+    return;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
     approach -= s.weight[k] * s.normal.dot(state.v[static_cast<std::size_t>(pair.particle[k])]);
@@ -263,10 +264,7 @@ void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile
       turn(state, s, row);
       if (columns.kind == PairKind::edge_edge || s.inside) continue;
       // Who has gone over a border is carried by the triangle beyond, and by none that tilts.
-      GuardedPair<Real> pair;
-      pair.particle = row.particle;
-      pair.b = static_cast<Index>(row.key & 0x7fffffff);
-      if (!owns_nearest(pair, s)) passed_.push_back(row.particle[0]);
+      if (!owns_nearest(triangle_of(row), row.particle, s)) passed_.push_back(row.particle[0]);
     }
     columns.clear();
   }
