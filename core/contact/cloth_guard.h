@@ -65,7 +65,7 @@ class ClothGuard {
   void push_apart(ClothState<Real>& state);
 
   /// Sweeps and push where the cloths meet nothing else in the coming drift of `dt` [s].
-  void respond_alone(ClothState<Real>& state, Real dt, Profile& profile);
+  void respond_alone(ClothState<Real>& state, Real dt);
 
   /// After all other contact and right before the drift of `dt` [s]: lets nobody leave his region.
   /// Whoever has to stop earlier does so on the straight line of his motion since `solve`.

@@ -29,7 +29,7 @@ struct Collision {
     if (weft)
       weft->resolve(state, dt, profile, guard);
     else if (guard)
-      guard->respond_alone(state, dt, profile);
+      guard->respond_alone(state, dt);
     if (seed) seed->separate(state, profile);
     const double truncated = guard ? guard->counts().truncated : 0;
     if (guard) guard->certify(state, dt, profile);
@@ -45,13 +45,12 @@ struct Collision {
   /// At the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->settle(state, dt);
+    const StageTimer timer(profile, Stage::contact, 0);
     if (guard) guard->settle(state, dt, profile);
-    if (weft) {
+    if (weft)
       weft->settle(state, dt, profile, guard);
-    } else if (guard) {
-      const StageTimer timer(profile, Stage::contact, 0);
+    else if (guard)
       guard->sweep(state);
-    }
   }
 };
 

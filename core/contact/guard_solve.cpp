@@ -58,7 +58,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   load_rows(state);
   if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
   if (rows_steps_ % kStepsBetweenTurns == 0) turn_rows(state, profile);
-  const StageTimer timer(profile, Stage::contact, rows_.size());
+  profile[Stage::contact].work += rows_.size();
   warm_rows(dt, kicked);
   store_rows(state);
 }
@@ -130,9 +130,8 @@ Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
 }
 
 template <class Real>
-void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt, Profile& profile) {
+void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
   if (rows_.empty()) return;
-  const StageTimer timer(profile, Stage::contact, 0);
   const Real enough = thickest_ * Real(kResidual) / dt;
   for (int k = 0; k < kMostSweeps; ++k) {
     if (!(sweep(state) > enough)) break;
@@ -233,7 +232,7 @@ void ClothGuard<Real>::finish(ClothState<Real>& state) {
 template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
-  const StageTimer timer(profile, Stage::contact, rows_.size());
+  profile[Stage::contact].work += rows_.size();
   for (const Index k : row_particles_)
     legal_[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
   load_rows(state);
@@ -242,19 +241,19 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   closed_ = true;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                      \
-  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);         \
-  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);               \
-  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;              \
-  template void ClothGuard<Real>::finish(ClothState<Real>&);                        \
-  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&);        \
-  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;                 \
-  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                       \
-  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                         \
-  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real, Profile&); \
-  template void ClothGuard<Real>::find_busy_rows(Real);                             \
-  template void ClothGuard<Real>::warm_rows(Real, Real);                            \
-  template Real ClothGuard<Real>::sweep_rows();                                     \
+#define WEFT_INSTANTIATE(Real)                                               \
+  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);  \
+  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);        \
+  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;       \
+  template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
+  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
+  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
+  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
+  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
+  template void ClothGuard<Real>::find_busy_rows(Real);                      \
+  template void ClothGuard<Real>::warm_rows(Real, Real);                     \
+  template Real ClothGuard<Real>::sweep_rows();                              \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
