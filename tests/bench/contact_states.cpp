@@ -2,29 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_presets.h"
+#include "tests/support/sheets.h"
 
 namespace weft::bench {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kThickness = 0.25;     ///< in parts of the edge length
 constexpr int kCoarse = 65;             ///< particles a side of the sheet that is crumpled
 constexpr int kTicksOfCrumpling = 72;   ///< until most of it lies on the ground
 constexpr int kLayers = 8, kWaves = 8;  ///< of the folded sheet, of the wrinkled one
-constexpr double kSteepest = kPi / 3;   ///< slope of a wrinkle's flanks [rad]
+constexpr double kSteepest = pi / 3;    ///< slope of a wrinkle's flanks [rad]
 constexpr double kOpening = 1.5;        ///< rise of a folded layer, in thicknesses
-
-ClothDef cotton_sheet(int n, double thickness) {
-  ClothDef cloth;
-  cloth.rows = cloth.columns = n;
-  cloth.fabric = make_fabric("cotton");
-  cloth.fabric.thickness = thickness;
-  cloth.u = Vec3d::UnitX();
-  cloth.v = -Vec3d::UnitY();
-  return cloth;
-}
 
 /// The state in which a world starts, with each particle's place by row and column.
 template <class Place>
@@ -49,7 +41,7 @@ ContactState wrinkled(int n) {
   const double cell = 1.0 / (n - 1);
   std::vector<Vec3d> section = {Vec3d::Zero()};
   for (int c = 1; c < n; ++c) {
-    const double slope = kSteepest * std::sin(2 * kPi * kWaves * (c - 0.5) * cell);
+    const double slope = kSteepest * std::sin(2 * pi * kWaves * (c - 0.5) * cell);
     section.push_back(section.back() + cell * Vec3d(std::cos(slope), 0, std::sin(slope)));
   }
   return placed("wrinkled", "hangs by its upper edge in eight waves with flanks of 60 degrees",
@@ -117,19 +109,15 @@ ContactState crumpled(int n) {
 }  // namespace
 
 WorldDef falling_sheet(int n, double thickness) {
-  WorldDef def;
-  def.cloths = {cotton_sheet(n, thickness / (n - 1))};
-  def.cloths[0].origin = Vec3d(-0.5, 1.1, 0);
-  def.cloths[0].v = Vec3d(0, -1, -0.12).normalized();
-  def.environment.drag = 5;
-  def.colliders = {{"ground", PlaneDef{}}};
-  def.contact.seed.self = SelfContact::guard;
-  return def;
+  return test::upright_sheet(n, 1, 1.1, thickness, 5, make_fabric("cotton"));
 }
 
 WorldDef hanging_sheet(int n, bool self_contact) {
   WorldDef def;
-  def.cloths = {cotton_sheet(n, kThickness / (n - 1))};
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = n;
+  cloth.fabric = make_fabric("cotton");
+  cloth.fabric.thickness = kThickness / (n - 1);
   for (int c = 0; c < n; ++c) def.pins.push_back({c, 0, {}});
   def.environment.drag = 1;
   def.contact.seed.self = self_contact ? SelfContact::guard : SelfContact::none;

@@ -1,23 +1,19 @@
 #include <catch2/catch.hpp>
 
-#include "core/diagnostics/crossings.h"
 #include "core/error.h"
-#include "core/world/world.h"
+#include "tests/support/sheets.h"
 
 // Pins that are told to go somewhere: targets that lag when blocked, with bounded force.
 
 using namespace weft;
+using namespace weft::test;
 
 namespace {
 
 /// A cloth that hangs by two discs at its upper corners.
 WorldDef hung_cloth() {
   WorldDef def;
-  ClothDef& cloth = def.cloths[0];
-  cloth.rows = cloth.columns = 21;
-  cloth.width = cloth.height = 0.6;
-  cloth.origin = Vec3d(-0.3, 1.5, 0);
-  cloth.v = -Vec3d::UnitY();
+  def.cloths[0] = hanging_cloth(21, 21, 0.6, 0.6, 1.5, 0);
   def.pins = {{Corner::top_left, 0.05, {}}, {Corner::top_right, 0.05, {}}};
   def.environment.drag = 2;
   def.contact.seed.self = SelfContact::guard;
@@ -36,13 +32,6 @@ void send_all(World<Real>& world, const Vec3d& way, double speed = 2, double max
     REQUIRE(world.move_pin(world.pins().list[k].id, {centre_of(world, k) + way, speed, max_force}));
 }
 
-template <class Real>
-std::size_t crossings_of(const World<Real>& world) {
-  const Crossings c =
-      count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
-  return c.proper + c.touching;
-}
-
 }  // namespace
 
 TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and nothing crosses") {
@@ -55,7 +44,7 @@ TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and not
   for (int k = 0; k < 180; ++k) {
     REQUIRE_FALSE(world.step().divergence);
     largest_strain = std::max(largest_strain, world.report().largest_strain);
-    crossed += crossings_of(world);
+    crossed += crossings(world);
   }
   CHECK(crossed == 0);
   CHECK(largest_strain < 0.5);
@@ -136,7 +125,7 @@ TEST_CASE("pins pulled through a plate stop at it and press with no more than th
     REQUIRE_FALSE(world.step().divergence);
     const Crossings c =
         count_crossings(world.state().x, world.model().edges, world.model().triangles, mesh);
-    crossed += c.proper + c.touching + crossings_of(world);
+    crossed += c.proper + c.touching + crossings(world);
     for (const PinReaction& pin : world.reactions()->pins)
       largest = std::max(largest, pin.force.norm());
   }

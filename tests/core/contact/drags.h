@@ -7,6 +7,7 @@
 #include "core/diagnostics/crossings.h"
 #include "core/world/world.h"
 #include "tests/support/random.h"
+#include "tests/support/sheets.h"
 
 namespace weft::test {
 
@@ -144,8 +145,7 @@ struct DragFigures {
     blow_ups += world.report().divergence ? 1 : 0;
     deepest = std::max(deepest, world.deepest_penetration());
     strain = std::max(strain, world.report().largest_strain);
-    const GuardCounts& counts = world.guard()->counts();
-    lost = counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
+    lost = lost_part(world);
   }
 };
 

@@ -11,6 +11,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/scenes.h"
+#include "tests/support/sheets.h"
 
 // Random hands pull a cloth about over what it lies on. A seed decides all of it.
 
@@ -31,19 +32,8 @@ bool has_bunny() {
 
 /// A sheet of cotton, thick by a quarter of its edges, that falls upright and crumples.
 WorldDef pile(int n) {
-  WorldDef def;
+  WorldDef def = upright_sheet(n, 0.8, 0.85, 0.25, 0.5, make_fabric("cotton"));
   def.name = "pile";
-  ClothDef& cloth = def.cloths[0];
-  cloth.rows = cloth.columns = n;
-  cloth.width = cloth.height = 0.8;
-  cloth.origin = Vec3d(-0.4, 0.85, 0);
-  cloth.u = Vec3d::UnitX();
-  cloth.v = Vec3d(0, -1, -0.12).normalized();
-  cloth.fabric = make_fabric("cotton");
-  cloth.fabric.thickness = 0.25 * cloth.width / (n - 1);
-  def.environment.drag = 0.5;
-  def.colliders = {{"ground", PlaneDef{}}};
-  def.contact.seed.self = SelfContact::guard;
   return def;
 }
 

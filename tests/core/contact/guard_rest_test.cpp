@@ -4,8 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/scenes/dress_form.h"
-#include "core/world/world.h"
-#include "tests/support/random.h"
+#include "tests/support/sheets.h"
 
 // Piles of cloth come to rest by themselves: nobody is stopped or put to sleep here.
 
@@ -14,27 +13,9 @@ using namespace weft::test;
 
 namespace {
 
-/// A sheet of 24 x 24 particles that falls upright on the ground and crumples there.
-WorldDef upright_sheet() {
-  WorldDef def;
-  ClothDef& cloth = def.cloths[0];
-  cloth.rows = cloth.columns = 24;
-  cloth.width = cloth.height = 0.6;
-  cloth.origin = Vec3d(-0.3, 0.7, 0);
-  cloth.u = Vec3d::UnitX();
-  cloth.v = Vec3d(0, -1, -0.12).normalized();
-  cloth.fabric.thickness = 0.25 * cloth.width / 23;
-  def.environment.drag = 5;
-  def.colliders = {{"ground", PlaneDef{}}};
-  def.contact.seed.self = SelfContact::guard;
-  return def;
-}
-
-/// Makes falls differ.
-void jolt(World<float>& world, unsigned seed) {
-  Random random(seed);
-  for (Vec3f& v : world.state().v) v += random.vector(0.05).cast<float>();
-  world.accept_state();
+/// A sheet that falls upright on the ground and crumples there.
+WorldDef falling_sheet() {
+  return upright_sheet(24, 0.6, 0.7, 0.25, 5);
 }
 
 /// Speed that 99 % of the particles do not reach [m/s].
@@ -49,8 +30,8 @@ double fastest_but_a_hundredth(const World<float>& world) {
 
 TEST_CASE(
     "a crumpled sheet comes to rest: after 5 s 99 % of it is slower than 2 mm/s at any tick") {
-  World<float> world(upright_sheet());
-  jolt(world, GENERATE(1u, 2u, 3u, 4u, 5u, 6u, 7u));
+  World<float> world(falling_sheet());
+  jolt(world, 0.05, GENERATE(1u, 2u, 3u, 4u, 5u, 6u, 7u));
   for (int tick = 0; tick < 300; ++tick) world.step();
   CHECK(world.guard()->rows().size() > 100);
   double fastest = 0;
@@ -62,7 +43,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a sheet that hangs over a dressmaker's form comes to rest within 4 s, to 2 mm/s") {
-  WorldDef def = upright_sheet();
+  WorldDef def = falling_sheet();
   ClothDef& cloth = def.cloths[0];
   cloth.rows = cloth.columns = 40;
   cloth.width = cloth.height = 1;
@@ -86,8 +67,8 @@ TEST_CASE("a sheet that hangs over a dressmaker's form comes to rest within 4 s,
 }
 
 TEST_CASE("a crumpled sheet at rest is moved by a hand of 0.1 N") {
-  World<float> world(upright_sheet());
-  jolt(world, 1);
+  World<float> world(falling_sheet());
+  jolt(world, 0.05, 1);
   for (int tick = 0; tick < 300; ++tick) world.step();
   const Vec3Array<float>& x = world.state().x;
   const auto top = static_cast<std::size_t>(

@@ -5,9 +5,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/diagnostics/crossings.h"
-#include "core/world/world.h"
 #include "tests/support/allocations.h"
+#include "tests/support/sheets.h"
 #include "tests/support/worlds.h"
 
 // Cloth that starts through cloth: named, drawn apart with its folds kept, and the guarantee is
@@ -17,12 +16,6 @@ using namespace weft;
 using namespace weft::test;
 
 namespace {
-
-std::size_t crossings(const World<float>& world) {
-  const Crossings c =
-      count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
-  return c.proper + c.touching;
-}
 
 ClothDef sheet(const std::string& name, int particles, double side, const Vec3d& centre,
                const Vec3d& u, const Vec3d& v) {

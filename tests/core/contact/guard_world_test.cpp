@@ -3,12 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/scenes/scenes.h"
-#include "core/world/world.h"
 #include "tests/support/cloths.h"
-#include "tests/support/random.h"
+#include "tests/support/sheets.h"
 #include "tests/support/worlds.h"
 
 // Cloths that meet themselves and each other: nothing crosses at any tick, and it is not by
@@ -18,19 +16,6 @@ using namespace weft;
 using namespace weft::test;
 
 namespace {
-
-template <class Real>
-std::size_t crossings(const World<Real>& world) {
-  const Crossings c =
-      count_self_crossings(world.state().x, world.model().edges, world.model().triangles);
-  return c.proper + c.touching;
-}
-
-template <class Real>
-double lost_part(const World<Real>& world) {
-  const GuardCounts& counts = world.guard()->counts();
-  return counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
-}
 
 /// Steps and adds up the crossings seen after each tick.
 template <class Real>
@@ -46,18 +31,7 @@ std::size_t crossings_over(World<Real>& world, int ticks) {
 
 /// A sheet of `n` x `n` particles that falls upright on the ground and crumples there.
 WorldDef upright_drop(int n, double thickness_part) {
-  WorldDef def;
-  ClothDef& cloth = def.cloths[0];
-  cloth.rows = cloth.columns = n;
-  cloth.width = cloth.height = 0.6;
-  cloth.origin = Vec3d(-0.3, 0.75, 0);
-  cloth.u = Vec3d::UnitX();
-  cloth.v = Vec3d(0, -1, -0.12).normalized();
-  cloth.fabric.thickness = thickness_part * cloth.width / (n - 1);
-  def.environment.drag = 0.2;
-  def.colliders = {{"ground", PlaneDef{}}};
-  def.contact.seed.self = SelfContact::guard;
-  return def;
+  return upright_sheet(n, 0.6, 0.75, thickness_part, 0.2);
 }
 
 /// Pairs without a common particle whose features could meet now, as each particle may be as far
@@ -107,13 +81,6 @@ NearPairs near_pairs(const World<float>& world) {
     }
   }
   return count;
-}
-
-template <class Real>
-void jolt(World<Real>& world, double size, unsigned seed) {
-  Random random(seed);
-  for (Vec3<Real>& v : world.state().v) v += random.vector(size).template cast<Real>();
-  world.accept_state();
 }
 
 }  // namespace
