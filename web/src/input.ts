@@ -1,6 +1,6 @@
 import { Vector2 } from 'three';
 
-const LONG_PRESS = 550; // [ms]
+export const LONG_PRESS = 550; // [ms]
 const FINGER_WANDER = 10; // that a resting finger may make [pixels]
 const ORBIT_SPEED = 0.0052; // [rad per pixel]
 const ZOOM_SPEED = 0.0011; // [1 per pixel of the wheel]

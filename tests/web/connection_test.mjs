@@ -1,0 +1,76 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { open_page, read, until } from './support/browser.mjs';
+import { CALM, bounded, browser, drag_cloth, with_page, with_server } from './support/default_page.mjs';
+import { start_server } from './support/server.mjs';
+
+// Pages that are hidden, asleep with the cloth, or cut off.
+
+test('a hidden page asks for no frames, and goes on when it is seen again', bounded, () =>
+  with_page({}, async (page, script) => {
+    const hide = (hidden) =>
+      page.evaluate((value) => {
+        Object.defineProperty(document, 'hidden', { value, configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+      }, hidden);
+    const tick = async () => (await script.query('state')).tick;
+    await hide(true);
+    await until(async () => {
+      const last = await read(page, 'tick');
+      const now = await tick();
+      await until(async () => (await tick()) > now + 60);
+      return (await read(page, 'tick')) === last;
+    }, 'no frame comes in the time of sixty ticks');
+    await hide(false);
+    const seen = await tick();
+    await until(async () => (await read(page, 'tick')) > seen);
+  }),
+);
+
+test('what sleeps is told, and a hand wakes it', bounded, () =>
+  with_server([...CALM, '--set', 'environment.drag=20', '--set', 'sleep.after=0.5'], async (page, script) => {
+    await until(() => page.locator('#asleep').isVisible(), 'the cloth sleeps');
+    assert.equal(await page.locator('#asleep').textContent(), '1');
+    const { tick: then, sleeping } = await script.query('state');
+    assert.deepEqual(sleeping, { islands: 1, cloths: ['cloth'] });
+    // Who has just joined gets a frame, which the page may still have to show.
+    await until(async () => (await script.query('state')).tick > then + 60);
+    const tick = await read(page, 'tick');
+    await until(async () => (await script.query('state')).tick > then + 180);
+    assert.equal(await read(page, 'tick'), tick, 'no frame has come');
+    await drag_cloth(page, 0, -30);
+    await until(async () => !(await page.locator('#asleep').isVisible()), 'it is awake');
+    await until(async () => (await read(page, 'tick')) > tick);
+    await page.mouse.up();
+    await until(() => page.locator('#asleep').isVisible(), 'it sleeps again');
+  }),
+);
+
+test('after the server was away the page comes back, without the hand', bounded, async () => {
+  let first = await start_server(CALM);
+  let second;
+  const page = await open_page(browser, first.url);
+  try {
+    await drag_cloth(page, 0, -30);
+    await first.stop('SIGKILL');
+    first = null;
+    await until(async () => (await read(page, 'phase')) !== 'open');
+    assert.equal(await read(page, 'input'), 'idle');
+    await until(async () => (await read(page, 'hands')).length === 0);
+    await page.mouse.up();
+    second = await start_server(CALM, Number(new URL(page.url()).port));
+    await until(async () => (await read(page, 'phase')) === 'open', 'it is connected again');
+    await until(async () => (await read(page, 'tick')) > 20);
+    const script = await second.script();
+    await drag_cloth(page, 0, -30);
+    await until(() => script.last.grabs.length === 1, 'the cloth can be taken again');
+    script.close();
+    // The browser itself tells of each attempt that failed.
+    const own = page.complaints.filter((text) => !text.startsWith('WebSocket connection to'));
+    assert.deepEqual(own, []);
+  } finally {
+    await page.context().close();
+    await first?.stop();
+    await second?.stop();
+  }
+});

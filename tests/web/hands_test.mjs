@@ -1,0 +1,262 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { camera_at_rest, open_page, pixel_of, read, until } from './support/browser.mjs';
+import {
+  COLUMNS,
+  bounded,
+  browser,
+  drag_cloth,
+  particle_pixel,
+  point_at_cloth,
+  position,
+  server,
+  with_page,
+} from './support/default_page.mjs';
+import { import_page_module } from './support/page_module.mjs';
+
+// Hands by mouse and touch, on the cloth and beside it.
+
+const { LONG_PRESS } = await import_page_module('input');
+
+test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () =>
+  with_page({}, async (page, script) => {
+    const before = await script.query('positions');
+    const particle = await drag_cloth(page, 20, -110);
+    const height = before[particle][1];
+    await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
+    const [hand] = await read(page, 'hands');
+    assert.equal(hand.own, true);
+    for (const name of ['Ticks', 'Real time', 'Step', 'Latency']) {
+      const value = page.locator('#measurements div', { hasText: name }).locator('output');
+      await until(async () => /^\d+(\.\d+)?$/.test(await value.textContent()), `${name} is told`);
+    }
+    const pins = script.last.pins.length;
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length === pins + 1);
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    const pin = script.last.pins.at(-1);
+    const held = await position(script, pin.particle);
+    const { tick } = await script.query('state');
+    await until(async () => (await script.query('state')).tick > tick + 60);
+    assert.deepEqual(await position(script, pin.particle), held);
+    const { x, y } = await pixel_of(page, pin.position);
+    await page.mouse.move(x, y);
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length === pins);
+    await until(async () => (await position(script, pin.particle))[1] < held[1] - 0.05, 'it falls');
+  }),
+);
+
+test('the wheel moves a hand along the view, and only without one the camera', bounded, () =>
+  with_page({}, async (page, script) => {
+    await drag_cloth(page, 0, -20);
+    const camera = await camera_at_rest(page);
+    const distance = async () => {
+      const [{ target }] = script.last.grabs.length ? await script.query('grabs') : [{ target: null }];
+      return target && Math.hypot(...target.map((value, axis) => value - camera.position[axis]));
+    };
+    const first = await until(distance, 'the server knows the hand');
+    await page.mouse.wheel(0, -400);
+    await until(async () => (await distance()) > first * 1.1, 'the hand goes away from the viewer');
+    assert.deepEqual(await camera_at_rest(page), camera);
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    await page.mouse.wheel(0, -400);
+    await until(async () => (await camera_at_rest(page)).position[2] < camera.position[2] - 0.2);
+  }),
+);
+
+test('beside the cloth the mouse moves the camera and nothing else', bounded, () =>
+  with_page({}, async (page, script) => {
+    const home = await camera_at_rest(page);
+    const length = ({ position: [x, y, z] }) => Math.hypot(x, y, z);
+    const sweep = async (button, keys = []) => {
+      for (const key of keys) await page.keyboard.down(key);
+      await page.mouse.move(60, 200);
+      await page.mouse.down({ button });
+      await page.mouse.move(140, 180, { steps: 2 });
+      await page.mouse.up({ button });
+      for (const key of keys) await page.keyboard.up(key);
+      return camera_at_rest(page);
+    };
+    const rotation = ({ view }) =>
+      [0, 1, 2, 4, 5, 6, 8, 9, 10].map((i) => Math.round(view[i] * 1e9) + 0);
+    const orbited = await sweep('left');
+    assert.notDeepEqual(rotation(orbited), rotation(home));
+    const panned = await sweep('right');
+    assert.deepEqual(rotation(panned), rotation(orbited));
+    assert.notDeepEqual(panned.position, orbited.position);
+    const panned_too = await sweep('left', ['Shift']);
+    assert.deepEqual(rotation(panned_too), rotation(orbited));
+    assert.notDeepEqual(panned_too.position, panned.position);
+    await page.mouse.wheel(0, 300);
+    assert.ok(length(await camera_at_rest(page)) > length(panned_too));
+    await page.keyboard.press('f');
+    const { target } = await until(async () => {
+      const [seen] = (await script.query('camera')).filter(({ viewer }) => viewer !== script.viewer);
+      return seen;
+    }, 'the server knows the camera');
+    assert.equal(target.length, 3);
+    assert.deepEqual(script.last.grabs, []);
+  }),
+);
+
+test('a sling waits for the hand to let go; what breaks the hold off does not throw', bounded, () =>
+  with_page({}, async (page, script) => {
+    await page.keyboard.press('s');
+    const sling = page.getByRole('button', { name: 'Sling', exact: true });
+    assert.equal(await sling.getAttribute('aria-pressed'), 'true');
+    const particle = await drag_cloth(page, 90, -60);
+    await until(() => script.last.grabs.length === 1);
+    const [grab] = script.last.grabs;
+    assert.equal(grab.mode, 'sling');
+    const speed = async () => Math.hypot(...(await script.query('velocities'))[particle]);
+    await until(async () => Math.hypot(...(await script.query('grabs'))[0].force) > 1);
+    assert.ok((await speed()) < 0.3, 'the cloth is left alone');
+    await page.evaluate(() => window.dispatchEvent(new Event('blur')));
+    await until(() => script.last.grabs.length === 0);
+    assert.ok((await speed()) < 0.3, 'it was not thrown');
+    await page.mouse.up();
+    await drag_cloth(page, 90, -60);
+    await until(() => script.last.grabs.length === 1);
+    await until(async () => Math.hypot(...(await script.query('grabs'))[0].force) > 1);
+    await script.pause();
+    await page.mouse.up();
+    await until(() => script.last.grabs.length === 0);
+    await script.advance(3);
+    assert.ok((await speed()) > 0.5, 'it is thrown');
+    await sling.click();
+    assert.equal(await sling.getAttribute('aria-pressed'), 'false');
+  }),
+);
+
+test('two pages see each other’s hands, with names and colours', bounded, () =>
+  with_page({ name: 'Ada' }, async (ada, script) => {
+    const ben = await open_page(browser, server.url, { name: 'Ben' });
+    try {
+      // While the cloth rests, a hand is not lost however slowly its page draws.
+      await script.pause();
+      const of = async (page, name) => (await read(page, 'hands')).find((hand) => hand.name === name);
+      await drag_cloth(ada, 40, -40);
+      const seen = await until(() => of(ben, 'Ada'), 'Ben sees the hand of Ada');
+      const roster = await script.query('roster');
+      const color = (name) => roster.find((viewer) => viewer.name === name).color;
+      assert.equal(seen.color, color('Ada'));
+      assert.equal(seen.own, false);
+      assert.equal(await ben.locator('.name').textContent(), 'Ada');
+      await point_at_cloth(ben, 18 * COLUMNS + 8);
+      await ben.mouse.down();
+      await until(() => of(ada, 'Ben'), 'Ada sees the hand of Ben');
+      await until(() => script.last.grabs.length === 2);
+      assert.notEqual(color('Ada'), color('Ben'));
+      await ada.mouse.up();
+      await until(async () => !(await of(ben, 'Ada')), 'Ada let go');
+      assert.deepEqual(ben.complaints, []);
+    } finally {
+      await ben.context().close();
+    }
+    await until(() => script.last.grabs.length === 0, 'who leaves lets go');
+  }),
+);
+
+test('a drag ends when the pointer is cancelled and when the window loses the focus', bounded, () =>
+  with_page({}, async (page, script) => {
+    for (const name of ['pointercancel', 'blur']) {
+      await drag_cloth(page, 0, -20);
+      await until(() => script.last.grabs.length === 1);
+      await page.evaluate((type) => {
+        const target = type === 'blur' ? window : document.getElementById('view');
+        target.dispatchEvent(new PointerEvent(type, { pointerId: 1 }));
+      }, name);
+      await until(() => script.last.grabs.length === 0, `${name} ends the drag`);
+      assert.equal(await read(page, 'input'), 'idle');
+      await page.mouse.up();
+    }
+  }),
+);
+
+/** Lets the test end the timers of long presses, so that it does not matter how slowly things go. */
+function hold_long_presses(page) {
+  return page.evaluate((long_press) => {
+    const { setTimeout, clearTimeout } = window;
+    const pressed = (window.long_presses = new Map());
+    window.setTimeout = (act, delay, ...rest) => {
+      if (delay !== long_press) return setTimeout(act, delay, ...rest);
+      const id = -1 - pressed.size;
+      pressed.set(id, act);
+      return id;
+    };
+    window.clearTimeout = (id) => pressed.delete(id) || clearTimeout(id);
+  }, LONG_PRESS);
+}
+
+const long_presses = (page) => page.evaluate(() => window.long_presses.size);
+
+test('one finger takes the cloth or turns, two shift and zoom, a long press pins', bounded, () =>
+  with_page({ width: 400, height: 720, touch: true }, async (page, script) => {
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, ...points) =>
+      session.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+      });
+    /** The camera when it rests elsewhere than it did. */
+    const camera_after = (before) =>
+      until(async () => {
+        const camera = await camera_at_rest(page);
+        return JSON.stringify(camera) !== JSON.stringify(before) && camera;
+      }, 'the camera goes elsewhere');
+    const at_start = async () => {
+      await script.reset();
+      await until(async () => (await read(page, 'tick')) === 0);
+    };
+    // Time stands still but where the test lets it pass, so that the cloth is where it is looked for.
+    await script.pause();
+    await at_start();
+    await hold_long_presses(page);
+    const particle = 4 * COLUMNS + 14;
+    const home = await camera_at_rest(page);
+    const height = (await position(script, particle))[1];
+    const first = await particle_pixel(page, particle);
+    await touch('touchStart', [first.x, first.y]);
+    await until(() => script.last.grabs.length === 1, 'one finger holds the cloth');
+    assert.equal(await long_presses(page), 1);
+    for (const dy of [15, 30, 60, 90]) await touch('touchMove', [first.x, first.y - dy]);
+    await until(async () => (await long_presses(page)) === 0, 'a finger that moves does not press');
+    await until(async () => {
+      await script.advance(5);
+      return (await position(script, particle))[1] > height + 0.1;
+    }, 'it is lifted');
+    await touch('touchEnd');
+    await until(() => script.last.grabs.length === 0);
+    assert.deepEqual(await camera_at_rest(page), home);
+
+    await at_start();
+    await touch('touchStart', [30, 480]);
+    await touch('touchMove', [110, 480]);
+    await touch('touchEnd');
+    const turned = await camera_after(home);
+    assert.equal(script.last.grabs.length, 0);
+
+    await touch('touchStart', [120, 470], [200, 470]);
+    await touch('touchMove', [100, 470], [220, 470]);
+    await touch('touchEnd');
+    const zoomed = await camera_after(turned);
+    assert.equal(script.last.grabs.length, 0);
+    const distance = ({ position: [x, , z] }) => Math.hypot(x, z);
+    assert.ok(distance(zoomed) < distance(turned) * 0.9);
+
+    await page.keyboard.press('f');
+    await camera_after(zoomed);
+    const pins = script.last.pins.length;
+    const again = await particle_pixel(page, particle);
+    await touch('touchStart', [again.x, again.y]);
+    await until(async () => (await long_presses(page)) === 1, 'a finger rests on the cloth');
+    assert.equal(script.last.pins.length, pins);
+    await page.evaluate(() => window.long_presses.forEach((act) => act()));
+    await until(() => script.last.pins.length === pins + 1, 'a long press pins');
+    await until(() => script.last.grabs.length === 0, 'and lets go');
+    await touch('touchEnd');
+  }),
+);

@@ -1,0 +1,121 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { camera_at_rest, open_page, pixel_of, read, until } from './support/browser.mjs';
+import {
+  COLUMNS,
+  bounded,
+  browser,
+  particle_pixel,
+  position,
+  server,
+  with_page,
+  with_server,
+} from './support/default_page.mjs';
+
+// Fans and objects that hands move.
+
+test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by hand', bounded, () =>
+  with_page({}, async (page, script) => {
+    const fans = async () => (await script.query('state')).fans;
+    const fan_of = async (wanted = () => true) =>
+      until(async () => {
+        const [fan] = await fans();
+        return fan && wanted(fan) && fan;
+      }, `the server has the fan: ${wanted}`);
+    await camera_at_rest(page);
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    const made = await fan_of();
+    const other = await open_page(browser, server.url);
+    await until(async () => (await read(other, 'fans')).length === 1, 'others see it');
+    await other.context().close();
+    const speeds = async () => (await script.query('velocities')).map((v) => Math.hypot(...v));
+    await until(async () => Math.max(...(await speeds())) > 0.3, 'the cloth moves');
+    const work = await script.query('work');
+    assert.ok(work.find(({ stage }) => stage === 'fans').work > 0);
+
+    const camera = await camera_at_rest(page);
+    const drag = async (point, dx, dy) => {
+      const { x, y } = await pixel_of(page, point);
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await until(async () => (await read(page, 'input')) === 'holding');
+      await page.mouse.move(x + dx, y + dy, { steps: 3 });
+      await page.mouse.up();
+      return { x: x + dx, y: y + dy };
+    };
+    const near = (a, b) => Math.hypot(a.x - b.x, a.y - b.y) < 1;
+    const hub = await drag(made.position, -30, -40);
+    // On a slow machine the places on the way are told too: the fan is where the hand let go last.
+    await until(async () => near(hub, await pixel_of(page, (await fan_of()).position)));
+    const moved = await fan_of(({ position }) => position[1] > made.position[1] + 0.05);
+    assert.deepEqual(moved.direction, made.direction);
+
+    const tip = ({ position, direction }) => position.map((v, axis) => v + direction[axis] * 0.6);
+    await drag(tip(moved), 0, -60);
+    const aimed = await fan_of(({ direction }) => direction[1] > moved.direction[1] + 0.1);
+    assert.deepEqual(aimed.position, (await fan_of()).position);
+    assert.ok(Math.abs(Math.hypot(...aimed.direction) - 1) < 1e-9);
+    assert.deepEqual(script.last.grabs, [], 'no hand is in the cloth');
+    assert.deepEqual(await camera_at_rest(page), camera);
+
+    // The cloth hangs where it starts, however long the fan has blown.
+    await script.pause();
+    await script.reset();
+    await until(async () => (await read(page, 'tick')) === 0);
+    const behind = await position(script, 4 * COLUMNS + 14);
+    const before = behind.map((value, axis) => value + 0.3 * (camera.position[axis] - value));
+    await script.set({ fans: [{ position: before, direction: [1, 0, 0] }] });
+    const over = await pixel_of(page, before);
+    await page.mouse.move(over.x, over.y);
+    await until(async () => (await read(page, 'fans'))[0].position[0] === before[0]);
+    await page.keyboard.press('m');
+    const beside = await particle_pixel(page, 4 * COLUMNS + 6);
+    await page.mouse.move(beside.x, beside.y);
+    await page.keyboard.press('m');
+    await until(() => script.last.pins.length > 6, 'the cloth beside it is pinned');
+    const [pinned] = script.last.pins.slice(6); // the first, if what is behind the fan was too
+    const at = await pixel_of(page, pinned.position);
+    assert.ok(Math.abs(at.y - over.y) > 25, 'and not what is behind the fan');
+    await script.release({ pin: pinned.id });
+    await script.resume();
+
+    await page.getByRole('slider', { name: 'Fan' }).fill('12');
+    await fan_of(({ speed }) => speed === 12);
+    await page.keyboard.press('w');
+    await until(async () => (await fans()).length === 0);
+    await until(() => page.getByRole('slider', { name: 'Fan' }).isHidden());
+  }),
+);
+
+test('an object is drawn where it is, and goes where Ctrl, Shift and the mouse take it', bounded, () =>
+  with_server(['--scene', 'lift-sphere', '--paused'], async (page, script) => {
+    const round = ({ name }) => name === 'ball' || name === 'sphere';
+    const ball = async () => (await read(page, 'objects')).find(round);
+    const asked = async () => (await script.query('colliders')).find(round);
+    await script.advance(130); // on its way up
+    await until(async () => (await read(page, 'tick')) === 130);
+    const { position } = await asked();
+    assert.ok(position[1] > 0.4 && position[1] < 0.9, `${position}`);
+    await until(async () => Math.abs((await ball()).position[1] - position[1]) < 1e-5);
+
+    // Here the cloth does not hide it.
+    await script.load('drape-sphere');
+    await until(async () => (await read(page, 'scene')) === 'drape-sphere');
+    await camera_at_rest(page);
+    const { x, y } = await pixel_of(page, [0, 0.7, 0]);
+    await page.keyboard.down('Control');
+    await page.keyboard.down('Shift');
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await until(async () => (await read(page, 'input')) === 'holding');
+    await page.mouse.move(x + 120, y, { steps: 4 });
+    await page.mouse.up();
+    await page.keyboard.up('Shift');
+    await page.keyboard.up('Control');
+    await script.resume();
+    await until(async () => Math.hypot(...(await asked()).position.filter((_, k) => k !== 1)) > 0.1);
+    await script.pause();
+    const goal = (await asked()).position;
+    await until(async () => Math.hypot(...(await ball()).position.map((v, k) => v - goal[k])) < 1e-5);
+  }),
+);

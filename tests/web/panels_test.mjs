@@ -1,0 +1,92 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { camera_at_rest, open_page, read, until } from './support/browser.mjs';
+import { bounded, browser, server, with_page, with_server } from './support/default_page.mjs';
+
+// The controls around the view, and the list of scenes.
+
+test('on screens wide and narrow every control is within reach and has a name', bounded, () =>
+  with_page({ width: 400, height: 720 }, async (page, script) => {
+    const controls = ['button', 'slider'];
+    const names = [
+      ['button', 'Pause'],
+      ['button', 'One step'],
+      ['button', 'Reset'],
+      ['button', 'Sling'],
+      ['button', 'Fan'],
+      ['button', 'Boxes'],
+      ['button', 'Frame the cloth'],
+      ['button', 'Help'],
+      ['button', 'Scenes'],
+      ['slider', 'Wind'],
+      ['slider', 'Gravity'],
+    ];
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    await until(() => page.getByRole('slider', { name: 'Fan' }).isVisible());
+    for (const [width, height] of [[1100, 700], [900, 500], [700, 500], [360, 640], [400, 720]]) {
+      await page.setViewportSize({ width, height });
+      await until(async () => (await read(page, 'size')).width === width);
+      for (const [role, name] of [...names, ['slider', 'Fan']]) {
+        const box = await page.getByRole(role, { name, exact: true }).boundingBox();
+        const at = `${name} in ${width} x ${height}`;
+        assert.ok(box.x >= 0 && box.x + box.width <= width, `${at} across`);
+        assert.ok(box.y >= 0 && box.y + box.height <= height, `${at} down`);
+      }
+    }
+    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    for (const role of controls) {
+      for (const control of await page.getByRole(role).all()) {
+        assert.ok(await control.evaluate((element) => element.matches('[aria-label], label *')));
+      }
+    }
+    await page.getByRole('slider', { name: 'Wind' }).focus();
+    await page.keyboard.press('End');
+    const wind = async () => Math.hypot(...(await script.query('state')).wind);
+    await until(async () => Math.abs((await wind()) - 10) < 1e-6, 'the slider sets the wind');
+    await script.set({ wind: [0, 0, 0] });
+    await page.keyboard.press('?');
+    const help = page.getByRole('dialog');
+    assert.ok(await help.isVisible());
+    await page.keyboard.press('Escape');
+    assert.ok(!(await help.isVisible()));
+    await page.setViewportSize({ width: 900, height: 500 });
+    await until(async () => (await read(page, 'size')).width === 900);
+    const { projection } = await camera_at_rest(page);
+    assert.ok(Math.abs(projection[5] / projection[0] - 900 / 500) < 1e-6, 'square pixels');
+  }),
+);
+
+const scene_title = (page) => page.getByRole('button', { name: 'Scenes' }).textContent();
+
+test('another scene is shown when one is chosen, and R starts it anew', bounded, () =>
+  with_page({}, async (page, script) => {
+    const other = await open_page(browser, server.url, { name: 'Ben' });
+    await page.getByRole('button', { name: 'Scenes' }).click();
+    const list = page.getByRole('dialog', { name: 'Scenes' });
+    const known = (await (await fetch(new URL('api/v1/scenes', server.url))).json()).scenes;
+    for (const { description } of known) assert.ok(await list.getByText(description).isVisible());
+    const chosen = list.locator('[aria-current]');
+    assert.match(await chosen.textContent(), /^Default/);
+    await list.getByRole('button', { name: /^Flag/ }).click();
+    assert.ok(!(await list.isVisible()));
+    await until(async () => (await read(other, 'scene')) === 'flag', 'the other viewer follows');
+    await until(async () => (await scene_title(other)) === 'Flag');
+    assert.deepEqual(other.complaints, []);
+    await other.context().close();
+    await until(async () => (await read(page, 'scene')) === 'flag');
+    await until(async () => (await read(page, 'tick')) > 30);
+    await page.locator('#view').focus();
+    await page.keyboard.press('r');
+    await until(async () => (await script.query('state')).tick < 30);
+    await script.load('default');
+    await until(async () => (await read(page, 'scene')) === 'default');
+  }),
+);
+
+test('who joins a paused room of another scene reads its name in the list', bounded, () =>
+  with_server(['--scene', 'wall', '--paused'], async (page) => {
+    await until(() => page.locator('#scene-list li').count(), 'the list has come');
+    assert.equal(await scene_title(page), 'Wall');
+    assert.match(await page.locator('#scene-list [aria-current]').textContent(), /^Wall/);
+  }),
+);

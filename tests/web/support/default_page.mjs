@@ -1,0 +1,91 @@
+import assert from 'node:assert/strict';
+import { after, before } from 'node:test';
+import {
+  camera_at_rest,
+  launch_browser,
+  next_pictures,
+  open_page,
+  pixel_of,
+  read,
+  until,
+} from './browser.mjs';
+import { start_server } from './server.mjs';
+
+// What every file of tests of the page begins with: a browser, and a server with the default scene.
+
+/** Options of a server without wind. */
+export const CALM = ['--set', 'environment.wind=0,0,0', '--set', 'environment.gust_speed=0'];
+export const COLUMNS = 30; // of the default scene's grid
+export const bounded = { timeout: 300_000 };
+
+export let browser;
+export let server;
+before(async () => {
+  browser = await launch_browser();
+  server = await start_server(CALM);
+});
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Gives a test a page and a script at the default scene's start, and sees them off. */
+export async function with_page(options, act) {
+  const script = await server.script();
+  await script.release({ all: true });
+  await script.resume();
+  await script.reset();
+  const page = await open_page(browser, server.url, options);
+  try {
+    await act(page, script);
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    await page.context().close();
+    script.close();
+  }
+}
+
+/** Gives a test a page and a script at a server of its own, and sees all three off. */
+export async function with_server(options, act) {
+  const own = await start_server(options);
+  const script = await own.script();
+  const page = await open_page(browser, own.url);
+  try {
+    await act(page, script);
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    script.close();
+    await page.context().close();
+    await own.stop();
+  }
+}
+
+export const position = async (script, particle) => (await script.query('positions'))[particle];
+
+/** Where the page shows a particle of the cloth. */
+export async function particle_pixel(page, particle) {
+  const positions = await read(page, 'positions');
+  return pixel_of(page, positions.slice(particle * 3, particle * 3 + 3));
+}
+
+/** A particle near the middle of the cloth, and the mouse upon it. */
+export async function point_at_cloth(page, particle = 4 * COLUMNS + 14) {
+  await camera_at_rest(page);
+  await until(async () => {
+    const { x, y } = await particle_pixel(page, particle);
+    await page.mouse.move(x, y);
+    await next_pictures(page);
+    return read(page, 'hovering');
+  }, 'the mouse is on the cloth');
+  return particle;
+}
+
+/** Takes the cloth with the mouse and moves the hand by so many pixels. */
+export async function drag_cloth(page, dx, dy) {
+  const particle = await point_at_cloth(page);
+  const { x, y } = await particle_pixel(page, particle);
+  await page.mouse.down();
+  await until(async () => (await read(page, 'input')) === 'holding');
+  await page.mouse.move(x + dx, y + dy, { steps: 4 });
+  return particle;
+}
