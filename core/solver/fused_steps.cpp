@@ -120,8 +120,8 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
 
 template <class Real>
 double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, int& s,
-                    CalmSpell& spell) {
-  if (s < spell.after || !may_be_calm(tick)) return 0;
+                    NextCalm& next) {
+  if (s < next.substep || !may_be_calm(tick)) return 0;
   ClothGuard<Real>& guard = *tick.collision.guard;
   const CalmPaths<Real>* paths = guard.calm_paths();
   const Contact<Real>* objects = tick.collision.weft;
@@ -129,7 +129,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   const Real room = objects ? objects->calm_room(tick.state) * Real(kSureOf)
                             : std::numeric_limits<Real>::infinity();
   if (!(room > 3 * paths->reach)) {
-    spell.after = s + kKeptSteps;
+    next.substep = s + kKeptSteps;
     return 0;
   }
   tick.work.load_paths(*paths);
@@ -152,7 +152,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     if (!(off <= paths->reach && farthest(begin, box, time) <= room)) {
       // Somebody may have met something: back, and the same steps with contact.
       for (GridPass<Real>& grid : tick.work.grids) grid.take_back();
-      spell.after = s + 1;
+      next.substep = s + 1;
       s = kept, time = kept_time, box = kept_box, work = kept_work;
       break;
     }
@@ -170,7 +170,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   template double advance_grid(Tick<Real>&, std::size_t, const Kick<Real>&, Real);  \
   template void load_grids(Tick<Real>&);                                            \
   template double advance_alone(Tick<Real>&, std::size_t, const Kicks<Real>&, int); \
-  template double advance_calm(Tick<Real>&, const Kicks<Real>&, int, int&, CalmSpell&);
+  template double advance_calm(Tick<Real>&, const Kicks<Real>&, int, int&, NextCalm&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -21,9 +21,9 @@ void load_grids(Tick<Real>& tick);
 template <class Real>
 double advance_alone(Tick<Real>& tick, std::size_t part, const Kicks<Real>& kicks, int substeps);
 
-/// What a tick knows of its steps without contact.
-struct CalmSpell {
-  int after = 0;  ///< none before this substep: it needs contact
+/// What a tick knows of when it may go on without contact.
+struct NextCalm {
+  int substep = 0;  ///< not before this one: it needs contact
 };
 
 /// Goes on without calls of contact while nothing can meet anything: all stay near straight paths
@@ -34,6 +34,6 @@ struct CalmSpell {
 /// @returns work of the air [J]
 template <class Real>
 double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, int& s,
-                    CalmSpell& spell);
+                    NextCalm& next);
 
 }  // namespace weft

@@ -231,9 +231,9 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
   const Collision<Real>& collision = tick.collision;
   double work = 0;
   see_velocities(state.v, tick.grabs);
-  CalmSpell spell;
+  NextCalm next;
   for (int s = 0; s < substeps; ++s) {
-    work += advance_calm(tick, kicks, substeps, s, spell);
+    work += advance_calm(tick, kicks, substeps, s, next);
     if (s == substeps) break;
     if (s == 0)
       opening_kick(tick, kicks.opening);
