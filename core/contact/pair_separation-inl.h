@@ -38,19 +38,11 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const Real* numbers, const Index* part
   if constexpr (sizeof(Real) == 4 && hn::MaxLanes(d) == 8) {
     // Whole quads, transposed: gathers of single numbers take several times as long.
     const hn::Half<D> half;
-    const hn::Repartition<double, D> wide;
     const auto two = [&](std::size_t k) HWY_ATTR {
       return hn::Combine(d, hn::Load(half, numbers + 4 * particles[k + 4]),
                          hn::Load(half, numbers + 4 * particles[k]));
     };
-    const auto p0 = two(0), p1 = two(1), p2 = two(2), p3 = two(3);
-    const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
-               xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
-               z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
-               z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
-    return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
-            hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
-            hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+    return transposed(d, two(0), two(1), two(2), two(3));
   }
 #endif
   const auto places = places_of(d, particles);

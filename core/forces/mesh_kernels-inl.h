@@ -38,7 +38,6 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways
 #if HWY_TARGET != HWY_SCALAR
   // Whole particles, transposed: gathers of single numbers take several times as long.
   const hn::CappedTag<float, 4> four;
-  const hn::Repartition<double, D> wide;
   const auto one = [&](int k) HWY_ATTR { return load_quad(four, from, ways[k], last, MeetsLast); };
   // Every fourth lane's particle from lane k on, as quads one behind the other.
   const auto every_fourth = [&](int k) HWY_ATTR {
@@ -52,14 +51,7 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways
                          hn::Combine(half, one(k + 4), one(k)));
     }
   };
-  const auto p0 = every_fourth(0), p1 = every_fourth(1), p2 = every_fourth(2), p3 = every_fourth(3);
-  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
-             xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
-             z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
-             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
-  return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+  return transposed(d, every_fourth(0), every_fourth(1), every_fourth(2), every_fourth(3));
 #else
   (void)last;
   const float* const p = from + 3 * std::ptrdiff_t{ways[0]};

@@ -58,6 +58,21 @@ HWY_INLINE Triple<V> drop_if(M mask, const Triple<V>& a) {
           hn::IfThenZeroElse(mask, a.z)};
 }
 
+#if HWY_TARGET != HWY_SCALAR
+/// The first three numbers of quads: four vectors hold every fourth quad from the k-th on.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> transposed(D d, V p0, V p1, V p2, V p3) {
+  const hn::Repartition<double, D> wide;
+  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
+             xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
+             z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
+             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
+  return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+}
+#endif
+
 /// Particles one behind the other, x y z each.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
