@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "core/contact/cloth_patches.h"
@@ -91,15 +92,9 @@ Aabb<Real> Sleep<Real>::box_around(const Particles& particles, const ClothState<
 
 template <class Real>
 void Sleep<Real>::enclose(std::size_t part, const ClothState<Real>& state) {
-  Boxes& boxes = boxes_[part];
-  Aabb<Real> box;
-  for (Index i = particles_[part].first; i < particles_[part].end(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    box.add(state.x[k]);
-    box.add(state.x[k] + state.v[k] * (tick_seconds_ * Real(kTicksAhead)));
-  }
-  boxes.whole = box.grown(margin_[part]);
-  boxes.fitted = false;
+  const IndexRange& all = particles_[part];
+  boxes_[part].whole = box_around(std::views::iota(all.first, all.end()), state, part);
+  boxes_[part].fitted = false;
 }
 
 template <class Real>

@@ -5,6 +5,14 @@
 #include "core/world/world.h"
 
 namespace weft {
+namespace {
+
+template <class Real>
+std::size_t part_of(const ClothModel<Real>& model, Index particle) {
+  return static_cast<std::size_t>(&part_of_particle(model, particle) - model.parts.data());
+}
+
+}  // namespace
 
 /// Says that masses changed.
 template <class Real>
@@ -24,8 +32,7 @@ void World<Real>::sleep_changed() {
 template <class Real>
 void World<Real>::wake(Index particle) {
   if (!sleep_.wanted()) return;
-  const auto part =
-      static_cast<std::size_t>(&part_of_particle(model_, particle) - &model_.parts[0]);
+  const std::size_t part = part_of(model_, particle);
   const bool slept = sleep_.is_asleep(part);
   sleep_.wake(part, pins_, state_);
   if (slept) sleep_changed();
@@ -50,10 +57,7 @@ void World<Real>::wake_all() {
 template <class Real>
 void World<Real>::rouse_sleepers() {
   if (!sleep_.wanted()) return;
-  const auto disturb = [this](Index particle) {
-    sleep_.disturb(
-        static_cast<std::size_t>(&part_of_particle(model_, particle) - &model_.parts[0]));
-  };
+  const auto disturb = [this](Index particle) { sleep_.disturb(part_of(model_, particle)); };
   for (const Grab<Real>& grab : grabs_.list) disturb(grab.particles.front());
   for (const Shot<Real>& shot : grabs_.shots) disturb(shot.particles.front());
   for (const Pin& pin : pins_.list) {
