@@ -4,6 +4,8 @@
 #include <array>
 #include <initializer_list>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
@@ -182,6 +184,11 @@ class Contact {
     bool clear(Real core, Real radius) const;
     bool clear(const Rise<Real>& rise) const;
   };
+  /// What is to be done about features of the cloth and a mesh that could meet.
+  struct Look {
+    Real reach = 0;        ///< that none of the cloth's particles goes beyond [m]
+    bool carried = false;  ///< particles alone keep the cloth off: it is only certified
+  };
   static constexpr int kChunks = 8;
   /// A particle that is pushed out may go so much farther than its reach; more than a push does
   /// [part of the thickness].
@@ -233,6 +240,9 @@ class Contact {
   void add_edges_on_meshes(const ClothState<Real>& state, Profile& profile);
   void add_triangles_on_rounds(const ClothState<Real>& state, Profile& profile);
   void add_triangles_on_meshes(const ClothState<Real>& state, Profile& profile);
+  std::optional<Look> look_at(const ClothState<Real>& state, const ContactCandidate<Real>& pair,
+                              std::span<const Index> particles, double span, const Rise<Real>& rise,
+                              std::size_t collider) const;
   void add_row(const ClothState<Real>& state, std::initializer_list<Index> particles,
                const std::array<Real, 3>& weights, const Barrier& barrier, std::size_t collider,
                bool responds = true);

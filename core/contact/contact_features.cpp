@@ -38,6 +38,12 @@ Vec3d in_double(const Vec3<Real>& v) {
   return v.template cast<double>();
 }
 
+/// Distance of a point from a rod's axis [m].
+template <class Rod, class Real>
+Real from_axis(const Vec3<Real>& p, const Rod& rod) {
+  return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
+}
+
 /// Direction in which p is from q, and how far.
 struct Apart {
   Vec3d normal;
@@ -56,9 +62,6 @@ Apart apart(const Vec3d& p, const Vec3d& q) {
 template <class Real>
 void Contact<Real>::add_edges_on_rounds(const ClothState<Real>& state, Profile&) {
   if (balls_.empty() && rods_.empty()) return;
-  const auto from_axis = [](const Vec3<Real>& p, const Rod& rod) {
-    return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
-  };
   /// @param c  closest points of the edge and the axis from a to b
   const auto add = [&](const Edge& e, Real reach, const SegmentPoints<double>& c, const Vec3d& a,
                        const Vec3d& b, Real radius, std::size_t collider, bool responds) {
@@ -102,9 +105,6 @@ void Contact<Real>::add_edges_on_rounds(const ClothState<Real>& state, Profile&)
 template <class Real>
 void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>& state, Profile& profile) {
   if (balls_.empty() && rods_.empty()) return;
-  const auto from_axis = [](const Vec3<Real>& p, const Rod& rod) {
-    return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
-  };
   /// A point of the object with a radius against the inside of a cloth triangle.
   const auto add = [&](const Triangle& t, const std::array<Vec3d, 3>& x, Real reach,
                        const Vec3<Real>& centre, Real radius, std::size_t collider, bool responds) {
@@ -150,6 +150,34 @@ void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>& state, Profi
   }
 }
 
+/// What a pair of features of the cloth and a mesh needs; nothing if they cannot meet while the
+/// rows hold.
+/// @param particles  of the cloth's feature
+/// @param span       kEdgeSpan or kTriangleSpan
+/// @param rise       of the mesh about its feature
+template <class Real>
+std::optional<typename Contact<Real>::Look> Contact<Real>::look_at(
+    const ClothState<Real>& state, const ContactCandidate<Real>& pair,
+    std::span<const Index> particles, double span, const Rise<Real>& rise,
+    std::size_t collider) const {
+  const auto most = [&](const std::vector<Real>& values) {
+    Real largest = values[static_cast<std::size_t>(particles[0])];
+    for (const Index i : particles)
+      largest = std::max(largest, values[static_cast<std::size_t>(i)]);
+    return largest;
+  };
+  const Real reach = most(row_reach_);
+  const Real bound = pair.distance - most(moved_) - frames_[collider].way_collected;
+  if (bound > thickness_ + reach) return {};
+  if (std::any_of(particles.begin(), particles.end(),
+                  [&](Index i) { return is_inside(i, collider); }))
+    return {};
+  const Corners corners = corners_of(state, particles.data(), static_cast<int>(particles.size()));
+  const bool carried = as_lying(corners, span, thickness_of(particles[0])).clear(rise);
+  if (carried && bound > beyond_reach(reach)) return {};
+  return Look{reach, carried};
+}
+
 template <class Real>
 void Contact<Real>::add_edges_on_meshes(const ClothState<Real>& state, Profile& profile) {
   std::uint64_t tests = 0;
@@ -164,22 +192,17 @@ void Contact<Real>::add_edges_on_meshes(const ClothState<Real>& state, Profile& 
     };
     for (const ContactCandidate<Real>& pair : edge_pairs_[m]) {
       const Edge& e = patches_.edges[static_cast<std::size_t>(pair.cloth)];
-      const auto i = static_cast<std::size_t>(e[0]), j = static_cast<std::size_t>(e[1]);
-      const Real reach = std::max(row_reach_[i], row_reach_[j]);
-      const Real bound = pair.distance - std::max(moved_[i], moved_[j]) - frame.way_collected;
-      if (bound > thickness_ + reach || is_inside(e[0], collider) || is_inside(e[1], collider))
-        continue;
       const auto ridge = static_cast<std::size_t>(pair.feature);
-      const Corners now = as_lying(corners_of(state, e.data(), 2), kEdgeSpan, thickness_of(e[0]));
-      const bool carried = now.clear(mesh.edge_rises[ridge]);
-      if (carried && bound > beyond_reach(reach)) continue;
+      const std::optional<Look> look =
+          look_at(state, pair, e, kEdgeSpan, mesh.edge_rises[ridge], collider);
+      if (!look) continue;
       const MeshEdge& other = mesh.edges[ridge];
       ++tests;
       const PairSeparation<double> s = separate_pair<double>(
           PairKind::edge_edge, {at(e[0]), at(e[1]), corner(other.a), corner(other.b)});
       const Real distance = static_cast<Real>(s.gap);
-      const bool responds = !carried && s.inside;
-      if (distance > (responds ? thickness_ + reach : beyond_reach(reach))) continue;
+      const bool responds = !look->carried && s.inside;
+      if (distance > (responds ? thickness_ + look->reach : beyond_reach(look->reach))) continue;
       const Vec3<Real>& outward = mesh.edge_normals[ridge];
       Vec3<Real> normal = s.normal.template cast<Real>();
       Barrier barrier;
@@ -203,10 +226,6 @@ void Contact<Real>::add_edges_on_meshes(const ClothState<Real>& state, Profile& 
 template <class Real>
 void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profile& profile) {
   std::uint64_t tests = 0;
-  const auto over = [&](const Triangle& t, const std::vector<Real>& values) {
-    return std::max({values[static_cast<std::size_t>(t[0])], values[static_cast<std::size_t>(t[1])],
-                     values[static_cast<std::size_t>(t[2])]});
-  };
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const MeshShape<Real>& mesh = meshes_[m];
     const std::size_t collider = mesh_collider_[m];
@@ -215,22 +234,16 @@ void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profi
     const auto at = [&](Index i) { return in_double(own[static_cast<std::size_t>(i)]); };
     for (const ContactCandidate<Real>& pair : triangle_pairs_[m]) {
       const Triangle& t = patches_.triangles[static_cast<std::size_t>(pair.cloth)];
-      const Real reach = over(t, row_reach_);
-      const Real bound = pair.distance - over(t, moved_) - frame.way_collected;
-      if (bound > thickness_ + reach) continue;
-      if (is_inside(t[0], collider) || is_inside(t[1], collider) || is_inside(t[2], collider))
-        continue;
       const auto v = static_cast<std::size_t>(pair.feature);
-      const Corners now =
-          as_lying(corners_of(state, t.data(), 3), kTriangleSpan, thickness_of(t[0]));
-      const bool carried = now.clear(mesh.vertex_rises[v]);
-      if (carried && bound > beyond_reach(reach)) continue;
+      const std::optional<Look> look =
+          look_at(state, pair, t, kTriangleSpan, mesh.vertex_rises[v], collider);
+      if (!look) continue;
       ++tests;
       const PairSeparation<double> s = separate_pair<double>(
           PairKind::vertex_triangle, {in_double(mesh.positions[v]), at(t[0]), at(t[1]), at(t[2])});
       const Real distance = static_cast<Real>(s.gap);
-      const bool responds = !carried && s.inside;
-      if (distance > (responds ? thickness_ + reach : beyond_reach(reach))) continue;
+      const bool responds = !look->carried && s.inside;
+      if (distance > (responds ? thickness_ + look->reach : beyond_reach(look->reach))) continue;
       Barrier barrier;
       barrier.distance = std::max(distance, Real(0));
       const Vec3<Real> normal =
@@ -245,10 +258,13 @@ void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profi
   profile[Stage::narrow_phase].work += tests;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                             \
-  template void Contact<Real>::add_edges_on_rounds(const ClothState<Real>&, Profile&);     \
-  template void Contact<Real>::add_edges_on_meshes(const ClothState<Real>&, Profile&);     \
-  template void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>&, Profile&); \
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template std::optional<typename Contact<Real>::Look> Contact<Real>::look_at(                \
+      const ClothState<Real>&, const ContactCandidate<Real>&, std::span<const Index>, double, \
+      const Rise<Real>&, std::size_t) const;                                                  \
+  template void Contact<Real>::add_edges_on_rounds(const ClothState<Real>&, Profile&);        \
+  template void Contact<Real>::add_edges_on_meshes(const ClothState<Real>&, Profile&);        \
+  template void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>&, Profile&);    \
   template void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
