@@ -43,6 +43,30 @@ struct Particles {
     join(j, k, stiffness);
     join(k, i, stiffness);
   }
+  /// A square patch of side x side particles, row by row, with springs along its cells and across
+  /// them.
+  /// @param first  where the first particle is; rows go along z [m]
+  /// @param along,across  stiffness of the springs [N/m]
+  void add_patch(Index side, double cell, const Vec3d& first, double mass, double along,
+                 double across) {
+    for (Index r = 0; r < side; ++r) {
+      for (Index c = 0; c < side; ++c)
+        add(first + Vec3d(cell * c, 0, cell * r), Vec3d::Zero(), mass);
+    }
+    for (Index r = 0; r + 1 < side; ++r) {
+      for (Index c = 0; c + 1 < side; ++c) {
+        const Index i = r * side + c;
+        triangles.push_back({i, i + side, i + 1});
+        triangles.push_back({i + 1, i + side, i + side + 1});
+      }
+    }
+    for (Index i = 0; i < side * side; ++i) {
+      const bool right = i % side + 1 < side, down = i / side + 1 < side;
+      if (right) join(i, i + 1, along);
+      if (down) join(i, i + side, along);
+      if (right && down) join(i + 1, i + side, across);
+    }
+  }
   Vec3d position(Index i) const {
     return state.x[static_cast<std::size_t>(i)].template cast<double>();
   }

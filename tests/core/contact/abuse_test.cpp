@@ -21,23 +21,7 @@ constexpr Index kSide = 8;
 template <class Real>
 Particles<Real> make_patch(double cell, double height) {
   Particles<Real> cloth;
-  for (Index r = 0; r < kSide; ++r) {
-    for (Index c = 0; c < kSide; ++c)
-      cloth.add(Vec3d(cell * (c - 3.4), height, cell * (r - 3.6)), Vec3d::Zero(), 1e-4);
-  }
-  for (Index r = 0; r + 1 < kSide; ++r) {
-    for (Index c = 0; c + 1 < kSide; ++c) {
-      const Index i = r * kSide + c;
-      cloth.triangles.push_back({i, i + kSide, i + 1});
-      cloth.triangles.push_back({i + 1, i + kSide, i + kSide + 1});
-    }
-  }
-  for (Index i = 0; i < kSide * kSide; ++i) {
-    const bool right = i % kSide + 1 < kSide, down = i / kSide + 1 < kSide;
-    if (right) cloth.join(i, i + 1, 200);
-    if (down) cloth.join(i, i + kSide, 200);
-    if (right && down) cloth.join(i + 1, i + kSide, 40);
-  }
+  cloth.add_patch(kSide, cell, Vec3d(-3.4 * cell, height, -3.6 * cell), 1e-4, 200, 40);
   cloth.dashpot = 0.02;
   return cloth;
 }

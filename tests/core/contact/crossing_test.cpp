@@ -150,10 +150,6 @@ TriangleMesh ridge_of_box() {
                      Eigen::Quaterniond(Eigen::AngleAxisd(0.78539816339744831, Vec3d::UnitZ()))});
 }
 
-}  // namespace
-
-namespace {
-
 template <class Real>
 void check_edge_over_ridge(const TriangleMesh& ridge) {
   for (const double skew : {0.0, 0.02}) {
@@ -286,23 +282,7 @@ template <class Real>
 void check_pressed_patch(const TriangleMesh& wall) {
   constexpr Index kSide = 7;
   Particles<Real> cloth;
-  for (Index r = 0; r < kSide; ++r) {
-    for (Index c = 0; c < kSide; ++c)
-      cloth.add(Vec3d(0.02 * (c - 3) + 0.003, 0.03, 0.02 * (r - 3) + 0.001), Vec3d::Zero(), 8e-5);
-  }
-  for (Index r = 0; r + 1 < kSide; ++r) {
-    for (Index c = 0; c + 1 < kSide; ++c) {
-      const Index i = r * kSide + c;
-      cloth.triangles.push_back({i, i + kSide, i + 1});
-      cloth.triangles.push_back({i + 1, i + kSide, i + kSide + 1});
-    }
-  }
-  for (Index i = 0; i < kSide * kSide; ++i) {
-    const bool right = i % kSide + 1 < kSide, down = i / kSide + 1 < kSide;
-    if (right) cloth.join(i, i + 1, 300);
-    if (down) cloth.join(i, i + kSide, 300);
-    if (right && down) cloth.join(i + 1, i + kSide, 50);
-  }
+  cloth.add_patch(kSide, 0.02, Vec3d(-0.057, 0.03, -0.059), 8e-5, 300, 50);
   cloth.dashpot = 0.01;
   cloth.substeps = 120;
   cloth.forces[24] = Vec3d(3, -50, 2);

@@ -42,6 +42,18 @@ std::size_t object_crossings(const World<float>& world, const WorldDef& def) {
   return count;
 }
 
+/// For four seconds nothing enters or crosses an object.
+void check_stays_out(World<float>& world, const WorldDef& def) {
+  double deepest = 0;
+  for (int tick = 0; tick < 240; ++tick) {
+    REQUIRE_FALSE(world.step().divergence);
+    if (tick % 10 != 0) continue;
+    deepest = std::max(deepest, world.deepest_penetration());
+    REQUIRE(object_crossings(world, def) == 0);
+  }
+  CHECK(deepest == 0);
+}
+
 /// Mean angle of a flag's rows below the horizontal, from the hoist to the fly [rad].
 double droop(const World<float>& world, std::size_t part) {
   const ClothPart<float>& flag = world.model().parts[part];
@@ -73,15 +85,7 @@ TEST_CASE("every scene has a name, one sentence and unique names") {
 TEST_CASE("the tablecloth rests on the table, hangs over all sides, and enters nothing") {
   const WorldDef def = make_scene("table");
   World<float> world(def);
-  double deepest = 0;
-  for (int tick = 0; tick < 240; ++tick) {
-    world.step();
-    REQUIRE_FALSE(world.report().divergence);
-    if (tick % 10 != 0) continue;
-    deepest = std::max(deepest, world.deepest_penetration());
-    REQUIRE(object_crossings(world, def) == 0);
-  }
-  CHECK(deepest == 0);
+  check_stays_out(world, def);
   const ClothPart<float>& cloth = world.model().parts[0];
   const auto at = [&](int row, int column) {
     return world.state().x[static_cast<std::size_t>(row * cloth.columns + column)];
@@ -140,15 +144,7 @@ TEST_CASE("the sheet comes to lie over the bunny, touches ears and ground, and e
   }
   const WorldDef def = make_scene("drop-on-bunny", mesh_directory());
   World<float> world(def);
-  double deepest = 0;
-  for (int tick = 0; tick < 240; ++tick) {
-    world.step();
-    REQUIRE_FALSE(world.report().divergence);
-    if (tick % 10 != 0) continue;
-    deepest = std::max(deepest, world.deepest_penetration());
-    REQUIRE(object_crossings(world, def) == 0);
-  }
-  CHECK(deepest == 0);
+  check_stays_out(world, def);
   float highest = 0, lowest = 9;
   for (const Vec3f& x : world.state().x) {
     highest = std::max(highest, x[1]);
