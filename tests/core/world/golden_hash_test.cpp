@@ -1,6 +1,8 @@
+#include <cstdint>
 #include <thread>
 
 #include <catch2/catch.hpp>
+#include <hwy/targets.h>
 
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
@@ -32,6 +34,12 @@ std::uint64_t hash_after(const std::string& scene, int ticks, Executor* executor
   return world.hash();
 }
 
+/// Lets the program use these instruction sets alone; 0 for all that there are.
+void use_targets(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 }  // namespace
 
 TEST_CASE("objects that move leave the same hash with one and two threads") {
@@ -53,4 +61,30 @@ TEST_CASE("each scene has the same hash with one and two threads, and the golden
   const std::uint64_t alone = hash_after(scene, 60, nullptr);
   CHECK(alone == hash_after(scene, 60, &two_threads));
   CHECK(alone == golden);
+}
+
+TEST_CASE("scenes full of contact leave the same hash with every instruction set") {
+  const auto [scene, ticks] = GENERATE(table<std::string, int>({
+      {"default", 30},
+      {"drape-sphere", 10},
+      {"gripper", 10},
+      {"hard-knives", 15},
+      {"hard-tablecloth", 15},
+  }));
+  INFO(scene);
+  use_targets(0);
+  const std::int64_t all = hwy::SupportedTargets();
+  World<float> world(make_scene(scene));
+  std::uint64_t met = 0;
+  for (int tick = 0; tick < ticks; ++tick) met += world.step().profile[Stage::contact].work;
+  CHECK(met > 0);
+  int tried = 0;
+  for (std::int64_t left = all; left != 0; left &= left - 1) {
+    use_targets(left & -left);
+    INFO(hwy::TargetName(left & -left));
+    CHECK(hash_after(scene, ticks, nullptr) == world.hash());
+    ++tried;
+  }
+  use_targets(0);
+  CHECK(tried > 1);
 }
