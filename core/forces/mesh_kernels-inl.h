@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/forces/kick-inl.h"
 #include "core/forces/mesh_view.h"
 #include "core/forces/spring_law-inl.h"
 
@@ -30,6 +31,30 @@ HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, st
   return hn::LoadU(d, from + 3 * way);
 }
 
+#if HWY_TARGET != HWY_SCALAR
+/// Every fourth lane's particle, as quads one behind the other.
+/// @param ways  of the first of them
+template <bool MeetsLast, class D>
+HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshWay* ways,
+                                   std::ptrdiff_t last) {
+  const hn::CappedTag<float, 4> four;
+  const auto p0 = load_quad(four, from, ways[0], last, MeetsLast);
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return p0;
+  } else {
+    const auto p1 = load_quad(four, from, ways[4], last, MeetsLast);
+    if constexpr (hn::MaxLanes(d) == 8) {
+      return hn::Combine(d, p1, p0);
+    } else {
+      const hn::Half<D> half;
+      const auto p2 = load_quad(four, from, ways[8], last, MeetsLast);
+      const auto p3 = load_quad(four, from, ways[12], last, MeetsLast);
+      return hn::Combine(d, hn::Combine(half, p3, p2), hn::Combine(half, p1, p0));
+    }
+  }
+}
+#endif
+
 /// Brings the triples of as many particles together as there are lanes.
 /// @tparam MeetsLast  whether the model's last particle may be among them
 template <bool MeetsLast, class D>
@@ -37,21 +62,10 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways
                                      std::ptrdiff_t last) {
 #if HWY_TARGET != HWY_SCALAR
   // Whole particles, transposed: gathers of single numbers take several times as long.
-  const hn::CappedTag<float, 4> four;
-  const auto one = [&](int k) HWY_ATTR { return load_quad(four, from, ways[k], last, MeetsLast); };
-  // Every fourth lane's particle from lane k on, as quads one behind the other.
-  const auto every_fourth = [&](int k) HWY_ATTR {
-    if constexpr (hn::MaxLanes(d) == 4) {
-      return one(k);
-    } else if constexpr (hn::MaxLanes(d) == 8) {
-      return hn::Combine(d, one(k + 4), one(k));
-    } else {
-      const hn::Half<D> half;
-      return hn::Combine(d, hn::Combine(half, one(k + 12), one(k + 8)),
-                         hn::Combine(half, one(k + 4), one(k)));
-    }
-  };
-  return transposed(d, every_fourth(0), every_fourth(1), every_fourth(2), every_fourth(3));
+  return transposed(d, every_fourth<MeetsLast>(d, from, ways, last),
+                    every_fourth<MeetsLast>(d, from, ways + 1, last),
+                    every_fourth<MeetsLast>(d, from, ways + 2, last),
+                    every_fourth<MeetsLast>(d, from, ways + 3, last));
 #else
   (void)last;
   const float* const p = from + 3 * std::ptrdiff_t{ways[0]};
@@ -68,62 +82,130 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* way
   return {hn::Load(d, numbers[0]), hn::Load(d, numbers[1]), hn::Load(d, numbers[2])};
 }
 
-/// Forces on a group.
+/// Where the kernel stands in the ring of pulls.
+template <class Real>
+struct RingPlace {
+  Real* ring;
+  std::size_t at, size;  ///< in quads
+
+  /// Room for the next slot.
+  HWY_INLINE Real* next() {
+    Real* const slot = ring + 4 * at;
+    at = at + kMeshGroup == size ? 0 : at + kMeshGroup;
+    return slot;
+  }
+};
+
+/// Pulls of a group on its members by those that come later, kept in the ring too.
 /// @param x,v  of the block's first particle
 /// @param sum  forces as quads
 template <bool MeetsLast, class Real>
-HWY_INLINE void group_forces(const MeshGroup& group, const MeshWay* way, const Real* number,
-                             std::ptrdiff_t last, Real damping_per_stiffness, const Real* x,
-                             const Real* v, Real* sum) {
+HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, const MeshWay* way,
+                           const Real* number, std::ptrdiff_t last, const Real* x, const Real* v,
+                           RingPlace<Real>& ring, Real* sum) {
   using D = hn::CappedTag<Real, kMeshGroup>;
   const D d;
   using V = hn::Vec<D>;
-  const V one = hn::Set(d, Real(1)), damping = hn::Set(d, damping_per_stiffness),
+  const V one = hn::Set(d, Real(1)), damping = hn::Set(d, mesh.damping_per_stiffness),
           smallest = hn::Set(d, Real(kSmallestSquaredLength));
+  const RingPlace<Real> start = ring;
   for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
     const MeshWay* ways = way + k;
     const Real* numbers = number + k;
+    ring = start;
     const auto x0 = gather<MeetsLast>(d, x, ways, last), v0 = gather<MeetsLast>(d, v, ways, last);
     ways += kMeshGroup;
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    const auto add = [&](const Triple<V>& pull) HWY_ATTR {
+      f = f + pull;
+      hn::StoreInterleaved4(pull.x, pull.y, pull.z, hn::Zero(d), d, ring.next() + 4 * k);
+    };
     for (int s = 0; s < group.near; ++s, ways += kMeshGroup, numbers += 3 * kMeshGroup) {
       const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
       const auto speed = gather<MeetsLast>(d, v, ways, last) - v0;
       const SpringLaw<D> law{one, hn::LoadU(d, numbers), damping, smallest};
       const V pull = spring(d, law, hn::LoadU(d, numbers + kMeshGroup), away, speed);
-      f = fused(d, away, hn::Sub(pull, hn::LoadU(d, numbers + 2 * kMeshGroup)), f);
+      add(away * hn::Sub(pull, hn::LoadU(d, numbers + 2 * kMeshGroup)));
     }
-    for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup) {
-      const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
-      f = fused_minus(d, away, hn::LoadU(d, numbers), f);
-    }
+    for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup)
+      add((gather<MeetsLast>(d, x, ways, last) - x0) * hn::LoadU(d, numbers));
     hn::StoreInterleaved4(f.x, f.y, f.z, hn::Zero(d), d, sum + 4 * k);
   }
 }
 
+/// Takes from the members of a group what those that came before were pulled with.
+/// @param sum  forces so far as quads, by member
+/// @param to   all forces, by particle of the block
 template <class Real>
-HWY_INLINE void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* force) {
-  HWY_ALIGN Real sum[4 * kMeshBlock];
+HWY_INLINE void pull_back(const MeshGroup& group, const MeshWay* way, const Real* ring,
+                          const std::uint8_t*& earlier, const std::uint16_t*& pull, const Real* sum,
+                          Real* to) {
+  const hn::CappedTag<Real, 4> d;
+  for (int k = 0; k < group.members; ++k) {
+    const int pulls = *earlier++;
+    for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
+      auto f = hn::Load(d, sum + 4 * k + part);
+      for (int n = 0; n < pulls; ++n) f = hn::Sub(f, hn::Load(d, ring + 4 * pull[n] + part));
+      hn::Store(f, d, to + 4 * way[k] + part);
+    }
+    pull += pulls;
+  }
+}
+
+/// Calls take(first, count, force) for each block, one after the other, with the forces as quads.
+/// What it is told of is not read any more.
+template <class Real, class Take>
+HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const Real* v,
+                               Take&& take) {
+  HWY_ALIGN Real sum[4 * kMeshBlock], force[4 * kMeshBlock];
   const MeshGroup* group = mesh.group;
   const MeshWay* way = mesh.way;
   const Real* number = mesh.number;
+  const std::uint8_t* earlier = mesh.earlier;
+  const std::uint16_t* pull = mesh.pull;
+  RingPlace<Real> ring{mesh.ring, 0, mesh.ring_size};
   for (std::ptrdiff_t begin = 0; begin < mesh.count; begin += kMeshBlock) {
-    const std::ptrdiff_t first = mesh.first + begin;
-    const std::ptrdiff_t end = std::min<std::ptrdiff_t>(begin + kMeshBlock, mesh.count);
-    for (Real* to = sum; to < sum + 4 * (end - begin); to += 4 * kMeshGroup, ++group) {
-      const std::ptrdiff_t last = mesh.last - first;
-      const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
-      if (group->meets_last)
-        group_forces<true>(*group, way, number, last, mesh.damping_per_stiffness, x0, v0, to);
+    const std::ptrdiff_t first = mesh.first + begin, last = mesh.last - first;
+    const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kMeshBlock, mesh.count - begin);
+    const int groups = static_cast<int>((count + kMeshGroup - 1) / kMeshGroup);
+    const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
+    const MeshWay* own[kMeshBlock / kMeshGroup];
+    for (int g = 0; g < groups; ++g) {
+      Real* const to = sum + 4 * kMeshGroup * g;
+      if (group[g].meets_last)
+        pull_group<true>(mesh, group[g], way, number, last, x0, v0, ring, to);
       else
-        group_forces<false>(*group, way, number, last, mesh.damping_per_stiffness, x0, v0, to);
-      way += (1 + group->near + group->far) * kMeshGroup;
-      number += (3 * group->near + group->far) * kMeshGroup;
+        pull_group<false>(mesh, group[g], way, number, last, x0, v0, ring, to);
+      own[g] = way;
+      way += (1 + group[g].near + group[g].far) * kMeshGroup;
+      number += (3 * group[g].near + group[g].far) * kMeshGroup;
     }
-    // Back in their own order.
-    for (std::ptrdiff_t i = begin; i < end; ++i)
-      std::memcpy(force + 3 * (mesh.first + i), sum + 4 * mesh.place[i], 3 * sizeof(Real));
+    for (int g = 0; g < groups; ++g)
+      pull_back(group[g], own[g], mesh.ring, earlier, pull, sum + 4 * kMeshGroup * g, force);
+    group += groups;
+    take(static_cast<std::size_t>(first), static_cast<std::size_t>(count), force);
   }
+}
+
+template <class Real>
+HWY_INLINE void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* to) {
+  for_each_block(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) {
+    for (std::size_t i = 0; i < count; ++i)
+      std::memcpy(to + 3 * (first + i), force + 4 * i, 3 * sizeof(Real));
+  });
+}
+
+template <class Real>
+HWY_INLINE void kick_all(const MeshView<Real>& mesh, const KickLaw<Real>& law,
+                         const KickedParticles<Real>& particles, const Real* x, Real* v) {
+  for_each_block(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) HWY_ATTR {
+    for_each_particle<Real, kMeshGroup>(count, [&](auto d, std::size_t i) HWY_ATTR {
+      Triple<hn::Vec<decltype(d)>> f;
+      auto spare = hn::Zero(d);
+      hn::LoadInterleaved4(d, force + 4 * i, f.x, f.y, f.z, spare);
+      kick_particles(d, law, particles, first + i, f, v, v);
+    });
+  });
 }
 
 HWY_ATTR void mesh_forces_f32(const MeshView<float>& mesh, const float* x, const float* v,
@@ -133,6 +215,14 @@ HWY_ATTR void mesh_forces_f32(const MeshView<float>& mesh, const float* x, const
 HWY_ATTR void mesh_forces_f64(const MeshView<double>& mesh, const double* x, const double* v,
                               double* force) {
   all_forces(mesh, x, v, force);
+}
+HWY_ATTR void mesh_kick_f32(const MeshView<float>& mesh, const KickLaw<float>& law,
+                            const KickedParticles<float>& particles, const float* x, float* v) {
+  kick_all(mesh, law, particles, x, v);
+}
+HWY_ATTR void mesh_kick_f64(const MeshView<double>& mesh, const KickLaw<double>& law,
+                            const KickedParticles<double>& particles, const double* x, double* v) {
+  kick_all(mesh, law, particles, x, v);
 }
 
 }  // namespace HWY_NAMESPACE

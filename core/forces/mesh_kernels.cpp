@@ -16,12 +16,23 @@ namespace weft {
 
 HWY_EXPORT(mesh_forces_f32);
 HWY_EXPORT(mesh_forces_f64);
+HWY_EXPORT(mesh_kick_f32);
+HWY_EXPORT(mesh_kick_f64);
 
 void mesh_forces(const MeshView<float>& mesh, const float* x, const float* v, float* force) {
   HWY_DYNAMIC_DISPATCH(mesh_forces_f32)(mesh, x, v, force);
 }
 void mesh_forces(const MeshView<double>& mesh, const double* x, const double* v, double* force) {
   HWY_DYNAMIC_DISPATCH(mesh_forces_f64)(mesh, x, v, force);
+}
+
+void mesh_kick(const MeshView<float>& mesh, const KickLaw<float>& law,
+               const KickedParticles<float>& particles, const float* x, float* v) {
+  HWY_DYNAMIC_DISPATCH(mesh_kick_f32)(mesh, law, particles, x, v);
+}
+void mesh_kick(const MeshView<double>& mesh, const KickLaw<double>& law,
+               const KickedParticles<double>& particles, const double* x, double* v) {
+  HWY_DYNAMIC_DISPATCH(mesh_kick_f64)(mesh, law, particles, x, v);
 }
 
 }  // namespace weft

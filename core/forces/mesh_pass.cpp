@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "core/forces/bending_stencil.h"
@@ -14,21 +15,26 @@ namespace {
 /// Of one particle. The hub of a wheel would leave nearly all slots of its group free.
 constexpr std::size_t kMostSprings = 64;
 
+/// Quads in the ring of pulls: as many as 16 bits can tell apart.
+constexpr std::size_t kLongestRing = 65536;
+
 }  // namespace
 
 template <class Real>
 bool MeshPass<Real>::collect_springs(const ClothModel<Real>& model, const ClothPart<Real>& part,
                                      Real damping_per_stiffness, Rows& rows) {
+  std::vector<std::size_t> springs(rows.size(), 0);
   for (Index n = part.springs.first; n < part.springs.end(); ++n) {
     const Spring<Real>& s = model.springs[static_cast<std::size_t>(n)];
     const Real expected = damping_per_stiffness * s.stiffness;
     if (!(std::abs(s.damping - expected) <= Real(1e-5) * expected)) return false;
-    const auto add = [&](Index own, Index other) {
-      rows[static_cast<std::size_t>(own - part.particles.first)].near.push_back(
-          {other, s.rest_length, s.stiffness, 0});
-    };
-    add(s.i, s.j);
-    add(s.j, s.i);
+    const auto [earlier, later] = std::minmax(s.i, s.j);
+    for (const Index end : {earlier, later}) {
+      if (++springs[static_cast<std::size_t>(end - part.particles.first)] > kMostSprings)
+        return false;
+    }
+    rows[static_cast<std::size_t>(earlier - part.particles.first)].near.push_back(
+        {later, s.rest_length, s.stiffness, 0});
   }
   return true;
 }
@@ -49,68 +55,103 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
     for (int a = 0; a < count; ++a) {
       Row& row = rows[static_cast<std::size_t>(corners[a] - part.particles.first)];
       for (int b = 0; b < count; ++b) {
-        if (a == b) continue;
-        link_to(row, corners[b]).bending_weight += static_cast<double>(k) * weights[a] * weights[b];
+        if (corners[a] < corners[b])
+          link_to(row, corners[b]).bending_weight +=
+              static_cast<double>(k) * weights[a] * weights[b];
       }
     }
   });
 }
 
+/// Lists of one group, by slot. Lanes without a particle repeat the last one.
 template <class Real>
-void MeshPass<Real>::add_group(const Rows& rows, const Members& members, std::size_t block) {
+void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t block) {
   MeshGroup group;
+  group.members = static_cast<std::uint8_t>(members.size());
+  const auto member = [&](std::size_t lane) { return members[std::min(lane, members.size() - 1)]; };
+  const auto own = [&](std::size_t lane) {
+    return static_cast<Index>(view_.first) + static_cast<Index>(member(lane));
+  };
   const auto lead_to = [&](Index particle) {
     const std::ptrdiff_t ahead = particle - (view_.first + static_cast<std::ptrdiff_t>(block));
     in_reach_ = in_reach_ && ahead == static_cast<MeshWay>(ahead);
     group.meets_last = group.meets_last || particle == view_.last;
     ways_.push_back(static_cast<MeshWay>(ahead));
   };
-  const auto own = [&](std::size_t member) {
-    return static_cast<Index>(view_.first) + static_cast<Index>(member);
-  };
   const auto add_slots = [&](std::vector<Link> Row::*links, bool springs) {
     std::size_t slots = 0;
     for (const std::size_t i : members) slots = std::max(slots, (rows[i].*links).size());
-    for (std::size_t s = 0; s < slots; ++s) {
+    for (std::size_t s = 0; s < slots; ++s, pull_count_ += kMeshGroup) {
       std::array<Link, kMeshGroup> lanes;
       for (std::size_t k = 0; k < kMeshGroup; ++k) {
-        const std::vector<Link>& row = rows[members[k]].*links;
-        lanes[k] = s < row.size() ? row[s] : Link{own(members[k]), 0, 0, 0};
+        const std::vector<Link>& row = rows[member(k)].*links;
+        lanes[k] = s < row.size() ? row[s] : Link{own(k), 0, 0, 0};
         lead_to(lanes[k].neighbour);
+        if (k < members.size() && s < row.size())
+          rows[static_cast<std::size_t>(row[s].neighbour - view_.first)].earlier.push_back(
+              pull_count_ + k);
       }
       if (springs) {
         for (const Link& link : lanes) numbers_.push_back(link.rest_length);
         for (const Link& link : lanes) numbers_.push_back(link.stiffness);
       }
-      for (const Link& link : lanes) numbers_.push_back(static_cast<Real>(link.bending_weight));
+      for (const Link& link : lanes)
+        numbers_.push_back(static_cast<Real>(springs ? link.bending_weight : -link.bending_weight));
     }
-    return static_cast<int>(slots);
+    return static_cast<std::uint8_t>(slots);
   };
-  for (const std::size_t i : members) lead_to(own(i));
+  for (std::size_t k = 0; k < kMeshGroup; ++k) lead_to(own(k));
   group.near = add_slots(&Row::near, true);
   group.far = add_slots(&Row::far, false);
   groups_.push_back(group);
 }
 
-/// Particles of a block that have as many neighbours share a group, so that few slots stay free.
+/// Particles of a block that pull as many others share a group, so that few slots stay free; who
+/// are pulled by as many stand together, so that the processor foresees where their lists end.
 template <class Real>
-void MeshPass<Real>::lay_out(const Rows& rows) {
-  places_.resize(rows.size());
-  for (std::size_t block = 0; block < rows.size(); block += kMeshBlock) {
-    std::vector<std::size_t> order(std::min<std::size_t>(kMeshBlock, rows.size() - block));
-    std::iota(order.begin(), order.end(), block);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::pair(rows[a].near.size(), rows[a].far.size()) <
-             std::pair(rows[b].near.size(), rows[b].far.size());
-    });
-    for (std::size_t k = 0; k < order.size(); ++k) places_[order[k]] = static_cast<std::uint8_t>(k);
-    // Lanes without a particle repeat the last one.
-    for (std::size_t k = 0; k < order.size(); k += kMeshGroup) {
-      Members members;
-      for (std::size_t lane = 0; lane < kMeshGroup; ++lane)
-        members[lane] = order[std::min(k + lane, order.size() - 1)];
-      add_group(rows, members, block);
+void MeshPass<Real>::sort_block(const Rows& rows, Members& block) {
+  const auto lengths = [&](std::size_t i) {
+    return std::tuple(rows[i].near.size(), rows[i].far.size(), rows[i].pulled_by);
+  };
+  std::stable_sort(block.begin(), block.end(),
+                   [&](std::size_t a, std::size_t b) { return lengths(a) < lengths(b); });
+}
+
+/// Lists of all blocks. Whoever pulls a particle of a block is in it or in one before.
+/// @returns the particles by member
+template <class Real>
+typename MeshPass<Real>::Members MeshPass<Real>::lay_out(Rows& rows) {
+  Members all;
+  std::size_t reach = 0;  // how far back in the ring anybody looks
+  for (std::size_t begin = 0; begin < rows.size(); begin += kMeshBlock) {
+    Members block(std::min<std::size_t>(kMeshBlock, rows.size() - begin));
+    std::iota(block.begin(), block.end(), begin);
+    sort_block(rows, block);
+    for (auto first = block.begin(); first != block.end();) {
+      const auto end = first + std::min<std::ptrdiff_t>(kMeshGroup, block.end() - first);
+      add_group(rows, Members(first, end), begin);
+      first = end;
     }
+    for (const std::size_t i : block) {
+      for (const std::size_t pull : rows[i].earlier) reach = std::max(reach, pull_count_ - pull);
+    }
+    all.insert(all.end(), block.begin(), block.end());
+  }
+  ring_.assign(4 * ((reach + kMeshGroup - 1) / kMeshGroup * kMeshGroup), Real(0));
+  return all;
+}
+
+/// Where in the ring each one finds what earlier ones pulled it with.
+template <class Real>
+void MeshPass<Real>::list_pulls(const Rows& rows, const Members& members) {
+  const std::size_t size = ring_.size() / 4;
+  in_reach_ = in_reach_ && size <= kLongestRing;
+  if (!in_reach_) return;
+  for (const std::size_t i : members) {
+    earlier_.push_back(static_cast<std::uint8_t>(rows[i].earlier.size()));
+    in_reach_ = in_reach_ && earlier_.back() == rows[i].earlier.size();
+    for (const std::size_t pull : rows[i].earlier)
+      pulls_.push_back(static_cast<std::uint16_t>(pull % size));
   }
 }
 
@@ -122,24 +163,39 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   const Real damping = one.stiffness > 0 ? one.damping / one.stiffness : Real(0);
   Rows rows(static_cast<std::size_t>(part.particles.count));
   if (!collect_springs(model, part, damping, rows)) return;
-  const auto is_hub = [](const Row& row) { return row.near.size() > kMostSprings; };
-  if (std::any_of(rows.begin(), rows.end(), is_hub)) return;
   collect_bending(part, rows);
+  for (const Row& row : rows) {
+    for (const std::vector<Link>* links : {&row.near, &row.far}) {
+      for (const Link& link : *links)
+        ++rows[static_cast<std::size_t>(link.neighbour - part.particles.first)].pulled_by;
+    }
+  }
   view_.first = part.particles.first;
   view_.last = model.particle_count() - 1;
   view_.damping_per_stiffness = damping;
-  lay_out(rows);
-  ways_.shrink_to_fit();
-  numbers_.shrink_to_fit();
+  list_pulls(rows, lay_out(rows));
   if (!in_reach_) {
     *this = MeshPass();
     return;
   }
+  ways_.shrink_to_fit();
+  numbers_.shrink_to_fit();
+  groups_.shrink_to_fit();
+  earlier_.shrink_to_fit();
+  pulls_.shrink_to_fit();
+  point_view();
+  view_.count = part.particles.count;
+}
+
+template <class Real>
+void MeshPass<Real>::point_view() {
   view_.group = groups_.data();
   view_.way = ways_.data();
   view_.number = numbers_.data();
-  view_.place = places_.data();
-  view_.count = part.particles.count;
+  view_.earlier = earlier_.data();
+  view_.pull = pulls_.data();
+  view_.ring = ring_.data();
+  view_.ring_size = ring_.size() / 4;
 }
 
 template <class Real>
@@ -149,9 +205,16 @@ void MeshPass<Real>::compute_forces(const Vec3Array<Real>& x, const Vec3Array<Re
 }
 
 template <class Real>
+void MeshPass<Real>::kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
+                          const Vec3Array<Real>& x, Vec3Array<Real>& v) {
+  mesh_kick(view_, law, particles, x.data()->data(), v.data()->data());
+}
+
+template <class Real>
 std::size_t MeshPass<Real>::bytes() const {
   return groups_.capacity() * sizeof(MeshGroup) + ways_.capacity() * sizeof(MeshWay) +
-         numbers_.capacity() * sizeof(Real) + places_.capacity();
+         (numbers_.capacity() + ring_.capacity()) * sizeof(Real) + earlier_.capacity() +
+         pulls_.capacity() * sizeof(std::uint16_t);
 }
 
 template class MeshPass<float>;

@@ -4,20 +4,21 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/forces/kick.h"
 #include "core/forces/mesh_view.h"
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
 namespace weft {
 
-/// Springs, dashpots and quadratic bending of one part of the model by gathering: each particle
-/// adds up what its neighbours do to it, each spring is evaluated from both ends (NUMERICS.md a).
-/// No order of particles matters, so the part need not be a grid.
+/// Springs, dashpots and quadratic bending of one part of the model by gathering (NUMERICS.md a):
+/// each particle adds up what pulls it to those that come later, and takes what earlier ones have
+/// found. No order of particles matters, so the part need not be a grid.
 template <class Real>
 class MeshPass {
  public:
   /// Lists the neighbours. A part whose springs are not all damped in proportion to their
-  /// stiffness, with more than 64 springs at a particle or with neighbours more than 32 thousand
+  /// stiffness, with more than 64 springs at a particle or with neighbours more than some thousand
   /// particles apart does not fit and stays with the element-wise form.
   void prepare(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
@@ -26,6 +27,11 @@ class MeshPass {
   /// Overwrites the part's stretch of `force` [N].
   /// @param x,v  of all particles [m], [m/s]
   void compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
+
+  /// Kicks the part's stretch of `v` by the forces, without a list of them.
+  /// @param particles  from the model's first particle on
+  void kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
+            const Vec3Array<Real>& x, Vec3Array<Real>& v);
 
   /// What the arrays take [B].
   std::size_t bytes() const;
@@ -36,25 +42,32 @@ class MeshPass {
     Real rest_length = 0, stiffness = 0;
     double bending_weight = 0;
   };
-  /// Neighbours of a particle: those that it has a spring with, and those it only bends with.
+  /// Later neighbours of a particle: those that it has a spring with, and those it only bends with.
   struct Row {
     std::vector<Link> near, far;
+    std::size_t pulled_by = 0;         ///< earlier ones
+    std::vector<std::size_t> earlier;  ///< pulls of earlier ones, counted over the whole mesh
   };
   using Rows = std::vector<Row>;  // by particle of the part
-  using Members = std::array<std::size_t, kMeshGroup>;
+  using Members = std::vector<std::size_t>;
 
   static bool collect_springs(const ClothModel<Real>& model, const ClothPart<Real>& part,
                               Real damping_per_stiffness, Rows& rows);
   static void collect_bending(const ClothPart<Real>& part, Rows& rows);
-  void lay_out(const Rows& rows);
-  void add_group(const Rows& rows, const Members& members, std::size_t block);
+  static void sort_block(const Rows& rows, Members& block);
+  void add_group(Rows& rows, const Members& members, std::size_t block);
+  Members lay_out(Rows& rows);
+  void list_pulls(const Rows& rows, const Members& members);
+  void point_view();
 
   MeshView<Real> view_;
   std::vector<MeshGroup> groups_;
   std::vector<MeshWay> ways_;
-  AlignedVector<Real> numbers_;
-  std::vector<std::uint8_t> places_;
-  bool in_reach_ = true;  // every neighbour is a MeshWay off
+  AlignedVector<Real> numbers_, ring_;
+  std::vector<std::uint8_t> earlier_;
+  std::vector<std::uint16_t> pulls_;
+  std::size_t pull_count_ = 0;  // lanes of slots laid out so far
+  bool in_reach_ = true;        // every neighbour is a MeshWay off
 };
 
 }  // namespace weft

@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include "core/forces/kick-inl.h"
 #include "core/solver/vector_passes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,14 +30,8 @@ HWY_INLINE void for_each_number(std::size_t count, Body&& body) {
 
 template <class Real>
 HWY_INLINE void kick(const KickPass<Real>& p) {
-  for_each_number<Real>(p.count, [&](auto d, std::size_t n) HWY_ATTR {
-    auto force = hn::LoadU(d, p.internal + n);
-    if (p.external != nullptr) force = hn::Add(force, hn::LoadU(d, p.external + n));
-    const auto push = hn::Set(d, p.push);
-    const auto by_force = hn::Mul(force, hn::Mul(hn::LoadU(d, p.inverse_mass + n), push));
-    const auto change = hn::Add(by_force, hn::Mul(hn::LoadU(d, p.gravity + n), push));
-    const auto kept = hn::Mul(hn::LoadU(d, p.from + n), hn::Set(d, p.keep));
-    hn::StoreU(hn::Add(kept, change), d, p.to + n);
+  for_each_particle<Real>(p.count, [&](auto d, std::size_t i) HWY_ATTR {
+    kick_particles(d, p.law, p.particles, i, load_particles(d, p.internal + 3 * i), p.from, p.to);
   });
 }
 

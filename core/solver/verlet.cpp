@@ -71,17 +71,10 @@ void push(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
   add_shot_forces(tick.grabs, force);
 }
 
-/// Spreads masses and gravity over the numbers of the cloth; pins change both.
 template <class Real>
-void spread_constants(Tick<Real>& tick) {
-  const std::vector<Real>& inverse_mass = tick.state.inverse_mass;
-  for (GridPass<Real>& grid : tick.work.grids) {
-    if (grid.fits()) grid.load_inverse_mass(inverse_mass);
-  }
-  for (std::size_t i = 0; i < tick.work.inverse_mass.size(); ++i) {
-    tick.work.inverse_mass[i].setConstant(inverse_mass[i]);
-    tick.work.gravity[i] = inverse_mass[i] == 0 ? Vec3<Real>::Zero() : tick.surroundings.gravity;
-  }
+KickLaw<Real> law_of(const Tick<Real>& tick, const Kick<Real>& k) {
+  const Vec3<Real>& g = tick.surroundings.gravity;
+  return {k.keep, k.push, {g[0], g[1], g[2]}};
 }
 
 template <class Real>
@@ -90,16 +83,26 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
   const StageTimer timer(tick.profile, Stage::integration, size_of(range));
   const VerletWorkspace<Real>& work = tick.work;
   KickPass<Real> pass;
-  pass.count = 3 * size_of(range);
+  pass.count = size_of(range);
   pass.from = numbers(range, from);
   pass.to = numbers(range, to);
   pass.internal = numbers(range, work.internal);
-  pass.external = tick.pulled ? numbers(range, work.external) : nullptr;
-  pass.inverse_mass = numbers(range, work.inverse_mass);
-  pass.gravity = numbers(range, work.gravity);
-  pass.keep = k.keep;
-  pass.push = k.push;
+  pass.particles = {tick.state.inverse_mass.data() + range.first,
+                    tick.pulled ? numbers(range, work.external) : nullptr};
+  pass.law = law_of(tick, k);
   run_kick(pass);
+}
+
+/// Springs, bending and kick of a mesh in one pass, all booked under stretch.
+template <class Real>
+void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k) {
+  const ClothPart<Real>& part = tick.part(p);
+  const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+  tick.profile[Stage::bending].work += quadratic_stencil_count(part);
+  tick.profile[Stage::integration].work += size_of(part.particles);
+  const Real* const external = tick.pulled ? tick.work.external.data()->data() : nullptr;
+  tick.work.meshes[p].kick(law_of(tick, k), {tick.state.inverse_mass.data(), external},
+                           tick.state.x, tick.state.v);
 }
 
 /// Forces and kick of all parts, with positions and velocities of the model up to date.
@@ -113,6 +116,8 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
       if (tick.shots) tick.grid(p).load_external(tick.work.external);
       advance_grid(tick, p, k, Real(0));
       tick.grid(p).store_velocities(v);
+    } else if (tick.work.kicks_at_once(tick.model, p)) {
+      kick_mesh(tick, p, k);
     } else {
       evaluate_elements(tick, p, v);
       kick(tick, tick.part(p).particles, k, v, v);
@@ -300,7 +305,9 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
     }
   }
   AdvanceResult result;
-  spread_constants(tick);
+  for (GridPass<Real>& grid : work.grids) {
+    if (grid.fits()) grid.load_inverse_mass(state.inverse_mass);
+  }
   load_grids(tick);
   result.before = timed_energies(tick).energies;
   if (collision.empty() && !hands && work.all_grids && solver.damping_sweeps == 1) {

@@ -61,13 +61,11 @@ struct AdvanceResult {
 /// Arrays that live from tick to tick so that nothing allocates during a step.
 template <class Real>
 struct VerletWorkspace {
-  // Where all parts are grids and there are no sweeps, these are empty, but for the external forces
-  // if there are shots.
+  // Where all parts are kicked in one pass with their forces, these are empty, but for the external
+  // forces if there are shots, and with parts that are no grid if there is air.
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
   Vec3Array<Real> external;              ///< forces of shots and air [N]
   Vec3Array<Real> velocity;              ///< estimate of the velocity that the dashpots see [m/s]
-  Vec3Array<Real> inverse_mass;          ///< the same number three times [1/kg]
-  Vec3Array<Real> gravity;               ///< of each particle, 0 if it is fixed [m/s^2]
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< somebody else moves the cloth
   std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each part while it sleeps, once known
@@ -87,6 +85,11 @@ struct VerletWorkspace {
 
   /// Gives the grids these paths, if they have others.
   void load_paths(const CalmPaths<Real>& paths);
+
+  /// Whether a part is kicked in one pass with its forces, without sweeps.
+  bool kicks_at_once(const ClothModel<Real>& model, std::size_t part) const {
+    return grids[part].fits() || (meshes[part].fits() && model.parts[part].hinges.count == 0);
+  }
 
   /// What the arrays take [B].
   std::size_t bytes() const;

@@ -11,16 +11,16 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   meshes.assign(model.parts.size(), {});
   at_rest.assign(model.parts.size(), {});
   all_grids = true;
+  bool listed = solver.damping_sweeps > 1;  // somebody needs forces as numbers of the whole model
   for (std::size_t p = 0; p < grids.size(); ++p) {
     grids[p].prepare(model.parts[p]);
     if (!grids[p].fits()) meshes[p].prepare(model, model.parts[p]);
     all_grids = all_grids && grids[p].fits();
+    listed = listed || !kicks_at_once(model, p);
   }
   external.clear();
-  const std::size_t listed = all_grids && solver.damping_sweeps == 1 ? 0 : model.mass.size();
-  for (Vec3Array<Real>* array : {&internal, &inverse_mass, &gravity})
-    array->assign(listed, Vec3<Real>::Zero());
-  velocity.assign(solver.damping_sweeps > 1 ? listed : 0, Vec3<Real>::Zero());
+  internal.assign(listed ? model.mass.size() : 0, Vec3<Real>::Zero());
+  velocity.assign(solver.damping_sweeps > 1 ? model.mass.size() : 0, Vec3<Real>::Zero());
   if (solver.damping_sweeps > 1) make_room(model, false, true);
 }
 
@@ -49,7 +49,7 @@ void VerletWorkspace<Real>::load_paths(const CalmPaths<Real>& paths) {
 template <class Real>
 std::size_t VerletWorkspace<Real>::bytes() const {
   std::size_t sum = 0;
-  for (const Vec3Array<Real>* array : {&internal, &external, &velocity, &inverse_mass, &gravity})
+  for (const Vec3Array<Real>* array : {&internal, &external, &velocity})
     sum += array->capacity() * sizeof(Vec3<Real>);
   for (const GridPass<Real>& grid : grids) sum += grid.bytes();
   for (const MeshPass<Real>& mesh : meshes) sum += mesh.bytes();

@@ -116,7 +116,8 @@ template <class Real>
 void World<Real>::accept_state() {
   reactions_.reset();
   wake_all();
-  last_good_ = state_;
+  last_good_.x = state_.x;
+  last_good_.v = state_.v;
   verlet_.elastic.reset();
   account_.clear();
   contact_.reset();
@@ -174,10 +175,11 @@ void World<Real>::make_room() {
 
 template <class Real>
 std::size_t World<Real>::solver_bytes() const {
-  std::size_t numbers = 0;
-  for (const ClothState<Real>* state : {&state_, &last_good_})
-    numbers += 3 * (state->x.capacity() + state->v.capacity()) + state->inverse_mass.capacity();
-  return (numbers + 3 * surroundings_.wind.capacity()) * sizeof(Real) + verlet_.bytes();
+  std::size_t numbers = state_.inverse_mass.capacity();
+  for (const Vec3Array<Real>* array :
+       {&state_.x, &state_.v, &last_good_.x, &last_good_.v, &surroundings_.wind})
+    numbers += 3 * array->capacity();
+  return numbers * sizeof(Real) + verlet_.bytes();
 }
 
 template <class Real>

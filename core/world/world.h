@@ -225,7 +225,10 @@ class World {
   ClothModel<Real> model_;
   double softness_ = 1;
   ClothState<Real> state_;
-  ClothState<Real> last_good_;
+  struct Motion {
+    Vec3Array<Real> x, v;
+  };
+  Motion last_good_;  ///< at the end of the last tick that went well
   Pins pins_;
   PinDrive<Real> pin_drive_;
   Grabs<Real> grabs_;

@@ -1,0 +1,52 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_KICK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_KICK_INL_H
+#undef WEFT_KICK_INL_H
+#else
+#define WEFT_KICK_INL_H
+#endif
+
+#include <cstddef>
+
+#include "core/forces/kick.h"
+#include "core/math/triple-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Kicks as many particles as there are lanes. Without fused multiplication, so that the bits are
+/// those of the formula.
+/// @param i     the first of them, counted as in `particles`, `from` and `to`
+/// @param from  velocities before [m/s]
+/// @param to    after; may be `from`
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void kick_particles(D d, const KickLaw<Real>& law,
+                               const KickedParticles<Real>& particles, std::size_t i,
+                               Triple<hn::Vec<D>> force, const Real* from, Real* to) {
+  if (particles.external != nullptr) force = force + load_particles(d, particles.external + 3 * i);
+  const auto push = hn::Set(d, law.push), keep = hn::Set(d, law.keep);
+  const auto inverse_mass = hn::LoadU(d, particles.inverse_mass + i);
+  const Triple<hn::Vec<D>> gravity{hn::Set(d, law.gravity[0]), hn::Set(d, law.gravity[1]),
+                                   hn::Set(d, law.gravity[2])};
+  const auto fall = drop_if(hn::Eq(inverse_mass, hn::Zero(d)), gravity * push);
+  const auto change = force * hn::Mul(inverse_mass, push) + fall;
+  store_particles(d, load_particles(d, from + 3 * i) * keep + change, to + 3 * i);
+}
+
+/// Calls body(d, i) for particles by whole vectors and then, with one lane, for those left.
+template <class Real, std::size_t Lanes = 16, class Body>
+HWY_INLINE void for_each_particle(std::size_t count, Body&& body) {
+  const hn::CappedTag<Real, Lanes> wide;
+  const hn::CappedTag<Real, 1> single;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(wide) <= count; i += hn::Lanes(wide)) body(wide, i);
+  for (; i < count; ++i) body(single, i);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif
