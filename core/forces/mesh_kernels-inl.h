@@ -25,10 +25,10 @@ template <class D4>
 HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, std::ptrdiff_t last,
                                  bool spare) {
   if (spare && way == last) {
-    HWY_ALIGN float numbers[4] = {from[3 * way], from[3 * way + 1], from[3 * way + 2], 0};
+    HWY_ALIGN float numbers[4] = {from[way], from[way + 1], from[way + 2], 0};
     return hn::Load(d, numbers);
   }
-  return hn::LoadU(d, from + 3 * way);
+  return hn::LoadU(d, from + way);
 }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -68,7 +68,7 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways
                     every_fourth<MeetsLast>(d, from, ways + 3, last));
 #else
   (void)last;
-  const float* const p = from + 3 * std::ptrdiff_t{ways[0]};
+  const float* const p = from + std::ptrdiff_t{ways[0]};
   return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
 #endif
 }
@@ -77,10 +77,42 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* way
   HWY_ALIGN double numbers[3][hn::MaxLanes(D())];
   for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
     for (std::size_t c = 0; c < 3; ++c)
-      numbers[c][k] = from[3 * std::ptrdiff_t{ways[k]} + static_cast<std::ptrdiff_t>(c)];
+      numbers[c][k] = from[std::ptrdiff_t{ways[k]} + static_cast<std::ptrdiff_t>(c)];
   }
   return {hn::Load(d, numbers[0]), hn::Load(d, numbers[1]), hn::Load(d, numbers[2])};
 }
+
+/// Keeps triples as quads, those of every fourth lane one behind the other.
+/// @param k   the first lane's place in the group
+/// @param to  the group's
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE void store_quads(D d, const Triple<hn::Vec<D>>& a, int k, Real* to) {
+  HWY_ALIGN Real numbers[3][hn::MaxLanes(D())];
+  hn::Store(a.x, d, numbers[0]);
+  hn::Store(a.y, d, numbers[1]);
+  hn::Store(a.z, d, numbers[2]);
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    Real* const at = to + 4 * quad_of_lane(static_cast<std::size_t>(k) + lane);
+    for (std::size_t c = 0; c < 3; ++c) at[c] = numbers[c][lane];
+    at[3] = 0;
+  }
+}
+#if HWY_TARGET != HWY_SCALAR
+template <class D>
+HWY_INLINE void store_quads(D d, const Triple<hn::Vec<D>>& a, int k, float* to) {
+  const hn::Repartition<double, D> wide;
+  const auto zero = hn::Zero(d);
+  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, a.x, a.y)),
+             xy23 = hn::BitCast(wide, hn::InterleaveUpper(d, a.x, a.y)),
+             z01 = hn::BitCast(wide, hn::InterleaveLower(d, a.z, zero)),
+             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, a.z, zero));
+  float* const at = to + k;
+  hn::StoreU(hn::BitCast(d, hn::InterleaveLower(wide, xy01, z01)), d, at);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(wide, xy01, z01)), d, at + kMeshGroup);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveLower(wide, xy23, z23)), d, at + 2 * kMeshGroup);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(wide, xy23, z23)), d, at + 3 * kMeshGroup);
+}
+#endif
 
 /// Where the kernel stands in the ring of pulls.
 template <class Real>
@@ -118,7 +150,7 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, c
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     const auto add = [&](const Triple<V>& pull) HWY_ATTR {
       f = f + pull;
-      hn::StoreInterleaved4(pull.x, pull.y, pull.z, hn::Zero(d), d, ring.next() + 4 * k);
+      store_quads(d, pull, k, ring.next());
     };
     for (int s = 0; s < group.near; ++s, ways += kMeshGroup, numbers += 3 * kMeshGroup) {
       const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
@@ -129,26 +161,39 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, c
     }
     for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup)
       add((gather<MeetsLast>(d, x, ways, last) - x0) * hn::LoadU(d, numbers));
-    hn::StoreInterleaved4(f.x, f.y, f.z, hn::Zero(d), d, sum + 4 * k);
+    store_quads(d, f, k, sum);
   }
 }
 
 /// Takes from the members of a group what those that came before were pulled with.
-/// @param sum  forces so far as quads, by member
-/// @param to   all forces, by particle of the block
+/// @param pull  where those pulls are, by slot
+/// @param sum   forces so far as quads
+/// @param to    all forces, by particle of the block
 template <class Real>
 HWY_INLINE void pull_back(const MeshGroup& group, const MeshWay* way, const Real* ring,
-                          const std::uint8_t*& earlier, const std::uint16_t*& pull, const Real* sum,
-                          Real* to) {
+                          const std::uint16_t* pull, const Real* sum, Real* to) {
   const hn::CappedTag<Real, 4> d;
-  for (int k = 0; k < group.members; ++k) {
-    const int pulls = *earlier++;
-    for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
-      auto f = hn::Load(d, sum + 4 * k + part);
-      for (int n = 0; n < pulls; ++n) f = hn::Sub(f, hn::Load(d, ring + 4 * pull[n] + part));
-      hn::Store(f, d, to + 4 * way[k] + part);
+  const std::uint16_t* const end = pull + kMeshGroup * group.earlier;
+  for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
+    const Real *const from = sum + part, *const kept = ring + part;
+    const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (way[k] / 3) + part; };
+    // Four at a time: each waits for its own sums alone.
+    for (std::size_t k = 0; k < kMeshGroup; k += 4) {
+      auto f0 = hn::Load(d, from + 4 * quad_of_lane(k)),
+           f1 = hn::Load(d, from + 4 * quad_of_lane(k + 1)),
+           f2 = hn::Load(d, from + 4 * quad_of_lane(k + 2)),
+           f3 = hn::Load(d, from + 4 * quad_of_lane(k + 3));
+      for (const std::uint16_t* p = pull + k; p < end; p += kMeshGroup) {
+        f0 = hn::Sub(f0, hn::Load(d, kept + kPullUnit * p[0]));
+        f1 = hn::Sub(f1, hn::Load(d, kept + kPullUnit * p[1]));
+        f2 = hn::Sub(f2, hn::Load(d, kept + kPullUnit * p[2]));
+        f3 = hn::Sub(f3, hn::Load(d, kept + kPullUnit * p[3]));
+      }
+      hn::Store(f0, d, own(k));
+      hn::Store(f1, d, own(k + 1));
+      hn::Store(f2, d, own(k + 2));
+      hn::Store(f3, d, own(k + 3));
     }
-    pull += pulls;
   }
 }
 
@@ -161,11 +206,10 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
   const MeshGroup* group = mesh.group;
   const MeshWay* way = mesh.way;
   const Real* number = mesh.number;
-  const std::uint8_t* earlier = mesh.earlier;
   const std::uint16_t* pull = mesh.pull;
   RingPlace<Real> ring{mesh.ring, 0, mesh.ring_size};
   for (std::ptrdiff_t begin = 0; begin < mesh.count; begin += kMeshBlock) {
-    const std::ptrdiff_t first = mesh.first + begin, last = mesh.last - first;
+    const std::ptrdiff_t first = mesh.first + begin, last = 3 * (mesh.last - first);
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kMeshBlock, mesh.count - begin);
     const int groups = static_cast<int>((count + kMeshGroup - 1) / kMeshGroup);
     const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
@@ -180,8 +224,10 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
       way += (1 + group[g].near + group[g].far) * kMeshGroup;
       number += (3 * group[g].near + group[g].far) * kMeshGroup;
     }
-    for (int g = 0; g < groups; ++g)
-      pull_back(group[g], own[g], mesh.ring, earlier, pull, sum + 4 * kMeshGroup * g, force);
+    for (int g = 0; g < groups; ++g) {
+      pull_back(group[g], own[g], mesh.ring, pull, sum + 4 * kMeshGroup * g, force);
+      pull += kMeshGroup * group[g].earlier;
+    }
     group += groups;
     take(static_cast<std::size_t>(first), static_cast<std::size_t>(count), force);
   }

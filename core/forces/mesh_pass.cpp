@@ -15,8 +15,8 @@ namespace {
 /// Of one particle. The hub of a wheel would leave nearly all slots of its group free.
 constexpr std::size_t kMostSprings = 64;
 
-/// Quads in the ring of pulls: as many as 16 bits can tell apart.
-constexpr std::size_t kLongestRing = 65536;
+/// Quads in the ring of pulls: as far as 16 bits lead.
+constexpr std::size_t kLongestRing = 65536 * kPullUnit / 4;
 
 }  // namespace
 
@@ -67,13 +67,13 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
 template <class Real>
 void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t block) {
   MeshGroup group;
-  group.members = static_cast<std::uint8_t>(members.size());
   const auto member = [&](std::size_t lane) { return members[std::min(lane, members.size() - 1)]; };
   const auto own = [&](std::size_t lane) {
     return static_cast<Index>(view_.first) + static_cast<Index>(member(lane));
   };
   const auto lead_to = [&](Index particle) {
-    const std::ptrdiff_t ahead = particle - (view_.first + static_cast<std::ptrdiff_t>(block));
+    const std::ptrdiff_t ahead =
+        3 * (particle - (view_.first + static_cast<std::ptrdiff_t>(block)));
     in_reach_ = in_reach_ && ahead == static_cast<MeshWay>(ahead);
     group.meets_last = group.meets_last || particle == view_.last;
     ways_.push_back(static_cast<MeshWay>(ahead));
@@ -89,7 +89,7 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
         lead_to(lanes[k].neighbour);
         if (k < members.size() && s < row.size())
           rows[static_cast<std::size_t>(row[s].neighbour - view_.first)].earlier.push_back(
-              pull_count_ + k);
+              pull_count_ + quad_of_lane(k));
       }
       if (springs) {
         for (const Link& link : lanes) numbers_.push_back(link.rest_length);
@@ -118,10 +118,10 @@ void MeshPass<Real>::sort_block(const Rows& rows, Members& block) {
 }
 
 /// Lists of all blocks. Whoever pulls a particle of a block is in it or in one before.
-/// @returns the particles by member
+/// @returns the members of each group
 template <class Real>
-typename MeshPass<Real>::Members MeshPass<Real>::lay_out(Rows& rows) {
-  Members all;
+std::vector<typename MeshPass<Real>::Members> MeshPass<Real>::lay_out(Rows& rows) {
+  std::vector<Members> groups;
   std::size_t reach = 0;  // how far back in the ring anybody looks
   for (std::size_t begin = 0; begin < rows.size(); begin += kMeshBlock) {
     Members block(std::min<std::size_t>(kMeshBlock, rows.size() - begin));
@@ -129,29 +129,36 @@ typename MeshPass<Real>::Members MeshPass<Real>::lay_out(Rows& rows) {
     sort_block(rows, block);
     for (auto first = block.begin(); first != block.end();) {
       const auto end = first + std::min<std::ptrdiff_t>(kMeshGroup, block.end() - first);
-      add_group(rows, Members(first, end), begin);
+      add_group(rows, groups.emplace_back(first, end), begin);
       first = end;
     }
     for (const std::size_t i : block) {
       for (const std::size_t pull : rows[i].earlier) reach = std::max(reach, pull_count_ - pull);
     }
-    all.insert(all.end(), block.begin(), block.end());
   }
-  ring_.assign(4 * ((reach + kMeshGroup - 1) / kMeshGroup * kMeshGroup), Real(0));
-  return all;
+  view_.ring_size = (reach + kMeshGroup - 1) / kMeshGroup * kMeshGroup;
+  ring_.assign(4 * (view_.ring_size + 1), Real(0));
+  return groups;
 }
 
 /// Where in the ring each one finds what earlier ones pulled it with.
 template <class Real>
-void MeshPass<Real>::list_pulls(const Rows& rows, const Members& members) {
-  const std::size_t size = ring_.size() / 4;
-  in_reach_ = in_reach_ && size <= kLongestRing;
+void MeshPass<Real>::list_pulls(const Rows& rows, const std::vector<Members>& groups) {
+  in_reach_ = in_reach_ && view_.ring_size < kLongestRing;
   if (!in_reach_) return;
-  for (const std::size_t i : members) {
-    earlier_.push_back(static_cast<std::uint8_t>(rows[i].earlier.size()));
-    in_reach_ = in_reach_ && earlier_.back() == rows[i].earlier.size();
-    for (const std::size_t pull : rows[i].earlier)
-      pulls_.push_back(static_cast<std::uint16_t>(pull % size));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::size_t slots = 0;
+    for (const std::size_t i : groups[g]) slots = std::max(slots, rows[i].earlier.size());
+    groups_[g].earlier = static_cast<std::uint8_t>(slots);
+    in_reach_ = in_reach_ && groups_[g].earlier == slots;
+    for (std::size_t s = 0; s < slots; ++s) {
+      for (std::size_t k = 0; k < kMeshGroup; ++k) {
+        const Row& row = rows[groups[g][std::min(k, groups[g].size() - 1)]];
+        const std::size_t quad =
+            s < row.earlier.size() ? row.earlier[s] % view_.ring_size : view_.ring_size;
+        pulls_.push_back(static_cast<std::uint16_t>(4 / kPullUnit * quad));
+      }
+    }
   }
 }
 
@@ -181,7 +188,6 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   ways_.shrink_to_fit();
   numbers_.shrink_to_fit();
   groups_.shrink_to_fit();
-  earlier_.shrink_to_fit();
   pulls_.shrink_to_fit();
   point_view();
   view_.count = part.particles.count;
@@ -192,10 +198,8 @@ void MeshPass<Real>::point_view() {
   view_.group = groups_.data();
   view_.way = ways_.data();
   view_.number = numbers_.data();
-  view_.earlier = earlier_.data();
   view_.pull = pulls_.data();
   view_.ring = ring_.data();
-  view_.ring_size = ring_.size() / 4;
 }
 
 template <class Real>
@@ -213,7 +217,7 @@ void MeshPass<Real>::kick(const KickLaw<Real>& law, const KickedParticles<Real>&
 template <class Real>
 std::size_t MeshPass<Real>::bytes() const {
   return groups_.capacity() * sizeof(MeshGroup) + ways_.capacity() * sizeof(MeshWay) +
-         (numbers_.capacity() + ring_.capacity()) * sizeof(Real) + earlier_.capacity() +
+         (numbers_.capacity() + ring_.capacity()) * sizeof(Real) +
          pulls_.capacity() * sizeof(std::uint16_t);
 }
 

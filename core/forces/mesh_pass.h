@@ -56,15 +56,14 @@ class MeshPass {
   static void collect_bending(const ClothPart<Real>& part, Rows& rows);
   static void sort_block(const Rows& rows, Members& block);
   void add_group(Rows& rows, const Members& members, std::size_t block);
-  Members lay_out(Rows& rows);
-  void list_pulls(const Rows& rows, const Members& members);
+  std::vector<Members> lay_out(Rows& rows);
+  void list_pulls(const Rows& rows, const std::vector<Members>& groups);
   void point_view();
 
   MeshView<Real> view_;
   std::vector<MeshGroup> groups_;
   std::vector<MeshWay> ways_;
   AlignedVector<Real> numbers_, ring_;
-  std::vector<std::uint8_t> earlier_;
   std::vector<std::uint16_t> pulls_;
   std::size_t pull_count_ = 0;  // lanes of slots laid out so far
   bool in_reach_ = true;        // every neighbour is a MeshWay off
