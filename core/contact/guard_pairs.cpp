@@ -199,19 +199,19 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
 
 /// Velocity of a predicted path, which has to hold at least for the coming step [m/s].
 template <class Real>
-Quad<Real> ClothGuard<Real>::path_velocity(std::size_t i, Real dt) const {
-  const Quad<Real> now = step_[i] * (Real(1) / dt), v = steady(now, i, dt);
-  const Quad<Real> off = step_[i] - v * dt;
+Quad<Real> ClothGuard<Real>::path_velocity(std::size_t particle, Real dt) const {
+  const Quad<Real> now = step_[particle] * (Real(1) / dt), v = steady(now, particle, dt);
+  const Quad<Real> off = step_[particle] - v * dt;
   return dot(off, off) > reach_ * reach_ / 4 ? now : v;
 }
 
 /// What of a velocity is not jitter: the smaller of it and of the mean velocity since the path
 /// began, by components, and nothing where they disagree.
 template <class Real>
-Quad<Real> ClothGuard<Real>::steady(const Quad<Real>& v, std::size_t i, Real dt) const {
-  const Real time = elapsed_ - dt - since_[i];
+Quad<Real> ClothGuard<Real>::steady(const Quad<Real>& v, std::size_t particle, Real dt) const {
+  const Real time = elapsed_ - dt - since_[particle];
   if (!collected_ || !(time > 0)) return v;
-  const Quad<Real> mean = (legal_[i] - from_[i]) * (Real(1) / time);
+  const Quad<Real> mean = (legal_[particle] - from_[particle]) * (Real(1) / time);
   Quad<Real> result;
   for (int k = 0; k < 3; ++k) {
     if (v[k] * mean[k] > 0) result.lanes[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];

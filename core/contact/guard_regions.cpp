@@ -149,16 +149,16 @@ void ClothGuard<Real>::anchor_wave(bool first) {
 /// Lists the pairs of a particle with the rooms that others have in them, and for measuring those
 /// whose bound may not be enough.
 template <class Real>
-void ClothGuard<Real>::list_claims(Index k) {
-  const auto i = static_cast<std::size_t>(k);
+void ClothGuard<Real>::list_claims(Index particle) {
+  const auto i = static_cast<std::size_t>(particle);
   const Real ahead = step_length_[i] * Real(2 * kStepsOfRoom) + smallest_gap_;
   for_pairs_of(i, [&](GuardedPair<Real>& pair) {
     const std::size_t middle = first_side(pair.kind);
     std::size_t at = 0;
-    while (pair.particle[at] != k) ++at;
+    while (pair.particle[at] != particle) ++at;
     Claim c;
     c.pair = static_cast<Index>(&pair - pairs_.data());
-    c.particle = k;
+    c.particle = particle;
     c.on_first = at < middle;
     for (std::size_t m = 0; m < 4; ++m) {
       const auto j = static_cast<std::size_t>(pair.particle[m]);

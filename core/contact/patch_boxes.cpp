@@ -80,15 +80,15 @@ PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
 /// @param changed  a bit for each corner
 /// @return a bit for each feature with a changed corner
 template <class Real>
-template <std::size_t kCorners>
-std::uint32_t PatchBoxes<Real>::fit_features(const Corners<kCorners>& features,
+template <std::size_t CornerCount>
+std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& features,
                                              std::uint32_t changed, std::size_t pitch,
                                              Real* numbers) const {
   std::uint32_t marks = 0;
   for (std::size_t f = 0; f < features.size(); ++f) {
     QuadBox<Real> box = corner_[features[f][0]];
     std::uint32_t corners = changed >> features[f][0];
-    for (std::size_t k = 1; k < kCorners; ++k) {
+    for (std::size_t k = 1; k < CornerCount; ++k) {
       box.add(corner_[features[f][k]]);
       corners |= changed >> features[f][k];
     }

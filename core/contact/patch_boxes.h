@@ -69,8 +69,8 @@ class PatchBoxes {
 
  private:
   /// Where the particles of features stand in their patch's list.
-  template <std::size_t kCorners>
-  using Corners = std::vector<std::array<std::uint8_t, kCorners>>;
+  template <std::size_t CornerCount>
+  using Corners = std::vector<std::array<std::uint8_t, CornerCount>>;
   struct Shape {
     Corners<1> vertices;
     Corners<2> edges;
@@ -78,8 +78,8 @@ class PatchBoxes {
     std::size_t begin = 0;  ///< of its numbers
   };
 
-  template <std::size_t kCorners>
-  std::uint32_t fit_features(const Corners<kCorners>& features, std::uint32_t changed,
+  template <std::size_t CornerCount>
+  std::uint32_t fit_features(const Corners<CornerCount>& features, std::uint32_t changed,
                              std::size_t pitch, Real* numbers) const;
 
   std::vector<Shape> shapes_;

@@ -118,31 +118,31 @@ class PatchTree {
            (b.spread.cells() > 0 && b.spread.holds(a.cells));
   }
 
-  template <bool kMarked, class Visit>
+  template <bool MarkedOnly, class Visit>
   void visit_inside(Index n, Visit&& visit) const {
     const Node& node = nodes_[static_cast<std::size_t>(n)];
-    if (node.spread.cells() > 0 || (kMarked && !node.marked)) return;
+    if (node.spread.cells() > 0 || (MarkedOnly && !node.marked)) return;
     if (node.patch != kNone) {
       visit(node.patch, node.patch);
       return;
     }
-    visit_inside<kMarked>(node.left, visit);
-    visit_inside<kMarked>(node.right, visit);
-    visit_between<kMarked>(node.left, node.right, visit);
+    visit_inside<MarkedOnly>(node.left, visit);
+    visit_inside<MarkedOnly>(node.right, visit);
+    visit_between<MarkedOnly>(node.left, node.right, visit);
   }
-  template <bool kMarked, class Visit>
+  template <bool MarkedOnly, class Visit>
   void visit_between(Index a, Index b, Visit&& visit) const {
     const Node &p = nodes_[static_cast<std::size_t>(a)], &q = nodes_[static_cast<std::size_t>(b)];
-    if (kMarked && !p.marked && !q.marked) return;
+    if (MarkedOnly && !p.marked && !q.marked) return;
     if (!p.box.overlaps(q.box) || is_apart(p, q)) return;
     if (p.patch != kNone && q.patch != kNone) {
       visit(std::min(p.patch, q.patch), std::max(p.patch, q.patch));
     } else if (q.patch != kNone || (p.patch == kNone && p.triangles >= q.triangles)) {
-      visit_between<kMarked>(p.left, b, visit);
-      visit_between<kMarked>(p.right, b, visit);
+      visit_between<MarkedOnly>(p.left, b, visit);
+      visit_between<MarkedOnly>(p.right, b, visit);
     } else {
-      visit_between<kMarked>(a, q.left, visit);
-      visit_between<kMarked>(a, q.right, visit);
+      visit_between<MarkedOnly>(a, q.left, visit);
+      visit_between<MarkedOnly>(a, q.right, visit);
     }
   }
 

@@ -79,11 +79,11 @@ Vec3<Real> after_contact(const Vec3<Real>& v, const Vec3<Real>& n, Real friction
 /// m v_n / 2, for a particle and a triangle (1, -w1, -w2, -w3) it is
 /// m v_n / (1 + w1^2 + w2^2 + w3^2). Each particle then changes its velocity by (its signed weight)
 /// (its inverse mass) (impulse) n.
-template <class Real, std::size_t n>
-Real weighted_impulse(Real v_n, const std::array<Real, n>& weight,
-                      const std::array<Real, n>& inverse_mass) {
+template <class Real, std::size_t Count>
+Real weighted_impulse(Real v_n, const std::array<Real, Count>& weight,
+                      const std::array<Real, Count>& inverse_mass) {
   Real mobility = 0;
-  for (std::size_t k = 0; k < n; ++k) mobility += weight[k] * weight[k] * inverse_mass[k];
+  for (std::size_t k = 0; k < Count; ++k) mobility += weight[k] * weight[k] * inverse_mass[k];
   return mobility > 0 ? v_n / mobility : Real(0);
 }
 
