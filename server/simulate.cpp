@@ -122,12 +122,16 @@ Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
       {"largest_strain", verdict.largest_strain},
       {"energy_excess", verdict.energy_excess},
       {"rest_error", std::isfinite(verdict.rest_error) ? Json(verdict.rest_error) : Json()},
+      {"height_error", std::isfinite(verdict.height_error) ? Json(verdict.height_error) : Json()},
+      {"hands_lag", verdict.hands_lag},
       {"lost_motion", verdict.lost_motion},
       {"recoveries", verdict.recoveries},
       {"allowed",
        {{"strain", world.def().verdict.strain},
         {"lost_motion", world.def().verdict.lost_motion},
-        {"clear_after", world.def().verdict.clear_after}}}};
+        {"clear_after", world.def().verdict.clear_after},
+        {"heights", world.def().verdict.heights},
+        {"hands_lag", world.def().verdict.hands_lag}}}};
 }
 
 Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {

@@ -74,12 +74,15 @@ void build_stack(WorldDef& def, const std::string&) {
     def.cloths.push_back(sheet);
   }
   ColliderDef ball{"ball", SphereDef{Vec3d(0, 0.3, 0), 0.12}};
-  const Vec3d pressed(0, -0.145, 0);
-  ball.motion.keyframes = {{2}, {3.5, pressed}, {5, pressed}, {6, Vec3d::Zero()}};
+  const Vec3d pressed(0, -0.16, 0);
+  ball.motion.keyframes = {{1}, {2, pressed}, {3.5, pressed}, {4.5, Vec3d::Zero()}};
   ball.motion.interpolation = Interpolation::smooth;
   def.colliders = {ground(), ball};
   def.environment.drag = 1;
   judge(def, 0.5, 1);
+  def.verdict.rest_at = 1;
+  def.verdict.back_by = 9.5;  // 5 s after the ball is lifted
+  def.verdict.heights = 2 * def.cloths[0].fabric.thickness;
 }
 
 void build_needles(WorldDef& def, const std::string&) {
@@ -150,6 +153,7 @@ void build_twist(WorldDef& def, const std::string&) {
   def.colliders = {ground()};
   def.environment.drag = 1;
   judge(def, 1);
+  def.verdict.hands_lag = kWidth / 10;  // no hand is stopped: the end turns with them
 }
 
 void build_funnel(WorldDef& def, const std::string&) {
@@ -240,7 +244,7 @@ std::vector<SceneEntry> hard_cases() {
        build_squeeze},
       {{"hard-stack",
         "A ball presses ten sheets that lie on each other, and is lifted: none goes through the "
-        "next."},
+        "next, and each comes back to its height."},
        build_stack},
       {{"hard-needles",
         "A sheet falls on a bed of needles: it hangs between them, and none comes through."},
@@ -252,8 +256,8 @@ std::vector<SceneEntry> hard_cases() {
         "A ball turns under a cloth: friction drags it round, and it winds itself on the floor."},
        build_rotating_sphere},
       {{"hard-twist",
-        "Five hands turn the end of a strip by two turns and a half: it winds up and passes "
-        "nothing."},
+        "Five hands turn the end of a strip by two turns and a half: it winds up, passes nothing "
+        "and does not stop them."},
        build_twist},
       {{"hard-funnel",
         "A silk sheet falls into a funnel of ten plates: it crumples in the throat."},

@@ -21,4 +21,7 @@ std::vector<SceneEntry> more_hard_cases();
 /// The third list of them: starts with cloth through cloth.
 std::vector<SceneEntry> tangled_cases();
 
+/// The fourth list of them: cloth that hands fold and unfold.
+std::vector<SceneEntry> folding_cases();
+
 }  // namespace weft

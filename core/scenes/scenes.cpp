@@ -278,6 +278,7 @@ const std::vector<SceneEntry>& entries() {
     for (const SceneEntry& entry : hard_cases()) all.push_back(entry);
     for (const SceneEntry& entry : more_hard_cases()) all.push_back(entry);
     for (const SceneEntry& entry : tangled_cases()) all.push_back(entry);
+    for (const SceneEntry& entry : folding_cases()) all.push_back(entry);
     for (const SceneEntry& entry : seed_scenes()) all.push_back(entry);
     return all;
   }();

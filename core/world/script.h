@@ -49,6 +49,10 @@ struct VerdictDef {
   double clear_after = 0;    ///< from when on nothing may cross [s], 0 to 3600
   double rest_at = 0;        ///< when it rests as it shall rest again [s], 0 to 3600
   double back_by = 0;        ///< when it must rest so, to 1 % [s], 0 to 3600; 0: never
+  /// Most by which the mean height of any cloth may be off then, wherever its particles are [m], 0
+  /// to 100; 0: all particles must be where they were.
+  double heights = 0;
+  double hands_lag = 0;  ///< most that a hand may ever lack of its target [m], 0 to 100; 0: any
 };
 
 /// Throws DefinitionError if a field is out of range; `path` stands before the name of the field.
@@ -104,6 +108,11 @@ void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {
         verdict.rest_at);
   visit(FieldInfo{"back_by", 0, 3600, "s", "when it must rest so again, to 1 %; 0: never"},
         verdict.back_by);
+  visit(FieldInfo{"heights", 0, 100, "m",
+                  "by which mean heights may be off then; 0: all must be where it was"},
+        verdict.heights);
+  visit(FieldInfo{"hands_lag", 0, 100, "m", "that a hand may ever lack of its target; 0: any"},
+        verdict.hands_lag);
 }
 
 }  // namespace weft

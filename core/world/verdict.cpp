@@ -37,6 +37,22 @@ double gap_of(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) {
   return (nearest.p - nearest.q).norm();
 }
 
+/// Largest change of a cloth's mean height between two states [m].
+template <class Real>
+double change_of_heights(const ClothModel<Real>& model, const Vec3Array<Real>& from,
+                         const Vec3Array<Real>& to) {
+  double largest = 0;
+  for (const ClothPart<Real>& part : model.parts) {
+    double sum = 0;
+    for (Index k = part.particles.first; k < part.particles.end(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      sum += static_cast<double>(to[i][1] - from[i][1]);
+    }
+    largest = std::max(largest, std::abs(sum) / part.particles.count);
+  }
+  return largest;
+}
+
 }  // namespace
 
 template <class Real>
@@ -79,6 +95,7 @@ void Verdict<Real>::look_at_rest(const World<Real>& world) {
   const double half = world.tick_seconds() / 2;
   if (std::abs(world.report().time - def.rest_at) < half) rest_ = x;
   if (std::abs(world.report().time - def.back_by) >= half || rest_.empty()) return;
+  height_error = change_of_heights(world.model(), rest_, x);
   Vec3d mean = Vec3d::Zero();
   for (const Vec3<Real>& p : rest_) mean += p.template cast<double>();
   mean /= static_cast<double>(rest_.size());
@@ -88,6 +105,15 @@ void Verdict<Real>::look_at_rest(const World<Real>& world) {
     extent2 += (rest_[i].template cast<double>() - mean).squaredNorm();
   }
   rest_error = std::sqrt(off2 / extent2);
+}
+
+template <class Real>
+void Verdict<Real>::look_at_hands(const World<Real>& world) {
+  for (const Grab<Real>& hand : world.grabs().list) {
+    if (hand.def.mode != GrabMode::live) continue;
+    const Vec3<Real> lack = hand.target - held_point(hand, world.state().x);
+    hands_lag = std::max(hands_lag, static_cast<double>(lack.norm()));
+  }
 }
 
 template <class Real>
@@ -101,6 +127,7 @@ void Verdict<Real>::look(const World<Real>& world) {
   if (!finite) return;
   look_at_energy(world);
   look_at_rest(world);
+  look_at_hands(world);
   const std::uint64_t found = count_crossings_of(world);
   if (world.report().time <= world.def().verdict.clear_after) {
     early_crossings += found;
@@ -140,7 +167,13 @@ std::vector<std::string> Verdict<Real>::failures(const VerdictDef& def) const {
   if (energy_excess > kMostExcess)
     list.push_back(number_text(energy_excess) + " more energy than it was given, more than " +
                    number_text(kMostExcess));
-  if (rest_error > kBack)
+  if (def.heights > 0 && height_error > def.heights)
+    list.push_back("a cloth's mean height off by " + number_text(height_error) + " m, more than " +
+                   number_text(def.heights));
+  if (def.hands_lag > 0 && hands_lag > def.hands_lag)
+    list.push_back("a hand " + number_text(hands_lag) + " m from its target, more than " +
+                   number_text(def.hands_lag));
+  if (def.heights == 0 && rest_error > kBack)
     list.push_back("off its rest by " + number_text(rest_error) + ", more than " +
                    number_text(kBack));
   return list;

@@ -31,6 +31,9 @@ class Verdict {
   /// Distance from the rest that it shall come back to, as a part of its extent (both as root mean
   /// squares over the particles); NaN before that is looked at.
   double rest_error = std::numeric_limits<double>::quiet_NaN();
+  /// Largest change of a cloth's mean height from that rest [m]; NaN before that is looked at.
+  double height_error = std::numeric_limits<double>::quiet_NaN();
+  double hands_lag = 0;  ///< largest distance of what a hand holds from its target [m]
   std::uint64_t recoveries = 0;
   bool finite = true;
 
@@ -41,6 +44,7 @@ class Verdict {
   std::uint64_t count_crossings_of(const World<Real>& world);
   void look_at_energy(const World<Real>& world);
   void look_at_rest(const World<Real>& world);
+  void look_at_hands(const World<Real>& world);
 
   Bvh<double> tree_;
   std::optional<double> start_energy_;  ///< [J]

@@ -1,0 +1,71 @@
+#include <cmath>
+
+#include "core/cloth/fabric_presets.h"
+#include "core/scenes/hard_cases.h"
+
+// Cloth that hands fold and unfold.
+
+namespace weft {
+namespace {
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+
+/// Where hands take hold, as parts of the fabric's extent.
+struct Hold {
+  double u, v;
+};
+
+/// Hands that take what they hold over to the other side on a low arch, and let go of it there.
+/// @param start  when they take hold [s]
+/// @param way    to where they lay it down [m]
+void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, const Vec3d& way) {
+  constexpr int kKeys = 20;
+  constexpr double kSeconds = 1.4, kHeld = 0.1, kArch = 0.2;  // arch: height by way
+  for (const Hold& hold : holds) {
+    HandDef hand;
+    hand.u = hold.u;
+    hand.v = hold.v;
+    hand.radius = 0.04;
+    for (int k = 0; k <= kKeys; ++k) {
+      const double part = 0.5 - 0.5 * std::cos(kHalfTurn * k / kKeys), angle = kHalfTurn * part;
+      const Vec3d up(0, way.norm() * kArch * std::sin(angle), 0);
+      hand.path.push_back({start + kSeconds * k / kKeys, way * (0.5 - 0.5 * std::cos(angle)) + up});
+    }
+    hand.path.push_back({start + kSeconds + kHeld, way});
+    def.hands.push_back(hand);
+  }
+}
+
+/// A towel that is folded twice, and unfolded twice; the last time by one hand in the middle of its
+/// edge.
+void build_towel(WorldDef& def, const std::string&) {
+  constexpr double kSide = 0.8, kFolded = 0.97 * kSide;
+  ClothDef& towel = def.cloths[0];
+  towel = lying_cloth(33, kSide, 0.0041);
+  towel.fabric = make_fabric("cotton");
+  def.colliders = {ground()};
+  def.environment.drag = 0.5;
+  const std::vector<Hold> edge = {{0, 1}, {0.5, 1}, {1, 1}};
+  const std::vector<Hold> both_layers = {{1, 0.03}, {1, 0.25}, {1, 0.75}, {1, 0.97}};
+  take_over(def, edge, 0.5, Vec3d(0, 0, -kFolded));
+  take_over(def, both_layers, 2.4, Vec3d(-kFolded, 0, 0));
+  take_over(def, both_layers, 4.3, Vec3d(kFolded, 0, 0));
+  take_over(def, {{0.5, 1}}, 6.2, Vec3d(0, 0, kSide));
+  def.contact.seed.self = SelfContact::guard;
+  def.verdict.strain = 0.5;
+  def.verdict.rest_at = 0.5;
+  def.verdict.back_by = 9.9;
+  def.verdict.heights = towel.fabric.thickness / 4;  // folded once it is half a thickness higher
+  def.verdict.hands_lag = 0.05;
+}
+
+}  // namespace
+
+std::vector<SceneEntry> folding_cases() {
+  return {
+      {{"hard-towel",
+        "Hands fold a towel twice and unfold it again, one hand alone at the end: it lies flat."},
+       build_towel}};
+}
+
+}  // namespace weft
