@@ -50,7 +50,12 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   is_moved_.assign(n, 0);
   first_row_.assign(n, kNone);
   is_active_.assign(n, 0);
-  for (std::vector<Real>* array : {&room_, &moved_, &since_, &step_length_})
+  for (const ClothPart<Real>& part : model.parts) {
+    for (Index i = part.particles.first; i < part.particles.end(); ++i)
+      inverse_area_.push_back(static_cast<Real>(part.fabric.areal_density) /
+                              model.mass[static_cast<std::size_t>(i)]);
+  }
+  for (std::vector<Real>* array : {&room_, &moved_, &since_, &step_length_, &pressure_})
     array->assign(n, Real(0));
   fraction_.assign(n, Real(1));
   wave_of_.assign(n, 0);

@@ -258,6 +258,8 @@ class ClothGuard {
   void find_busy_rows(Real dt);
   void warm_rows(Real dt, Real kicked);
   Real sweep_rows();
+  void measure_pressures();
+  Real lack_of(const GuardRow<Real>& row) const;
 
   Index part_of(Index particle) const;
 
@@ -346,9 +348,11 @@ class ClothGuard {
   std::vector<Index> moved_particles_;
   std::vector<Index> passed_;  ///< over the border of a triangle that carries them
   std::vector<char> is_moved_;
-  QuadArray<Real> quad_v_;        ///< their velocities while rows are solved [m/s]
-  QuadArray<Real> extra_;         ///< velocity of the push [m/s]
-  std::vector<Index> busy_rows_;  ///< that push or soon may
+  QuadArray<Real> quad_v_;          ///< their velocities while rows are solved [m/s]
+  QuadArray<Real> extra_;           ///< velocity of the push [m/s]
+  std::vector<Index> busy_rows_;    ///< that push or soon may
+  std::vector<Real> inverse_area_;  ///< of fabric that belongs to each particle [1/m^2]
+  std::vector<Real> pressure_;      ///< about particles in rows, now [Pa]
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it
