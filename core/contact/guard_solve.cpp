@@ -37,7 +37,7 @@ constexpr double kPushSlack = 0.1;
 /// of it, what laboratories press fabrics with (KES), takes about half of their thickness [Pa].
 /// What is pressed so is not pushed, or the push would stretch it and lift what presses with energy
 /// that nobody gave.
-constexpr double kFlattening = 1e4;
+constexpr double kFlattening = 5e3;
 
 }  // namespace
 

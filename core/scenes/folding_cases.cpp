@@ -16,11 +16,13 @@ struct Hold {
 };
 
 /// Hands that take what they hold over to the other side on a low arch, and let go of it there.
-/// @param start  when they take hold [s]
-/// @param way    to where they lay it down [m]
-void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, const Vec3d& way) {
+/// @param start    when they take hold [s]
+/// @param seconds  that they take for it [s]
+/// @param way      to where they lay it down [m]
+void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, double seconds,
+               const Vec3d& way) {
   constexpr int kKeys = 20;
-  constexpr double kSeconds = 1.4, kHeld = 0.1, kArch = 0.2;  // arch: height by way
+  constexpr double kHeld = 0.1, kArch = 0.15;  // arch: height by way
   for (const Hold& hold : holds) {
     HandDef hand;
     hand.u = hold.u;
@@ -29,9 +31,9 @@ void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, cons
     for (int k = 0; k <= kKeys; ++k) {
       const double part = 0.5 - 0.5 * std::cos(kHalfTurn * k / kKeys), angle = kHalfTurn * part;
       const Vec3d up(0, way.norm() * kArch * std::sin(angle), 0);
-      hand.path.push_back({start + kSeconds * k / kKeys, way * (0.5 - 0.5 * std::cos(angle)) + up});
+      hand.path.push_back({start + seconds * k / kKeys, way * (0.5 - 0.5 * std::cos(angle)) + up});
     }
-    hand.path.push_back({start + kSeconds + kHeld, way});
+    hand.path.push_back({start + seconds + kHeld, way});
     def.hands.push_back(hand);
   }
 }
@@ -47,10 +49,10 @@ void build_towel(WorldDef& def, const std::string&) {
   def.environment.drag = 0.5;
   const std::vector<Hold> edge = {{0, 1}, {0.5, 1}, {1, 1}};
   const std::vector<Hold> both_layers = {{1, 0.03}, {1, 0.25}, {1, 0.75}, {1, 0.97}};
-  take_over(def, edge, 0.5, Vec3d(0, 0, -kFolded));
-  take_over(def, both_layers, 2.4, Vec3d(-kFolded, 0, 0));
-  take_over(def, both_layers, 4.3, Vec3d(kFolded, 0, 0));
-  take_over(def, {{0.5, 1}}, 6.2, Vec3d(0, 0, kSide));
+  take_over(def, edge, 0.5, 1.4, Vec3d(0, 0, -kFolded));
+  take_over(def, both_layers, 2.4, 1.4, Vec3d(-kFolded, 0, 0));
+  take_over(def, both_layers, 4.2, 1.4, Vec3d(kFolded, 0, 0));
+  take_over(def, {{0.5, 1}}, 6, 2, Vec3d(0, 0, kSide));
   def.contact.seed.self = SelfContact::guard;
   def.verdict.strain = 0.5;
   def.verdict.rest_at = 0.5;
