@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/contact/cloth_guard.h"
-#include "core/contact/corner_span.h"
 
 namespace weft {
 namespace {
@@ -65,42 +64,6 @@ void Contact<Real>::add_shape(const ShapeDef& shape, std::size_t collider) {
     meshes_.push_back(prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh));
     mesh_collider_.push_back(collider);
   }
-}
-
-/// What the corners of an edge or a triangle keep to while the rows hold.
-template <class Real>
-typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>& state,
-                                                          const Index* first, int count) const {
-  Corners corners;
-  corners.unseen = smallest_gap_;
-  Real longest = 0, reach = 0;
-  for (int k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(first[k]),
-               j = static_cast<std::size_t>(first[(k + 1) % count]);
-    longest = std::max(longest, (state.x[i] - state.x[j]).squaredNorm());
-    reach = std::max(reach, row_reach_[i]);
-    corners.gap = std::min(corners.gap, gap_[i] - row_reach_[i]);
-  }
-  corners.reach = reach;
-  corners.span = (std::sqrt(longest) + 2 * reach) * Real(count == 2 ? kEdgeSpan : kTriangleSpan);
-  return corners;
-}
-
-/// Whether corners alone keep off a round object, as they are so far from its core: of points at
-/// x_i with weights w_i the middle is off any point q by less than the corners are, in squares, by
-/// sum w_i w_j |x_i - x_j|^2 over pairs.
-/// @param core  of the nearest corner, when the rows are built [m]
-template <class Real>
-bool Contact<Real>::Corners::clear(Real core, Real radius) const {
-  const Real least = core - reach, most = radius + unseen;
-  return least > 0 && least * least - span * span > most * most;
-}
-
-/// Whether corners alone keep off a ridge or corner of a mesh, if it goes on as it is there: an
-/// estimate, and nothing to rely on.
-template <class Real>
-bool Contact<Real>::Corners::clear(const Rise<Real>& rise) const {
-  return gap > rise.over(span) + unseen;
 }
 
 template <class Real>

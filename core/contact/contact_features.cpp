@@ -38,9 +38,10 @@ Vec3d in_double(const Vec3<Real>& v) {
   return v.template cast<double>();
 }
 
-/// Distance of a point from a rod's axis [m].
+/// Distance of a point from a rod's axis [m]. Most of the time of a bed of needles goes here and
+/// into Corners::clear, so that both are part of the loops over all rods.
 template <class Rod, class Real>
-Real from_axis(const Vec3<Real>& p, const Rod& rod) {
+[[gnu::always_inline]] inline Real from_axis(const Vec3<Real>& p, const Rod& rod) {
   return (p - rod.a - (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b)).norm();
 }
 
@@ -58,6 +59,42 @@ Apart apart(const Vec3d& p, const Vec3d& q) {
 }
 
 }  // namespace
+
+/// What the corners of an edge or a triangle keep to while the rows hold.
+template <class Real>
+typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>& state,
+                                                          const Index* first, int count) const {
+  Corners corners;
+  corners.unseen = smallest_gap_;
+  Real longest = 0, reach = 0;
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(first[k]),
+               j = static_cast<std::size_t>(first[(k + 1) % count]);
+    longest = std::max(longest, (state.x[i] - state.x[j]).squaredNorm());
+    reach = std::max(reach, row_reach_[i]);
+    corners.gap = std::min(corners.gap, gap_[i] - row_reach_[i]);
+  }
+  corners.reach = reach;
+  corners.span = (std::sqrt(longest) + 2 * reach) * Real(count == 2 ? kEdgeSpan : kTriangleSpan);
+  return corners;
+}
+
+/// Whether corners alone keep off a round object, as they are so far from its core: of points at
+/// x_i with weights w_i the middle is off any point q by less than the corners are, in squares, by
+/// sum w_i w_j |x_i - x_j|^2 over pairs.
+/// @param core  of the nearest corner, when the rows are built [m]
+template <class Real>
+bool Contact<Real>::Corners::clear(Real core, Real radius) const {
+  const Real least = core - reach, most = radius + unseen;
+  return least > 0 && least * least - span * span > most * most;
+}
+
+/// Whether corners alone keep off a ridge or corner of a mesh, if it goes on as it is there: an
+/// estimate, and nothing to rely on.
+template <class Real>
+bool Contact<Real>::Corners::clear(const Rise<Real>& rise) const {
+  return gap > rise.over(span) + unseen;
+}
 
 template <class Real>
 void Contact<Real>::add_edges_on_rounds(const ClothState<Real>& state, Profile&) {
@@ -258,13 +295,17 @@ void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profi
   profile[Stage::narrow_phase].work += tests;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template std::optional<typename Contact<Real>::Look> Contact<Real>::look_at(                \
-      const ClothState<Real>&, const ContactCandidate<Real>&, std::span<const Index>, double, \
-      const Rise<Real>&, std::size_t) const;                                                  \
-  template void Contact<Real>::add_edges_on_rounds(const ClothState<Real>&, Profile&);        \
-  template void Contact<Real>::add_edges_on_meshes(const ClothState<Real>&, Profile&);        \
-  template void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>&, Profile&);    \
+#define WEFT_INSTANTIATE(Real)                                                                 \
+  template typename Contact<Real>::Corners Contact<Real>::corners_of(const ClothState<Real>&,  \
+                                                                     const Index*, int) const; \
+  template bool Contact<Real>::Corners::clear(Real, Real) const;                               \
+  template bool Contact<Real>::Corners::clear(const Rise<Real>&) const;                        \
+  template std::optional<typename Contact<Real>::Look> Contact<Real>::look_at(                 \
+      const ClothState<Real>&, const ContactCandidate<Real>&, std::span<const Index>, double,  \
+      const Rise<Real>&, std::size_t) const;                                                   \
+  template void Contact<Real>::add_edges_on_rounds(const ClothState<Real>&, Profile&);         \
+  template void Contact<Real>::add_edges_on_meshes(const ClothState<Real>&, Profile&);         \
+  template void Contact<Real>::add_triangles_on_rounds(const ClothState<Real>&, Profile&);     \
   template void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
