@@ -33,9 +33,9 @@ constexpr double kPushRate = 60, kPushSpeed = 0.1;
 /// for ever, and the push drives the springs that bring it back.
 constexpr double kPushSlack = 0.1;
 
-/// Pressure under which layers may lie on each other without any thickness, and in proportion: half
-/// of it, what laboratories press fabrics with (KES), takes about half of their thickness [Pa].
-/// What is pressed so is not pushed, or the push would stretch it and lift what presses with energy
+/// Pressure under which layers may lie on each other without any thickness, and in proportion: as
+/// much as laboratories press fabrics with (KES), which takes a third to a half of theirs [Pa].
+/// What is pressed so is not pushed: the push would stretch it, and lift what presses, with energy
 /// that nobody gave.
 constexpr double kFlattening = 5e3;
 
