@@ -68,6 +68,14 @@ KernelFigure figure(const char* name, const Timed& timed, double bar) {
   return {name, "ns", timed.nanoseconds(), bar, static_cast<int>(timed.seconds.size())};
 }
 
+/// What the solver takes while neither air nor hands act.
+KernelFigure memory(const char* name, const Timed& timed) {
+  const World<float>& world = timed.world;
+  return {name, "B",
+          static_cast<double>(world.solver_bytes()) / static_cast<double>(world.state().x.size()),
+          100, 1};
+}
+
 WorldDef relaxing(const WorldDef& def, int substeps, int sweeps, double compliance) {
   Setting setting{compliance > 0 ? "xpbd" : "relaxation", "", 1, 1, substeps, sweeps};
   return with_setting(def, setting, 1);
@@ -109,7 +117,9 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
       figure("XPBD on a grid of 64 x 64, 128 substeps, a particle and substep", xpbd, 8),
       figure("XPBD on a grid of 64 x 64, 16 substeps of 8 sweeps, a particle and sweep",
              xpbd_sweeps, 8),
-      figure("the seed's relaxation on 64 x 64, 50 sweeps, a particle and sweep", seed, 0)};
+      figure("the seed's relaxation on 64 x 64, 50 sweeps, a particle and sweep", seed, 0),
+      memory("memory of verlet on a grid of 128 x 128, a particle", grid),
+      memory("memory of verlet on a triangle mesh, a particle", mesh)};
   for (const BenchFabric& fabric : bench_fabrics())
     figures.push_back(largest_in_real_time(fabric, quick ? 1 : 5));
   return figures;

@@ -5,7 +5,7 @@
 
 namespace weft::bench {
 
-/// One figure about speed.
+/// One figure about speed or memory.
 struct KernelFigure {
   std::string name, unit;
   double value = 0;
@@ -14,8 +14,9 @@ struct KernelFigure {
 };
 
 /// Nanoseconds a particle and substep, whole ticks divided by what they contain: verlet on a grid
-/// and on a triangle mesh whose vertices come in random order, XPBD on a grid. Then the largest
-/// square of particles whose swing needs half of one core at most.
+/// and on a triangle mesh whose vertices come in random order, XPBD on a grid. Then the
+/// bytes a particle that verlet takes on both, and the largest square of particles whose swing
+/// needs half of one core at most.
 std::vector<KernelFigure> measure_kernels(bool quick);
 
 }  // namespace weft::bench

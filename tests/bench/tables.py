@@ -221,12 +221,13 @@ def taken(rows):
 def kernels(rows):
     table = []
     for row in rows:
-        if row["unit"] != "ns":
+        unit = row["unit"]
+        if unit not in ("ns", "B"):
             continue
         bar = row["bar"]
-        value = f"{row['value']:.3g} ns"
+        value = f"{row['value']:.3g} {unit}"
         held = "–" if not bar else ("held" if row["value"] <= bar else "**missed**")
-        table.append([row["figure"], value, f"{bar:g} ns" if bar else "–", held])
+        table.append([row["figure"], value, f"{bar:g} {unit}" if bar else "–", held])
     return markdown(["figure", "measured", "at most", ""], table)
 
 
