@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/collider_state.h"
+#include "core/contact/colliders/collider_state.h"
 #include "core/definition.h"
 
 namespace weft {

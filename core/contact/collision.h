@@ -2,9 +2,9 @@
 
 #include "core/attachments/pin_drive.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/cloth_guard.h"
-#include "core/contact/contact.h"
-#include "core/contact/seed_contact.h"
+#include "core/contact/guard/cloth_guard.h"
+#include "core/contact/objects/contact.h"
+#include "core/contact/seed/seed_contact.h"
 #include "core/world/profile.h"
 
 namespace weft {

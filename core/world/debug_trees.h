@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
-#include "core/contact/collider.h"
+#include "core/contact/colliders/collider.h"
 #include "core/geometry/bottom_up_tree.h"
 #include "core/geometry/cloth_trees.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_model.h"
-#include "core/contact/contact_log.h"
+#include "core/contact/objects/contact_log.h"
 #include "core/solver/verlet.h"
 
 namespace weft {

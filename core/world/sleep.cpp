@@ -5,7 +5,7 @@
 #include <ranges>
 #include <utility>
 
-#include "core/contact/cloth_patches.h"
+#include "core/contact/objects/cloth_patches.h"
 
 namespace weft {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collider_state.h"
+#include "core/contact/colliders/collider_state.h"
 #include "core/definition.h"
 #include "core/geometry/bvh.h"
 

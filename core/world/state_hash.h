@@ -6,7 +6,7 @@
 #include "core/attachments/gripper.h"
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collider_state.h"
+#include "core/contact/colliders/collider_state.h"
 
 namespace weft {
 

@@ -8,7 +8,7 @@
 #include "core/attachments/gripper.h"
 #include "core/attachments/pin_drive.h"
 #include "core/attachments/pins.h"
-#include "core/contact/collider_state.h"
+#include "core/contact/colliders/collider_state.h"
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
 #include "core/solver/relaxation.h"

@@ -1,6 +1,6 @@
 // What holds the cloth, and with which forces: nothing is measured unless somebody asks.
 
-#include "core/contact/guard_contacts.h"
+#include "core/contact/guard/guard_contacts.h"
 #include "core/world/world.h"
 
 namespace weft {

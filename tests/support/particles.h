@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/contact/contact.h"
+#include "core/contact/objects/contact.h"
 
 namespace weft::test {
 

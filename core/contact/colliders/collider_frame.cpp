@@ -1,0 +1,46 @@
+#include "core/contact/colliders/collider_frame.h"
+
+namespace weft {
+
+template <class Real>
+void ColliderFrame<Real>::place(const Pose& at) {
+  pose = at;
+  displaced = !(at == Pose{pivot, Eigen::Quaterniond::Identity()});
+  const Eigen::Matrix3d turned = at.rotation.toRotationMatrix();
+  rotation = turned.template cast<Real>();
+  shift = (at.position - turned * pivot).template cast<Real>();
+}
+
+template <class Real>
+void ColliderFrame<Real>::plan(const ColliderState& state, double dt, double tick_seconds) {
+  ColliderState next = state;
+  advance_collider(dt, tick_seconds, next);
+  blocked = false;
+  moves = !(next.pose == state.pose);
+  if (!moves) return stand();
+  const Eigen::Matrix3d turned =
+      (next.pose.rotation * state.pose.rotation.conjugate()).toRotationMatrix();
+  const Vec3d gone = next.pose.position - state.pose.position;
+  centre = state.pose.position.template cast<Real>();
+  step = gone.template cast<Real>();
+  turn = turned.template cast<Real>();
+  velocity = (gone / dt).template cast<Real>();
+  spin = ((turned - Eigen::Matrix3d::Identity()) / dt).template cast<Real>();
+  const double angle = state.twist.angular.norm() * dt;
+  way = static_cast<Real>(gone.norm() + (angle > 0 ? angle * radius : 0));
+}
+
+template <class Real>
+void ColliderFrame<Real>::stand() {
+  moves = false;
+  step.setZero();
+  turn.setIdentity();
+  velocity.setZero();
+  spin.setZero();
+  way = 0;
+}
+
+template struct ColliderFrame<float>;
+template struct ColliderFrame<double>;
+
+}  // namespace weft

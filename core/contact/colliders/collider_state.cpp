@@ -1,0 +1,154 @@
+#include "core/contact/colliders/collider_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/aabb.h"
+
+namespace weft {
+namespace {
+
+/// Pace that a collider regains a tick, where nothing resists.
+constexpr double kPaceGain = 0.1;
+
+/// Slower than this it stands [part of its speed].
+constexpr double kLeastPace = 0.01;
+
+/// A collider that was held back follows its keyframes by this much faster than they ever go.
+constexpr double kCatchUp = 1.25;
+
+/// The part of a way that may be gone.
+double allowed_part(double way, double most) {
+  return way > most ? most / way : 1;
+}
+
+struct Wish {
+  Pose goal;
+  double speed, turn_speed;  // at most
+};
+
+/// Where the collider shall be after the tick.
+std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderState& state) {
+  if (state.move) return Wish{state.move->target, state.move->speed, state.move->turn_speed};
+  if (def.motion.keyframes.empty()) return std::nullopt;
+  const TopSpeeds top = top_speeds(def.motion);
+  return Wish{keyframed_pose(def, time), top.linear * kCatchUp, top.angular * kCatchUp};
+}
+
+/// Surface speed of a wanted twist, for the resistance against it [m/s].
+double surface_speed(const ShapeDef& shape, const Twist& twist) {
+  const double turn = twist.angular.norm();
+  return twist.linear.norm() + (turn > 0 ? turn * radius_of(shape) : 0);
+}
+
+}  // namespace
+
+Vec3d pivot_of(const ShapeDef& shape) {
+  if (const auto* plane = std::get_if<PlaneDef>(&shape)) return plane->point;
+  if (const auto* sphere = std::get_if<SphereDef>(&shape)) return sphere->centre;
+  if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) return (capsule->a + capsule->b) / 2;
+  if (const auto* box = std::get_if<BoxDef>(&shape)) return box->centre;
+  Aabb<double> bounds;
+  for (const Vec3d& p : std::get<MeshDef>(shape).mesh.positions) bounds.add(p);
+  return bounds.centre();
+}
+
+double radius_of(const ShapeDef& shape) {
+  if (std::holds_alternative<PlaneDef>(shape)) return std::numeric_limits<double>::infinity();
+  if (const auto* sphere = std::get_if<SphereDef>(&shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<CapsuleDef>(&shape))
+    return (capsule->b - capsule->a).norm() / 2 + capsule->radius;
+  if (const auto* box = std::get_if<BoxDef>(&shape)) return box->half_extents.norm();
+  const Vec3d pivot = pivot_of(shape);
+  double farthest = 0;
+  for (const Vec3d& p : std::get<MeshDef>(shape).mesh.positions)
+    farthest = std::max(farthest, (p - pivot).norm());
+  return farthest;
+}
+
+Pose keyframed_pose(const ColliderDef& def, double time) {
+  Pose pose = offset_at(def.motion, time);
+  pose.position += pivot_of(def.shape);
+  return pose;
+}
+
+Pose rest_pose(const ShapeDef& shape) {
+  return {pivot_of(shape), Eigen::Quaterniond::Identity()};
+}
+
+ColliderStates initial_states(const std::vector<ColliderDef>& colliders) {
+  ColliderStates states(colliders.size());
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const ColliderDef& def = colliders[k];
+    states[k].pose = def.motion.keyframes.empty() ? rest_pose(def.shape) : keyframed_pose(def, 0);
+    states[k].start = states[k].goal = states[k].pose;
+  }
+  return states;
+}
+
+void plan_motion(const std::vector<ColliderDef>& colliders, double time, double seconds,
+                 ColliderStates& states) {
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    ColliderState& state = states[k];
+    state.start = state.goal = state.pose;
+    state.wanted = state.twist = {};
+    state.progress = 0;
+    state.blocked = false;
+    state.forced = state.move ? state.move->force : colliders[k].force;
+    state.impulse.setZero();
+    state.angular_impulse.setZero();
+    const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
+    if (!wish) continue;
+    const Vec3d step = wish->goal.position - state.pose.position;
+    const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
+    // A command takes both ways in the same time, so that the path does not depend on the tick.
+    double part = allowed_part(step.norm(), wish->speed * seconds);
+    part = std::min(part, allowed_part(turn.norm(), wish->turn_speed * seconds));
+    state.wanted = {step * (part / seconds), turn * (part / seconds)};
+    if (state.wanted.is_zero() || state.forced) state.pace = 1;
+    part *= state.pace;
+    state.twist = {step * (part / seconds), turn * (part / seconds)};
+    if (part == 1)
+      state.goal = wish->goal;
+    else
+      state.goal = moved(state.pose, state.twist, seconds);
+  }
+}
+
+void take_back_motion(ColliderStates& states) {
+  for (ColliderState& state : states) {
+    state.pose = state.start;
+    state.progress = 0;
+    state.blocked = false;
+    state.impulse.setZero();
+    state.angular_impulse.setZero();
+  }
+}
+
+void advance_collider(double seconds, double tick_seconds, ColliderState& state) {
+  if (!state.is_moving()) return;
+  state.progress += seconds;
+  const bool arrived = state.progress > tick_seconds * (1 - 1e-6);
+  state.pose = arrived ? state.goal : moved(state.start, state.twist, state.progress);
+}
+
+void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
+                   ColliderStates& states) {
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    ColliderState& state = states[k];
+    state.force = -state.impulse / seconds;
+    if (state.wanted.is_zero()) continue;
+    const double most = colliders[k].max_force;
+    const double work =
+        state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);
+    const double resistance = work / (seconds * surface_speed(colliders[k].shape, state.wanted));
+    if (resistance > most)
+      state.pace *= most / resistance;
+    else
+      state.pace += kPaceGain * (1 - std::max(0.0, resistance) / most);
+    state.pace = state.pace < kLeastPace && resistance > most ? 0 : std::min(state.pace, 1.0);
+  }
+}
+
+}  // namespace weft

@@ -1,0 +1,39 @@
+#include "core/contact/colliders/pose.h"
+
+#include <cmath>
+
+#include "core/math/angle.h"
+#include "core/math/sine.h"
+
+namespace weft {
+
+bool operator==(const Pose& a, const Pose& b) {
+  return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+Eigen::Quaterniond rotation_by(const Vec3d& v) {
+  const double angle = std::sqrt(v.squaredNorm());
+  if (!(angle > 0)) return Eigen::Quaterniond::Identity();
+  const SineCosine half = sine_cosine(angle / 2);
+  const Vec3d axis = v * (half.sine / angle);
+  return {half.cosine, axis[0], axis[1], axis[2]};
+}
+
+Vec3d rotation_vector(const Eigen::Quaterniond& q) {
+  const Vec3d axis = q.w() < 0 ? (-q.vec()).eval() : q.vec().eval();
+  const double sine = std::sqrt(axis.squaredNorm());
+  if (!(sine > 0)) return Vec3d::Zero();
+  return axis * (2 * angle_of(sine, std::abs(q.w())) / sine);
+}
+
+Pose moved(const Pose& from, const Twist& twist, double seconds) {
+  Pose pose = from;
+  pose.position += twist.linear * seconds;
+  if (!twist.angular.isZero(0)) {
+    pose.rotation = rotation_by(twist.angular * seconds) * from.rotation;
+    pose.rotation.coeffs() /= std::sqrt(pose.rotation.coeffs().squaredNorm());
+  }
+  return pose;
+}
+
+}  // namespace weft

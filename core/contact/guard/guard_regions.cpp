@@ -1,0 +1,253 @@
+// The regions of ClothGuard: balls around anchors in which particles are free.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/contact/guard/cloth_guard.h"
+
+namespace weft {
+namespace {
+
+/// A bound of a gap is measured anew unless it leaves a particle room for so many of its steps.
+constexpr double kStepsOfRoom = 16;
+
+/// More waves of anchoring than ever seen; then all is measured anew.
+constexpr int kMostWaves = 48;
+
+/// Speed that both sides of a pair are given beside their own when they share a gap, as a part of
+/// the faster one's.
+constexpr double kLeastShare = 0.08;
+
+/// Each side gets at least this part of a gap.
+constexpr double kLeastOfGap = kLeastShare / (1 + 2 * kLeastShare) * 0.999;
+
+/// Part of the reach beyond which a particle is given a new path with those that have left theirs.
+constexpr double kSoon = 0.6;
+
+}  // namespace
+
+/// How far everybody in a pair wants to move in the coming step.
+template <class Real>
+void ClothGuard<Real>::measure_steps() {
+  if (std::exchange(measured_steps_, substep_) == substep_) return;
+  for (std::size_t i = 0; i < step_.size(); ++i) step_length_[i] = length(step_[i]);
+}
+
+/// How far the sides of a pair want to move in the coming step, both a little.
+template <class Real>
+typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>& pair) const {
+  Real side[2] = {0, 0};
+  for (std::size_t k = 0; k < 4; ++k) {
+    Real& most = side[k < first_side(pair.kind) ? 0 : 1];
+    most = std::max(most, step_length_[static_cast<std::size_t>(pair.particle[k])]);
+  }
+  const Real both = std::max(side[0], side[1]) * Real(kLeastShare) + Real(1e-9);
+  return {side[0] + both, side[1] + both};
+}
+
+/// Tells how far everybody wants to move in the coming step. Lists the particles that leave the
+/// balls around their predicted paths in it, and with them those that soon will. What all leave
+/// their paths by in common changes nothing between them, and is told from the step before.
+template <class Real>
+void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
+  const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
+  bool left = false;
+  strays_.clear();
+  const auto look = [&](std::size_t i) {
+    step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
+    const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_), own = off - off_path_;
+    const Real off2 = dot(own, own);
+    if (!(off2 <= soon)) {
+      strays_.push_back(static_cast<Index>(i));
+      left |= !(off2 <= limit);
+    }
+    return off;
+  };
+  Quad<Real> sum;
+  std::size_t i = 0;
+  for (const IndexRange& range : awake_) {
+    for (; i < static_cast<std::size_t>(range.first); ++i) look(i);
+    for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
+  }
+  for (; i < step_.size(); ++i) look(i);
+  const bool collected = collected_ && elapsed_ <= horizon_;
+  if (!left || !collected) strays_.clear();
+  if (!collected) return;
+  off_path_before_ = off_path_now_;
+  off_path_now_ = off_path_;
+  off_path_ = sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake_count_, 1)));
+}
+
+/// Particles that would leave the room around their anchors.
+template <class Real>
+void ClothGuard<Real>::find_loose() {
+  loose_.clear();
+  ++wave_;
+  for (const Index i : dirty_) wave_of_[static_cast<std::size_t>(i)] = wave_;
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    const Quad<Real> off = legal_[i] + step_[i] - anchor_[i];
+    if (wave_of_[i] == wave_ || !(dot(off, off) <= room_[i] * room_[i])) loose_.push_back(k);
+  }
+  dirty_.clear();
+}
+
+template <class Real>
+void ClothGuard<Real>::measure(GuardedPair<Real>& pair) {
+  pair.bound = separate_pair(pair.kind, points(pair, anchor_)).gap;
+  pair.measured = wave_;
+}
+
+/// Anchors particles where they are, and gives them room anew. Who is in their way with more room
+/// than the gap now has is anchored anew as well.
+template <class Real>
+void ClothGuard<Real>::anchor(const std::vector<Index>& list) {
+  measure_steps();
+  wave_list_ = list;
+  for (int wave = 0; !wave_list_.empty(); ++wave) {
+    if (wave == kMostWaves) {
+      anchor_all();
+      return;
+    }
+    next_.clear();
+    ++wave_;
+    anchor_wave(wave == 0);
+    std::sort(next_.begin(), next_.end());
+    next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
+    wave_list_ = next_;
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::anchor_wave(bool first) {
+  for (const Index k : wave_list_) {
+    const auto i = static_cast<std::size_t>(k);
+    wave_of_[i] = wave_;
+    room_[i] = 0;
+    if (anchored_at_[i] == substep_) continue;
+    anchored_at_[i] = substep_;
+    anchored_.push_back(k);
+    ++counts_.anchored;
+    // The bound of a gap falls by no more than what an anchor moves.
+    const Real moved = length(legal_[i] - anchor_[i]);
+    anchor_[i] = legal_[i];
+    if (moved == 0) continue;
+    for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
+  }
+  claims_.clear();
+  for (const Index k : wave_list_) list_claims(k);
+  measure_claimed();
+  auto claim = claims_.begin();
+  for (const Index k : wave_list_) {
+    const auto begin = claim;
+    while (claim != claims_.end() && claim->particle == k) ++claim;
+    room_[static_cast<std::size_t>(k)] = share_claims({begin, claim}, first);
+  }
+}
+
+/// Lists the pairs of a particle with the rooms that others have in them, and for measuring those
+/// whose bound may not be enough.
+template <class Real>
+void ClothGuard<Real>::list_claims(Index particle) {
+  const auto i = static_cast<std::size_t>(particle);
+  const Real ahead = step_length_[i] * Real(2 * kStepsOfRoom) + smallest_gap_;
+  for_pairs_of(i, [&](GuardedPair<Real>& pair) {
+    const std::size_t middle = first_side(pair.kind);
+    std::size_t at = 0;
+    while (pair.particle[at] != particle) ++at;
+    Claim c;
+    c.pair = static_cast<Index>(&pair - pairs_.data());
+    c.particle = particle;
+    c.on_first = at < middle;
+    for (std::size_t m = 0; m < 4; ++m) {
+      const auto j = static_cast<std::size_t>(pair.particle[m]);
+      if (wave_of_[j] == wave_) continue;
+      Real& most = (m < middle) == c.on_first ? c.own : c.other;
+      most = std::max(most, room_[j]);
+    }
+    c.ample = pair.bound > std::max(c.own, c.other) + c.other + ahead;
+    if (!c.ample && std::exchange(pair.measured, wave_) != wave_)
+      columns_of(pair.kind).add(c.pair, 0, pair.particle);
+    claims_.push_back(c);
+  });
+}
+
+/// Measures the pairs in the columns.
+template <class Real>
+void ClothGuard<Real>::measure_claimed() {
+  for (PairColumns<Real>& columns : columns_) {
+    if (columns.size() == 0) continue;
+    separate_pairs(anchor_, anchor_, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+    columns.clear();
+  }
+}
+
+/// The room that all pairs leave a particle: its side's share of the gap, and no more than what the
+/// other side has not taken. Lists who has taken too much.
+/// @param claims  all of one particle
+template <class Real>
+Real ClothGuard<Real>::share_claims(std::span<const Claim> claims, bool first) {
+  Real room = std::numeric_limits<Real>::infinity();
+  for (const Claim& claim : claims) {
+    const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(claim.pair)];
+    const Real gap = std::max(Real(0), pair.bound - smallest_gap_);
+    // What is far apart, even if its side gets the least share, changes nothing.
+    if (claim.ample && gap * Real(kLeastOfGap) >= room) continue;
+    const Speeds speed = speeds(pair);
+    const Real share =
+        gap * ((claim.on_first ? speed.first : speed.second) / (speed.first + speed.second));
+    const Real left = gap - claim.other;
+    room = std::min(room, std::max(Real(0), std::min(share, left)));
+    // The others' rooms alone are too much for the gap, or they leave less than the next steps
+    // need.
+    const Real step = step_length_[static_cast<std::size_t>(claim.particle)];
+    const bool too_much = claim.own + claim.other > gap;
+    const bool greedy = first && left < share && left < 2 * step;
+    if (!too_much && !greedy) continue;
+    for (const Index j : pair.particle) {
+      if (wave_of_[static_cast<std::size_t>(j)] != wave_ &&
+          (room_[static_cast<std::size_t>(j)] > 0 || greedy))
+        next_.push_back(j);
+    }
+    next_.push_back(claim.particle);
+  }
+  return room;
+}
+
+/// Anchors and measures everything.
+template <class Real>
+void ClothGuard<Real>::anchor_all() {
+  ++wave_;
+  for (const Index k : active_) {
+    const auto i = static_cast<std::size_t>(k);
+    if (anchored_at_[i] != substep_) anchored_.push_back(k);
+    anchored_at_[i] = substep_;
+    anchor_[i] = legal_[i];
+  }
+  for (GuardedPair<Real>& pair : pairs_) {
+    if (!pair.open && !pair.gone) measure(pair);
+  }
+  share_all_gaps();
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template void ClothGuard<Real>::measure_steps();                                              \
+  template typename ClothGuard<Real>::Speeds ClothGuard<Real>::speeds(const GuardedPair<Real>&) \
+      const;                                                                                    \
+  template void ClothGuard<Real>::find_strays(const ClothState<Real>&, Real);                   \
+  template void ClothGuard<Real>::find_loose();                                                 \
+  template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
+  template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \
+  template void ClothGuard<Real>::anchor_wave(bool);                                            \
+  template void ClothGuard<Real>::list_claims(Index);                                           \
+  template void ClothGuard<Real>::measure_claimed();                                            \
+  template Real ClothGuard<Real>::share_claims(std::span<const Claim>, bool);                   \
+  template void ClothGuard<Real>::anchor_all();
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

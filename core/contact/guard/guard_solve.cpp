@@ -1,0 +1,302 @@
+// The contact solver of ClothGuard: projected Gauss-Seidel on the velocities of its rows.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/contact/guard/cloth_guard.h"
+
+namespace weft {
+namespace {
+
+/// Rows that push nobody rest until the next look, so many steps later, unless their room is less
+/// than this part of the radius and so many times what it shrinks by until then.
+constexpr int kStepsBetweenLooks = 4;
+constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
+
+/// Where cloths meet nothing but each other sweeps are repeated, up to so many, while one changes
+/// what something moves in the step by more than this part of the thickness. What one sweep leaves
+/// under load sinks in, and the push that leads it out again does work that nobody gave.
+constexpr int kMostSweeps = 3;
+constexpr double kResidual = 0.01;
+
+/// Rows that push turn with their features every so many steps.
+constexpr int kStepsBetweenTurns = 4;
+
+/// Time in which a contact that sticks goes back to its anchor [s].
+constexpr double kStickTime = 0.02;
+
+/// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
+constexpr double kPushRate = 60, kPushSpeed = 0.1;
+
+/// A lack of this part of the radius is let be: what cannot part, in tight folds, would be pushed
+/// for ever, and the push drives the springs that bring it back.
+constexpr double kPushSlack = 0.1;
+
+/// Pressure under which layers may lie on each other without any thickness, and in proportion: as
+/// much as laboratories press fabrics with (KES), which takes a third to a half of theirs [Pa].
+/// What is pressed so is not pushed: the push would stretch it, and lift what presses, with energy
+/// that nobody gave.
+constexpr double kFlattening = 5e3;
+
+}  // namespace
+
+template <class Real>
+void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
+  const Real kicked = std::exchange(closed_, false) ? dt / 2 : dt;
+  calm_ = active_.empty() && open_pairs() == 0;
+  if (calm_) {
+    x_before_ = state.x;
+    rows_.clear();
+    busy_rows_.clear();
+    return;
+  }
+  for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
+  tangles_.draw(state, dt);
+  rows_time_ += dt;
+  ++rows_steps_;
+  if (find_moved()) renew_rows(state, profile);
+  if (!arrived_.empty()) add_arrived(state, profile);
+  if (rows_.empty()) {
+    busy_rows_.clear();
+    return;
+  }
+  load_rows(state);
+  if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
+  if (rows_steps_ % kStepsBetweenTurns == 0) turn_rows(state, profile);
+  profile[Stage::contact].work += rows_.size();
+  warm_rows(dt, kicked);
+  store_rows(state);
+}
+
+template <class Real>
+void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
+  for (const Index k : row_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    quad_v_[i] = to_quad(state.v[i]);
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
+  for (const Index k : row_particles_) {
+    const auto i = static_cast<std::size_t>(k);
+    state.v[i] = to_vector(quad_v_[i]);
+  }
+}
+
+/// Normal velocity that a row must reach: no nearer than its radius within the step. Adds to the
+/// slip of what stuck in the last step how far it really went.
+template <class Real>
+void ClothGuard<Real>::aim(GuardRow<Real>& row, Real dt) const {
+  const Quad<Real> apart = weighted(row, legal_);
+  if (row.push == 0) {
+    row.slip = {};
+  } else if (row.friction > 0) {
+    row.slip += tangential(row, apart - row.apart);
+  }
+  row.apart = apart;
+  row.room = dot(row.normal, apart) - row.radius;
+  row.least_speed = row.room > 0 ? -row.room / dt : Real(0);
+}
+
+/// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
+/// takes more than Coulomb's bound.
+/// @return change of the normal velocity [m/s]
+template <class Real>
+Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
+  const Quad<Real> v = weighted(row, quad_v_);
+  const Real speed = dot(row.normal, v);
+  if (row.push == 0 && speed >= row.least_speed) return 0;
+  const Real push = std::max(Real(0), row.push + (row.least_speed - speed) * row.inertia);
+  const Real more = push - row.push;
+  Quad<Real> change = row.normal * more;
+  row.push = push;
+  if (row.friction > 0) {
+    const Quad<Real> slide = v - row.normal * speed;
+    const Quad<Real> wanted = row.drag - (slide + row.slip * Real(1 / kStickTime)) * row.inertia;
+    const Real most = row.friction * push, size2 = dot(wanted, wanted);
+    const bool slides = size2 > most * most;
+    const Quad<Real> drag = slides ? wanted * (most / std::sqrt(size2)) : wanted;
+    if (slides) row.slip = {};
+    change += drag - row.drag;
+    row.drag = drag;
+  }
+  share_out(row, change, quad_v_);
+  return std::abs(more) / row.inertia;
+}
+
+template <class Real>
+Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
+  if (busy_rows_.empty()) return 0;
+  load_rows(state);
+  const Real largest = sweep_rows();
+  store_rows(state);
+  return largest;
+}
+
+template <class Real>
+void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
+  if (rows_.empty()) return;
+  const Real enough = thickest_ * Real(kResidual) / dt;
+  for (int k = 0; k < kMostSweeps; ++k) {
+    if (!(sweep(state) > enough)) break;
+  }
+  push_apart(state);
+}
+
+/// Lists the rows that push somebody or may have to before the next look.
+template <class Real>
+void ClothGuard<Real>::find_busy_rows(Real dt) {
+  const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
+  busy_rows_.clear();
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const GuardRow<Real>& row = rows_[k];
+    if (row.push == 0) {
+      const Real room = dot(row.normal, weighted(row, legal_)) - row.radius;
+      const Real approach = -dot(row.normal, weighted(row, quad_v_));
+      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) continue;
+    }
+    busy_rows_.push_back(static_cast<Index>(k));
+  }
+}
+
+/// Starts from the impulses of the last step.
+/// @param kicked  time of the forces since then that they have to stand against [s]
+template <class Real>
+void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
+  const Real warm = kicked_ > 0 ? kicked / kicked_ : Real(0);
+  kicked_ = kicked;
+  for (const Index k : busy_rows_) {
+    GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    aim(row, dt);
+    if (row.push == 0) continue;
+    row.push *= warm;
+    row.drag = row.drag * warm;
+    share_out(row, row.normal * row.push + row.drag, quad_v_);
+  }
+}
+
+/// A sweep of projected Gauss-Seidel, from either end in turn.
+/// @return largest change of a normal velocity [m/s]
+template <class Real>
+Real ClothGuard<Real>::sweep_rows() {
+  Real largest = 0;
+  const auto visit = [&](std::size_t k) {
+    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]));
+  };
+  upwards_ = !upwards_;
+  if (upwards_) {
+    for (std::size_t k = 0; k < busy_rows_.size(); ++k) visit(k);
+  } else {
+    for (std::size_t k = busy_rows_.size(); k-- > 0;) visit(k);
+  }
+  return largest;
+}
+
+/// Pressure about each particle of a row, from what pushes it: single rows share a load by chance.
+/// Layers are pressed from both sides.
+template <class Real>
+void ClothGuard<Real>::measure_pressures() {
+  for (const Index i : row_particles_) pressure_[static_cast<std::size_t>(i)] = 0;
+  for (const Index k : busy_rows_) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    if (row.push == 0) continue;
+    const Real force = row.push / (2 * kicked_);
+    for (std::size_t n = 0; n < 4; ++n) {
+      const auto i = static_cast<std::size_t>(row.particle[n]);
+      pressure_[i] += std::abs(row.weight[n]) * force * inverse_area_[i];
+    }
+  }
+}
+
+/// How much a row lacks of its radius, less what the pressure on its features takes [m].
+template <class Real>
+Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
+  Real both = 0;
+  for (std::size_t n = 0; n < 4; ++n)
+    both += std::abs(row.weight[n]) * pressure_[static_cast<std::size_t>(row.particle[n])];
+  return -row.room - row.radius * both * Real(1 / (2 * kFlattening));
+}
+
+template <class Real>
+void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
+  const auto is_near = [&](Index k) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    return -row.room > row.radius * Real(kPushSlack);
+  };
+  if (std::none_of(busy_rows_.begin(), busy_rows_.end(), is_near)) return;
+  measure_pressures();
+  for (const Index k : busy_rows_) {
+    if (!is_near(k)) continue;
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    const Real lack = lack_of(row);
+    if (!(lack > row.radius * Real(kPushSlack))) continue;
+    const Real wanted = std::min(lack * Real(kPushRate), static_cast<Real>(kPushSpeed));
+    const Real more = wanted - dot(row.normal, weighted(row, extra_));
+    if (!(more > 0)) continue;
+    share_out(row, row.normal * (more * row.inertia), extra_);
+    for (const Index i : row.particle) {
+      if (!std::exchange(is_pushed_[static_cast<std::size_t>(i)], 1)) pushed_.push_back(i);
+    }
+  }
+  for (const Index k : pushed_) {
+    const auto i = static_cast<std::size_t>(k);
+    state.v[i] += to_vector(extra_[i]);
+    pushed_v_.push_back(state.v[i]);
+  }
+}
+
+template <class Real>
+void ClothGuard<Real>::finish(ClothState<Real>& state) {
+  for (std::size_t n = 0; n < pushed_.size(); ++n) {
+    const auto i = static_cast<std::size_t>(pushed_[n]);
+    Vec3<Real>& v = state.v[i];
+    const Vec3<Real> extra = to_vector(extra_[i]);
+    // What was stopped keeps no more of the push than it had, and gets no velocity against it.
+    Real part = 1;
+    if (v != pushed_v_[n]) {
+      const Real size = extra.squaredNorm();
+      part = size > 0 ? std::clamp(v.dot(extra) / size, Real(0), Real(1)) : Real(0);
+    }
+    v -= extra * part;
+    extra_[i] = {};
+    is_pushed_[i] = 0;
+  }
+  pushed_.clear();
+  pushed_v_.clear();
+}
+
+template <class Real>
+void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
+  if (rows_.empty()) return;
+  profile[Stage::contact].work += rows_.size();
+  for (const Index k : row_particles_)
+    legal_[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
+  load_rows(state);
+  warm_rows(dt, dt / 2);
+  store_rows(state);
+  closed_ = true;
+}
+
+#define WEFT_INSTANTIATE(Real)                                               \
+  template void ClothGuard<Real>::solve(ClothState<Real>&, Real, Profile&);  \
+  template void ClothGuard<Real>::load_rows(const ClothState<Real>&);        \
+  template void ClothGuard<Real>::store_rows(ClothState<Real>&) const;       \
+  template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
+  template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
+  template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
+  template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
+  template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
+  template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
+  template void ClothGuard<Real>::find_busy_rows(Real);                      \
+  template void ClothGuard<Real>::warm_rows(Real, Real);                     \
+  template Real ClothGuard<Real>::sweep_rows();                              \
+  template void ClothGuard<Real>::measure_pressures();                       \
+  template Real ClothGuard<Real>::lack_of(const GuardRow<Real>&) const;      \
+  template void ClothGuard<Real>::push_apart(ClothState<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

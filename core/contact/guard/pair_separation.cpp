@@ -1,0 +1,89 @@
+#include "core/contact/guard/pair_separation.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/contact/guard/pair_separation.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/contact/guard/pair_separation-inl.h"
+
+#if HWY_ONCE
+namespace weft {
+namespace {
+
+/// An edge that is closest at its end, within this part of it, belongs to a particle instead.
+constexpr double kEdgeEnd = 0.01;
+
+/// Columns long enough for whole vectors.
+template <class Real>
+void pad(PairColumns<Real>& pairs) {
+  const std::size_t size = (pairs.size() + kPairPadding - 1) / kPairPadding * kPairPadding;
+  for (std::vector<Index>& column : pairs.particle) column.resize(size, 0);
+  for (auto* columns :
+       {&pairs.gap, &pairs.end_gap, &pairs.normal[0], &pairs.normal[1], &pairs.normal[2],
+        &pairs.weight[0], &pairs.weight[1], &pairs.weight[2], &pairs.weight[3]})
+    columns->resize(size);
+}
+
+template <class Real>
+const Real* numbers_of(const QuadArray<Real>& quads) {
+  return reinterpret_cast<const Real*>(quads.data());
+}
+
+}  // namespace
+
+template <class Real>
+void PairColumns<Real>::clear() {
+  a.clear();
+  b.clear();
+  for (std::vector<Index>& column : particle) column.clear();
+}
+
+template <class Real>
+void PairColumns<Real>::add(Index first, Index second, const std::array<Index, 4>& particles) {
+  a.push_back(first);
+  b.push_back(second);
+  for (std::size_t k = 0; k < 4; ++k) particle[k].push_back(particles[k]);
+}
+
+template <class Real>
+PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const QuadArray<Real>& x) const {
+  if (!(gap[k] > static_cast<Real>(kCloseGap))) {
+    PairPoints<Real> points;
+    for (std::size_t n = 0; n < 4; ++n)
+      points[n] = to_vector(x[static_cast<std::size_t>(particle[n][k])]);
+    return separate_pair(kind, points);
+  }
+  PairSeparation<Real> s;
+  s.gap = gap[k];
+  for (int n = 0; n < 3; ++n) s.normal[n] = normal[static_cast<std::size_t>(n)][k];
+  for (std::size_t n = 0; n < 4; ++n) s.weight[n] = weight[n][k];
+  const auto between = [](Real t) {
+    return t > static_cast<Real>(kEdgeEnd) && t < static_cast<Real>(1 - kEdgeEnd);
+  };
+  s.inside = kind == PairKind::vertex_triangle
+                 ? s.weight[1] < 0 && s.weight[2] < 0 && s.weight[3] < 0
+                 : between(s.weight[1]) && between(-s.weight[3]);
+  return s;
+}
+
+HWY_EXPORT(separate_f32);
+HWY_EXPORT(separate_f64);
+
+void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
+                    PairColumns<float>& pairs) {
+  pad(pairs);
+  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs);
+}
+void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
+                    PairColumns<double>& pairs) {
+  pad(pairs);
+  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs);
+}
+
+template struct PairColumns<float>;
+template struct PairColumns<double>;
+
+}  // namespace weft
+#endif

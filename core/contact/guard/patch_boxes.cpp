@@ -1,0 +1,146 @@
+#include "core/contact/guard/patch_boxes.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/contact/guard/patch_boxes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/contact/guard/patch_boxes-inl.h"
+
+#if HWY_ONCE
+namespace weft {
+namespace {
+
+/// Components of a box, and columns of boxes are a multiple of so many long.
+constexpr std::size_t kComponents = 6, kPadding = 8;
+
+std::size_t padded(std::size_t count) {
+  return (count + kPadding - 1) / kPadding * kPadding;
+}
+
+}  // namespace
+
+template <class Real>
+PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge>& edges,
+                             const std::vector<Triangle>& triangles)
+    : fits_(tree.patch_count(), 0), changed_(tree.patch_count()) {
+  std::size_t numbers = 0;
+  for (std::size_t p = 0; p < tree.patch_count(); ++p) {
+    const auto& patch = tree.patch(static_cast<Index>(p));
+    const auto place = [&](Index i) {
+      const auto found = std::lower_bound(patch.particles.begin(), patch.particles.end(), i);
+      return static_cast<std::uint8_t>(found - patch.particles.begin());
+    };
+    Shape shape;
+    for (const Index i : patch.vertices) shape.vertices.push_back({place(i)});
+    for (const Index e : patch.edges) {
+      const Edge& edge = edges[static_cast<std::size_t>(e)];
+      shape.edges.push_back({place(edge[0]), place(edge[1])});
+    }
+    for (const Index t : patch.triangles) {
+      const Triangle& corners = triangles[static_cast<std::size_t>(t)];
+      shape.triangles.push_back({place(corners[0]), place(corners[1]), place(corners[2])});
+    }
+    shape.begin = numbers;
+    numbers += kComponents * (padded(shape.edges.size()) + padded(shape.triangles.size()) +
+                              padded(shape.vertices.size()));
+    shapes_.push_back(std::move(shape));
+  }
+  // What pads a column is empty.
+  numbers_.assign(numbers, QuadBox<Real>::kFar);
+  for (std::size_t p = 0; p < shapes_.size(); ++p) {
+    const PatchColumns<Real> all = columns(static_cast<Index>(p));
+    for (const BoxColumns<Real>& kind : {all.edges, all.triangles, all.vertices}) {
+      Real* const upper = numbers_.data() + (kind.numbers - numbers_.data()) + 3 * kind.pitch;
+      std::fill(upper, upper + 3 * kind.pitch, -QuadBox<Real>::kFar);
+    }
+  }
+}
+
+template <class Real>
+PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
+  const Shape& shape = shapes_[static_cast<std::size_t>(p)];
+  const Real* at = numbers_.data() + shape.begin;
+  const auto take = [&](std::size_t count) {
+    const BoxColumns<Real> kind{at, count, padded(count)};
+    at += kComponents * kind.pitch;
+    return kind;
+  };
+  PatchColumns<Real> all;
+  all.edges = take(shape.edges.size());
+  all.triangles = take(shape.triangles.size());
+  all.vertices = take(shape.vertices.size());
+  return all;
+}
+
+/// Boxes of features from those of their corners.
+/// @param changed  a bit for each corner
+/// @return a bit for each feature with a changed corner
+template <class Real>
+template <std::size_t CornerCount>
+std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& features,
+                                             std::uint32_t changed, std::size_t pitch,
+                                             Real* numbers) const {
+  std::uint32_t marks = 0;
+  for (std::size_t f = 0; f < features.size(); ++f) {
+    QuadBox<Real> box = corner_[features[f][0]];
+    std::uint32_t corners = changed >> features[f][0];
+    for (std::size_t k = 1; k < CornerCount; ++k) {
+      box.add(corner_[features[f][k]]);
+      corners |= changed >> features[f][k];
+    }
+    marks |= (corners & 1) << f;
+    for (int c = 0; c < 3; ++c) {
+      numbers[static_cast<std::size_t>(c) * pitch + f] = box.lower[c];
+      numbers[static_cast<std::size_t>(c + 3) * pitch + f] = box.upper[c];
+    }
+  }
+  return marks;
+}
+
+template <class Real>
+void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch,
+                           const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
+  const auto number = static_cast<std::size_t>(p);
+  if (fits_[number]) return;
+  fits_[number] = 1;
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < patch.particles.size(); ++k) {
+    const auto i = static_cast<std::size_t>(patch.particles[k]);
+    QuadBox<Real> box;
+    box.add(motion.start[i]);
+    box.add(motion.end[i]);
+    corner_[k] = box.grown(motion.radius);
+    bits |= static_cast<std::uint32_t>(changed[i] != 0) << k;
+  }
+  const PatchColumns<Real> all = columns(p);
+  const auto numbers = [&](const BoxColumns<Real>& kind) {
+    return numbers_.data() + (kind.numbers - numbers_.data());
+  };
+  const Shape& shape = shapes_[number];
+  changed_[number] = {
+      fit_features(shape.vertices, bits, all.vertices.pitch, numbers(all.vertices)),
+      fit_features(shape.edges, bits, all.edges.pitch, numbers(all.edges)),
+      fit_features(shape.triangles, bits, all.triangles.pitch, numbers(all.triangles))};
+}
+
+HWY_EXPORT(overlap_f32);
+HWY_EXPORT(overlap_f64);
+
+void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
+                     PatchOverlaps& overlaps) {
+  HWY_DYNAMIC_DISPATCH(overlap_f32)(p, q, overlaps);
+}
+void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
+                     PatchOverlaps& overlaps) {
+  HWY_DYNAMIC_DISPATCH(overlap_f64)(p, q, overlaps);
+}
+
+template class PatchBoxes<float>;
+template class PatchBoxes<double>;
+
+}  // namespace weft
+#endif

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/guard/patch_tree.h"
+
+namespace weft {
+
+/// A patch has at most so many features of a kind: each is a bit of a number.
+inline constexpr std::size_t kMostPatchFeatures = 32;
+
+/// Boxes of the features of one kind, component by component: lower x y z, upper x y z [m].
+template <class Real>
+struct BoxColumns {
+  const Real* numbers = nullptr;
+  std::size_t count = 0, pitch = 0;  ///< boxes, and numbers a component
+};
+
+/// The boxes of a patch. Those of edges and triangles are padded with empty ones.
+template <class Real>
+struct PatchColumns {
+  BoxColumns<Real> vertices, edges, triangles;
+};
+
+/// Which features of two patches have boxes that overlap: for each of the one a bit for each of the
+/// other.
+struct PatchOverlaps {
+  using Bits = std::array<std::uint32_t, kMostPatchFeatures>;
+  Bits first_vertices, second_vertices;  ///< of either patch, with the triangles of the other one
+  Bits first_edges;                      ///< with the edges of the second patch
+};
+
+/// Tests the features of two patches, many at a time.
+void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
+                     PatchOverlaps& overlaps);
+void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
+                     PatchOverlaps& overlaps);
+
+/// Boxes around the motion of the features of patches, in the order in which the patches list them.
+template <class Real>
+class PatchBoxes {
+ public:
+  PatchBoxes() = default;
+  PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge>& edges,
+             const std::vector<Triangle>& triangles);
+
+  /// Says that the motion in all patches is another one.
+  void forget() { fits_.assign(fits_.size(), 0); }
+  /// Says that it is in one.
+  void forget(Index patch) { fits_[static_cast<std::size_t>(patch)] = 0; }
+
+  /// Fits the boxes of a patch, if they do not fit yet.
+  /// @param patch    its features
+  /// @param changed  of each particle one number, not 0 if its motion changed
+  void fit(Index p, const typename PatchTree<Real>::Patch& patch,
+           const PredictedMotion<Real>& motion, const std::vector<char>& changed);
+
+  /// A bit for each feature of a patch.
+  struct Marks {
+    std::uint32_t vertices = 0, edges = 0, triangles = 0;
+  };
+  /// Which of them had a particle with a changed motion when the patch was fitted.
+  const Marks& changed(Index p) const { return changed_[static_cast<std::size_t>(p)]; }
+
+  /// The boxes, which must fit.
+  PatchColumns<Real> columns(Index p) const;
+
+ private:
+  /// Where the particles of features stand in their patch's list.
+  template <std::size_t CornerCount>
+  using Corners = std::vector<std::array<std::uint8_t, CornerCount>>;
+  struct Shape {
+    Corners<1> vertices;
+    Corners<2> edges;
+    Corners<3> triangles;
+    std::size_t begin = 0;  ///< of its numbers
+  };
+
+  template <std::size_t CornerCount>
+  std::uint32_t fit_features(const Corners<CornerCount>& features, std::uint32_t changed,
+                             std::size_t pitch, Real* numbers) const;
+
+  std::vector<Shape> shapes_;
+  AlignedVector<Real> numbers_;
+  std::vector<char> fits_;
+  std::vector<Marks> changed_;
+  std::array<QuadBox<Real>, kMostPatchFeatures> corner_;  ///< of the patch that is being fitted
+};
+
+extern template class PatchBoxes<float>;
+extern template class PatchBoxes<double>;
+
+}  // namespace weft

@@ -1,0 +1,359 @@
+#include "core/contact/guard/patch_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/cloth/neighbours.h"
+
+namespace weft {
+namespace {
+
+/// A patch of a grid is at most so many cells wide; one of another mesh has at most so many
+/// triangles.
+constexpr int kPatchCells = 2;
+constexpr std::size_t kPatchTriangles = 8;
+
+/// Rounding of the cull's test, relative.
+constexpr double kCullSlack = 1e-3;
+
+}  // namespace
+
+template <class Real>
+PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) {
+  const auto count = static_cast<Index>(parts_.size());
+  grids_.resize(parts_.size());
+  for (Index p = 0; p < count; ++p) {
+    if (parts_[static_cast<std::size_t>(p)].rows > 0) build_grid(model, p);
+  }
+  // Recursively: a node over all parts from `first`, `count` of them.
+  const auto build = [&](auto&& self, Index first, Index parts_left) -> Index {
+    if (parts_left > 1) {
+      const auto node = static_cast<Index>(nodes_.size());
+      nodes_.emplace_back();
+      const Index left = self(self, first, parts_left / 2);
+      const Index right = self(self, first + parts_left / 2, parts_left - parts_left / 2);
+      Node& made = nodes_[static_cast<std::size_t>(node)];
+      made.left = left;
+      made.right = right;
+      made.triangles = nodes_[static_cast<std::size_t>(left)].triangles +
+                       nodes_[static_cast<std::size_t>(right)].triangles;
+      return node;
+    }
+    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(first)];
+    if (part.rows > 0) return split_grid(model, first, {0, part.rows - 1, 0, part.columns - 1});
+    std::vector<Index> list;
+    for (Index t = part.triangles.first; t < part.triangles.end(); ++t) list.push_back(t);
+    return split_mesh(model, first, list, 0, list.size());
+  };
+  if (count > 0) build(build, 0, count);
+  give_features(model);
+}
+
+/// Finds the sides of the triangles of each cell, two a cell, cell by cell.
+template <class Real>
+void PatchTree<Real>::build_grid(const ClothModel<Real>& model, Index p) {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  auto& grid = grids_[static_cast<std::size_t>(p)];
+  const auto row = [&](Index i) { return (i - part.particles.first) / part.columns; };
+  for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
+    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    GridTriangle sides;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [i, j] = std::minmax(corners[k], corners[(k + 1) % 3]);
+      if (row(i) == row(j)) sides.along_u = {i, j};
+      if ((j - i) % part.columns == 0) sides.along_v = {i, j};
+    }
+    grid.push_back(sides);
+  }
+}
+
+template <class Real>
+Index PatchTree<Real>::split_grid(const ClothModel<Real>& model, Index p, const CellRange& cells) {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const int rows = cells.row_end - cells.row, columns = cells.column_end - cells.column;
+  if (rows <= kPatchCells && columns <= kPatchCells) {
+    std::vector<Index> triangles;
+    for (int r = cells.row; r < cells.row_end; ++r) {
+      for (int c = cells.column; c < cells.column_end; ++c) {
+        const Index t = part.triangles.first + 2 * (r * (part.columns - 1) + c);
+        triangles.insert(triangles.end(), {t, t + 1});
+      }
+    }
+    const Index node = add_patch(model, p, triangles);
+    nodes_[static_cast<std::size_t>(node)].cells = cells;
+    return node;
+  }
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.emplace_back();
+  CellRange first = cells, second = cells;
+  if (rows >= columns)
+    first.row_end = second.row = cells.row + rows / 2;
+  else
+    first.column_end = second.column = cells.column + columns / 2;
+  const Index left = split_grid(model, p, first), right = split_grid(model, p, second);
+  Node& made = nodes_[static_cast<std::size_t>(node)];
+  made.left = left;
+  made.right = right;
+  made.part = p;
+  made.cells = cells;
+  made.triangles = 2 * cells.cells();
+  return node;
+}
+
+/// Halves a list of triangles by place until patches are left.
+template <class Real>
+Index PatchTree<Real>::split_mesh(const ClothModel<Real>& model, Index p, std::vector<Index>& list,
+                                  std::size_t begin, std::size_t end) {
+  const auto from = list.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto to = list.begin() + static_cast<std::ptrdiff_t>(end);
+  if (end - begin <= kPatchTriangles) return add_patch(model, p, std::vector<Index>(from, to));
+  const auto sum_of = [&](Index t) -> Vec3<Real> {
+    Vec3<Real> sum = Vec3<Real>::Zero();
+    for (const Index i : model.triangles[static_cast<std::size_t>(t)])
+      sum += model.rest_positions[static_cast<std::size_t>(i)];
+    return sum;
+  };
+  QuadBox<Real> box;
+  for (auto t = from; t != to; ++t) box.add(to_quad(sum_of(*t)));
+  int axis = 0;
+  to_vector(box.upper - box.lower).maxCoeff(&axis);
+  std::sort(from, to, [&](Index s, Index t) {
+    const Real a = sum_of(s)[axis], b = sum_of(t)[axis];
+    return a < b || (a == b && s < t);
+  });
+  const auto node = static_cast<Index>(nodes_.size());
+  nodes_.emplace_back();
+  const std::size_t middle = begin + (end - begin) / 2;
+  const Index left = split_mesh(model, p, list, begin, middle);
+  const Index right = split_mesh(model, p, list, middle, end);
+  Node& made = nodes_[static_cast<std::size_t>(node)];
+  made.left = left;
+  made.right = right;
+  made.part = p;
+  made.triangles = static_cast<Index>(end - begin);
+  return node;
+}
+
+template <class Real>
+Index PatchTree<Real>::add_patch(const ClothModel<Real>& model, Index part,
+                                 const std::vector<Index>& triangles) {
+  Patch patch;
+  patch.triangles = triangles;
+  for (const Index t : triangles) {
+    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    patch.particles.insert(patch.particles.end(), corners.begin(), corners.end());
+  }
+  std::sort(patch.particles.begin(), patch.particles.end());
+  patch.particles.erase(std::unique(patch.particles.begin(), patch.particles.end()),
+                        patch.particles.end());
+  Node node;
+  node.patch = static_cast<Index>(patches_.size());
+  node.part = part;
+  node.triangles = static_cast<Index>(triangles.size());
+  patches_.push_back(std::move(patch));
+  node_of_.push_back(static_cast<Index>(nodes_.size()));
+  nodes_.push_back(node);
+  return node_of_.back();
+}
+
+/// Each particle and edge to the first patch that has it.
+template <class Real>
+void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
+  const Neighbours neighbours(model.mass.size(), model.edges);
+  std::vector<char> given(model.mass.size(), 0), edge_given(model.edges.size(), 0);
+  for (Patch& patch : patches_) {
+    for (const Index i : patch.particles) {
+      if (!std::exchange(given[static_cast<std::size_t>(i)], 1)) patch.vertices.push_back(i);
+    }
+    for (const Index t : patch.triangles) {
+      const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const auto& [edge, other] : neighbours.of(static_cast<std::size_t>(corners[k]))) {
+          if (other == corners[(k + 1) % 3] &&
+              !std::exchange(edge_given[static_cast<std::size_t>(edge)], 1))
+            patch.edges.push_back(edge);
+        }
+      }
+    }
+  }
+}
+
+template <class Real>
+void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) const {
+  node.box = {};
+  if (node.patch == kNone) {
+    node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
+    node.box.add(nodes_[static_cast<std::size_t>(node.right)].box);
+    return;
+  }
+  for (const Index i : patches_[static_cast<std::size_t>(node.patch)].particles) {
+    node.box.add(motion.start[static_cast<std::size_t>(i)]);
+    node.box.add(motion.end[static_cast<std::size_t>(i)]);
+  }
+  node.box = node.box.grown(motion.radius);
+}
+
+template <class Real>
+void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
+  for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
+  for (Node& node : nodes_) node.spread = {};
+  if (!cull || nodes_.empty()) return;
+  mark_spread(0, motion, false);
+}
+
+template <class Real>
+void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
+                                    const std::vector<char>& changed) {
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    if (node.patch == kNone) {
+      node.marked = nodes_[static_cast<std::size_t>(node.left)].marked ||
+                    nodes_[static_cast<std::size_t>(node.right)].marked;
+    } else {
+      const auto& particles = patches_[static_cast<std::size_t>(node.patch)].particles;
+      node.marked = std::any_of(particles.begin(), particles.end(),
+                                [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+    }
+    if (node.marked) fit_box(node, motion);
+  }
+  if (nodes_.empty()) return;
+  sum_changed(changed);
+  mark_spread(0, motion, true);
+}
+
+template <class Real>
+void PatchTree<Real>::sum_changed(const std::vector<char>& changed) {
+  changed_sums_.resize(parts_.size());
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const ClothPart<Real>& part = parts_[p];
+    std::vector<int>& sums = changed_sums_[p];
+    sums.clear();
+    if (part.rows * part.columns != part.particles.count) continue;  // no whole grid
+    const auto width = static_cast<std::size_t>(part.columns) + 1;
+    sums.assign((static_cast<std::size_t>(part.rows) + 1) * width, 0);
+    auto i = static_cast<std::size_t>(part.particles.first);
+    for (std::size_t at = width; at < sums.size(); at += width) {
+      for (std::size_t c = 1; c < width; ++c, ++i)
+        sums[at + c] = sums[at + c - 1] + sums[at - width + c] - sums[at - width + c - 1] +
+                       (changed[i] != 0 ? 1 : 0);
+    }
+  }
+}
+
+/// Whether a particle of these cells changed its motion, or may have.
+template <class Real>
+bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
+  const std::vector<int>& sums = changed_sums_[static_cast<std::size_t>(p)];
+  if (sums.empty()) return true;
+  const int width = parts_[static_cast<std::size_t>(p)].columns + 1;
+  const auto before = [&](int row, int column) {
+    return sums[static_cast<std::size_t>(row * width + column)];
+  };
+  const int row_end = cells.row_end + 1, column_end = cells.column_end + 1;
+  return before(row_end, column_end) - before(cells.row, column_end) -
+             before(row_end, cells.column) + before(cells.row, cells.column) !=
+         0;
+}
+
+/// Tries the rectangle of a node, grown by the width of a patch, and else those of its children.
+template <class Real>
+void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion, bool only_changed) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  const bool grid = node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
+  if (grid) {
+    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+    const CellRange grown = {std::max(node.cells.row - kPatchCells, 0),
+                             std::min(node.cells.row_end + kPatchCells, part.rows - 1),
+                             std::max(node.cells.column - kPatchCells, 0),
+                             std::min(node.cells.column_end + kPatchCells, part.columns - 1)};
+    // Features that share no particle are at least the height of a triangle apart in the fabric.
+    const Real nearest = part.cell_u * part.cell_v /
+                         std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
+    const Real least = 2 * motion.radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
+    const bool inherited = node.spread.cells() > 0 && node.spread != grown;
+    const bool as_before = only_changed && !inherited && !has_changed(node.part, grown);
+    if (as_before && node.spread.cells() > 0) return;
+    Plane plane;
+    if (!as_before && least < 1 && find_plane(motion, grown, node.part, plane) &&
+        is_spread(motion.start, plane, grown, node.part, least) &&
+        is_spread(motion.end, plane, grown, node.part, least)) {
+      give_spread(n, grown);
+      return;
+    }
+  }
+  node.spread = {};
+  if (node.patch != kNone) return;
+  mark_spread(node.left, motion, only_changed);
+  mark_spread(node.right, motion, only_changed);
+}
+
+template <class Real>
+void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  node.spread = cells;
+  if (node.patch != kNone) return;
+  give_spread(node.left, cells);
+  give_spread(node.right, cells);
+}
+
+/// The plane in which a rectangle lies on the whole during the motion, by the mean of its rows and
+/// columns: two directions that stand alike to both.
+/// @return whether there is one
+template <class Real>
+bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const CellRange& cells,
+                                 Index p, Plane& plane) const {
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const auto at = [&](int r, int c) {
+    return static_cast<std::size_t>(part.particles.first + r * part.columns + c);
+  };
+  Quad<Real> u, v;
+  for (const QuadArray<Real>* x : {&motion.start, &motion.end}) {
+    for (int r = cells.row; r <= cells.row_end; ++r)
+      u += (*x)[at(r, cells.column_end)] - (*x)[at(r, cells.column)];
+    for (int c = cells.column; c <= cells.column_end; ++c)
+      v += (*x)[at(cells.row_end, c)] - (*x)[at(cells.row, c)];
+  }
+  const auto scale = [](Quad<Real>& q, Real length) {
+    const Real size = std::sqrt(dot(q, q));
+    q = q * (length / size);
+    return size;
+  };
+  scale(u, 1);
+  scale(v, 1);
+  Quad<Real> sum = u + v, difference = u - v;
+  const Real half = std::sqrt(Real(0.5));
+  if (!(scale(sum, half) > Real(0.1)) || !(scale(difference, half) > Real(0.1))) return false;
+  plane = {sum + difference, sum - difference};
+  return true;
+}
+
+/// Whether the least eigenvalue of the symmetric part of the gradient in a plane is above `least`
+/// all over a rectangle.
+template <class Real>
+bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
+                                const CellRange& cells, Index p, Real least) const {
+  const auto& grid = grids_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const int columns = part.columns - 1;
+  const Real per_u = Real(1) / part.cell_u, per_v = Real(1) / part.cell_v;
+  const auto side = [&](const std::array<Index, 2>& s, Real per_length) {
+    return (x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])]) * per_length;
+  };
+  for (int r = cells.row; r < cells.row_end; ++r) {
+    const auto begin = static_cast<std::size_t>(2 * (r * columns + cells.column));
+    const auto end = static_cast<std::size_t>(2 * (r * columns + cells.column_end));
+    for (std::size_t t = begin; t < end; ++t) {
+      const Quad<Real> u = side(grid[t].along_u, per_u), v = side(grid[t].along_v, per_v);
+      const Real a = dot(plane.u, u) - least, b = dot(plane.v, v) - least;
+      const Real off = (dot(plane.u, v) + dot(plane.v, u)) / 2;
+      if (!(a > 0 && b > 0 && a * b > off * off)) return false;
+    }
+  }
+  return true;
+}
+
+template class PatchTree<float>;
+template class PatchTree<double>;
+
+}  // namespace weft

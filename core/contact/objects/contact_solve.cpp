@@ -1,0 +1,320 @@
+// The response of Contact: velocities that respect the rows, and the certificate of the end
+// positions.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/guard/cloth_guard.h"
+#include "core/contact/objects/contact.h"
+#include "core/contact/travel.h"
+
+namespace weft {
+namespace {
+
+/// Sweeps of projected Gauss-Seidel over the rows.
+constexpr int kSweeps = 2;
+
+/// Further ones, each after one over the rows of cloths with each other: one where these press, as
+/// piles would tremble without, and more while each changes what something moves in the substep by
+/// more than this part of the thickness.
+constexpr int kMoreSweeps = 8;
+constexpr double kResidual = 0.01;
+
+/// A gap this much wider than the thickness still counts as touching, so that rounding of positions
+/// does not let a resting particle fall for a substep, and its friction with it [m].
+constexpr double kTouchSlack = 2e-5;
+
+/// Slower impacts do not bounce [m/s].
+constexpr double kBounceSpeed = 0.05;
+
+/// Push-out: part of the lack taken each substep, and its largest speed [m/s].
+constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
+
+/// Rounds of projection on violated planes before a particle is held.
+constexpr int kCertifyRounds = 3;
+
+/// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
+/// particle, of weight 1.
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> weighted(const ContactRow<Real>& row,
+                                                  const Vec3Array<Real>& values) {
+  const auto at = [&](std::size_t k) -> const Vec3<Real>& {
+    return values[static_cast<std::size_t>(row.particle[k])];
+  };
+  if (row.count == 1) return at(0);
+  const Vec3<Real> two = at(0) * row.weight[0] + at(1) * row.weight[1];
+  return row.count == 2 ? two : (two + at(2) * row.weight[2]).eval();
+}
+
+/// Moves the row's point by `change`, shared by mass.
+template <class Real>
+void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<Real>& values) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+    values[static_cast<std::size_t>(row.particle[k])] += change * row.share[k];
+}
+
+}  // namespace
+
+/// Measures how far everybody is from where the rows were built, now or after the coming drift.
+/// @return whether all stay within their reach
+template <class Real>
+bool Contact<Real>::measure_way(const ClothState<Real>& state, Real dt) {
+  TravelPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.from = x_rows_.data()->data();
+  pass.reach = row_reach_.data();
+  pass.travel2 = travel2_.data();
+  return measure_travel(pass);
+}
+
+/// The same for those alone whom the rows have moved or pushed since everybody was measured.
+template <class Real>
+bool Contact<Real>::measure_pushed_way(const ClothState<Real>& state, Real dt) {
+  bool within = true;
+  for (const std::size_t r : pushed_rows_) {
+    const ContactRow<Real>& row = rows_[r];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      const auto i = static_cast<std::size_t>(row.particle[k]);
+      const Vec3<Real> way = state.x[i] - x_rows_[i];
+      const Real end2 = (way + state.v[i] * dt).squaredNorm();
+      travel2_[i] = std::max(way.squaredNorm(), end2);
+      within &= end2 <= row_reach_[i] * row_reach_[i];
+    }
+  }
+  return within;
+}
+
+/// What of the rows tells whether they matter, close together.
+template <class Real>
+void Contact<Real>::measure_rooms() {
+  // With some room for what the response of other rows changes.
+  constexpr Real kRoom = Real(0.7);
+  const auto square = [](Real room) { return room > 0 ? room * room : Real(-1); };
+  rooms_.clear();
+  for (const ContactRow<Real>& row : rows_) {
+    RowRoom room;
+    for (std::size_t k = 0; k < 3; ++k)
+      room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
+    room.touch2 = row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * kRoom)
+                               : std::numeric_limits<Real>::infinity();
+    room.cross2 = square(row.least_height - smallest_gap_);
+    rooms_.push_back(room);
+  }
+}
+
+/// Squared way of the particle of a row that goes farthest.
+template <class Real>
+Real Contact<Real>::farthest2(const RowRoom& room) const {
+  return std::max({travel2_[static_cast<std::size_t>(room.particle[0])],
+                   travel2_[static_cast<std::size_t>(room.particle[1])],
+                   travel2_[static_cast<std::size_t>(room.particle[2])]});
+}
+
+/// Lists the rows that can respond in this step: the others are farther from touching than their
+/// particles go. Where objects move, all may.
+template <class Real>
+void Contact<Real>::find_busy_rows() {
+  busy_rows_.clear();
+  pushed_rows_.clear();
+  const bool all = !stands_still();
+  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+    if (all ? rows_[r].responds : !(farthest2(rooms_[r]) < rooms_[r].touch2))
+      busy_rows_.push_back(r);
+  }
+}
+
+template <class Real>
+void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
+  x_unpushed_ = state.x;
+  for (const std::size_t r : busy_rows_) {
+    const ContactRow<Real>& row = rows_[r];
+    const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
+    if (!(lack > Real(kTouchSlack))) continue;
+    const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
+    share_out<Real>(row, row.normal * step, state.x);
+    pushed_rows_.push_back(r);
+  }
+  if (!pushed_rows_.empty()) take_back_pushes(state);
+}
+
+/// Normal velocity that each row must reach: no farther down than the thickness within the step,
+/// none when touching, and a bounce after an impact.
+template <class Real>
+void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
+  for (const std::size_t r : busy_rows_) {
+    ContactRow<Real>& row = rows_[r];
+    const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
+    const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
+    const Real room = std::max(Real(0), gap - row.thickness - Real(kTouchSlack));
+    row.least_speed = -room / dt;
+    if (row.mover != kNone) {
+      MovingRow<Real>& moving = moving_rows_[static_cast<std::size_t>(row.mover)];
+      moving.surface = frames_[moving.collider].velocity_at(weighted(row, state.x));
+    }
+    if (bounce == 0) continue;
+    // It bounces in the step that would have brought it there, with the speed that it comes with.
+    Real speed = row.normal.dot(weighted(row, state.v));
+    if (row.mover != kNone)
+      speed -= row.normal.dot(moving_rows_[static_cast<std::size_t>(row.mover)].surface);
+    if (speed < std::min(row.least_speed, -Real(kBounceSpeed))) row.least_speed = -bounce * speed;
+  }
+}
+
+/// A sweep of projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at
+/// most friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
+/// What jaws squeeze has besides the normal impulses that cancel there, and their friction does
+/// not.
+/// @return largest change of a normal velocity [m/s]
+template <class Real>
+Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations) {
+  Real largest = 0;
+  for (const std::size_t r : busy_rows_) {
+    const ContactRow<Real>& row = rows_[r];
+    Vec3<Real> v = weighted(row, state.v);
+    if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
+    const Real vn = row.normal.dot(v);
+    Real* grip =
+        row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
+    Real push = row.least_speed - vn;
+    if (!(push > 0)) {
+      if (!grip || *grip == 0) continue;
+      push = 0;
+    }
+    largest = std::max(largest, push);
+    Vec3<Real> change = row.normal * push;
+    const Real friction = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
+    if (friction > 0) {
+      ++friction_evaluations;
+      const Vec3<Real> slip = v - row.normal * vn;
+      const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
+      change -= speed > most ? (slip * (most / speed)).eval() : slip;
+      if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
+    }
+    share_out(row, change, state.v);
+    pushed_rows_.push_back(r);
+    if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
+    if (log_.wanted()) log_.add(row, change, state);
+  }
+  return largest;
+}
+
+/// The rows of cloths with each other are swept after a first sweep over these: what lies on an
+/// object in layers would seem to part as long as the object does not carry the lowest one.
+/// Cloth that is pressed on an object in layers, or led by hands against it, needs more than the
+/// usual sweeps, and those of its own rows in between: without, what the rows leave is stopped by
+/// the certificates.
+template <class Real>
+void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profile,
+                               ClothGuard<Real>* guard) {
+  std::uint64_t friction_evaluations = 0;
+  Real left = 0;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    left = std::max(left, sweep_rows(state, friction_evaluations));
+    if (guard && sweep == 0) guard->sweep(state);
+  }
+  const Real enough = thickness_ * Real(kResidual) / dt;
+  for (int sweep = 0; guard && sweep < kMoreSweeps && (sweep == 0 || left > enough); ++sweep) {
+    if (!(guard->sweep(state) > (sweep == 0 ? Real(0) : enough))) break;
+    left = sweep_rows(state, friction_evaluations);
+  }
+  profile[Stage::friction].work += friction_evaluations;
+}
+
+/// Notes the impulse by which the certificate stopped particle k of a row.
+/// @param before  its velocity until then [m/s]
+template <class Real>
+void Contact<Real>::log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
+                             const ClothState<Real>& state) {
+  ContactRow<Real> single = row;
+  single.particle = {row.particle[k], 0, 0};
+  single.weight = {Real(1), 0, 0};
+  single.count = 1;
+  log_.add<Real>(single, state.v[static_cast<std::size_t>(row.particle[k])] - before, state);
+}
+
+/// Keeps each particle of a row on its side of the row's plane through the coming drift: as the
+/// plane separates two convex features, nobody crosses who ends where he may.
+/// @param hold  stop a particle that would cross, instead of lifting it along the normal
+/// @return whether anybody had to be kept
+template <class Real>
+bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state,
+                             Real dt) {
+  bool kept = false;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    const auto i = static_cast<std::size_t>(row.particle[k]);
+    const Real now = row.normal.dot(state.x[i]) - row.offset;
+    const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
+    const Real least = least_end(now);
+    if (end >= least || state.inverse_mass[i] == 0 || state.v[i].isZero(0)) continue;
+    kept = true;
+    const Vec3<Real> before = state.v[i];
+    if (hold)
+      state.v[i].setZero();
+    else
+      state.v[i] += row.normal * ((least - end) / dt * Real(1.0001));
+    if (log_.wanted()) log_stop(row, k, before, state);
+  }
+  return kept;
+}
+
+/// Holds whoever would go beyond the reach within which the planes are all that matters. Not moving
+/// is always allowed.
+template <class Real>
+void Contact<Real>::hold_within_reach(ClothState<Real>& state, Real dt) {
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec3<Real> end = state.x[i] + state.v[i] * dt;
+    const Real reach = row_reach_[i] - way_rows_;
+    if (!((end - x_rows_[i]).squaredNorm() <= reach * std::abs(reach))) state.v[i].setZero();
+  }
+}
+
+/// Certifies the coming drift: nobody crosses a plane, and nobody goes beyond the reach.
+/// @param others  have changed velocities since everybody was measured, and not by rows
+template <class Real>
+void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
+  if (!moving_rows_.empty()) return certify_with_movers(state, dt);
+  const bool still = stands_still();
+  if (!still || !(others ? measure_way(state, dt) : measure_pushed_way(state, dt))) {
+    hold_within_reach(state, dt);
+    measure_way(state, dt);
+  }
+  bool kept = false;
+  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+    if (!still || !(farthest2(rooms_[r]) < rooms_[r].cross2))
+      kept |= keep_off(rows_[r], false, state, dt);
+  }
+  if (!kept) return;
+  for (int round = 1; round < kCertifyRounds && kept; ++round) {
+    kept = false;
+    for (const ContactRow<Real>& row : rows_) kept |= keep_off(row, false, state, dt);
+  }
+  if (kept) {
+    for (const ContactRow<Real>& row : rows_) keep_off(row, true, state, dt);
+  }
+  hold_within_reach(state, dt);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);                       \
+  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real);                \
+  template void Contact<Real>::measure_rooms();                                                  \
+  template Real Contact<Real>::farthest2(const RowRoom&) const;                                  \
+  template void Contact<Real>::find_busy_rows();                                                 \
+  template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
+  template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
+  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
+  template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&);                    \
+  template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&, ClothGuard<Real>*); \
+  template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \
+  template void Contact<Real>::log_stop(const ContactRow<Real>&, std::size_t, const Vec3<Real>&, \
+                                        const ClothState<Real>&);                                \
+  template void Contact<Real>::certify(ClothState<Real>&, Real, bool);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,248 @@
+#include "core/contact/objects/mesh_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/math/angle.h"
+
+namespace weft {
+namespace {
+
+/// What all ridges that count as flat rise together at most, across the whole mesh: less than what
+/// contact leaves between the cloth and an object [m].
+constexpr double kFlatRise = 2e-6;
+
+/// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
+double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
+  const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
+  const Triangle& second = mesh.triangles[static_cast<std::size_t>(edge.triangle[1])];
+  Index opposite = second[0];
+  for (const Index i : second) {
+    if (i != edge.a && i != edge.b) opposite = i;
+  }
+  const Vec3d across = mesh.positions[static_cast<std::size_t>(opposite)] -
+                       mesh.positions[static_cast<std::size_t>(edge.a)];
+  const double turn = angle_of(n1.cross(n2).norm(), n1.dot(n2));
+  return n1.dot(across) < 0 ? turn : -turn;
+}
+
+/// Width of a triangle across one of its edges [m].
+double width_across(const TriangleMesh& mesh, Index triangle, const MeshEdge& edge) {
+  const auto at = [&](Index i) { return mesh.positions[static_cast<std::size_t>(i)]; };
+  const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const double doubled_area = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
+  return doubled_area / (at(edge.b) - at(edge.a)).norm();
+}
+
+/// How steep the faces about each vertex fall from it, as a slope; less where some of them rise.
+std::vector<double> slopes_at_vertices(const TriangleMesh& mesh) {
+  const std::vector<Vec3d> normals = vertex_normals(mesh);
+  std::vector<double> slopes(mesh.positions.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3d n = unit_normal(mesh, static_cast<Index>(t));
+    for (const Index i : mesh.triangles[t]) {
+      const Vec3d& up = normals[static_cast<std::size_t>(i)];
+      const double along = n.dot(up);
+      const double slope = along > 0 ? n.cross(up).norm() / along : INFINITY;
+      slopes[static_cast<std::size_t>(i)] = std::max(slopes[static_cast<std::size_t>(i)], slope);
+    }
+  }
+  return slopes;
+}
+
+/// @param slope  of the steeper of its ends
+Rise<double> rise_of(const TriangleMesh& mesh, const MeshEdge& edge, double slope) {
+  const double turn = outward_turn(mesh, edge);
+  const double width = std::min(width_across(mesh, edge.triangle[0], edge),
+                                width_across(mesh, edge.triangle[1], edge));
+  return {std::max(std::tan(turn / 2), slope), turn / width};
+}
+
+/// Angle up to which ridges of a closed mesh are flat [rad]: the least angles that rise together by
+/// no more than `kFlatRise`.
+double flat_turn(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
+  std::vector<double> turns;
+  for (const MeshEdge& edge : edges) {
+    if (edge.triangle[1] != kNone) turns.push_back(outward_turn(mesh, edge));
+  }
+  Aabb<double> box;
+  for (const Vec3d& p : mesh.positions) box.add(p);
+  const double most = kFlatRise / (box.upper - box.lower).norm();
+  std::sort(turns.begin(), turns.end());
+  double sum = 0, flat = 0;
+  for (const double turn : turns) {
+    sum += std::max(turn, 0.0);
+    if (sum > most) break;
+    flat = std::max(turn, 0.0);
+  }
+  return flat;
+}
+
+/// Sorts features by the triangle that each is with; kNone for those left out.
+OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t triangles) {
+  OwnedFeatures owned;
+  owned.first.assign(triangles + 1, 0);
+  for (const Index t : triangle_of) {
+    if (t != kNone) ++owned.first[static_cast<std::size_t>(t) + 1];
+  }
+  for (std::size_t t = 0; t < triangles; ++t) owned.first[t + 1] += owned.first[t];
+  owned.list.resize(static_cast<std::size_t>(owned.first[triangles]));
+  std::vector<Index> next = owned.first;
+  for (std::size_t f = 0; f < triangle_of.size(); ++f) {
+    if (triangle_of[f] == kNone) continue;
+    Index& place = next[static_cast<std::size_t>(triangle_of[f])];
+    owned.list[static_cast<std::size_t>(place++)] = static_cast<Index>(f);
+  }
+  return owned;
+}
+
+template <class Real>
+void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
+  const std::vector<double> slopes = slopes_at_vertices(mesh);
+  const double flat = shape.closed ? flat_turn(mesh, shape.edges) : 0;
+  shape.edge_rises.resize(shape.edges.size());
+  shape.vertex_rises.resize(mesh.positions.size());
+  std::vector<Index> of_edge(shape.edges.size(), kNone), of_vertex(mesh.positions.size(), kNone);
+  for (std::size_t e = 0; e < shape.edges.size(); ++e) {
+    const MeshEdge& edge = shape.edges[e];
+    const bool rim = edge.triangle[1] == kNone;
+    const Vec3d n1 = unit_normal(mesh, edge.triangle[0]);
+    const Vec3d n2 = rim ? n1 : unit_normal(mesh, edge.triangle[1]);
+    const Vec3d sum = n1 + n2;
+    shape.edge_normals.push_back(
+        (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
+    const bool solid = shape.closed && !rim;
+    if (solid && outward_turn(mesh, edge) <= flat) continue;
+    const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
+    const Rise<double> rise =
+        solid ? rise_of(mesh, edge, std::max(slopes[a], slopes[b])) : Rise<double>{INFINITY, 0};
+    shape.edge_rises[e] = {static_cast<Real>(rise.slope), static_cast<Real>(rise.curvature)};
+    of_edge[e] = edge.triangle[0];
+    for (const std::size_t v : {a, b}) {
+      Rise<Real>& of_corner = shape.vertex_rises[v];
+      of_corner.slope = static_cast<Real>(solid ? slopes[v] : INFINITY);
+      of_corner.curvature = std::max(of_corner.curvature, shape.edge_rises[e].curvature);
+      of_vertex[v] = edge.triangle[0];
+    }
+  }
+  shape.sharp_edges = with_triangles(of_edge, mesh.triangles.size());
+  shape.sharp_vertices = with_triangles(of_vertex, mesh.triangles.size());
+}
+
+template <class Real>
+void build_tree(MeshShape<Real>& shape) {
+  std::vector<Aabb<Real>> boxes;
+  for (const Triangle& t : shape.triangles) {
+    boxes.emplace_back();
+    for (const Index i : t) boxes.back().add(shape.positions[static_cast<std::size_t>(i)]);
+  }
+  shape.triangle_tree.build(boxes);
+}
+
+/// Normal of the feature of triangle t that is nearest: face, corner, or edge.
+template <class Real>
+Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  if (feature == 0) return mesh.face_normals[static_cast<std::size_t>(t)];
+  if (feature <= 3)
+    return mesh
+        .vertex_normals[static_cast<std::size_t>(triangle[static_cast<std::size_t>(feature - 1)])];
+  const auto k = static_cast<std::size_t>(feature - 4);
+  const Index i = triangle[k], j = triangle[(k + 1) % 3];
+  // Edges are ordered by their ends.
+  const auto found =
+      std::lower_bound(mesh.edges.begin(), mesh.edges.end(), Edge{std::min(i, j), std::max(i, j)},
+                       [](const MeshEdge& e, const Edge& ends) {
+                         return Edge{e.a, e.b} < ends;
+                       });
+  return mesh.edge_normals[static_cast<std::size_t>(found - mesh.edges.begin())];
+}
+
+}  // namespace
+
+template <class Real>
+MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
+  MeshShape<Real> shape;
+  shape.closed = is_closed(mesh);
+  shape.triangle_size = static_cast<Real>(
+      std::sqrt(2 * surface_area(mesh) / static_cast<double>(mesh.triangles.size())));
+  shape.triangles = mesh.triangles;
+  for (const Vec3d& p : mesh.positions) shape.positions.push_back(p.cast<Real>());
+  for (const Vec3d& n : vertex_normals(mesh)) shape.vertex_normals.push_back(n.cast<Real>());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
+  shape.edges = edges_of(mesh);
+  for (const MeshEdge& e : shape.edges) {
+    const double length = (mesh.positions[static_cast<std::size_t>(e.a)] -
+                           mesh.positions[static_cast<std::size_t>(e.b)])
+                              .norm();
+    shape.longest_edge = std::max(shape.longest_edge, static_cast<Real>(length));
+  }
+  for (const Triangle& t : mesh.triangles) {
+    const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(t[k])]; };
+    const Vec3d ab = at(1) - at(0), ac = at(2) - at(0);
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    shape.rounding = std::max(
+        shape.rounding,
+        rounding_of_triangle(static_cast<Real>(longest), static_cast<Real>(ab.cross(ac).norm())));
+  }
+  find_sharp_features(mesh, shape);
+  build_tree(shape);
+  return shape;
+}
+
+/// In double precision: at a sharp ridge or corner a small error would change sides.
+template <class Real>
+MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  const auto corner = [&](std::size_t k) -> Vec3d {
+    return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
+  };
+  const Vec3d point = p.template cast<double>();
+  const auto nearest = closest_on_triangle<double>(point, corner(0), corner(1), corner(2));
+  const Vec3d away = point - nearest.point;
+  const double distance = away.norm();
+  const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
+  MeshDistance<Real> result;
+  result.triangle = t;
+  result.feature = nearest.feature;
+  // So near the surface that the direction is rounding, the feature's normal serves.
+  constexpr double kTouching = 1e-6;
+  const double sign = mesh.closed && away.dot(outward.template cast<double>()) < 0 ? -1 : 1;
+  result.distance = static_cast<Real>(sign * distance);
+  result.normal = outward;
+  if (distance > kTouching) result.normal = (away * (sign / distance)).template cast<Real>();
+  return result;
+}
+
+template <class Real>
+MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real>& p, Real reach) {
+  Index best = kNone;
+  mesh.triangle_tree.nearest(
+      reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
+      [&](Index t, Real bound) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+        const auto corner = [&](std::size_t k) {
+          return mesh.positions[static_cast<std::size_t>(triangle[k])];
+        };
+        const Real d2 =
+            (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point).squaredNorm();
+        if (d2 > bound || (d2 == bound && best != kNone && t > best)) return bound;
+        best = t;
+        return d2;
+      });
+  if (best == kNone) return {};
+  return distance_to_triangle(mesh, best, p);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                    \
+  template MeshShape<Real> prepare_mesh(const TriangleMesh&);                     \
+  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, \
+                                                   const Vec3<Real>&);            \
+  template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
