@@ -33,11 +33,11 @@ constexpr double kPushRate = 60, kPushSpeed = 0.1;
 /// for ever, and the push drives the springs that bring it back.
 constexpr double kPushSlack = 0.1;
 
-/// Pressure under which layers may lie on each other without any thickness, and in proportion: as
-/// much as laboratories press fabrics with (KES), which takes a third to a half of theirs [Pa].
-/// What is pressed so is not pushed: the push would stretch it, and lift what presses, with energy
-/// that nobody gave.
-constexpr double kFlattening = 5e3;
+/// Pressure takes thickness from layers, in proportion: as much as laboratories press fabrics with
+/// (KES), which takes a third to a half of theirs, would take all of it [Pa], but for a part. What
+/// is pressed so is not pushed: the push would stretch it, and lift what presses, with energy that
+/// nobody gave.
+constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
 
 }  // namespace
 
@@ -216,7 +216,8 @@ Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
   Real both = 0;
   for (std::size_t n = 0; n < 4; ++n)
     both += std::abs(row.weight[n]) * pressure_[static_cast<std::size_t>(row.particle[n])];
-  return -row.room - row.radius * both * Real(1 / (2 * kFlattening));
+  const Real pressed = std::min(both * Real(1 / (2 * kFlattening)), Real(kMostFlattening));
+  return -row.room - row.radius * pressed;
 }
 
 template <class Real>
