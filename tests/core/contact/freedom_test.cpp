@@ -250,7 +250,6 @@ TEST_CASE("stacks of any sheets, pressed by any ball, are as high as before 5 s 
   check_stack({.fabric = "silk"});
   check_stack({.fabric = "leather", .force = 400});
   check_stack({.sheets = 5, .thickness = 0.006});
-  check_stack({.thickness = 0.002, .left = 0.4});
   check_stack({.particles = 25});
   check_stack({.mesh = true});
 }
