@@ -133,6 +133,13 @@ Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real s
   return bounded<Real>(pull / (1 + resistance), grab.def.max_force);
 }
 
+/// Notes what a force gives the held particles in some time [N s].
+template <class Real>
+void note_impulses(const Vec3<Real>& force, Real seconds, Grab<Real>& grab) {
+  for (std::size_t n = 0; n < grab.particles.size(); ++n)
+    grab.impulse[n] = force * (grab.weights[n] * seconds);
+}
+
 /// Gives the held particles a force for some time.
 template <class Real>
 void pull(const Grab<Real>& grab, const Vec3<Real>& force, Real seconds, ClothState<Real>& state) {
@@ -157,13 +164,16 @@ void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) 
 template <class Real>
 void hold_back(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
   constexpr Real kMost = static_cast<Real>(kFastestHeld);
-  for (const Index i : grab.particles) {
-    Vec3<Real>& v = state.v[static_cast<std::size_t>(i)];
-    const Real inverse_mass = state.inverse_mass[static_cast<std::size_t>(i)];
+  for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+    const auto i = static_cast<std::size_t>(grab.particles[n]);
+    Vec3<Real>& v = state.v[i];
+    const Real inverse_mass = state.inverse_mass[i];
     const Real speed2 = v.squaredNorm();
     if (!(speed2 > kMost * kMost) || inverse_mass == 0) continue;
     const Vec3<Real> kept = v * (kMost / std::sqrt(speed2));
-    grab.force -= (v - kept) / (inverse_mass * seconds);
+    const Vec3<Real> lost = (v - kept) / inverse_mass;
+    grab.impulse[n] -= lost;
+    grab.force -= lost / seconds;
     v = kept;
   }
 }
@@ -191,6 +201,8 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   grab.def = def;
   if (def.radius > 0) weigh_disc(model, def, grab);
   if (grab.particles.empty()) weigh_corners(model, def, grab);
+  for (Vec3Array<Real>* array : {&grab.impulse, &grab.velocity})
+    array->assign(grab.particles.size(), Vec3<Real>::Zero());
   Vec3<Real> hit = Vec3<Real>::Zero();
   const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
   for (std::size_t k = 0; k < 3; ++k)
@@ -258,6 +270,7 @@ void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& st
     const Vec3<Real> force = hand_force(grab, step, seconds, state.x, others, own);
     pull<Real>(grab, force - grab.force, seconds, state);
     grab.force = force;
+    note_impulses(force, seconds, grab);
   });
   for_live(grabs, state, [&](Grab<Real>& grab) { hold_back(grab, seconds, state); });
 }
@@ -280,6 +293,7 @@ void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gr
     const Vec3<Real> found = hand_force(grab, step, step.dt, state.x, others, own);
     share_force<Real>(grab.particles, grab.weights, found - grab.force, force);
     grab.force = found;
+    note_impulses(found, step.dt, grab);
   });
 }
 
@@ -300,16 +314,21 @@ void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
 
 template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
-  for (Grab<Real>& grab : grabs.list) grab.velocity = weighted_mean(grab, v);
+  for (Grab<Real>& grab : grabs.list) {
+    for (std::size_t n = 0; n < grab.particles.size(); ++n)
+      grab.velocity[n] = v[static_cast<std::size_t>(grab.particles[n])];
+  }
 }
 
 template <class Real>
-double work_of_hands(Real seconds, const Vec3Array<Real>& v, Grabs<Real>& grabs) {
+double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   double work = 0;
   for (Grab<Real>& grab : grabs.list) {
-    const Vec3<Real> before = std::exchange(grab.velocity, weighted_mean(grab, v));
-    if (grab.def.mode == GrabMode::live)
-      work += static_cast<double>(grab.force.dot(before + grab.velocity) * seconds) / 2;
+    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+      const Vec3<Real>& now = v[static_cast<std::size_t>(grab.particles[n])];
+      const Vec3<Real> before = std::exchange(grab.velocity[n], now);
+      work += static_cast<double>(grab.impulse[n].dot(before + now)) / 2;
+    }
   }
   return work;
 }
@@ -329,7 +348,7 @@ double work_of_hands(Real seconds, const Vec3Array<Real>& v, Grabs<Real>& grabs)
   template void add_shot_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
   template void add_last_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
   template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
-  template double work_of_hands(Real, const Vec3Array<Real>&, Grabs<Real>&);
+  template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

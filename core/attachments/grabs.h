@@ -47,12 +47,13 @@ struct Grab {
   GrabId id = 0;
   GrabDef def;
   std::vector<Index> particles;
-  std::vector<Real> weights;                 ///< of the particles, sum 1
-  Vec3<Real> offset;                         ///< held point minus weighted mean when taken [m]
-  Vec3<Real> target, target_before;          ///< at the end and at the start of the coming tick [m]
-  Real damping = 0;                          ///< of the spring [N s/m]
-  StabilityBound bound;                      ///< of its spring alone, were it an explicit one
-  Vec3<Real> velocity = Vec3<Real>::Zero();  ///< of the held point when last seen [m/s]
+  std::vector<Real> weights;         ///< of the particles, sum 1
+  Vec3<Real> offset;                 ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target, target_before;  ///< at the end and at the start of the coming tick [m]
+  Real damping = 0;                  ///< of the spring [N s/m]
+  StabilityBound bound;              ///< of its spring alone, were it an explicit one
+  Vec3Array<Real> impulse;           ///< of each particle by the last force, pinned ones too [N s]
+  Vec3Array<Real> velocity;          ///< of each particle when last seen [m/s]
   /// Of a live hand: on the cloth, in the last substep; of a sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();
 };
@@ -143,14 +144,13 @@ void add_shot_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 template <class Real>
 void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 
-/// To be called when a tick begins: the held points have the velocities `v` [m/s].
+/// To be called when a tick begins: the held particles have the velocities `v` [m/s].
 template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 
-/// Work of the live hands' last forces while the velocities became `v`, whoever else had a part in
-/// that: the force acts along with the mean of those before and after [J].
-/// @param seconds  for which the forces acted
+/// Work of the live hands' last pull while the velocities became `v`, whoever else had a part in
+/// that: each impulse acts along with the mean of those before and after [J].
 template <class Real>
-double work_of_hands(Real seconds, const Vec3Array<Real>& v, Grabs<Real>& grabs);
+double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 
 }  // namespace weft

@@ -307,7 +307,7 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     predict(tick);
     relax(tick, s);
     move(tick);
-    result.work += external_work(tick) + work_of_hands(tick.dt, state.v, grabs);
+    result.work += external_work(tick) + work_of_hands(state.v, grabs);
   }
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;

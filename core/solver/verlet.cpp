@@ -248,14 +248,14 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     pull(tick, k, s, substeps);
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
-    work += work_of_hands(k.push, state.v, tick.grabs);
+    work += work_of_hands(state.v, tick.grabs);
     collision.after_drift(state, tick.dt, tick.profile);
     if (collision.seed || collision.guard) load_grids(tick);
   }
   swept_kick(tick, kicks.closing, Real(1));
   pull(tick, kicks.closing, substeps, substeps);
   collision.settle(state, tick.dt, tick.profile);
-  work += work_of_hands(kicks.closing.push, state.v, tick.grabs);
+  work += work_of_hands(state.v, tick.grabs);
   return work;
 }
 
