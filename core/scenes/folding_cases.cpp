@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
+using std::numbers::pi;
 
 /// Where hands take hold, as parts of the fabric's extent.
 struct Hold {
@@ -30,7 +30,7 @@ void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, doub
     hand.v = hold.v;
     hand.radius = 0.04;
     for (int k = 0; k <= kKeys; ++k) {
-      const double part = 0.5 - 0.5 * std::cos(kHalfTurn * k / kKeys), angle = kHalfTurn * part;
+      const double part = 0.5 - 0.5 * std::cos(pi * k / kKeys), angle = pi * part;
       const Vec3d up(0, way.norm() * kArch * std::sin(angle), 0);
       hand.path.push_back({start + seconds * k / kKeys, way * (0.5 - 0.5 * std::cos(angle)) + up});
     }
@@ -54,8 +54,7 @@ void build_towel(WorldDef& def, const std::string&) {
   take_over(def, both_layers, 2.4, 1.4, Vec3d(-kFolded, 0, 0));
   take_over(def, both_layers, 4.2, 1.4, Vec3d(kFolded, 0, 0));
   take_over(def, {{0.5, 1}}, 6, 2, Vec3d(0, 0, kSide));
-  def.contact.seed.self = SelfContact::guard;
-  def.verdict.strain = 0.5;
+  judge(def, 0.5);
   def.verdict.rest_at = 0.5;
   def.verdict.back_by = 9.9;
   def.verdict.heights = towel.fabric.thickness / 4;  // folded once it is half a thickness higher

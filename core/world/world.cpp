@@ -189,21 +189,33 @@ int World<Real>::choose_substeps() const {
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
     count = std::max(count, substeps_for(stability_bound(part), tick_seconds(), fewest));
-  // No hand needs more to be stable, but what one presses against an object or into other cloth
-  // loses less of its motion. Few substeps are made as many as if hands were explicit springs.
-  const long most = std::max(count * kMostForHands, kEnoughForHands);
+  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(count, fewest));
+  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+}
+
+/// No hand needs more than the cloth to be stable, but what one presses against an object or into
+/// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
+/// springs.
+template <class Real>
+long World<Real>::substeps_for_hands(long cloth_alone, int fewest) const {
+  const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
+  long count = 0;
   for (const ClothPart<Real>& part : model_.parts) {
-    StabilityBound together = stability_bound(part);
+    StabilityBound hands;
     for (const Grab<Real>& grab : grabs_.list) {
       if (!part.triangles.contains(grab.def.triangle)) continue;
-      together.omega2 += grab.bound.omega2;
-      together.damping_rate += grab.bound.damping_rate;
+      hands.omega2 += grab.bound.omega2;
+      hands.damping_rate += grab.bound.damping_rate;
       count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
     }
+    if (hands.omega2 == 0) continue;
+    StabilityBound together = stability_bound(part);
+    together.omega2 += hands.omega2;
+    together.damping_rate += hands.damping_rate;
     count =
         std::max(count, std::min(kEnoughForHands, substeps_for(together, tick_seconds(), fewest)));
   }
-  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+  return count;
 }
 
 template <class Real>

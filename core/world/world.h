@@ -208,6 +208,7 @@ class World {
   const TickReport& rest();
   void put_to_sleep();
   int choose_substeps() const;
+  long substeps_for_hands(long cloth_alone, int fewest) const;
   void prepare_solver();
   void make_room();
   StabilityBound stability_bound(const ClothPart<Real>& part) const;
