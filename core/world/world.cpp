@@ -75,7 +75,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
-  if (has_guard(def_)) guard_.emplace(model_);
+  if (has_guard(def_)) guard_.emplace(model_, runtime_.executor);
   prepare_solver();
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);

@@ -1,18 +1,20 @@
 #include "tests/bench/contact_cases.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 
 #include "core/diagnostics/crossings.h"
 #include "core/scenes/dress_form.h"
+#include "server/thread_pool.h"
 #include "tests/bench/contact_states.h"
 #include "tests/bench/measures.h"
 
 namespace weft::bench {
 namespace {
 
-/// A tick of 1/60 s, with two cores of which the contact uses one [ms].
+/// A tick of 1/60 s [ms].
 constexpr double kRealTime = 1000.0 / 60;
 constexpr int kTicksASecond = 60;
 
@@ -25,6 +27,17 @@ double milliseconds_of_tick(World<float>& world) {
   const double start = cpu_seconds();
   world.step();
   return 1e3 * (cpu_seconds() - start);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// As a viewer waits for it, however many cores work.
+double wall_milliseconds_of_tick(World<float>& world) {
+  const double start = wall_seconds();
+  world.step();
+  return 1e3 * (wall_seconds() - start);
 }
 
 double mean(const std::vector<double>& values, std::size_t from, std::size_t to) {
@@ -107,7 +120,7 @@ class Cases {
     scene_ = name;
     std::cerr << "bench: contact, " << name << std::endl;
     ContactState pile{name, "", falling_sheet(extent_.n, thickness), {}, {}};
-    std::vector<std::vector<double>> runs;
+    std::vector<std::vector<double>> runs, walls;
     double fastest = 0, touched = 0;
     Counter counter;
     for (int k = 0; k < extent_.runs; ++k) {
@@ -124,8 +137,12 @@ class Cases {
         if (tick >= extent_.drop) fastest = std::max(fastest, fastest_but_a_hundredth(world));
       }
       if (k == 0) touched = touch(world, counter);
+      World<float> on_two(pile.def, {&two_threads_, nullptr});
+      walls.emplace_back();
+      for (int tick = 0; tick < extent_.drop + extent_.rest; ++tick)
+        walls.back().push_back(wall_milliseconds_of_tick(on_two));
     }
-    const std::vector<double> ms = medians(runs);
+    const std::vector<double> ms = medians(runs), wall = medians(walls);
     const auto end = static_cast<std::size_t>(extent_.drop), second = end / 5;
     runs_ = extent_.runs;
     add("a tick in the first second", "ms", mean(ms, 0, second));
@@ -133,6 +150,10 @@ class Cases {
     add("a tick from 2 to 5 s", "ms", mean(ms, 2 * second, end));
     add("a tick from 0 to 5 s", "ms", mean(ms, 0, end), Bar::at_most, kRealTime);
     add("a tick at rest, after 5 s", "ms", mean(ms, end, ms.size()), Bar::at_most, kRealTime / 2);
+    add("the same from 0 to 5 s, wall on two threads", "ms", mean(wall, 0, end), Bar::at_most,
+        kRealTime);
+    add("the same at rest, wall on two threads", "ms", mean(wall, end, wall.size()), Bar::at_most,
+        kRealTime / 2);
     runs_ = 1;
     add("p99 speed, the fastest tick of the half second after 5 s", "mm/s", fastest, Bar::at_most,
         2);
@@ -146,11 +167,12 @@ class Cases {
     scene_ = pile.name;
     std::cerr << "bench: contact, a hand through " << pile.name << std::endl;
     constexpr double kSpeed = 2, kLeg = 0.5;  // [m/s], [m]
-    std::vector<std::vector<double>> runs;
+    std::vector<std::vector<double>> runs, walls;
     Counter counter;
     double longest_lag = 0;
-    for (int k = 0; k < extent_.runs; ++k) {
-      World<float> world(pile.def);
+    for (int k = 0; k < 2 * extent_.runs; ++k) {  // in turn on one thread and on two
+      const bool alone = k % 2 == 0;
+      World<float> world(pile.def, {alone ? nullptr : &two_threads_, nullptr});
       take_state(pile, world);
       for (int tick = 0; tick < 4; ++tick) world.step();
       const std::size_t held = farthest(world, 0);
@@ -158,13 +180,13 @@ class Cases {
       grab.stiffness = 1000;
       const Vec3d from = grab.target;
       const GrabId hand = world.grab(grab);
-      runs.emplace_back();
+      std::vector<double>& times = (alone ? runs : walls).emplace_back();
       for (int tick = 1; tick <= extent_.hand; ++tick) {
         const double way = std::fmod(kSpeed * tick / kTicksASecond, 2 * kLeg);
         const double left = way < kLeg ? way : 2 * kLeg - way;
         const Vec3d to = from - Vec3d(left, 0, 0);
         world.move_grab(hand, to);
-        runs.back().push_back(milliseconds_of_tick(world));
+        times.push_back(alone ? milliseconds_of_tick(world) : wall_milliseconds_of_tick(world));
         if (k > 0) continue;
         counter.look(world);
         const double lag = (world.state().x[held].cast<double>() - to).norm();
@@ -175,6 +197,8 @@ class Cases {
     runs_ = extent_.runs;
     add("a hand at 2 m/s through it, mean", "ms", mean(ms, 0, ms.size()), Bar::at_most, 25);
     add("a hand at 2 m/s through it, p95", "ms", percentile(ms, 0.95), Bar::at_most, 25);
+    const std::vector<double> wall = medians(walls);
+    add("the same mean, wall on two threads", "ms", mean(wall, 0, wall.size()), Bar::at_most, 25);
     runs_ = 1;
     add("the cloth lags behind the hand by at most", "mm", longest_lag);
     add("crossings under the hand, at each tick", "", counter.total(), Bar::at_most, 0);
@@ -268,6 +292,7 @@ class Cases {
   }
 
   Extent extent_;
+  server::ThreadPool two_threads_{2};
   std::string scene_;
   int runs_ = 1;
 };

@@ -13,9 +13,10 @@ constexpr double kReachPart = 0.65, kMostReach = 0.28;
 }  // namespace
 
 template <class Real>
-ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
-    : edges_(model.edges), triangles_(model.triangles), neighbours_(model.mass.size(), edges_),
-      tree_(model), boxes_(tree_, edges_, triangles_), tangles_(model) {
+ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
+    : executor_(executor), edges_(model.edges), triangles_(model.triangles),
+      neighbours_(model.mass.size(), edges_), tree_(model), boxes_(tree_, edges_, triangles_),
+      tangles_(model) {
   for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
   find_who_is_across();
   finest_ = std::numeric_limits<Real>::infinity();
@@ -44,7 +45,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   for (QuadArray<Real>* array : {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_,
                                  &anchor_, &x_rows_, &quad_v_, &extra_})
     array->assign(n, {});
-  for (Vec3Array<Real>* array : {&calm_paths_.base, &calm_paths_.velocity})
+  for (Vec3Array<Real>* array : {&calm_paths_.base, &calm_paths_.velocity, &ends_})
     array->assign(n, Vec3<Real>::Zero());
   in_rows_.assign(n, 0);
   is_moved_.assign(n, 0);
@@ -64,6 +65,10 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model)
   is_pushed_.assign(n, 0);
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
+  searches_.resize(kMostSearches);
+  for (PairSearch& s : searches_) {
+    for (std::size_t k = 0; k < 2; ++k) s.columns[k].kind = static_cast<PairKind>(k);
+  }
   resting_.assign(tree_.patch_count(), 0);
   is_heap_.assign(particles_of_.size(), 0);
   crossings_of_.assign(particles_of_.size(), 0);

@@ -15,9 +15,13 @@
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/patch_boxes.h"
 #include "core/contact/tangles/cloth_tangles.h"
+#include "core/executor.h"
 #include "core/world/profile.h"
 
 namespace weft {
+
+/// The search for pairs is done in at most so many parts.
+inline constexpr std::size_t kMostSearches = 16;
 
 /// Contact of cloths with themselves and each other, with the promise that no particle passes a
 /// triangle and no edge another one (PHYSICS.md section 4).
@@ -39,7 +43,8 @@ template <class Real>
 class ClothGuard {
  public:
   ClothGuard() = default;
-  explicit ClothGuard(const ClothModel<Real>& model);
+  /// @param executor  works through the search for pairs in chunks; may be null
+  explicit ClothGuard(const ClothModel<Real>& model, Executor* executor = nullptr);
 
   /// Forgets everything about where the cloths are.
   void reset();
@@ -131,6 +136,14 @@ class ClothGuard {
     bool ample = false;       ///< the bound is far more than anybody needs
   };
 
+  /// What a part of the search for pairs needs for itself, and what it found.
+  struct PairSearch {
+    std::array<PairColumns<Real>, 2> columns;  ///< of each kind, to be looked at together
+    PatchOverlaps overlaps;                    ///< of the patches that are being tested
+    std::vector<GuardedPair<Real>> found;
+    std::uint64_t tests = 0;
+  };
+
   /// A pair whose coming step is certified by itself.
   struct Critical {
     Index pair;
@@ -180,13 +193,17 @@ class ClothGuard {
   }
 
   // guard_patches.cpp
-  std::uint64_t test_patches(Index p, Index q, bool all);
   void test_near_patches(bool all, Profile& profile);
-  std::uint64_t test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
-  std::uint64_t test_edges(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps);
+  void fit_near_patches();
+  void search(std::size_t first, std::size_t last, bool all, PairSearch& s) const;
+  void test_patches(Index p, Index q, bool all, PairSearch& s) const;
+  void test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps,
+                      PairSearch& s) const;
+  void test_edges(Index p, Index q, bool all, PairSearch& s) const;
   typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
-  void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle);
-  void keep_near(PairColumns<Real>& columns);
+  void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle,
+                 PairSearch& s) const;
+  void keep_near(PairColumns<Real>& columns, PairSearch& s) const;
 
   // guard_tangles.cpp
   void find_tangles(const ClothState<Real>& state);
@@ -216,6 +233,8 @@ class ClothGuard {
 
   // guard_critical.cpp
   bool stays_calm(const ClothState<Real>& state, Real dt) const;
+  bool has_leeway(const ClothState<Real>& state, Real dt) const;
+  void note_ends(const ClothState<Real>& state, Real dt);
   void note_paths();
   void stop_crossings();
   bool find_critical();
@@ -263,6 +282,7 @@ class ClothGuard {
 
   Index part_of(Index particle) const;
 
+  Executor* executor_ = nullptr;
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
   /// Of each triangle, who is across the edge opposite to a corner; none on a rim.
@@ -291,6 +311,7 @@ class ClothGuard {
   std::vector<char> changed_, is_active_;
   std::vector<std::uint64_t> dropped_keys_;
   Real horizon_ = 0, elapsed_ = 0;  ///< how long pairs hold, and how old they are [s]
+  Real fastest_ = 0;                ///< along a path, less the common velocity [m/s]
   bool calm_ = false;               ///< there was no pair when the step began
   Vec3Array<Real> x_before_;        ///< then, where each was when it began [m]
   CalmPaths<Real> calm_paths_;      ///< if there was no pair then; bases with noted_off_path_
@@ -298,7 +319,8 @@ class ClothGuard {
   Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
   std::vector<std::pair<Index, Index>> near_patches_;  ///< whose features are to be tested
   PatchBoxes<Real> boxes_;
-  PatchOverlaps overlaps_;                    ///< of the patches that are being tested
+  std::vector<Index> to_fit_;                 ///< patches among these whose boxes do not fit
+  std::vector<PairSearch> searches_;          ///< of parts of these
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
@@ -317,6 +339,10 @@ class ClothGuard {
   QuadArray<Real> step_;   ///< and the motion wanted in it [m]
   QuadArray<Real> anchor_;
   std::vector<Real> room_, moved_, fraction_;
+  /// By how much everybody may still leave where he was at the end of the last step that was looked
+  /// at, and when and where that was [m, s, m].
+  Real leeway_ = 0, looked_ = 0;
+  Vec3Array<Real> ends_;
   std::vector<std::uint32_t> wave_of_;
   std::vector<std::uint64_t> anchored_at_;  ///< step in which each was anchored last
   std::uint32_t wave_ = 0;

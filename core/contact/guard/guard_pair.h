@@ -39,7 +39,8 @@ struct GuardCounts {
   std::uint64_t collections = 0;  ///< of all pairs
   std::uint64_t renewals = 0;     ///< of the pairs of some particles
   std::uint64_t anchored = 0, critical = 0;
-  std::uint64_t calm = 0;  ///< steps that went by along calm paths, without a look at any particle
+  std::uint64_t quiet = 0;  ///< steps that one bound for all particles certified
+  std::uint64_t calm = 0;   ///< steps that went by along calm paths, without a look at any particle
 };
 
 /// Straight paths of all particles. While no two features can meet that go along them, all that is

@@ -82,10 +82,13 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
 template <class Real>
 void ClothGuard<Real>::predict(Real past) {
   const Quad<Real> gone = common_velocity_ * past, common = common_velocity_ * horizon_;
+  Real fastest2 = 0;
   for (std::size_t i = 0; i < legal_.size(); ++i) {
     motion_.start[i] = on_path(i, past) - gone;
     motion_.end[i] = on_path(i, horizon_) - common;
+    fastest2 = std::max(fastest2, dot(velocity_[i], velocity_[i]));
   }
+  fastest_ = std::sqrt(fastest2);
 }
 
 /// Gives particles that leave their paths new ones, and collects their pairs anew; the others go
@@ -172,7 +175,7 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
   for (PairColumns<Real>& columns : columns_) {
     separate_pairs(anchor_, anchor_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.certified_gap(k, anchor_);
     columns.clear();
   }
   measure_steps();

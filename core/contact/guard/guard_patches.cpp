@@ -11,6 +11,11 @@ namespace {
 /// Pairs that are tested together.
 constexpr std::size_t kPairsAtOnce = 1024;
 
+/// A part of the search has at least so many pairs of patches: fewer are not worth a thread.
+constexpr std::size_t kPatchesAtLeast = 128;
+/// And so many patches are fitted together.
+constexpr std::size_t kFitsAtLeast = 128;
+
 bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
   if (kind == PairKind::vertex_triangle) return p[0] == p[1] || p[0] == p[2] || p[0] == p[3];
   return p[0] == p[2] || p[0] == p[3] || p[1] == p[2] || p[1] == p[3];
@@ -20,6 +25,12 @@ bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
 template <class Visit>
 void for_each_bit(std::uint32_t bits, Visit&& visit) {
   for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+/// How many parts work is done in, at least `each` in one: by its amount alone, so that threads
+/// make no difference.
+std::size_t parts_of(std::size_t amount, std::size_t each) {
+  return std::clamp<std::size_t>(amount / each, 1, kMostSearches);
 }
 
 }  // namespace
@@ -32,37 +43,67 @@ typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index p, bool all)
   return tree_.is_marked(p) ? boxes_.changed(p) : typename PatchBoxes<Real>::Marks{};
 }
 
-/// Tests the features of two patches against each other.
+/// Tests the features of all patches that are near each other, in parts that know nothing of each
+/// other, and adds what they find to the pairs, in their order.
 /// @param all  or only pairs that have a changed particle
-/// @return number of tests
-template <class Real>
-std::uint64_t ClothGuard<Real>::test_patches(Index p, Index q, bool all) {
-  if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return 0;
-  if (in_heap(p) || in_heap(q)) return 0;
-  boxes_.fit(p, tree_.patch(p), motion_, changed_);
-  boxes_.fit(q, tree_.patch(q), motion_, changed_);
-  overlap_patches(boxes_.columns(p), boxes_.columns(q), overlaps_);
-  std::uint64_t tests = test_triangles(p, q, all, overlaps_.first_vertices);
-  if (p != q) tests += test_triangles(q, p, all, overlaps_.second_vertices);
-  return tests + test_edges(p, q, all, overlaps_.first_edges);
-}
-
-/// Tests the features of all patches that are near each other.
-/// @param all  see test_patches
 template <class Real>
 void ClothGuard<Real>::test_near_patches(bool all, Profile& profile) {
   const StageTimer timer(profile, Stage::pairs, 0);
-  profile[Stage::broad_phase].work += near_patches_.size();
-  std::uint64_t tests = 0;
-  for (const auto& [p, q] : near_patches_) tests += test_patches(p, q, all);
-  for (PairColumns<Real>& columns : columns_) keep_near(columns);
-  profile[Stage::pairs].work += tests;
+  const std::size_t count = near_patches_.size(), parts = parts_of(count, kPatchesAtLeast);
+  profile[Stage::broad_phase].work += count;
+  fit_near_patches();
+  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
+    const auto n = static_cast<std::size_t>(part);
+    search(count * n / parts, count * (n + 1) / parts, all, searches_[n]);
+  });
+  for (std::size_t n = 0; n < parts; ++n) {
+    PairSearch& s = searches_[n];
+    profile[Stage::pairs].work += s.tests;
+    pairs_.insert(pairs_.end(), s.found.begin(), s.found.end());
+    for (const GuardedPair<Real>& pair : s.found) open_pairs_ += pair.open ? 1 : 0;
+    s.found.clear();
+  }
+}
+
+/// Fits the boxes of all these patches.
+template <class Real>
+void ClothGuard<Real>::fit_near_patches() {
+  to_fit_.clear();
+  for (const auto& [p, q] : near_patches_) {
+    if (!boxes_.mark_fitted(p)) to_fit_.push_back(p);
+    if (!boxes_.mark_fitted(q)) to_fit_.push_back(q);
+  }
+  const std::size_t count = to_fit_.size(), parts = parts_of(count, kFitsAtLeast);
+  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
+    const auto n = static_cast<std::size_t>(part);
+    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
+      boxes_.fit(to_fit_[k], tree_.patch(to_fit_[k]), motion_, changed_);
+  });
+}
+
+/// Tests the features of a part of the patches that are near each other.
+template <class Real>
+void ClothGuard<Real>::search(std::size_t first, std::size_t last, bool all, PairSearch& s) const {
+  s.tests = 0;
+  for (std::size_t k = first; k < last; ++k)
+    test_patches(near_patches_[k].first, near_patches_[k].second, all, s);
+  for (PairColumns<Real>& columns : s.columns) keep_near(columns, s);
+}
+
+template <class Real>
+void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch& s) const {
+  if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return;
+  if (in_heap(p) || in_heap(q)) return;
+  overlap_patches(boxes_.columns(p), boxes_.columns(q), s.overlaps);
+  test_triangles(p, q, all, s.overlaps.first_vertices, s);
+  if (p != q) test_triangles(q, p, all, s.overlaps.second_vertices, s);
+  test_edges(p, q, all, s);
 }
 
 /// Particles of one patch against triangles of another one.
 template <class Real>
-std::uint64_t ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
-                                               const PatchOverlaps::Bits& overlaps) {
+void ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
+                                      const PatchOverlaps::Bits& overlaps, PairSearch& s) const {
   const auto& vertices = tree_.patch(p).vertices;
   const auto& triangles = tree_.patch(q).triangles;
   const std::uint32_t changed = changed_in(p, all).vertices, others = changed_in(q, all).triangles;
@@ -71,44 +112,44 @@ std::uint64_t ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
     for_each_bit(near, [&](std::size_t n) {
       const Index v = vertices[k], t = triangles[n];
       const Triangle& c = triangles_[static_cast<std::size_t>(t)];
-      test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
+      test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]}, s);
     });
   }
-  return vertices.size() * triangles.size();
+  s.tests += vertices.size() * triangles.size();
 }
 
 /// Edges of two patches, or of one with each other.
 template <class Real>
-std::uint64_t ClothGuard<Real>::test_edges(Index p, Index q, bool all,
-                                           const PatchOverlaps::Bits& overlaps) {
+void ClothGuard<Real>::test_edges(Index p, Index q, bool all, PairSearch& s) const {
   const auto &first = tree_.patch(p).edges, &second = tree_.patch(q).edges;
   const std::uint32_t changed = changed_in(p, all).edges, others = changed_in(q, all).edges;
   for (std::size_t k = 0; k < first.size(); ++k) {
-    std::uint32_t near = overlaps[k] & (((changed >> k) & 1) != 0 ? ~0u : others);
+    const std::uint32_t overlaps = s.overlaps.first_edges[k];
+    std::uint32_t near = overlaps & (((changed >> k) & 1) != 0 ? ~0u : others);
     if (p == q) near &= ~0u << k << 1;  // each two once
     for_each_bit(near, [&](std::size_t n) {
       const auto [e, f] = std::minmax(first[k], second[n]);
       const Edge &c = edges_[static_cast<std::size_t>(e)], &d = edges_[static_cast<std::size_t>(f)];
-      test_pair(PairKind::edge_edge, e, f, {c[0], c[1], d[0], d[1]});
+      test_pair(PairKind::edge_edge, e, f, {c[0], c[1], d[0], d[1]}, s);
     });
   }
-  return first.size() * second.size();
+  s.tests += first.size() * second.size();
 }
 
 /// Puts a pair among those that are to be tested.
 template <class Real>
 void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
-                                 const std::array<Index, 4>& particle) {
+                                 const std::array<Index, 4>& particle, PairSearch& s) const {
   if (share_particle(particle, kind)) return;
-  PairColumns<Real>& columns = columns_of(kind);
+  PairColumns<Real>& columns = s.columns[static_cast<std::size_t>(kind)];
   columns.add(a, b, particle);
-  if (columns.size() >= kPairsAtOnce) keep_near(columns);
+  if (columns.size() >= kPairsAtOnce) keep_near(columns, s);
 }
 
 /// Keeps pairs unless one axis separates the balls of their particles at both ends of the horizon,
 /// and thereby all along.
 template <class Real>
-void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
+void ClothGuard<Real>::keep_near(PairColumns<Real>& columns, PairSearch& s) const {
   separate_pairs(motion_.start, motion_.end, columns);
   const Real apart = 2 * motion_.radius;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -118,24 +159,25 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns) {
     for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
     pair.a = columns.a[k];
     pair.b = columns.b[k];
-    pair.bound = columns.separation(k, motion_.start).gap;
+    pair.bound = columns.certified_gap(k, motion_.start);
     pair.open = !(pair.bound > 0) || tangles_.frees(pair.kind, pair.particle);
-    open_pairs_ += pair.open ? 1 : 0;
-    pairs_.push_back(pair);
+    s.found.push_back(pair);
   }
   columns.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;      \
-  template std::uint64_t ClothGuard<Real>::test_patches(Index, Index, bool);                      \
-  template void ClothGuard<Real>::test_near_patches(bool, Profile&);                              \
-  template std::uint64_t ClothGuard<Real>::test_triangles(Index, Index, bool,                     \
-                                                          const PatchOverlaps::Bits&);            \
-  template std::uint64_t ClothGuard<Real>::test_edges(Index, Index, bool,                         \
-                                                      const PatchOverlaps::Bits&);                \
-  template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&); \
-  template void ClothGuard<Real>::keep_near(PairColumns<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;     \
+  template void ClothGuard<Real>::test_near_patches(bool, Profile&);                             \
+  template void ClothGuard<Real>::fit_near_patches();                                            \
+  template void ClothGuard<Real>::search(std::size_t, std::size_t, bool, PairSearch&) const;     \
+  template void ClothGuard<Real>::test_patches(Index, Index, bool, PairSearch&) const;           \
+  template void ClothGuard<Real>::test_triangles(Index, Index, bool, const PatchOverlaps::Bits&, \
+                                                 PairSearch&) const;                             \
+  template void ClothGuard<Real>::test_edges(Index, Index, bool, PairSearch&) const;             \
+  template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&, \
+                                            PairSearch&) const;                                  \
+  template void ClothGuard<Real>::keep_near(PairColumns<Real>&, PairSearch&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

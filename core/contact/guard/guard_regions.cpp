@@ -53,11 +53,13 @@ template <class Real>
 void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
   const Real limit = reach_ * reach_, soon = limit * static_cast<Real>(kSoon * kSoon);
   bool left = false;
+  Real spare2 = limit;
   strays_.clear();
   const auto look = [&](std::size_t i) {
     step_[i] = (to_quad(state.x[i]) - legal_[i]) + to_quad(state.v[i]) * dt;
     const Quad<Real> off = legal_[i] + step_[i] - on_path(i, elapsed_), own = off - off_path_;
     const Real off2 = dot(own, own);
+    spare2 = std::min(spare2, limit - off2);
     if (!(off2 <= soon)) {
       strays_.push_back(static_cast<Index>(i));
       left |= !(off2 <= limit);
@@ -71,6 +73,8 @@ void ClothGuard<Real>::find_strays(const ClothState<Real>& state, Real dt) {
     for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
   }
   for (; i < step_.size(); ++i) look(i);
+  // a - b >= (a^2 - b^2) / 2a for 0 <= b <= a.
+  leeway_ = spare2 / (2 * reach_);
   const bool collected = collected_ && elapsed_ <= horizon_;
   if (!left || !collected) strays_.clear();
   if (!collected) return;
@@ -88,7 +92,9 @@ void ClothGuard<Real>::find_loose() {
   for (const Index k : active_) {
     const auto i = static_cast<std::size_t>(k);
     const Quad<Real> off = legal_[i] + step_[i] - anchor_[i];
-    if (wave_of_[i] == wave_ || !(dot(off, off) <= room_[i] * room_[i])) loose_.push_back(k);
+    const Real spare2 = room_[i] * room_[i] - dot(off, off);
+    if (wave_of_[i] == wave_ || !(spare2 >= 0)) loose_.push_back(k);
+    leeway_ = room_[i] > 0 ? std::min(leeway_, spare2 / (2 * room_[i])) : Real(0);
   }
   dirty_.clear();
 }
@@ -180,7 +186,7 @@ void ClothGuard<Real>::measure_claimed() {
     if (columns.size() == 0) continue;
     separate_pairs(anchor_, anchor_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.separation(k, anchor_).gap;
+      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.certified_gap(k, anchor_);
     columns.clear();
   }
 }

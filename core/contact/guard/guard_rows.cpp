@@ -137,7 +137,9 @@ void ClothGuard<Real>::list_row(std::size_t r) {
   const auto first = static_cast<std::size_t>(rows_[r].particle[0]);
   next_row_.push_back(std::exchange(first_row_[first], static_cast<Index>(r)));
   for (const Index i : rows_[r].particle) {
-    if (!std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) row_particles_.push_back(i);
+    if (std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) continue;
+    row_particles_.push_back(i);
+    pressure_[static_cast<std::size_t>(i)] = 0;
   }
 }
 

@@ -62,7 +62,10 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
     return;
   }
   load_rows(state);
-  if (rows_steps_ % kStepsBetweenLooks == 0) find_busy_rows(dt);
+  if (rows_steps_ % kStepsBetweenLooks == 0) {
+    find_busy_rows(dt);
+    measure_pressures();
+  }
   if (rows_steps_ % kStepsBetweenTurns == 0) turn_rows(state, profile);
   profile[Stage::contact].work += rows_.size();
   warm_rows(dt, kicked);
@@ -227,7 +230,6 @@ void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
     return -row.room > row.radius * Real(kPushSlack);
   };
   if (std::none_of(busy_rows_.begin(), busy_rows_.end(), is_near)) return;
-  measure_pressures();
   for (const Index k : busy_rows_) {
     if (!is_near(k)) continue;
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];

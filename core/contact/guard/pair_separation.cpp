@@ -1,5 +1,7 @@
 #include "core/contact/guard/pair_separation.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/contact/guard/pair_separation.cpp"
 #include <hwy/foreach_target.h>
@@ -15,17 +17,6 @@ namespace {
 /// An edge that is closest at its end, within this part of it, belongs to a particle instead.
 constexpr double kEdgeEnd = 0.01;
 
-/// Columns long enough for whole vectors.
-template <class Real>
-void pad(PairColumns<Real>& pairs) {
-  const std::size_t size = (pairs.size() + kPairPadding - 1) / kPairPadding * kPairPadding;
-  for (std::vector<Index>& column : pairs.particle) column.resize(size, 0);
-  for (auto* columns :
-       {&pairs.gap, &pairs.end_gap, &pairs.normal[0], &pairs.normal[1], &pairs.normal[2],
-        &pairs.weight[0], &pairs.weight[1], &pairs.weight[2], &pairs.weight[3]})
-    columns->resize(size);
-}
-
 template <class Real>
 const Real* numbers_of(const QuadArray<Real>& quads) {
   return reinterpret_cast<const Real*>(quads.data());
@@ -34,17 +25,14 @@ const Real* numbers_of(const QuadArray<Real>& quads) {
 }  // namespace
 
 template <class Real>
-void PairColumns<Real>::clear() {
-  a.clear();
-  b.clear();
-  for (std::vector<Index>& column : particle) column.clear();
-}
-
-template <class Real>
-void PairColumns<Real>::add(Index first, Index second, const std::array<Index, 4>& particles) {
-  a.push_back(first);
-  b.push_back(second);
-  for (std::size_t k = 0; k < 4; ++k) particle[k].push_back(particles[k]);
+void PairColumns<Real>::make_room() {
+  const std::size_t room = std::max(2 * a.size(), 8 * kPairPadding);
+  for (std::vector<Index>* column :
+       {&a, &b, &particle[0], &particle[1], &particle[2], &particle[3]})
+    column->resize(room, 0);
+  for (std::vector<Real>* column : {&gap, &end_gap, &normal[0], &normal[1], &normal[2], &weight[0],
+                                    &weight[1], &weight[2], &weight[3]})
+    column->resize(room, 0);
 }
 
 template <class Real>
@@ -72,14 +60,12 @@ HWY_EXPORT(separate_f32);
 HWY_EXPORT(separate_f64);
 
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs) {
-  pad(pairs);
-  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs);
+                    PairColumns<float>& pairs, std::size_t first, std::size_t last) {
+  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs, first, last);
 }
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs) {
-  pad(pairs);
-  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs);
+                    PairColumns<double>& pairs, std::size_t first, std::size_t last) {
+  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs, first, last);
 }
 
 template struct PairColumns<float>;

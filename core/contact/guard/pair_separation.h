@@ -13,12 +13,13 @@ namespace weft {
 /// Pairs are separated in vectors of at most so many.
 inline constexpr std::size_t kPairPadding = 8;
 
-/// Many pairs of one kind, and how their sides lie apart: one column a number, padded to a multiple
-/// of `kPairPadding`. As in PairSeparation, but along the line of closest points alone: where that
-/// gap is not above kCloseGap, `separate_pair` may know better.
+/// Many pairs of one kind, and how their sides lie apart: one column a number, with room for whole
+/// vectors; what lies beyond `count` is of no matter. As in PairSeparation, but along the line of
+/// closest points alone: where that gap is not above kCloseGap, `separate_pair` may know better.
 template <class Real>
 struct PairColumns {
   PairKind kind = PairKind::vertex_triangle;
+  std::size_t count = 0;                       ///< of pairs
   std::vector<Index> a, b;                     ///< features
   std::array<std::vector<Index>, 4> particle;  ///< as GuardedPair has them
   std::vector<Real> gap;                       ///< certified, along the normal [m]
@@ -26,20 +27,39 @@ struct PairColumns {
   std::array<std::vector<Real>, 3> normal;     ///< from the second side to the first
   std::array<std::vector<Real>, 4> weight;     ///< of the closest points
 
-  std::size_t size() const { return a.size(); }
-  void clear();
-  void add(Index first, Index second, const std::array<Index, 4>& particles);
+  std::size_t size() const { return count; }
+  void clear() { count = 0; }
+  void add(Index first, Index second, const std::array<Index, 4>& particles) {
+    if (count == a.size()) make_room();
+    a[count] = first;
+    b[count] = second;
+    for (std::size_t k = 0; k < 4; ++k) particle[k][count] = particles[k];
+    ++count;
+  }
+  void make_room();
   /// All that is known of a pair; exact where it is near.
   /// @param x  positions that the columns were separated with [m]
   PairSeparation<Real> separation(std::size_t k, const QuadArray<Real>& x) const;
+  /// Its gap alone.
+  Real certified_gap(std::size_t k, const QuadArray<Real>& x) const {
+    return gap[k] > static_cast<Real>(kCloseGap) ? gap[k] : separation(k, x).gap;
+  }
 };
 
 /// Fills the columns from `gap` on.
 /// @param x    positions [m]
-/// @param end  positions for `end_gap`; if it is x, that column is left as it is
+/// @param end    positions for `end_gap`; if it is x, that column is left as it is
+/// @param first  pair, a multiple of `kPairPadding`
+/// @param last   behind the last one
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs);
+                    PairColumns<float>& pairs, std::size_t first, std::size_t last);
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs);
+                    PairColumns<double>& pairs, std::size_t first, std::size_t last);
+/// All of them.
+template <class Real>
+void separate_pairs(const QuadArray<Real>& x, const QuadArray<Real>& end,
+                    PairColumns<Real>& pairs) {
+  separate_pairs(x, end, pairs, 0, pairs.size());
+}
 
 }  // namespace weft

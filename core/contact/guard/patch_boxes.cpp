@@ -82,14 +82,14 @@ PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
 template <class Real>
 template <std::size_t CornerCount>
 std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& features,
-                                             std::uint32_t changed, std::size_t pitch,
-                                             Real* numbers) const {
+                                             const CornerBoxes& corner, std::uint32_t changed,
+                                             std::size_t pitch, Real* numbers) {
   std::uint32_t marks = 0;
   for (std::size_t f = 0; f < features.size(); ++f) {
-    QuadBox<Real> box = corner_[features[f][0]];
+    QuadBox<Real> box = corner[features[f][0]];
     std::uint32_t corners = changed >> features[f][0];
     for (std::size_t k = 1; k < CornerCount; ++k) {
-      box.add(corner_[features[f][k]]);
+      box.add(corner[features[f][k]]);
       corners |= changed >> features[f][k];
     }
     marks |= (corners & 1) << f;
@@ -105,15 +105,14 @@ template <class Real>
 void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch,
                            const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
   const auto number = static_cast<std::size_t>(p);
-  if (fits_[number]) return;
-  fits_[number] = 1;
+  CornerBoxes corner;
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < patch.particles.size(); ++k) {
     const auto i = static_cast<std::size_t>(patch.particles[k]);
     QuadBox<Real> box;
     box.add(motion.start[i]);
     box.add(motion.end[i]);
-    corner_[k] = box.grown(motion.radius);
+    corner[k] = box.grown(motion.radius);
     bits |= static_cast<std::uint32_t>(changed[i] != 0) << k;
   }
   const PatchColumns<Real> all = columns(p);
@@ -122,9 +121,9 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
   };
   const Shape& shape = shapes_[number];
   changed_[number] = {
-      fit_features(shape.vertices, bits, all.vertices.pitch, numbers(all.vertices)),
-      fit_features(shape.edges, bits, all.edges.pitch, numbers(all.edges)),
-      fit_features(shape.triangles, bits, all.triangles.pitch, numbers(all.triangles))};
+      fit_features(shape.vertices, corner, bits, all.vertices.pitch, numbers(all.vertices)),
+      fit_features(shape.edges, corner, bits, all.edges.pitch, numbers(all.edges)),
+      fit_features(shape.triangles, corner, bits, all.triangles.pitch, numbers(all.triangles))};
 }
 
 HWY_EXPORT(overlap_f32);

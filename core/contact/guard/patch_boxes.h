@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/contact/guard/patch_tree.h"
@@ -50,8 +51,13 @@ class PatchBoxes {
   void forget() { fits_.assign(fits_.size(), 0); }
   /// Says that it is in one.
   void forget(Index patch) { fits_[static_cast<std::size_t>(patch)] = 0; }
+  /// Says that the boxes of a patch are about to be fitted.
+  /// @return whether they fitted already
+  bool mark_fitted(Index patch) {
+    return std::exchange(fits_[static_cast<std::size_t>(patch)], 1) != 0;
+  }
 
-  /// Fits the boxes of a patch, if they do not fit yet.
+  /// Fits the boxes of a patch. Several patches may be fitted at once.
   /// @param patch    its features
   /// @param changed  of each particle one number, not 0 if its motion changed
   void fit(Index p, const typename PatchTree<Real>::Patch& patch,
@@ -78,15 +84,17 @@ class PatchBoxes {
     std::size_t begin = 0;  ///< of its numbers
   };
 
+  /// Of the patch that is being fitted, for each of its particles.
+  using CornerBoxes = std::array<QuadBox<Real>, kMostPatchFeatures>;
   template <std::size_t CornerCount>
-  std::uint32_t fit_features(const Corners<CornerCount>& features, std::uint32_t changed,
-                             std::size_t pitch, Real* numbers) const;
+  static std::uint32_t fit_features(const Corners<CornerCount>& features,
+                                    const CornerBoxes& corners, std::uint32_t changed,
+                                    std::size_t pitch, Real* numbers);
 
   std::vector<Shape> shapes_;
   AlignedVector<Real> numbers_;
   std::vector<char> fits_;
   std::vector<Marks> changed_;
-  std::array<QuadBox<Real>, kMostPatchFeatures> corner_;  ///< of the patch that is being fitted
 };
 
 extern template class PatchBoxes<float>;

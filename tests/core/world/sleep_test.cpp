@@ -1,9 +1,9 @@
-#include <thread>
 
 #include <catch2/catch.hpp>
 
 #include "core/error.h"
 #include "tests/support/sleepers.h"
+#include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -167,15 +167,7 @@ TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awa
 }
 
 TEST_CASE("sleep is the same for any number of threads, and a replay repeats it") {
-  struct TwoThreads : Executor {
-    void run(int chunks, void (*work)(void*, int), void* context) override {
-      std::thread odd([&] {
-        for (int chunk = 1; chunk < chunks; chunk += 2) work(context, chunk);
-      });
-      for (int chunk = 0; chunk < chunks; chunk += 2) work(context, chunk);
-      odd.join();
-    }
-  } executor;
+  test::TwoThreads executor;
   WorldDef def;
   def.cloths = {test::flat_cloth(10, 10, 0.3, 0.3)};
   def.cloths[0].origin = Vec3d(-0.15, 0.15, -0.15);

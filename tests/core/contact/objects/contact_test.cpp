@@ -1,7 +1,6 @@
 #include "core/contact/objects/contact.h"
 
 #include <cmath>
-#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -11,6 +10,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/particles.h"
 #include "tests/support/random.h"
+#include "tests/support/two_threads.h"
 
 using namespace weft;
 using test::Particles;
@@ -42,17 +42,6 @@ Particles<Real> make_square(Index n, double cell, double height) {
   return cloth;
 }
 
-/// Runs chunks on two threads, last first.
-struct TwoThreads : Executor {
-  void run(int chunks, void (*work)(void*, int), void* context) override {
-    std::thread other([=] {
-      for (int k = chunks - 1; k >= 0; k -= 2) work(context, k);
-    });
-    for (int k = chunks - 2; k >= 0; k -= 2) work(context, k);
-    other.join();
-  }
-};
-
 template <class Real>
 void check_threads() {
   TriangleMesh form = make_dress_form();
@@ -60,7 +49,7 @@ void check_threads() {
   const std::vector<ColliderDef> colliders = {
       {"form", MeshDef{form}}, {"ground", PlaneDef{Vec3d(0, -0.3, 0), Vec3d::UnitY()}}};
   Particles<Real> one = make_square<Real>(14, 0.04, 0.16), two = one;
-  TwoThreads threads;
+  test::TwoThreads threads;
   Contact<Real> serial = one.meet({}, colliders), parallel = two.meet({}, colliders, &threads);
   for (int tick = 0; tick < 40; ++tick) {
     one.step(serial);
