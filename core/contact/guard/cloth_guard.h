@@ -273,6 +273,7 @@ class ClothGuard {
   void load_rows(const ClothState<Real>& state);
   void store_rows(ClothState<Real>& state) const;
   void aim(GuardRow<Real>& row, Real dt) const;
+  static void drag_anchor(GuardRow<Real>& row);
   Real solve_row(GuardRow<Real>& row);
   void find_busy_rows(Real dt);
   void warm_rows(Real dt, Real kicked);

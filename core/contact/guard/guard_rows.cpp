@@ -114,7 +114,7 @@ void ClothGuard<Real>::drop_moved_rows() {
   for (const GuardRow<Real>& row : rows_) {
     if (rows_built_ && !has_moved(row.particle)) {
       rows_[kept++] = row;
-    } else if (row.push > 0) {
+    } else if (row.push > 0 || dot(row.slip, row.slip) > 0) {
       old_keys_.push_back({row.key, static_cast<Index>(old_rows_.size())});
       old_rows_.push_back(row);
     }
@@ -280,6 +280,7 @@ void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<
   // Edges that are nearest at an end leave it to the particle there.
   if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {
     row.push = 0;
+    row.slip = {};
     return;
   }
   row.drag = tangential(row, row.drag);
@@ -311,11 +312,13 @@ GuardRow<Real>* ClothGuard<Real>::row_before(const GuardRow<Real>& row) {
 template <class Real>
 void ClothGuard<Real>::remember(GuardRow<Real>& row) {
   GuardRow<Real>* old = row_before(row);
-  if (!old || old->push == 0) return;
+  if (!old) return;
   row.push = std::exchange(old->push, Real(0));
-  row.drag = tangential(row, old->drag);
+  row.drag = tangential(row, std::exchange(old->drag, {}));
   // What it slipped since it was last aimed counts too.
-  row.slip = tangential(row, old->slip + (weighted(*old, legal_) - old->apart));
+  const Quad<Real> apart = weighted(*old, legal_);
+  row.slip = tangential(row, std::exchange(old->slip, {}) + (apart - old->apart));
+  old->apart = apart;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                \

@@ -23,8 +23,10 @@ constexpr double kResidual = 0.01;
 /// Rows that push turn with their features every so many steps.
 constexpr int kStepsBetweenTurns = 4;
 
-/// Time in which a contact that sticks goes back to its anchor [s].
-constexpr double kStickTime = 0.02;
+/// Time in which a contact that sticks goes back to its anchor [s], and how far that may be, as a
+/// part of the radius: what slides drags its anchor along, and what did so for a moment, as the
+/// load went over to other rows, goes back.
+constexpr double kStickTime = 0.02, kMostSlip = 0.008;
 
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
@@ -89,18 +91,25 @@ void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
 }
 
 /// Normal velocity that a row must reach: no nearer than its radius within the step. Adds to the
-/// slip of what stuck in the last step how far it really went.
+/// slip how far it really went. Who bounces a little, as particles of a resting cloth do, keeps his
+/// anchor: it would creep down every slope.
 template <class Real>
 void ClothGuard<Real>::aim(GuardRow<Real>& row, Real dt) const {
   const Quad<Real> apart = weighted(row, legal_);
-  if (row.push == 0) {
+  row.room = dot(row.normal, apart) - row.radius;
+  if (row.push == 0 && row.room > row.radius * Real(kBusyRoom)) {
     row.slip = {};
   } else if (row.friction > 0) {
     row.slip += tangential(row, apart - row.apart);
   }
   row.apart = apart;
-  row.room = dot(row.normal, apart) - row.radius;
   row.least_speed = row.room > 0 ? -row.room / dt : Real(0);
+}
+
+template <class Real>
+void ClothGuard<Real>::drag_anchor(GuardRow<Real>& row) {
+  const Real most = row.radius * static_cast<Real>(kMostSlip), size2 = dot(row.slip, row.slip);
+  if (size2 > most * most) row.slip = row.slip * (most / std::sqrt(size2));
 }
 
 /// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
@@ -121,7 +130,7 @@ Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
     const Real most = row.friction * push, size2 = dot(wanted, wanted);
     const bool slides = size2 > most * most;
     const Quad<Real> drag = slides ? wanted * (most / std::sqrt(size2)) : wanted;
-    if (slides) row.slip = {};
+    if (slides) drag_anchor(row);
     change += drag - row.drag;
     row.drag = drag;
   }
@@ -154,11 +163,14 @@ void ClothGuard<Real>::find_busy_rows(Real dt) {
   const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
   busy_rows_.clear();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const GuardRow<Real>& row = rows_[k];
+    GuardRow<Real>& row = rows_[k];
     if (row.push == 0) {
       const Real room = dot(row.normal, weighted(row, legal_)) - row.radius;
       const Real approach = -dot(row.normal, weighted(row, quad_v_));
-      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) continue;
+      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) {
+        row.slip = {};
+        continue;
+      }
     }
     busy_rows_.push_back(static_cast<Index>(k));
   }
@@ -289,6 +301,7 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
   template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
   template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
+  template void ClothGuard<Real>::drag_anchor(GuardRow<Real>&);              \
   template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
   template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
   template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
