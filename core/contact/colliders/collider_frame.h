@@ -29,6 +29,10 @@ struct ColliderFrame {
   Mat3 spin = Mat3::Zero();                  ///< (turn - 1) / dt
   Real way = 0;                              ///< no point of the surface goes farther [m]
 
+  /// For so many substeps nobody follows so closely that the object could not stand still.
+  int wary = 0;
+  int rest = 0;  ///< for so many substeps it stands, as cloth has stopped it
+
   Real way_collected = 0, way_rows = 0;  ///< the same since the pairs, since the rows were made
 
   Vec3<Real> own(const Vec3<Real>& p) const {

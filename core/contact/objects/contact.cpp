@@ -80,6 +80,7 @@ void Contact<Real>::reset() {
   rows_.clear();
   moving_rows_.clear();
   exits_.clear();
+  for (ColliderFrame<Real>& frame : frames_) frame.wary = frame.rest = 0;
 }
 
 template <class Real>

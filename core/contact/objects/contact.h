@@ -301,6 +301,8 @@ class Contact {
   void take_reaction(const ContactRow<Real>& row, const Vec3<Real>& point,
                      const Vec3<Real>& change);
   Real height_after(const ContactRow<Real>& row, const Vec3<Real>& end) const;
+  Real lack_behind(const ContactRow<Real>& row, std::size_t i, const ClothState<Real>& state,
+                   Real dt) const;
   bool keep_off_mover(const ContactRow<Real>& row, ClothState<Real>& state, Real dt);
   void certify_with_movers(ClothState<Real>& state, Real dt);
   bool hold_or_block(bool carry, ClothState<Real>& state, Real dt);

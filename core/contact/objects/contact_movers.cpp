@@ -16,6 +16,10 @@ constexpr int kCertifyRounds = 3;
 /// that cloth in a pinch stops it before there is no room for rounding [part of the thickness].
 constexpr double kMoverGap = 0.25;
 
+/// An object that cloth has stopped stands for so many further substeps, in which the cloth is not
+/// pushed and can make way; and for so many may be stopped again.
+constexpr int kRest = 2, kWary = 16;
+
 /// Rounding of a particle that is carried along [m].
 constexpr double kCarrySlack = 1e-6;
 
@@ -54,10 +58,14 @@ void Contact<Real>::plan_colliders(Real dt) {
   if (!colliders_) return;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     ColliderFrame<Real>& frame = frames_[k];
-    if (frame.tracked)
+    frame.wary = std::max(0, frame.wary - 1);
+    frame.blocked = frame.tracked && frame.rest > 0;
+    if (frame.tracked && !frame.blocked)
       frame.plan((*colliders_)[k], static_cast<double>(dt), static_cast<double>(tick_seconds_));
     else
       frame.stand();
+    if (frame.blocked) (*colliders_)[k].blocked = true;
+    frame.rest = frame.blocked ? frame.rest - 1 : 0;
     way_step_ = std::max(way_step_, frame.way);
     way_rows_ = std::max(way_rows_, frame.way_rows + frame.way);
     gone_ = std::max(gone_, frame.way_collected);
@@ -180,7 +188,19 @@ void Contact<Real>::take_back_pushes(ClothState<Real>& state) {
   }
 }
 
-/// Lifts each particle of a row off an object that comes.
+/// By how much a particle of a row follows an object more closely than it may where that could be
+/// stopped: so that it can stand still, nobody goes to where it still is [m].
+template <class Real>
+Real Contact<Real>::lack_behind(const ContactRow<Real>& row, std::size_t i,
+                                const ClothState<Real>& state, Real dt) const {
+  const auto& frame = frames_[moving_rows_[static_cast<std::size_t>(row.mover)].collider];
+  if (frame.wary == 0 || !frame.moves) return 0;
+  const Real now = row.normal.dot(state.x[i]) - row.offset;
+  const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
+  return least_end(now) - end;
+}
+
+/// Lifts each particle of a row off an object that comes, or holds it back from one that goes.
 /// @return whether anybody had to be lifted, or could not
 template <class Real>
 bool Contact<Real>::keep_off_mover(const ContactRow<Real>& row, ClothState<Real>& state, Real dt) {
@@ -191,14 +211,15 @@ bool Contact<Real>::keep_off_mover(const ContactRow<Real>& row, ClothState<Real>
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = height_after(row, state.x[i] + state.v[i] * dt);
     const Real least = std::min(now, least_height(row, true));
-    if (end >= least) continue;
+    const Real behind = end >= least ? lack_behind(row, i, state, dt) : Real(0);
+    if (end >= least && !(behind > 0)) continue;
     const bool held = state.inverse_mass[i] == 0;
     if (held && !frame.moves) continue;
     kept = true;
     if (held) continue;
     const Vec3<Real> before = state.v[i];
-    const Vec3<Real> normal = frame.turn * row.normal;
-    state.v[i] += normal * ((least - end) / dt * Real(1.0001));
+    const Vec3<Real> normal = behind > 0 ? row.normal : (frame.turn * row.normal).eval();
+    state.v[i] += normal * (std::max(least - end, behind) / dt * Real(1.0001));
     const Real gained = (state.v[i].squaredNorm() - before.squaredNorm()) / 2;
     work_ += std::max(0.0, static_cast<double>(gained / state.inverse_mass[i]));
     if (log_.wanted()) log_stop(row, k, before, state);
@@ -254,10 +275,12 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     const bool moves = mover && frames_[collider].moves;
     Real least = moves ? std::min(now, smallest_gap_) : least_end(now);
     if (moves) least = std::max(least, std::min(now, least_height(row, true)) - Real(kCarrySlack));
-    if (end >= least) continue;
     const bool held = state.inverse_mass[i] == 0;
     const Vec3<Real> before = state.v[i];
-    if (moves && carry && !held) {
+    if (end >= least) {
+      if (!moves || held || before.isZero(0) || !(lack_behind(row, i, state, dt) > 0)) continue;
+      state.v[i].setZero();
+    } else if (moves && carry && !held) {
       state.v[i] = frames_[collider].velocity_at(state.x[i]);
     } else if (moves && (*colliders_)[collider].forced) {
       (*colliders_)[collider].voided = true;
@@ -280,6 +303,8 @@ template <class Real>
 void Contact<Real>::block(std::size_t collider) {
   frames_[collider].stand();
   frames_[collider].blocked = true;
+  frames_[collider].rest = kRest;
+  frames_[collider].wary = kWary;
   (*colliders_)[collider].blocked = true;
   way_rows_ = 0;
   for (const ColliderFrame<Real>& frame : frames_)
@@ -303,6 +328,8 @@ void Contact<Real>::block(std::size_t collider) {
   template bool Contact<Real>::hold_or_block(bool, ClothState<Real>&, Real);                      \
   template bool Contact<Real>::hold_row(const ContactRow<Real>&, bool, ClothState<Real>&, Real);  \
   template void Contact<Real>::block(std::size_t);                                                \
+  template Real Contact<Real>::lack_behind(const ContactRow<Real>&, std::size_t,                  \
+                                           const ClothState<Real>&, Real) const;                  \
   template Real Contact<Real>::least_height(const ContactRow<Real>&, bool) const;                 \
   template void Contact<Real>::take_back_pushes(ClothState<Real>&);
 WEFT_INSTANTIATE(float)
