@@ -34,7 +34,7 @@ class ClothGuard;
 ///
 /// The planes of an object that moves go with it, and its way is added to the particles' own where
 /// lists are said to hold. What it meets gives way or is carried along; where it cannot, the object
-/// stands still for that substep: not moving is allowed to all.
+/// stands still for some substeps: not moving is allowed to all who do not follow it too closely.
 template <class Real>
 class Contact {
  public:

@@ -59,7 +59,7 @@ void Contact<Real>::plan_colliders(Real dt) {
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     ColliderFrame<Real>& frame = frames_[k];
     frame.wary = std::max(0, frame.wary - 1);
-    frame.blocked = frame.tracked && frame.rest > 0;
+    frame.blocked = frame.tracked && frame.rest > 0 && !(*colliders_)[k].forced;
     if (frame.tracked && !frame.blocked)
       frame.plan((*colliders_)[k], static_cast<double>(dt), static_cast<double>(tick_seconds_));
     else

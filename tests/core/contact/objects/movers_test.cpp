@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/contact/guard/cloth_guard.h"
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/world/world.h"
@@ -48,7 +49,9 @@ struct Mill {
   std::vector<ColliderDef> defs;
   Contact<Real> contact;
   ColliderStates states;
-  int tick = 0;
+  ClothGuard<Real> others;     ///< has no rows
+  std::vector<Index> stopped;  ///< whom these keep where they are
+  int tick = 0, halts = 0;
 
   Mill(const Particles<Real>& p, const std::vector<ColliderDef>& d, const ContactDef& def)
       : particles(p), defs(d), contact(p.meet(def, d)), states(initial_states(d)) {}
@@ -61,8 +64,15 @@ struct Mill {
       contact.begin_tick(tick_seconds, &states);
       for (int s = 0; s < particles.substeps; ++s) {
         particles.kick();
-        contact.resolve(particles.state, static_cast<Real>(particles.dt()), particles.profile);
-        contact.move_objects(particles.state, static_cast<Real>(particles.dt()), false);
+        ClothState<Real>& state = particles.state;
+        const auto dt = static_cast<Real>(particles.dt());
+        const Vec3Array<Real> before = state.x;
+        contact.resolve(state, dt, particles.profile, stopped.empty() ? nullptr : &others);
+        for (const Index i : stopped) {
+          state.x[static_cast<std::size_t>(i)] = before[static_cast<std::size_t>(i)];
+          state.v[static_cast<std::size_t>(i)].setZero();
+        }
+        halts += contact.move_objects(state, dt, !stopped.empty()) ? 0 : 1;
         particles.drift();
       }
       finish_motion(defs, tick_seconds, states);
@@ -251,6 +261,27 @@ TEST_CASE("cloth between two plates that close stops them, and is free when they
     for (const ColliderState& state : world.colliders())
       CHECK(std::abs(state.pose.position[1]) == Approx(0.1));
   }
+}
+
+TEST_CASE(
+    "what follows an object that is stopped again and again stops neither itself nor others") {
+  Particles<double> three;
+  const Index barrier = three.add(Vec3d(0, -0.15, 0));
+  const Index follower = three.add(Vec3d(0, kThickness, 0));
+  const Index falling = three.add(Vec3d(10, 0, 0));
+  ColliderDef plate{"plate", kTable, straight(Vec3d(0, -1, 0), 2)};
+  plate.max_force = 1e4;
+  Mill<double> mill(three, {plate}, {kThickness, 0.4, 0});
+  mill.stopped = {barrier};
+  const double seconds = 1;
+  mill.run(seconds);
+  CHECK(mill.halts == 0);
+  const double upper = mill.states[0].pose.position[1] - pivot_of(kTable)[1];
+  CHECK(upper > -0.05);
+  CHECK(upper < -0.05 + kThickness);
+  CHECK(mill.particles.position(follower)[1] - upper == Approx(kThickness).epsilon(0.1));
+  CHECK(mill.particles.position(falling)[1] ==
+        Approx(-kGravity * seconds * seconds / 2).epsilon(0.01));
 }
 
 TEST_CASE("an object stops at pinned cloth") {
