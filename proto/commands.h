@@ -149,6 +149,22 @@ struct MoveEnd {
   bool operator==(const MoveEnd&) const = default;
 };
 
+/// Sends a pin to a place, no faster than `speed` or, if they are told, within `seconds`.
+struct MovePin {
+  std::uint32_t pin = 0;
+  Vec3 position{};                ///< where its middle particle goes [m]
+  double speed = 2;               ///< at most [m/s]
+  std::optional<double> seconds;  ///< within which it shall be there, in place of a speed [s]
+  double max_force = 50;          ///< on the cloth while it is on its way [N]
+  bool operator==(const MovePin&) const = default;
+};
+
+/// Fixes a pin that is on its way where it is.
+struct StopPin {
+  std::uint32_t pin = 0;
+  bool operator==(const StopPin&) const = default;
+};
+
 /// What a room does whose ticks take more time than they may.
 enum class OverBudget : std::uint8_t { slow, soften };
 
@@ -241,9 +257,10 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin,
-                             ReleaseParticle, ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed,
-                             Move, MoveEnd, Gripper, Set, Advance, Query, Hash, Ping, Load, View>;
+using Command =
+    std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin, ReleaseParticle,
+                 ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed, Move, MoveEnd, MovePin,
+                 StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View>;
 
 /// The word in `op`, e.g. "drag".
 const char* name_of(const Command& command);

@@ -86,6 +86,19 @@ struct FieldWriter {
     out["collider"] = c.collider;
     out["release"] = true;
   }
+  void operator()(const MovePin& c) {
+    out["pin"] = c.pin;
+    out["position"] = c.position;
+    if (c.seconds)
+      out["seconds"] = *c.seconds;
+    else
+      out["speed"] = c.speed;
+    out["max_force"] = c.max_force;
+  }
+  void operator()(const StopPin& c) {
+    out["pin"] = c.pin;
+    out["stop"] = true;
+  }
   void operator()(const Set& c) {
     put_if(out, "gravity", c.gravity);
     put_if(out, "wind", c.wind);
@@ -141,6 +154,8 @@ struct Name {
   const char* operator()(const Speed&) const { return "speed"; }
   const char* operator()(const Move&) const { return "move"; }
   const char* operator()(const MoveEnd&) const { return "move"; }
+  const char* operator()(const MovePin&) const { return "move"; }
+  const char* operator()(const StopPin&) const { return "move"; }
   const char* operator()(const Gripper&) const { return "gripper"; }
   const char* operator()(const Set&) const { return "set"; }
   const char* operator()(const Advance&) const { return "advance"; }

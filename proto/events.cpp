@@ -139,8 +139,13 @@ Json json_of(const Fan& fan) {
 }
 
 Json json_of(const PinInfo& pin) {
-  return {{"id", pin.id},         {"viewer", pin.viewer},     {"particle", pin.particle},
-          {"radius", pin.radius}, {"position", pin.position}, {"count", pin.count}};
+  Json out = {{"id", pin.id},         {"viewer", pin.viewer},     {"particle", pin.particle},
+              {"radius", pin.radius}, {"position", pin.position}, {"count", pin.count}};
+  if (pin.target) {
+    out["target"] = *pin.target;
+    out["behind"] = pin.behind;
+  }
+  return out;
 }
 
 Json json_of(const GrabInfo& grab) {

@@ -133,7 +133,9 @@ struct PinInfo {
   std::uint32_t particle = 0;
   double radius = 0;
   Vec3 position{};
-  std::uint32_t count = 0;  ///< particles that it holds
+  std::uint32_t count = 0;     ///< particles that it holds
+  std::optional<Vec3> target;  ///< where it goes, while it is on its way [m]
+  bool behind = false;         ///< its particles do not follow it there
 };
 
 struct GrabInfo {

@@ -8,6 +8,7 @@
 
 #include "proto/commands.h"
 #include "proto/field_reader.h"
+#include "proto/parse_move.h"
 #include "proto/strict_json.h"
 #include "proto/utf8.h"
 #include "proto/words.h"
@@ -176,61 +177,6 @@ void read_fans(FieldReader& in, std::optional<std::vector<Fan>>& fans) {
   if (!in.has("fans")) return;
   fans.emplace();
   in.read_objects("fans", kMostFans, [&fans](FieldReader& fan) { fans->push_back(read_fan(fan)); });
-}
-
-void read_rotation(FieldReader& in, std::optional<Quat>& rotation) {
-  in.read_if_there("rotation", rotation, kUnitRange);
-  if (!in.ok() || !rotation) return;
-  double norm2 = 0;
-  for (const double q : *rotation) norm2 += q * q;
-  if (!(std::abs(std::sqrt(norm2) - 1) <= kUnitTolerance))
-    in.fail(ErrorCode::out_of_range, "rotation", "rotation must have the norm 1",
-            "a unit quaternion [x, y, z, w]");
-}
-
-Command read_move(FieldReader& in) {
-  Move move;
-  in.read("collider", move.collider);
-  if (in.ok() && (move.collider.empty() || move.collider.size() > kMostSceneBytes))
-    in.fail(ErrorCode::wrong_length, "collider", "collider must have 1 to 64 bytes");
-  bool release = false;
-  in.read_if_there("release", release);
-  if (release) {
-    for (const char* key : {"position", "rotation", "speed", "turn_speed", "force"})
-      if (in.ok() && in.has(key))
-        in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " does not go with release");
-    return MoveEnd{move.collider};
-  }
-  in.read_if_there("position", move.position, kPivotRange);
-  read_rotation(in, move.rotation);
-  in.read_if_there("speed", move.speed, kMoveSpeedRange);
-  in.read_if_there("turn_speed", move.turn_speed, kTurnSpeedRange);
-  in.read_if_there("force", move.force);
-  if (in.ok() && !move.position && !move.rotation)
-    in.fail(ErrorCode::missing_field, "position", "move needs position, rotation or release");
-  return move;
-}
-
-Command read_gripper(FieldReader& in) {
-  Gripper gripper;
-  in.read("name", gripper.gripper);
-  if (in.ok() && (gripper.gripper.empty() || gripper.gripper.size() > kMostGripperBytes))
-    in.fail(ErrorCode::wrong_length, "name", "name must have 1 to 56 bytes");
-  in.read_if_there("opening", gripper.opening, kOpeningRange);
-  in.read_if_there("force", gripper.force, kGripRange);
-  in.read_if_there("position", gripper.position, kPivotRange);
-  read_rotation(in, gripper.rotation);
-  in.read_if_there("speed", gripper.speed, kMoveSpeedRange);
-  in.read_if_there("turn_speed", gripper.turn_speed, kTurnSpeedRange);
-  Gripper nothing;
-  nothing.gripper = gripper.gripper;
-  if (in.ok() && gripper == nothing) {
-    Error error = make_error(ErrorCode::missing_field, "gripper has nothing to do");
-    error.limit =
-        Limit{{}, {}, {}, {"opening", "force", "position", "rotation", "speed", "turn_speed"}};
-    in.fail(std::move(error));
-  }
-  return gripper;
 }
 
 Command read_set(FieldReader& in) {

@@ -158,6 +158,11 @@ struct ReplyWriter {
     start("move", r.tick);
     out["collider"] = r.collider;
   }
+  void operator()(const MovePinReply& r) {
+    start("move", r.tick);
+    out["pin"] = r.pin;
+    out["position"] = r.position;
+  }
   void operator()(const GripperReply& r) {
     start("gripper", r.tick);
     out["gripper"] = r.gripper;

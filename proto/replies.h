@@ -77,6 +77,12 @@ struct MoveReply {
   std::string collider;
 };
 
+struct MovePinReply {
+  std::uint64_t tick = 0;
+  std::uint32_t pin = 0;
+  Vec3 position{};  ///< of its middle particle, now [m]
+};
+
 struct GripperReply {
   std::uint64_t tick = 0;
   std::string gripper;
@@ -214,8 +220,8 @@ struct QueryReply {
 
 using Reply =
     std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply, PauseReply,
-                 StepReply, SpeedReply, MoveReply, GripperReply, AdvanceReply, HashReply, PingReply,
-                 LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+                 StepReply, SpeedReply, MoveReply, MovePinReply, GripperReply, AdvanceReply,
+                 HashReply, PingReply, LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
 
 /// The `result` for a command with this id.
 std::string encode_reply(const Id& id, const Reply& reply);

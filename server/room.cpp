@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "server/translate_forces.h"
+#include "server/translate_holds.h"
 
 namespace weft::server {
 namespace {
@@ -53,6 +54,7 @@ void Room::start_world(const WorldDef& def) {
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
+  pins_on_way_.clear();
   tick_times_.clear();
   next_tick_time_ = 0;
   ++epoch_;
@@ -119,8 +121,8 @@ void Room::join(proto::ViewerId id, const Join& join) {
   welcome.tick_rate = world_->def().tick_rate;
   welcome.clock = clock_();
   welcome.limits = options_.limits;
-  welcome.capabilities = {"pick",    "drag",  "pin",  "camera",  "step",
-                          "advance", "query", "move", "gripper", "load"};
+  welcome.capabilities = {"pick",  "drag", "pin",      "camera",  "step", "advance",
+                          "query", "move", "move_pin", "gripper", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
   output_.send(id, text_message(proto::encode_state(state())));
@@ -164,6 +166,7 @@ double Room::step_world() {
   frame_wanted_ = true;
   tell_voided();
   tell_bad_starts();
+  tell_pins();
   if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);

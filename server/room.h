@@ -114,6 +114,7 @@ class Room {
   double step_world();
   void tell_voided();      // room_queries.cpp
   void tell_bad_starts();  // room_queries.cpp
+  void tell_pins();        // room_queries.cpp
   void tell_sleep();       // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
@@ -156,6 +157,8 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
   Outcome apply(proto::ViewerId viewer, const proto::Move& command);
   Outcome apply(proto::ViewerId viewer, const proto::MoveEnd& command);
+  Outcome apply(proto::ViewerId viewer, const proto::MovePin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::StopPin& command);
   Outcome apply(proto::ViewerId viewer, const proto::Gripper& command);
   Outcome apply(proto::ViewerId viewer, const proto::Set& command);
   Outcome apply(proto::ViewerId viewer, const proto::Advance& command);
@@ -218,6 +221,7 @@ class Room {
   bool measures_forces_ = false;         // the world does
   std::vector<char> asleep_;             // of each cloth, as told
   std::vector<bool> voided_;             // of each collider, as told
+  std::vector<PinId> pins_on_way_;       // as told
   std::vector<std::string> bad_starts_;  // as told
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;

@@ -6,6 +6,7 @@
 
 #include "server/room.h"
 #include "server/translate.h"
+#include "server/translate_holds.h"
 
 // What each command does. A function either applies its command and returns the reply, or returns
 // the error and has changed nothing.
@@ -32,6 +33,11 @@ proto::Error too_many(const char* what, std::size_t limit) {
   bound.maximum = static_cast<double>(limit);
   error.limit = bound;
   return error;
+}
+
+proto::Error unknown_pin(std::uint32_t pin) {
+  return field_error(ErrorCode::unknown_pin, "there is no pin of this id", "pin", pin,
+                     "the message pins lists them");
 }
 
 proto::Error not_paused() {
@@ -192,12 +198,7 @@ Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::ReleasePin& command) {
-  const std::vector<weft::Pin>& list = world_->pins().list;
-  const bool known = std::any_of(list.begin(), list.end(),
-                                 [&](const weft::Pin& pin) { return pin.id == command.pin; });
-  if (!known)
-    return field_error(ErrorCode::unknown_pin, "there is no pin of this id", "pin", command.pin,
-                       "the message pins lists them");
+  if (find_pin(*world_, command.pin) == nullptr) return unknown_pin(command.pin);
   return release_pins({command.pin});
 }
 
@@ -250,6 +251,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   world_->reset();
   hands_.clear();
   pin_owners_.clear();
+  pins_on_way_.clear();
   steps_left_ = 0;
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
@@ -275,6 +277,28 @@ Room::Outcome Room::apply(ViewerId, const proto::MoveEnd& command) {
   if (!collider) return collider.error();
   world_->release_collider(*collider);
   return proto::Reply(proto::MoveReply{world_->tick(), command.collider});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::MovePin& command) {
+  const weft::Pin* pin = find_pin(*world_, command.pin);
+  if (pin == nullptr) return unknown_pin(command.pin);
+  const auto move = pin_move(*world_, *pin, command);
+  if (!move) return move.error();
+  const proto::Vec3 before = pin_info(*world_, *pin, 0).position;
+  world_->move_pin(pin->id, *move);
+  tell_pins();
+  pins_changed_ = frame_wanted_ = true;
+  return proto::Reply(proto::MovePinReply{world_->tick(), command.pin, before});
+}
+
+Room::Outcome Room::apply(ViewerId, const proto::StopPin& command) {
+  const weft::Pin* pin = find_pin(*world_, command.pin);
+  if (pin == nullptr) return unknown_pin(command.pin);
+  world_->stop_pin(pin->id);
+  tell_pins();
+  pins_changed_ = frame_wanted_ = true;
+  return proto::Reply(
+      proto::MovePinReply{world_->tick(), command.pin, pin_info(*world_, *pin, 0).position});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Gripper& command) {

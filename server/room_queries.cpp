@@ -145,6 +145,16 @@ void Room::tell_voided() {
   }
 }
 
+/// Tells the pins again when one has set out, by the scene itself, or has arrived.
+void Room::tell_pins() {
+  std::vector<PinId> on_way;
+  for (const Pin& pin : world_->pins().list)
+    if (pin.path) on_way.push_back(pin.id);
+  if (on_way == pins_on_way_) return;
+  pins_on_way_ = std::move(on_way);
+  pins_changed_ = true;
+}
+
 /// Says once what started where nothing can be promised about it, and when all is clear.
 void Room::tell_bad_starts() {
   std::vector<std::string> found = world_->bad_starts();

@@ -257,39 +257,6 @@ std::vector<proto::StageWork> work_of(const ServedWorld& world) {
   return work;
 }
 
-proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner) {
-  const auto particle = static_cast<std::size_t>(pin.centre);
-  return {pin.id,
-          owner,
-          static_cast<std::uint32_t>(particle),
-          pin.def.radius,
-          to_wire(Vec3d(world.state().x[particle].cast<double>())),
-          static_cast<std::uint32_t>(pin.particles.size())};
-}
-
-proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,
-                          std::uint32_t drag) {
-  proto::GrabInfo info;
-  info.id = grab.id;
-  info.viewer = owner;
-  info.drag = drag;
-  info.point = {static_cast<std::uint32_t>(grab.def.triangle), grab.def.barycentric};
-  info.radius = grab.def.radius;
-  info.stiffness = grab.def.stiffness;
-  info.max_force = grab.def.max_force;
-  info.held = to_wire(Vec3d(held_point(grab, world.state().x).cast<double>()));
-  info.target = to_wire(Vec3d(grab.target.cast<double>()));
-  info.mode = grab.def.mode == GrabMode::sling ? proto::DragMode::sling : proto::DragMode::live;
-  info.force = to_wire(Vec3d(grab.force.cast<double>()));
-  return info;
-}
-
-proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
-                              proto::ViewerId owner) {
-  return {grab.id, owner, to_wire_float(held_point(grab, world.state().x)),
-          to_wire_float(grab.target), grab.force.norm()};
-}
-
 void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samples) {
   samples.clear();
   for (std::size_t k = 0; k < world.colliders().size(); ++k) {

@@ -56,12 +56,6 @@ std::vector<proto::TreeInfo> trees_of(ServedWorld& world);
 /// What the scene's test measures, e.g. the drape coefficient.
 proto::Measurements measurements_of(const ServedWorld& world);
 
-proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerId owner);
-proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, proto::ViewerId owner,
-                          std::uint32_t drag);
-proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
-                              proto::ViewerId owner);
-
 /// Colliders that are not as they were told; replaces what is in `samples`.
 void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samples);
 std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world);

@@ -17,6 +17,9 @@ constexpr double kSlack = 0.005;
 /// Who is so near has arrived [m, and in units of rounding].
 constexpr double kArrived = 1e-5, kRoundings = 4;
 
+/// A pin that has gone its way rests for a tick before it is fixed, and one is lost to rounding.
+constexpr double kTicksAtTarget = 2;
+
 /// So little of a way is rounding [m].
 constexpr double kThere = 1e-9;
 
@@ -60,6 +63,27 @@ void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path
 
 }  // namespace
 
+double least_seconds(double way, double tick_seconds) {
+  const double pace = std::min(kMostPinSpeed, std::sqrt(kAcceleration * way));
+  const double moving = pace > 0 ? way / pace + pace / kAcceleration : 0;
+  return moving + kTicksAtTarget * tick_seconds;
+}
+
+double speed_within(double way, double seconds, double tick_seconds) {
+  const double moving = seconds - kTicksAtTarget * tick_seconds;
+  // way / v + v / a = moving; of both solutions the slower one.
+  const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kAcceleration));
+  return std::clamp(2 * way / (moving + root), kLeastPinSpeed, kMostPinSpeed);
+}
+
+template <class Real>
+double way_left(const Pin& pin, const ClothState<Real>& state, const Vec3d& target) {
+  const Vec3d here = state.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
+  const double way = (target - here).norm();
+  if (!pin.path) return way;
+  return std::max(way, (rest_of(pin) + target - pin.path->move.target).norm());
+}
+
 template <class Real>
 void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pins& pins) {
   for (Pin& pin : pins.list) {
@@ -67,6 +91,7 @@ void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pi
     PinPath& path = *pin.path;
     path.step.setZero();
     const bool behind = farthest(pin, state) > kSlack;
+    path.behind = behind;
     if (behind) lead_from_here(pin, state, path);
     const Vec3d rest = rest_of(pin);
     const double way = rest.norm();
@@ -172,11 +197,7 @@ bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& 
     const double rounding = state.x[static_cast<std::size_t>(pin.centre)].norm() * kRoundings *
                             static_cast<double>(std::numeric_limits<Real>::epsilon());
     if (farthest(pin, state) > std::max(kArrived, rounding)) continue;
-    for (const Index i : pin.particles) {
-      state.inverse_mass[static_cast<std::size_t>(i)] = 0;
-      state.v[static_cast<std::size_t>(i)].setZero();
-    }
-    pin.path.reset();
+    stop_pin(pin.id, pins, state);
     changed = true;
   }
   return changed;
@@ -184,5 +205,7 @@ bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& 
 
 template class PinDrive<float>;
 template class PinDrive<double>;
+template double way_left(const Pin&, const ClothState<float>&, const Vec3d&);
+template double way_left(const Pin&, const ClothState<double>&, const Vec3d&);
 
 }  // namespace weft

@@ -6,6 +6,19 @@
 
 namespace weft {
 
+/// What a pin has left to go to a target, at most [m].
+template <class Real>
+double way_left(const Pin& pin, const ClothState<Real>& state, const Vec3d& target);
+
+/// The least time in which a pin that stands, and that nothing holds back, gets over a way and is
+/// fixed again [s].
+/// @param way  [m], 0 and more
+double least_seconds(double way, double tick_seconds);
+
+/// The speed with which it does that within a time [m/s], within the range of speeds.
+/// @param seconds  at least least_seconds
+double speed_within(double way, double seconds, double tick_seconds);
+
 /// Carries pins that are on their way, with bounded speed and force. Between kick and drift their
 /// particles get the impulse that takes each to its place on the way at the end of the substep, but
 /// together no more than the pin's force allows; contact then stops them as any others. A way that

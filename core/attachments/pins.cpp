@@ -18,6 +18,11 @@ bool Pins::any_on_way() const {
   return std::any_of(list.begin(), list.end(), [](const Pin& pin) { return pin.path.has_value(); });
 }
 
+void validate(const PinMove& move) {
+  visit_fields_of_pin_move(
+      move, [](const FieldInfo& info, const auto& value) { check_field("", info, value); });
+}
+
 template <class Real>
 Pins make_pins(const ClothModel<Real>& model) {
   Pins pins;
@@ -49,8 +54,7 @@ bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins
   const auto found = std::find_if(pins.list.begin(), pins.list.end(),
                                   [id](const Pin& pin) { return pin.id == id; });
   if (found == pins.list.end()) return false;
-  visit_fields_of_pin_move(
-      move, [](const FieldInfo& info, const auto& value) { check_field("move.", info, value); });
+  validate(move);
   if (found->path) {
     found->path->move = move;
     return true;
@@ -65,6 +69,20 @@ bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins
     const auto p = static_cast<std::size_t>(i);
     if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
   }
+  return true;
+}
+
+template <class Real>
+bool stop_pin(PinId id, Pins& pins, ClothState<Real>& state) {
+  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
+                                  [id](const Pin& pin) { return pin.id == id; });
+  if (found == pins.list.end()) return false;
+  if (!found->path) return true;
+  for (const Index i : found->particles) {
+    state.inverse_mass[static_cast<std::size_t>(i)] = 0;
+    state.v[static_cast<std::size_t>(i)].setZero();
+  }
+  found->path.reset();
   return true;
 }
 
@@ -88,6 +106,7 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
   template PinId add_pin(const ClothModel<Real>&, const PinDef&, Pins&, ClothState<Real>&); \
   template bool move_pin(const ClothModel<Real>&, PinId, const PinMove&, Pins&,             \
                          ClothState<Real>&);                                                \
+  template bool stop_pin(PinId, Pins&, ClothState<Real>&);                                  \
   template bool remove_pin(const ClothModel<Real>&, PinId, Pins&, ClothState<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

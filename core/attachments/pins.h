@@ -13,6 +13,8 @@ namespace weft {
 /// Names a pin for its whole life; never used again for another.
 using PinId = std::uint32_t;
 
+inline constexpr double kLeastPinSpeed = 1e-3, kMostPinSpeed = 20;  ///< [m/s]
+
 /// Where a pin is to go. It goes there in a straight line and is a target that lags when blocked:
 /// its particles follow as fast as the bound of its force and what is in their way let them.
 struct PinMove {
@@ -28,6 +30,7 @@ struct PinPath {
   Vec3d offset = Vec3d::Zero();   ///< from there to where they shall be now [m]
   Vec3d step = Vec3d::Zero();     ///< by which it grows in the coming tick [m]
   double pace = 0;                ///< in the last tick [m/s]
+  bool behind = false;            ///< its particles did not follow when the last tick began
   std::vector<Vec3d> velocity;    ///< that it gave its particles last [m/s]
   Vec3d impulse = Vec3d::Zero();  ///< given to the cloth in this tick [N s]
 };
@@ -67,10 +70,18 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state);
 
 /// Tells a pin to go somewhere. Its particles are then no longer fixed, but driven, until they are
-/// there. Throws DefinitionError if a field is out of range. False if there is no such pin.
+/// there. Throws DefinitionError if a field is out of range; nothing changes then. False if there
+/// is no such pin.
 template <class Real>
 bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins& pins,
               ClothState<Real>& state);
+
+/// Ends the way of a pin: its particles are fixed where they are. False if there is no such pin.
+template <class Real>
+bool stop_pin(PinId id, Pins& pins, ClothState<Real>& state);
+
+/// Throws DefinitionError if a field of a move is out of range.
+void validate(const PinMove& move);
 
 /// Frees the particles of a pin that no other pin holds. False if there is no such pin.
 template <class Real>
@@ -80,7 +91,8 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
 template <class Def, class Visitor>
 void visit_fields_of_pin_move(Def& move, Visitor&& visit) {
   visit(FieldInfo{"position", -1e4, 1e4, "m", "where the middle of the pin goes"}, move.target);
-  visit(FieldInfo{"speed", 1e-3, 20, "m/s", "of the pin, at most"}, move.speed);
+  visit(FieldInfo{"speed", kLeastPinSpeed, kMostPinSpeed, "m/s", "of the pin, at most"},
+        move.speed);
   visit(FieldInfo{"max_force", 0, 1e6, "N", "of the pin on its way; beyond it the pin lags"},
         move.max_force);
 }

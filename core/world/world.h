@@ -97,6 +97,8 @@ class World {
   /// Sends a pin somewhere, with bounded speed and force.
   /// Throws DefinitionError if a field is out of range. False if there is no such pin.
   bool move_pin(PinId id, const PinMove& move);
+  /// Fixes a pin that is on its way where it is. False if there is no such pin.
+  bool stop_pin(PinId id);
 
   GrabId grab(const GrabDef& def);
   bool move_grab(GrabId id, const Vec3d& target);

@@ -30,9 +30,18 @@ bool World<Real>::unpin(PinId id) {
 
 template <class Real>
 bool World<Real>::move_pin(PinId id, const PinMove& move) {
+  validate(move);  // before anything wakes
   masses_changed();
   wake_held(id);
   return weft::move_pin(model_, id, move, pins_, state_);
+}
+
+template <class Real>
+bool World<Real>::stop_pin(PinId id) {
+  if (!weft::stop_pin(id, pins_, state_)) return false;
+  masses_changed();
+  report_present_state();  // what is fixed has lost its velocity
+  return true;
 }
 
 /// What has arrived is fixed again.
@@ -207,6 +216,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template PinId World<Real>::pin(const PinDef&);                                       \
   template bool World<Real>::unpin(PinId);                                              \
   template bool World<Real>::move_pin(PinId, const PinMove&);                           \
+  template bool World<Real>::stop_pin(PinId);                                           \
   template void World<Real>::finish_pins();                                             \
   template GrabId World<Real>::grab(const GrabDef&);                                    \
   template bool World<Real>::move_grab(GrabId, const Vec3d&);                           \

@@ -114,13 +114,16 @@ export class WeftClient extends Session {
   }
 
   /**
-   * Sends a collider to a pose at bounded speed, or gives it back to its keyframes.
-   * @param {string} collider  its name
+   * Sends a collider to a pose at bounded speed, or gives it back to its keyframes; or sends a pin
+   * to a place, at bounded speed or within some seconds, or stops it on its way.
+   * @param {string | number} what  the collider's name, or the pin's id
    * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number,
-   *   force?: boolean} | {release: true}} where
+   *   force?: boolean} | {release: true} |
+   *   {position: Vec3, speed?: number, seconds?: number, max_force?: number} | {stop: true}} where
    */
-  move(collider, where) {
-    return this.request('move', { collider, ...where });
+  move(what, where) {
+    const named = typeof what === 'number' ? { pin: what } : { collider: what };
+    return this.request('move', { ...named, ...where });
   }
 
   /**

@@ -15,7 +15,10 @@ export type QueryWhat =
   | 'trees'
   | 'boxes'
   | 'colliders'
-  | 'measurements';
+  | 'measurements'
+  | 'contacts'
+  | 'reactions'
+  | 'grippers';
 
 /** A hierarchy of boxes. */
 export interface Tree {
@@ -169,6 +172,10 @@ export interface Pin {
   radius: number;
   position: Vec3;
   count: number;
+  /** Where it goes, while it is on its way. */
+  target?: Vec3;
+  /** Whether its particles do not follow it there. */
+  behind?: boolean;
 }
 
 export interface Pins {

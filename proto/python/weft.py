@@ -589,14 +589,18 @@ class Client:
         return await self.request("speed", speed=speed)
 
     async def move(
-        self, collider: str, position=None, rotation=None, *, speed=None, turn_speed=None,
-        force=None, release=None,
+        self, what: str | int, position=None, rotation=None, *, speed=None, turn_speed=None,
+        force=None, release=None, seconds=None, max_force=None, stop=None,
     ) -> dict:  # fmt: skip
-        """Sends a collider to a pose at bounded speed, or back to its keyframes (release=True)."""
-        fields = {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}
+        """Sends a collider, by its name, to a pose at bounded speed, or back to its keyframes (release=True);
+        or a pin, by its id, to a position, at bounded speed or within some seconds, or fixes it where it is
+        on its way (stop=True)."""
+        fields = {"pin" if isinstance(what, int) else "collider": what}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
-        return await self.request("move", collider=collider, **_without_none(fields))
+        fields |= {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}
+        fields |= {"seconds": seconds, "max_force": max_force, "stop": stop}
+        return await self.request("move", **_without_none(fields))
 
     async def gripper(
         self, name: str, *, opening=None, force=None, position=None, rotation=None, speed=None,

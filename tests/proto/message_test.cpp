@@ -38,8 +38,8 @@ Welcome welcome() {
   w.role = "operator";
   w.scene = "default";
   w.clock = 86.500125;
-  w.capabilities = {"pick",    "drag",  "pin",  "camera",  "step",
-                    "advance", "query", "move", "gripper", "load"};
+  w.capabilities = {"pick",  "drag", "pin",      "camera",  "step", "advance",
+                    "query", "move", "move_pin", "gripper", "load"};
   return w;
 }
 
@@ -128,7 +128,8 @@ std::vector<std::string> events() {
       encode_state(state()),
       encode_roster({{3, "Ada", "#e4572e", "operator", kCamera},
                      {4, "script", "#2e86e4", "operator", std::nullopt}}),
-      encode_pins(5160, {{1, 0, 0, 0, {-0.5, 1.6, 0}, 1}, {9, 3, 299, 0.05, {0.1, 0.8, 0.3}, 7}}),
+      encode_pins(5160, {{1, 0, 0, 0, {-0.5, 1.6, 0}, 1, {}, false},
+                         {9, 3, 299, 0.05, {0.1, 0.8, 0.3}, 7, Vec3{0.1, 1, 0.5}, false}}),
       encode_grabs(5160, {grab}),
       encode_notice(notice),
       encode_bye({1001, "the server stops"}),
@@ -177,6 +178,8 @@ std::vector<std::string> replies() {
       encode_reply(16, DoneReply{"reset", 0}),
       encode_reply(17, SpeedReply{8, 0.25}),
       encode_reply(27, MoveReply{30, "ball"}),
+      encode_reply(31, MovePinReply{30, 9, {0.1, 0.8, 0.3}}),
+      encode_reply(32, MovePinReply{90, 9, {0.1, 0.9, 0.4}}),
       encode_reply(29, GripperReply{30, "gripper"}),
       encode_reply(
           30,

@@ -6,7 +6,7 @@
 #include "proto/frame.h"
 #include "tests/server/fakes.h"
 
-// Objects that a viewer moves.
+// Objects and pins that a viewer moves.
 
 namespace weft::server {
 namespace {
@@ -120,6 +120,98 @@ TEST_CASE("a collider is moved by name, seen in frames and queries, and told wro
   t.say(1, R"({"op":"reset"})");
   CHECK(poses().empty());
   CHECK(hash_of(*t.room) == at_start);
+}
+
+/// The pins of a room by their ids, as a query tells them.
+json pins_of(TestRoom& t) {
+  const json answer = t.say(1, R"({"op":"query","id":90,"what":"pins"})");
+  json pins;
+  for (const json& pin : answer["data"]) pins[pin["id"].dump()] = pin;
+  return pins;
+}
+
+TEST_CASE("a pin is moved by its id within its time, is told when it goes and when it is there") {
+  TestRoom t;
+  t.join(1);
+  const json before = pins_of(t)["2"];
+  CHECK_FALSE(before.contains("target"));
+  const json moved =
+      t.say(1, R"({"op":"move","id":1,"pin":2,"position":[0.2,1.1,0.3],"seconds":1})");
+  CHECK(moved["command"] == "move");
+  CHECK(moved["pin"] == 2);
+  CHECK(moved["position"] == before["position"]);
+  const json target = {0.2, 1.1, 0.3};
+  CHECK(t.output.last("pins")["pins"][1]["target"] == target);
+  CHECK(t.output.count("pins") == 2);  // on joining, and now
+  t.say(1, R"({"op":"advance","n":30})");
+  const json under_way = pins_of(t)["2"];
+  CHECK(under_way["target"] == target);
+  CHECK(under_way["behind"] == false);
+  CHECK(under_way["position"][2].get<double>() > 0.1);
+  CHECK(under_way["position"][2].get<double>() < 0.2);
+  CHECK(t.output.count("pins") == 2);
+  t.say(1, R"({"op":"advance","n":30})");
+  CHECK(t.output.count("pins") == 3);
+  const json there = t.output.last("pins")["pins"][1];
+  CHECK_FALSE(there.contains("target"));
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(there["position"][i].get<double>() == Approx(target[i].get<double>()));
+  // And back to where the answer said that it was.
+  t.say(1, json{{"op", "move"}, {"pin", 2}, {"position", moved["position"]}}.dump());
+  t.say(1, R"({"op":"advance","n":60})");
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(pins_of(t)["2"]["position"][i].get<double>() ==
+          Approx(before["position"][i].get<double>()).margin(1e-5));
+}
+
+TEST_CASE(
+    "a pin that is stopped stays where it is, one that is blocked says so, reset undoes all") {
+  TestRoom t;
+  t.join(1);
+  const std::string at_start = hash_of(*t.room);
+  const json before = pins_of(t);
+  t.say(1, R"({"op":"move","pin":1,"position":[-0.25,1,1],"speed":1})");
+  t.say(1, R"({"op":"move","collider":"ball","position":[0.25,0.8,0.3],"speed":20})");
+  t.say(1, R"({"op":"advance","n":20})");
+  const json stopped = t.say(1, R"({"op":"move","id":1,"pin":1,"stop":true})");
+  CHECK(stopped["position"][2].get<double>() > 0.1);
+  CHECK_FALSE(t.output.last("pins")["pins"][0].contains("target"));
+  // The other one is sent to the middle of the ball.
+  t.say(1, R"({"op":"move","pin":2,"position":[0.25,0.8,0.3],"max_force":5})");
+  t.say(1, R"({"op":"advance","n":120})");
+  CHECK(pins_of(t)["1"]["position"] == stopped["position"]);
+  const json blocked = pins_of(t)["2"];
+  CHECK(blocked["behind"] == true);
+  t.say(1, R"({"op":"reset"})");
+  const json after = pins_of(t);  // their ids are new
+  REQUIRE(after.size() == before.size());
+  for (auto a = after.begin(), b = before.begin(); a != after.end(); ++a, ++b) {
+    CHECK((*a)["position"] == (*b)["position"]);
+    CHECK_FALSE(a->contains("target"));
+  }
+  CHECK(hash_of(*t.room) == at_start);
+}
+
+TEST_CASE("a pin that does not exist or cannot be there in time is refused, and nothing changes") {
+  TestRoom t;
+  t.join(1);
+  const std::string before = hash_of(*t.room);
+  const json unknown = t.say(1, R"({"op":"move","id":1,"pin":7,"position":[0,1,0]})");
+  CHECK(unknown["code"] == "unknown_pin");
+  CHECK(unknown["field"] == "pin");
+  CHECK(unknown["value"] == 7);
+  CHECK(t.say(1, R"({"op":"move","id":2,"pin":7,"stop":true})")["code"] == "unknown_pin");
+  json command = {{"op", "move"}, {"id", 3}, {"pin", 1}, {"position", {-0.25, 1, 2.5}}};
+  command["seconds"] = 0.2;
+  const json late = t.say(1, command.dump());
+  CHECK(late["code"] == "out_of_range");
+  CHECK(late["field"] == "seconds");
+  CHECK(late["value"] == 0.2);
+  CHECK(late["hint"] == "it has 2.5 m to go");
+  CHECK(hash_of(*t.room) == before);
+  CHECK(t.room->log().entries().empty());
+  command["seconds"] = late["limit"]["minimum"];
+  CHECK(t.say(1, command.dump())["op"] == "result");
 }
 
 }  // namespace

@@ -84,7 +84,10 @@ TEST_CASE("scene and log are the whole history: replaying them gives the same ha
   t.tick(30);
   t.say(1, R"({"op":"drag","phase":"move","drag":5,"target":[-0.3,1.2,0.1]})");
   t.say(2, R"({"op":"pin","particle":20,"radius":0.05})");
+  t.say(2, R"({"op":"move","pin":3,"position":[0,0.8,0.1],"seconds":0.7,"max_force":9})");
+  t.say(1, R"({"op":"move","pin":1,"position":[-0.2,1.2,0.1],"speed":0.1})");
   t.tick(10);
+  t.say(1, R"({"op":"move","pin":1,"stop":true})");
   t.leave(2);
   t.tick(100);  // 1.67 s: the lease of viewer 1 still holds
   REQUIRE(t.room->world().grabs().list.size() == 1);

@@ -119,3 +119,28 @@ test('an object is drawn where it is, and goes where Ctrl, Shift and the mouse t
     await until(async () => Math.hypot(...(await ball()).position.map((v, k) => v - goal[k])) < 1e-5);
   }),
 );
+
+test('the head of a pin that a script moves goes with its cloth', bounded, () =>
+  with_page({}, async (page, script) => {
+    await script.pause();
+    await until(() => script.last.pins.length > 0);
+    const pin = script.last.pins[0];
+    const target = pin.position.map((value, axis) => value + [0, 0.1, 0.3][axis]);
+    const place = async () => (await script.query('pins'))[0].position;
+    await script.move(pin.id, { position: target, seconds: 1 });
+    await script.advance(30);
+    const half = await place();
+    const head_is_at = async (point) => {
+      const [head] = await read(page, 'pin_heads');
+      return head && Math.hypot(...head.map((value, axis) => value - point[axis])) < 1e-5;
+    };
+    await until(() => head_is_at(half), 'half way');
+    assert.ok(half[2] - pin.position[2] > 0.1 && target[2] - half[2] > 0.1, `${half}`);
+    await script.move(pin.id, { stop: true });
+    await script.advance(30);
+    assert.deepEqual(await place(), half);
+    await script.move(pin.id, { position: target });
+    await script.advance(60);
+    await until(() => head_is_at(target), 'there');
+  }),
+);

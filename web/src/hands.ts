@@ -3,8 +3,9 @@ import type { PerspectiveCamera } from 'three';
 import { Line2 } from 'three/examples/jsm/lines/Line2.js';
 import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
-import type { Vec3 } from '../../proto/js/messages.js';
+import type { Grab, Vec3, Viewer } from '../../proto/js/messages.js';
 
+export const NO_COLOR = '#5c6068'; // of who is not known
 const LINE_WIDTH = 2.5; // [pixels]
 const DOT_RADIUS = 4.5; // [pixels]
 const TARGET_RADIUS = 6.5; // [pixels]
@@ -20,6 +21,11 @@ export interface Hand {
   target: Vec3;
   /** The own hand needs no name. */
   own: boolean;
+}
+
+/** Whose hand it is that another holds the cloth with. */
+export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
+  return { id, name: who?.name ?? `viewer ${viewer}`, color: who?.color ?? NO_COLOR, own: false };
 }
 
 /** Lines from where hands hold the cloth to where they pull it, with the names of their owners. */

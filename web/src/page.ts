@@ -7,7 +7,7 @@ import { connect_client, tell_refusal } from './connection.js';
 import { FanHold } from './fan_hold.js';
 import { fan_of_view, Fans } from './fans.js';
 import type { FanHit } from './fans.js';
-import { Hands } from './hands.js';
+import { Hands, NO_COLOR, owner_of } from './hands.js';
 import type { Hand } from './hands.js';
 import { Hold } from './hold.js';
 import { ObjectHold } from './object_hold.js';
@@ -28,7 +28,6 @@ const CAMERA_INTERVAL = 0.25; // between messages that tell where this viewer lo
 const SHOWN_ELSEWHERE = new Set(['frames_dropped', 'slow_motion', 'lease_expired']);
 const STILL_TIME = 0.4; // without a change, after which the picture is drawn as finely as it can be [s]
 const PANEL_MARGIN = 12; // between panels and what is framed [pixels]
-const NO_COLOR = '#5c6068';
 
 /** Joins connection, input, camera, picture and panels; each knows its own work alone. */
 export class Page {
@@ -308,6 +307,7 @@ export class Page {
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
     if (this.world?.show(now, this.hold !== null)) {
       this.dirty = true;
+      this.pins.follow(this.world.playback.positions);
       // Who joins late finds the cloth elsewhere than at its start.
       if (this.unframed) this.frame(true);
       this.unframed = false;
@@ -357,16 +357,9 @@ export class Page {
     const hands = this.grabs
       .filter(({ id, viewer }) => viewer !== client.viewer && id !== hold?.grab)
       .map((grab): Hand => {
-        const viewer = this.viewer(grab.viewer);
         const sample = world.playback.grabs.find(({ id }) => id === grab.id);
-        return {
-          id: grab.id,
-          name: viewer?.name ?? `viewer ${grab.viewer}`,
-          color: viewer?.color ?? NO_COLOR,
-          held: place(grab),
-          target: (sample?.target ?? grab.target) as Hand['target'],
-          own: false,
-        };
+        const target = (sample?.target ?? grab.target) as Hand['target'];
+        return { ...owner_of(grab, this.viewer(grab.viewer)), held: place(grab), target };
       });
     if (hold) {
       const own = this.viewer(client.viewer);

@@ -1,4 +1,4 @@
-import { Group, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from 'three';
+import { Group, Mesh, MeshStandardMaterial, SphereGeometry } from 'three';
 import type { PerspectiveCamera, Vector2 } from 'three';
 import type { Pin } from '../../proto/js/messages.js';
 
@@ -40,6 +40,14 @@ export class Pins {
     }
   }
 
+  /** Puts the heads where the shown cloth has their particles: a pin may be on its way. */
+  follow(positions: Float32Array): void {
+    this.list.forEach(({ particle }, k) => {
+      if (particle * 3 + 2 < positions.length)
+        this.group.children[k]?.position.fromArray(positions, particle * 3);
+    });
+  }
+
   /** Pins that a pointer means: those near it, and those that are at a particle. */
   at(
     point: Vector2 | null,
@@ -48,10 +56,11 @@ export class Pins {
     width: number,
     height: number,
   ): Pin[] {
-    return this.list.filter((pin) => {
+    return this.list.filter((pin, k) => {
       if (pin.particle === particle) return true;
-      if (!point) return false;
-      const place = new Vector3(...pin.position).project(camera);
+      const head = this.group.children[k];
+      if (!point || !head) return false;
+      const place = head.position.clone().project(camera);
       const dx = ((place.x - point.x) / 2) * width;
       const dy = ((place.y - point.y) / 2) * height;
       return Math.abs(place.z) < 1 && Math.hypot(dx, dy) < REACH;

@@ -51,6 +51,10 @@ export function expose_probe(page: Page): void {
     get pins() {
       return structuredClone(page.pins.list);
     },
+    /** Where the heads of the pins are drawn [m]. */
+    get pin_heads() {
+      return page.pins.group.children.map(({ position }) => position.toArray());
+    },
     get fans() {
       return structuredClone(page.fans.list);
     },

@@ -157,6 +157,54 @@ TEST_CASE("a particle that another pin holds too stays where it is") {
   CHECK_FALSE(world.pins().any_on_way());
 }
 
+TEST_CASE("a pin that is given a time is fixed at its target within it, and not in half of it") {
+  for (const double way : {0.002, 0.1, 0.6}) {
+    for (const double more : {1.0, 1.5, 10.0}) {
+      World<float> world(hung_cloth());
+      for (int k = 0; k < 30; ++k) world.step();
+      const Pin& pin = world.pins().list[0];
+      const Vec3d step = Vec3d(0, 0.3, 1).normalized() * way, target = centre_of(world, 0) + step;
+      const double tick = world.tick_seconds(), seconds = more * least_seconds(way, tick);
+      const double left = way_left(pin, world.state(), target);
+      send_all(world, step, speed_within(left, seconds, tick));
+      int ticks = 0;
+      for (; pin.path && ticks < 1000; ++ticks) world.step();
+      INFO(way << " m in " << seconds << " s, " << ticks << " ticks");
+      CHECK(ticks * tick <= seconds + 1e-9);
+      if (more > 1) CHECK(ticks * tick > seconds / 2);
+      CHECK((centre_of(world, 0) - target).norm() < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("a pin that is stopped on its way is fixed where it is") {
+  World<double> world(hung_cloth());
+  const PinId id = world.pins().list[0].id;
+  CHECK_FALSE(world.stop_pin(id + 100));
+  send_all(world, Vec3d(0, 0, 1));
+  for (int k = 0; k < 20; ++k) world.step();
+  const Pin& pin = world.pins().list[0];
+  const Vec3Array<double> before = world.state().x;
+  REQUIRE(world.stop_pin(id));
+  CHECK(world.report().energies.kinetic > 0);
+  CHECK_FALSE(pin.path);
+  for (int k = 0; k < 20; ++k) REQUIRE_FALSE(world.step().divergence);
+  for (const Index n : pin.particles)
+    CHECK(world.state().x[static_cast<std::size_t>(n)] == before[static_cast<std::size_t>(n)]);
+  CHECK(centre_of(world, 1)[2] > before[static_cast<std::size_t>(pin.centre)][2]);
+}
+
+TEST_CASE("a pin that cannot follow says that it is behind, and one that can does not") {
+  WorldDef def = hung_cloth();
+  def.colliders = {{"plate", BoxDef{Vec3d(0, 1.2, 0.3), Vec3d(0.8, 0.8, 0.01)}}};
+  World<float> world(def);
+  send_all(world, Vec3d(0, 0, 1), 1);
+  for (int k = 0; k < 10; ++k) world.step();
+  CHECK_FALSE(world.pins().list[0].path->behind);
+  for (int k = 0; k < 60; ++k) world.step();
+  CHECK(world.pins().list[0].path->behind);
+}
+
 TEST_CASE("what is wrong in a move is refused by name, and nothing changes") {
   World<double> world(hung_cloth());
   const PinId id = world.pins().list[0].id;

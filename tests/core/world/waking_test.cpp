@@ -62,6 +62,9 @@ TEST_CASE("each command that acts on a cloth wakes it, and a refused one does no
     grab.triangle = -1;
     CHECK_THROWS_AS(world.grab(grab), DefinitionError);
     CHECK_FALSE(world.unpin(999));
+    CHECK_FALSE(world.stop_pin(999));
+    const PinId first = world.pins().list.front().id;
+    CHECK_THROWS_AS(world.move_pin(first, {Vec3d(0, 2e4, 0)}), DefinitionError);
   }));
   // What is pinned stays so in sleep and beyond.
   GrabId hand = 0;

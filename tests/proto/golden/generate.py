@@ -13,6 +13,7 @@ from pathlib import Path
 
 import calls
 import commands
+import refusals
 from samples import (
     APPLIED_NUMBERS,
     GRID,
@@ -388,7 +389,7 @@ def main(folder):
     write_json(folder / "binary.json", contents)
     write_json(folder / "refused_binary.json", list(refused(messages)))
     write_json(folder / "accepted_commands.json", commands.ACCEPTED)
-    write_json(folder / "refused_commands.json", commands.refused())
+    write_json(folder / "refused_commands.json", refusals.refused())
     write_json(folder / "client_calls.json", calls.CLIENT_CALLS)
 
 
