@@ -140,8 +140,8 @@ struct PinInfo {
 
 struct GrabInfo {
   std::uint32_t id = 0;
-  ViewerId viewer = 0;
-  std::uint32_t drag = 0;
+  ViewerId viewer = 0;     ///< 0: it is the scene's own
+  std::uint32_t drag = 0;  ///< the viewer's number, or the place among the scene's hands
   SurfacePoint point;
   double radius = 0, stiffness = 0, max_force = 0;
   Vec3 held{}, target{};

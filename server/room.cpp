@@ -55,6 +55,7 @@ void Room::start_world(const WorldDef& def) {
   hands_.clear();
   pin_owners_.clear();
   pins_on_way_.clear();
+  scene_grabs_.clear();
   tick_times_.clear();
   next_tick_time_ = 0;
   ++epoch_;
@@ -167,6 +168,7 @@ double Room::step_world() {
   tell_voided();
   tell_bad_starts();
   tell_pins();
+  tell_grabs();
   if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);
@@ -356,11 +358,14 @@ std::vector<proto::PinInfo> Room::pins() const {
 std::vector<proto::GrabInfo> Room::grabs(bool with_force) const {
   std::vector<proto::GrabInfo> list;
   for (const Grab<float>& grab : world_->grabs().list) {
+    if (const auto own = world_->scene_hand(grab.id))
+      list.push_back(grab_info(*world_, grab, 0, static_cast<std::uint32_t>(*own)));
     for (const Hand& hand : hands_) {
-      if (hand.grab != grab.id) continue;
-      list.push_back(grab_info(*world_, grab, hand.viewer, hand.drag));
-      if (!with_force) list.back().force.reset();
+      if (hand.grab == grab.id) list.push_back(grab_info(*world_, grab, hand.viewer, hand.drag));
     }
+  }
+  if (!with_force) {
+    for (proto::GrabInfo& grab : list) grab.force.reset();
   }
   return list;
 }

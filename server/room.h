@@ -115,6 +115,7 @@ class Room {
   void tell_voided();      // room_queries.cpp
   void tell_bad_starts();  // room_queries.cpp
   void tell_pins();        // room_queries.cpp
+  void tell_grabs();       // room_queries.cpp
   void tell_sleep();       // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
@@ -222,6 +223,7 @@ class Room {
   std::vector<char> asleep_;             // of each cloth, as told
   std::vector<bool> voided_;             // of each collider, as told
   std::vector<PinId> pins_on_way_;       // as told
+  std::vector<GrabId> scene_grabs_;      // of the scene's own hands, as told
   std::vector<std::string> bad_starts_;  // as told
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;

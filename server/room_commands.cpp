@@ -252,6 +252,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   hands_.clear();
   pin_owners_.clear();
   pins_on_way_.clear();
+  scene_grabs_.clear();
   steps_left_ = 0;
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);

@@ -155,6 +155,16 @@ void Room::tell_pins() {
   pins_changed_ = true;
 }
 
+/// Tells the hands again when one of the scene's own has taken hold or let go.
+void Room::tell_grabs() {
+  std::vector<GrabId> held;
+  for (const Grab<float>& grab : world_->grabs().list)
+    if (world_->scene_hand(grab.id)) held.push_back(grab.id);
+  if (held == scene_grabs_) return;
+  scene_grabs_ = std::move(held);
+  grabs_changed_ = true;
+}
+
 /// Says once what started where nothing can be promised about it, and when all is clear.
 void Room::tell_bad_starts() {
   std::vector<std::string> found = world_->bad_starts();

@@ -175,6 +175,8 @@ class World {
   void accept_state();
   const Pins& pins() const { return pins_; }
   const Grabs<Real>& grabs() const { return grabs_; }
+  /// Which of the scene's hands holds by this grab, in the order of the definition, if one does.
+  std::optional<std::size_t> scene_hand(GrabId id) const;
   const ColliderStates& colliders() const { return colliders_; }
   const std::vector<Gripper>& grippers() const { return grippers_; }
   const TickReport& report() const { return report_; }

@@ -114,10 +114,19 @@ void World<Real>::run_script() {
   }
 }
 
+template <class Real>
+std::optional<std::size_t> World<Real>::scene_hand(GrabId id) const {
+  for (std::size_t k = 0; k < scene_hands_.size(); ++k) {
+    if (id != 0 && scene_hands_[k].grab == id) return k;
+  }
+  return std::nullopt;
+}
+
 #define WEFT_INSTANTIATE(Real)                                        \
   template void World<Real>::gather(double, std::uint64_t);           \
   template void World<Real>::insult(const InsultDef&, std::uint64_t); \
-  template void World<Real>::run_script();
+  template void World<Real>::run_script();                            \
+  template std::optional<std::size_t> World<Real>::scene_hand(GrabId) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -186,7 +186,9 @@ export interface Pins {
 
 export interface Grab {
   id: number;
+  /** 0: it is the scene's own. */
   viewer: number;
+  /** The viewer's number, or the place in the scene's list of hands. */
   drag: number;
   triangle: number;
   barycentric: Vec3;

@@ -128,7 +128,7 @@ class GrabSample:
     """A hand at the tick of a frame; `force` [N] is a magnitude."""
 
     id: int
-    viewer: int
+    viewer: int  # 0: a hand of the scene itself
     held: tuple[float, float, float]
     target: tuple[float, float, float]
     force: float

@@ -11,6 +11,7 @@ import {
   position,
   server,
   with_page,
+  with_server,
 } from './support/default_page.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
@@ -258,5 +259,20 @@ test('one finger takes the cloth or turns, two shift and zoom, a long press pins
     await until(() => script.last.pins.length === pins + 1, 'a long press pins');
     await until(() => script.last.grabs.length === 0, 'and lets go');
     await touch('touchEnd');
+  }),
+);
+
+test('the hands of a hard case are drawn, as the scene’s', bounded, () =>
+  with_server(['--scene', 'hard-ten-hands', '--paused'], async (page, script) => {
+    await script.advance(130);
+    const grabs = await script.query('grabs');
+    assert.equal(grabs.length, 10);
+    const hands = await until(async () => {
+      const shown = await read(page, 'hands');
+      const there = ({ id, target }) =>
+        shown.some((hand) => hand.id === id && Math.hypot(...hand.target.map((v, k) => v - target[k])) < 1e-4);
+      return grabs.every(there) && shown;
+    }, 'each is where it pulls to');
+    assert.deepEqual(new Set(hands.map(({ name }) => name)), new Set(['scene']));
   }),
 );

@@ -25,7 +25,8 @@ export interface Hand {
 
 /** Whose hand it is that another holds the cloth with. */
 export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
-  return { id, name: who?.name ?? `viewer ${viewer}`, color: who?.color ?? NO_COLOR, own: false };
+  const name = who?.name ?? (viewer ? `viewer ${viewer}` : 'scene');
+  return { id, name, color: who?.color ?? NO_COLOR, own: false };
 }
 
 /** Lines from where hands hold the cloth to where they pull it, with the names of their owners. */

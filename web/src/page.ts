@@ -175,6 +175,7 @@ export class Page {
 
   private show_pins(): void {
     this.pins.set(this.pins.list, (viewer) => this.viewer(viewer)?.color ?? null);
+    if (this.world) this.pins.follow(this.world.playback.positions);
     this.dirty = true;
   }
 

@@ -1,4 +1,4 @@
-import { Group, Mesh, MeshStandardMaterial, SphereGeometry } from 'three';
+import { Group, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from 'three';
 import type { PerspectiveCamera, Vector2 } from 'three';
 import type { Pin } from '../../proto/js/messages.js';
 
@@ -58,9 +58,10 @@ export class Pins {
   ): Pin[] {
     return this.list.filter((pin, k) => {
       if (pin.particle === particle) return true;
-      const head = this.group.children[k];
-      if (!point || !head) return false;
-      const place = head.position.clone().project(camera);
+      if (!point) return false;
+      // Where it is fixed is known before the picture shows it.
+      const at = pin.target ? this.group.children[k].position : new Vector3(...pin.position);
+      const place = at.clone().project(camera);
       const dx = ((place.x - point.x) / 2) * width;
       const dy = ((place.y - point.y) / 2) * height;
       return Math.abs(place.z) < 1 && Math.hypot(dx, dy) < REACH;
