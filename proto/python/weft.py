@@ -485,6 +485,21 @@ class Client:
         """Own number among the viewers; 0 before `welcome`."""
         return self.welcome["viewer"] if self.welcome else 0
 
+    @property
+    def sleeping(self) -> tuple[str, ...]:
+        """Cloths that have come to rest and are not stepped, as the newest `state` names them. That message
+        may come a little after the answer to a command; `query("state")` asks for it."""
+        return tuple((self.state or {}).get("sleeping", {}).get("cloths", ()))
+
+    @property
+    def all_asleep(self) -> bool:
+        """Whether all cloths sleep; no frame comes then until something wakes one or an object moves."""
+        return bool(self.sleeping) and len(self.sleeping) == len(self.mesh["cloths"])
+
+    async def until_asleep(self) -> None:
+        """Waits until all cloths sleep, in a running room whose scene lets them (`sleep.after`)."""
+        await self._until(lambda: self.all_asleep)
+
     def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
         """Calls `listener` with each message of this name (`frame`, `mesh`, `state`, `notice`, …,
         `refused` for errors that answer no call). Returns a function that ends it."""
@@ -659,7 +674,7 @@ class Client:
     # --- frames ---
 
     async def next_frame(self) -> Frame:
-        """The next frame that comes."""
+        """The next frame that comes; while all cloths sleep none does."""
         before = self.frame
         await self._until(lambda: self.frame is not before)
         return self.frame
@@ -1057,7 +1072,8 @@ class SyncClient:
 
 
 _PROPERTIES = frozenset(
-    ("viewer", "welcome", "mesh", "mesh_data", "frame", "state", "roster", "pins", "grabs")
+    ("viewer", "welcome", "mesh", "mesh_data", "frame", "state", "roster", "pins", "grabs", "sleeping",
+     "all_asleep")
 )
 
 
@@ -1071,7 +1087,7 @@ def _blocking(method):
 
 for _name in (
     "request post hello pick pin release camera pause resume step reset speed move gripper set advance "
-    "query hash load view ping next_frame frame_at"
+    "query hash load view ping next_frame frame_at until_asleep"
 ).split():
     setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
 

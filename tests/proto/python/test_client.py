@@ -85,6 +85,24 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
             if op not in ("notice", "bye"):
                 self.assertEqual(getattr(self.client, op), example(op))
 
+    async def test_sleeping_names_the_cloths_of_the_newest_state_and_all_asleep_means_all(self):
+        curtains = {**GRID, "epoch": 2, "cloths": [{"name": "left"}, {"name": "right"}]}
+
+        def state(*names):
+            return {**example("state"), "sleeping": {"islands": len(names), "cloths": names}}
+
+        self.assertEqual((self.client.sleeping, self.client.all_asleep), ((), False))
+        waiting = asyncio.create_task(self.client.until_asleep())
+        for names in (("left",), (), ("left", "right")):
+            self.assertFalse(waiting.done())
+            told = asyncio.get_running_loop().create_future()
+            stop = self.client.on("state", told.set_result)
+            await self.server.say(curtains, golden.read("mesh_grid.bin"), state(*names))
+            await told
+            stop()
+            self.assertEqual((self.client.sleeping, self.client.all_asleep), (names, len(names) == 2))
+        await waiting
+
     async def test_every_frame_is_acknowledged_and_only_those_of_the_mesh_are_told(self):
         one = golden.read("frame_jump.bin")  # of epoch 7
         await self.server.say(one, HANDS)
@@ -239,6 +257,7 @@ class BlockingTest(unittest.IsolatedAsyncioTestCase):
                 self.assertEqual(hand.grab, 17)
                 hand.move([0, 1, 0])
             self.assertEqual(cloth.next_frame().epoch, 1)
+            self.assertEqual((cloth.sleeping, cloth.all_asleep), ((), False))
             with self.assertRaises(AttributeError):
                 cloth.fly()
         cloth.close()  # a second time does no harm
