@@ -189,6 +189,8 @@ void describe_gripper(Io& io, GripperDef& gripper) {
   io.list(ListInfo{"steps", 0, kMostGripperSteps, "what it does by itself, in order of time"},
           gripper.steps, [](Io& in, GripperStep& step) {
             in.fields([&](auto&& visit) { visit_fields_of_gripper_step(step, visit); });
+            in.orientation("rotation", "turn about its middle from how it is defined",
+                           step.rotation);
           });
 }
 

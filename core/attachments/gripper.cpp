@@ -49,6 +49,12 @@ double next_opening(const Gripper& gripper, double seconds, double thickest) {
   return std::max(std::min(least, gripper.opening), gripper.opening - step);
 }
 
+void check_unit(const std::string& field, const Eigen::Quaterniond& q) {
+  if (!(std::abs(q.norm() - 1) < 1e-3))
+    throw DefinitionError(field, "of norm " + number_text(q.norm()),
+                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
+}
+
 }  // namespace
 
 std::array<ColliderDef, 2> jaws_of(const GripperDef& def) {
@@ -72,6 +78,7 @@ std::vector<Gripper> initial_grippers(const std::vector<GripperDef>& defs, std::
     gripper.pose.position = gripper.target.position = def.centre;
     gripper.opening = gripper.wanted = def.opening;
     gripper.speed = def.speed;
+    gripper.turn_speed = def.turn_speed;
     gripper.force = def.force;
     grippers.push_back(gripper);
   }
@@ -83,9 +90,7 @@ void validate(const GripperDef& def, const std::string& path) {
       def, [&path](const FieldInfo& info, const auto& value) { check_field(path, info, value); });
   if (def.name.empty() || def.name.size() > 56)
     throw DefinitionError(path + "name", def.name, "1 to 56 characters");
-  if (!(std::abs(def.orientation.norm() - 1) < 1e-3))
-    throw DefinitionError(path + "orientation", "of norm " + number_text(def.orientation.norm()),
-                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
+  check_unit(path + "orientation", def.orientation);
   check_field(path, {"steps", 0, kMostGripperSteps, "", "number of steps"},
               static_cast<double>(def.steps.size()));
   for (std::size_t k = 0; k < def.steps.size(); ++k) {
@@ -93,6 +98,7 @@ void validate(const GripperDef& def, const std::string& path) {
     visit_fields_of_gripper_step(def.steps[k], [&at](const FieldInfo& info, const auto& value) {
       check_field(at, info, value);
     });
+    check_unit(at + "rotation", def.steps[k].rotation);
     if (k > 0 && !(def.steps[k].time > def.steps[k - 1].time))
       throw DefinitionError(at + "time", number_text(def.steps[k].time),
                             "more than that of the step before");
@@ -108,9 +114,7 @@ void validate(const GripperCommand& command, const std::string& path) {
   check({"position", -1000, 1000, "m", "of its middle"}, command.position);
   check({"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle"}, command.speed);
   check({"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "at most"}, command.turn_speed);
-  if (command.rotation && !(std::abs(command.rotation->norm() - 1) < 1e-3))
-    throw DefinitionError(path + "rotation", "of norm " + number_text(command.rotation->norm()),
-                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
+  if (command.rotation) check_unit(path + "rotation", *command.rotation);
 }
 
 void command_gripper(const GripperCommand& command, Gripper& gripper) {
@@ -131,6 +135,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
     for (const GripperStep& step : gripper.def.steps) {
       if (gripper.commanded || step.time > time) break;
       gripper.target.position = gripper.def.centre + step.offset;
+      gripper.target.rotation = step.rotation.normalized();
       gripper.wanted = step.opening;
     }
     if (gripper.wanted >= gripper.opening) gripper.gripping = false;

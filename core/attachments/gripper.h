@@ -14,6 +14,7 @@ struct GripperStep {
   double time = 0;               ///< [s], 0 to 3600, growing from one to the next
   Vec3d offset = Vec3d::Zero();  ///< of its middle from where it is defined [m], within 1000
   double opening = 0;            ///< between its jaws [m], 0 to 1; 0 closes on what is there
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< from how it is defined; unit
 };
 
 inline constexpr std::size_t kMostGrippers = 8, kMostGripperSteps = 100;
@@ -27,6 +28,7 @@ struct GripperDef {
   double opening = 0.04;                ///< between the jaws' faces at the start [m], 0 to 1
   double force = 5;                     ///< with which each jaw presses [N], 0 to 1000
   double speed = 0.25;                  ///< of its middle, at most [m/s], 0.001 to 20
+  double turn_speed = 2;                ///< about it, at most [rad/s], 0.001 to 60
   double closing_speed = 0.05;          ///< of each jaw [m/s], 0.001 to 1
   std::vector<GripperStep> steps = {};  ///< what it does by itself; at most kMostGripperSteps
 };
@@ -93,10 +95,12 @@ void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
   visit(FieldInfo{"force", 0, 1000, "N", "with which each jaw presses"}, gripper.force);
   visit(FieldInfo{"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle, at most"},
         gripper.speed);
+  visit(FieldInfo{"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "about it, at most"},
+        gripper.turn_speed);
   visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "of each jaw"}, gripper.closing_speed);
 }
 
-/// The same for a step.
+/// The same for a step, but for its rotation.
 template <class Def, class Visitor>
 void visit_fields_of_gripper_step(Def& step, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "from when on"}, step.time);

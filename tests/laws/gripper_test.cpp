@@ -163,6 +163,44 @@ TEST_CASE("a gripper turns with its jaws, and a world with one is repeated bit f
   CHECK(first.grippers()[0].opening == def.grippers[0].opening);
 }
 
+TEST_CASE("the steps of a scene turn a gripper the short way, at its rate, with what it holds") {
+  constexpr double kAngle = 2, kRate = 0.8;
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(kAngle, Vec3d::UnitY()));
+  WorldDef def = hung_between_jaws();
+  def.grippers[0].turn_speed = kRate;
+  def.grippers[0].steps = {{0, Vec3d::Zero(), 0}, {1, Vec3d(0, 0.2, 0), 0, turned}};
+  def.grippers[0].steps.push_back({5, Vec3d(0, 0.2, 0), 0, Eigen::Quaterniond(-turned.coeffs())});
+  def.grippers[0].steps.push_back({6, Vec3d(0, 0.2, 0), 0});
+  World<float> world(def);
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  const std::vector<std::size_t> held = pinched(world);
+  REQUIRE(held.size() > 10);
+  const Vec3Array<float> before = world.state().x;
+  const Vec3d from = world.grippers()[0].pose.position;
+  free_pins(world);
+  for (int t = 0; t < 180; ++t) {
+    const Eigen::Quaterniond last = world.grippers()[0].pose.rotation;
+    world.step();
+    const double rate = world.grippers()[0].pose.rotation.angularDistance(last) * def.tick_rate;
+    REQUIRE(rate < kRate * (1 + 1e-6));
+    if (t < 140) REQUIRE(rate > kRate * (1 - 1e-6));
+    REQUIRE(crossings(world) == 0);
+  }
+  const Pose& pose = world.grippers()[0].pose;
+  CHECK(pose.rotation.angularDistance(turned) < 1e-9);
+  double slipped = 0;
+  for (const std::size_t i : held) {
+    const Vec3d kept = turned * (before[i].cast<double>() - from);
+    slipped = std::max(slipped, (world.state().x[i].cast<double>() - pose.position - kept).norm());
+  }
+  CHECK(slipped < 2e-3);
+  test::advance(world, 1.5);
+  CHECK(pose.rotation.angularDistance(turned) < 1e-9);  // the same turn, told otherwise
+  test::advance(world, 3);
+  CHECK(pose.rotation.angularDistance(Eigen::Quaterniond::Identity()) < 1e-9);
+}
+
 TEST_CASE("the scene of the gripper lifts its cloth off the table and holds it") {
   World<float> world(make_scene("gripper"));
   test::advance(world, 6);
@@ -183,6 +221,9 @@ TEST_CASE("a wrong gripper and a wrong command are refused by name") {
   CHECK_THROWS_AS(World<float>(def), DefinitionError);
   def = hung_between_jaws();
   def.contact.model = ContactModel::seed;
+  CHECK_THROWS_AS(World<float>(def), DefinitionError);
+  def = hung_between_jaws();
+  def.grippers[0].steps = {{0, Vec3d::Zero(), 0, Eigen::Quaterniond(1, 0, 0, 1)}};
   CHECK_THROWS_AS(World<float>(def), DefinitionError);
   World<float> world(hung_between_jaws());
   GripperCommand wrong;

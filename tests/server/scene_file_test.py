@@ -254,6 +254,8 @@ class SceneFiles(unittest.TestCase):
              "colliders[0].motion.keyframes[1].offset"),
             (moving([{"rotation": [0, 1, 0, 1]}]), "colliders[0].motion.keyframes[0].rotation"),
             (moving([{}, {"time": 1, "offset": [1, 0, 0]}], loop=True), "colliders[0].motion.loop"),
+            ({"cloths": [cloth], "grippers": [{"steps": [{}, {"time": 1, "rotation": [1, 1, 0, 0]}]}]},
+             "grippers[0].steps[1].rotation"),
             ({"cloths": [cloth], "colliders": [{"shape": "mesh", "source": "none.obj"}]},
              "colliders[0].source"),
             ({"cloths": [{"form": "mesh", "mesh": {"source": "cat"}}]}, "cloths[0].mesh.source"),
@@ -263,6 +265,21 @@ class SceneFiles(unittest.TestCase):
                 result = self.simulate(document)
                 self.assertEqual(result.returncode, 2, result)
                 self.assertIn(f": {where} = ", result.stderr)
+
+    def test_the_steps_of_a_gripper_turn_it(self):
+        def hash_of(**step):
+            steps = [{"opening": 0.04}, {"time": 0.2, "opening": 0.04, **step}]
+            scene = {"cloths": [{"rows": 5, "columns": 5}], "grippers": [{"steps": steps}]}
+            jsonschema.validate(scene, self.schema)
+            result = self.simulate(scene, ticks=60)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return json.loads(result.stdout)["hash"]
+
+        stays = hash_of()
+        self.assertEqual(hash_of(rotation=[0, 0, 0, 1]), stays)
+        turned = hash_of(rotation=[0, 0.6, 0, 0.8])
+        self.assertNotEqual(turned, stays)
+        self.assertNotEqual(hash_of(rotation=[0, -0.6, 0, 0.8]), turned)
 
     def test_a_fabric_may_tell_its_bending_lengths_in_place_of_its_rigidities(self):
         def scene(**fabric):
