@@ -18,6 +18,12 @@ void pin_along_top(WorldDef& def, int count, double radius) {
     def.pins.push_back({MaterialPoint{static_cast<double>(k) / (count - 1), 0}, radius, {}});
 }
 
+/// For scenes in which nothing moves by itself once the air is still: what has moved by no more
+/// than half a millimetre in three seconds sleeps until something acts on it.
+void let_sleep(WorldDef& def) {
+  def.sleep = {3, 5e-4};
+}
+
 /// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung
 /// by six, three at each upper corner, gravity and wind.
 void build_default(WorldDef& def, const std::string&) {
@@ -38,6 +44,7 @@ void build_default(WorldDef& def, const std::string&) {
   def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
   def.environment.drag = 0.1;
+  let_sleep(def);
 }
 
 void build_curtain(WorldDef& def, const std::string&) {
@@ -47,6 +54,7 @@ void build_curtain(WorldDef& def, const std::string&) {
   def.environment.wind = Vec3d(0.2, 0, 0.9);
   def.environment.gust_speed = 1.0;
   def.environment.drag = 0.1;
+  let_sleep(def);
 }
 
 void build_flag(WorldDef& def, const std::string&) {
@@ -59,6 +67,7 @@ void build_flag(WorldDef& def, const std::string&) {
   def.colliders = {ground(), {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.45, 0), 0.02}}};
   def.environment.wind = Vec3d(5, 0, 0.6);
   def.environment.gust_speed = 1.5;
+  let_sleep(def);
 }
 
 void build_drape_sphere(WorldDef& def, const std::string&) {
@@ -68,6 +77,7 @@ void build_drape_sphere(WorldDef& def, const std::string&) {
   def.cloths[0].v = Vec3d::UnitZ();
   def.colliders = {ground(), {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
   def.environment.drag = 0.5;
+  let_sleep(def);
 }
 
 void build_wall(WorldDef& def, const std::string&) {
@@ -77,6 +87,7 @@ void build_wall(WorldDef& def, const std::string&) {
       ground(),
       {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1), Eigen::Quaterniond::Identity()}}};
   def.environment.drag = 0.3;
+  let_sleep(def);
 }
 
 BoxDef upright_box(const Vec3d& centre, const Vec3d& half_extents) {
@@ -100,6 +111,7 @@ void build_table(WorldDef& def, const std::string&) {
                               Vec3d(kLeg, half_leg, kLeg))});
   }
   def.environment.drag = 0.5;
+  let_sleep(def);
 }
 
 void build_hammock(WorldDef& def, const std::string&) {
@@ -122,6 +134,7 @@ void build_hammock(WorldDef& def, const std::string&) {
       {"left-bar", CapsuleDef{Vec3d(-bar, kHeight, -half), Vec3d(-bar, kHeight, half), 0.02}},
       {"right-bar", CapsuleDef{Vec3d(bar, kHeight, -half), Vec3d(bar, kHeight, half), 0.02}}};
   def.environment.drag = 0.5;
+  let_sleep(def);
 }
 
 void build_two_flags(WorldDef& def, const std::string&) {
@@ -139,6 +152,7 @@ void build_two_flags(WorldDef& def, const std::string&) {
   def.colliders = {ground(), {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.55, 0), 0.02}}};
   def.environment.wind = Vec3d(1.8, 0, 0.3);
   def.environment.gust_speed = 0.4;
+  let_sleep(def);
 }
 
 void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
@@ -148,6 +162,7 @@ void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
   placement.scale = 0.08;  // ten units high: 0.77 m
   def.colliders = {ground(), {"bunny", mesh_object("bunny", mesh_directory, placement)}};
   def.environment.drag = 0.5;
+  let_sleep(def);
 }
 
 void build_fan(WorldDef& def, const std::string&) {
@@ -160,6 +175,7 @@ void build_fan(WorldDef& def, const std::string&) {
   fan.direction = Vec3d(-0.8, 0.05, -0.6);
   fan.speed = 4;
   def.environment.fans = {fan};
+  let_sleep(def);
 }
 
 /// A board that turns once in five seconds, with a sheet over it.

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 
 #include <catch2/catch.hpp>
 
+#include "core/scenes/scenes.h"
 #include "proto/frame.h"
 #include "tests/server/fakes.h"
 
@@ -131,6 +133,32 @@ TEST_CASE("a budget does not take sleep for cloth that has become cheap") {
     t.tick(1);
     REQUIRE(t.room->world().report().rested);
   }
+}
+
+TEST_CASE("the default scene in calm air settles and sends nothing; a touch wakes it") {
+  TestRoom t;
+  RoomOptions options;
+  options.scene = "default";
+  const auto scene = [](const std::string& name) { return make_scene(name); };
+  t.room = std::make_unique<Room>(options, scene, t.output, t.clock.clock(), t.metrics);
+  t.join(1);
+  t.tick(60);
+  CHECK(t.output.frames.size() == 60);
+  t.say(1, R"({"op":"set","wind":[0,0,0],"gust_speed":0,"drag":2})");
+  for (int k = 0; k < 1800 && !t.room->world().sleep().all_asleep(); ++k) t.tick(1);
+  REQUIRE(t.room->world().sleep().all_asleep());
+  const std::size_t frames = t.output.frames.size(), messages = t.output.sent.size();
+  t.tick(120);
+  CHECK(t.room->world().report().rested);
+  CHECK(t.output.frames.size() == frames);
+  CHECK(t.output.sent.size() == messages);
+  const json before = t.say(1, R"({"op":"query","id":1,"what":"positions"})")["data"][310];
+  t.say(1, R"({"op":"drag","phase":"start","particle":310,"target":[0,1,1]})");
+  t.tick(30);
+  CHECK(t.output.frames.size() >= frames + 30);
+  CHECK(t.output.last("state")["sleeping"]["cloths"].empty());
+  const json after = t.say(1, R"({"op":"query","id":2,"what":"positions"})")["data"][310];
+  CHECK(std::abs(after[2].get<double>() - before[2].get<double>()) > 0.05);
 }
 
 }  // namespace

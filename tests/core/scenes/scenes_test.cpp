@@ -11,6 +11,7 @@
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/world/world.h"
+#include "tests/support/sleepers.h"
 #include "tests/support/worlds.h"
 
 // Each built-in scene shows what its sentence says, by numbers.
@@ -184,4 +185,49 @@ TEST_CASE("the ball lifts the sheet, is never let through, and sinks again") {
     CHECK(world.state().x[20 * 41 + 20][1] > 1.19f);
   }
   CHECK(world.colliders()[1].pose.position[1] == Approx(0.2));
+}
+
+TEST_CASE("scenes in which nothing moves by itself in still air come to rest and cost nothing") {
+  const std::string name = GENERATE("default", "drape-sphere", "wall", "hammock");
+  INFO(name);
+  WorldDef def = make_scene(name);
+  if (name == "default") {  // its gusts never let it rest
+    def.environment.wind.setZero();
+    def.environment.gust_speed = 0;
+    def.environment.drag = 2;
+  }
+  WorldDef sleepless = def;
+  sleepless.sleep.after = 0;
+  World<float> world(def), beside(sleepless);
+  for (int tick = 0; tick < 300; ++tick) {
+    world.step();
+    beside.step();
+  }
+  REQUIRE(world.hash() == beside.hash());
+  REQUIRE(test::run_to_sleep(world, 1800) > 0);
+  const std::uint64_t hash = world.hash();
+  for (int tick = 0; tick < 120; ++tick) {
+    REQUIRE(world.step().rested);
+    REQUIRE(test::work_of(world.report()) == 0);
+  }
+  CHECK(world.hash() == hash);
+  const Vec3Array<float> before = world.state().x;
+  world.grab(test::touch(world, 150, 0.1));
+  CHECK_FALSE(world.step().rested);
+  for (int tick = 0; tick < 30; ++tick) world.step();
+  const auto touched = static_cast<std::size_t>(world.model().triangles[150][0]);
+  CHECK((world.state().x[touched] - before[touched]).norm() > 1e-4f);
+}
+
+TEST_CASE("a scene whose objects move or whose cloth is measured does not sleep, the others do") {
+  const std::set<std::string> restless = {"turntable", "lift-sphere", "gripper", "drape-test",
+                                          "cantilever-test"};
+  for (const SceneInfo& info : scenes()) {
+    if (info.name.starts_with("hard-") || info.name.starts_with("seed-")) continue;
+    if (!info.installed.empty() && !std::ifstream(mesh_directory() + "/" + info.installed + ".ply"))
+      continue;
+    INFO(info.name);
+    const WorldDef def = make_scene(info.name, mesh_directory());
+    CHECK((def.sleep.after > 0) == !restless.contains(info.name));
+  }
 }
