@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -10,7 +12,8 @@
 namespace weft::server {
 
 /// Threads that work through the chunks of the physics together with the caller. Which thread takes
-/// which chunk is left open; results do not depend on it.
+/// which chunk is left open; results do not depend on it. Who has nothing to do looks out for more
+/// for a moment before he sleeps: a tick has many jobs, and to be woken takes as long as some.
 class ThreadPool : public Executor {
  public:
   /// @param threads  in all, with the caller's; at least 1
@@ -32,8 +35,9 @@ class ThreadPool : public Executor {
   std::mutex mutex_;
   std::condition_variable started_, finished_;
   Job job_;
-  int next_chunk_ = 0;  // of the job
-  int open_ = 0;        // chunks not done yet
+  int next_chunk_ = 0;                     // of the job
+  std::atomic<int> open_ = 0;              // chunks not done yet
+  std::atomic<std::uint32_t> posted_ = 0;  // jobs so far
   bool stopping_ = false;
   std::vector<std::jthread> threads_;
 };

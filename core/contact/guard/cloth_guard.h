@@ -77,7 +77,11 @@ class ClothGuard {
   void certify(ClothState<Real>& state, Real dt, Profile& profile);
 
   /// After `certify`: says that all stay where they were instead, off the paths that were expected.
-  void stand_still() { collected_ = false; }
+  /// All that they wanted in this step is lost.
+  void stand_still() {
+    collected_ = false;
+    counts_.truncated += allowed_;
+  }
 
   /// After the drift: takes the push out of the velocities again.
   void finish(ClothState<Real>& state);
@@ -273,7 +277,6 @@ class ClothGuard {
   void load_rows(const ClothState<Real>& state);
   void store_rows(ClothState<Real>& state) const;
   void aim(GuardRow<Real>& row, Real dt) const;
-  static void drag_anchor(GuardRow<Real>& row);
   Real solve_row(GuardRow<Real>& row);
   void find_busy_rows(Real dt);
   void warm_rows(Real dt, Real kicked);
@@ -352,7 +355,8 @@ class ClothGuard {
   std::vector<Real> step_length_;     ///< of step_ [m]
   std::vector<Claim> claims_;         ///< of the particles of a wave
   std::vector<Index> loose_, next_, wave_list_, anchored_, dirty_, tight_;
-  double lost_ = 0;  ///< motion truncated in this step [m]
+  double lost_ = 0;     ///< motion truncated in this step [m]
+  double allowed_ = 0;  ///< and what is left of it, in the last one that was looked at [m]
   std::uint32_t listing_ = 0;
   std::vector<Critical> critical_;
   std::vector<char> is_tight_;

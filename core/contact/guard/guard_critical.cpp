@@ -44,6 +44,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   }
   if (has_leeway(state, dt)) {
     ++counts_.quiet;
+    allowed_ = 0;
     return;
   }
   anchored_.clear();
@@ -303,11 +304,11 @@ void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
 /// Sums up the motion of particles in pairs.
 template <class Real>
 void ClothGuard<Real>::count_motion() {
-  double allowed = 0;
+  allowed_ = 0;
   for (const Index k : active_)
-    allowed += static_cast<double>(length(step_[static_cast<std::size_t>(k)]));
+    allowed_ += static_cast<double>(length(step_[static_cast<std::size_t>(k)]));
   counts_.truncated += lost_;
-  counts_.wanted += allowed + lost_;
+  counts_.wanted += allowed_ + lost_;
   lost_ = 0;
 }
 

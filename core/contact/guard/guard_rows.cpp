@@ -22,8 +22,9 @@ constexpr int kStepsBetweenMotions = 4;
 /// If more than this part of all have moved, all pairs are gone through.
 constexpr std::size_t kManyMoved = 8;
 
-/// No row is made for a gap beyond this part of the thickness.
-constexpr double kRowReach = 1.3;
+/// No row is made for a gap beyond this part of the thickness: so much that what comes fast has one
+/// before it arrives, as else the regions would have to stop it.
+constexpr double kRowReach = 2;
 
 /// Edges keep less than the thickness, so that particles and triangles respond first.
 constexpr double kEdgeRadius = 0.85;

@@ -23,10 +23,10 @@ constexpr double kResidual = 0.01;
 /// Rows that push turn with their features every so many steps.
 constexpr int kStepsBetweenTurns = 4;
 
-/// Time in which a contact that sticks goes back to its anchor [s], and how far that may be, as a
-/// part of the radius: what slides drags its anchor along, and what did so for a moment, as the
-/// load went over to other rows, goes back.
-constexpr double kStickTime = 0.02, kMostSlip = 0.008;
+/// Time in which a contact that sticks goes back to its anchor [s], but no faster than this, which
+/// nobody sees [m/s]; and how far that may be, as a part of the radius: what slides drags its
+/// anchor along, and what did so for a moment, as the load went over to other rows, goes back.
+constexpr double kStickTime = 0.02, kFastestReturn = 1.5e-3, kMostSlip = 0.008;
 
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
@@ -40,6 +40,13 @@ constexpr double kPushSlack = 0.1;
 /// is pressed so is not pushed: the push would stretch it, and lift what presses, with energy that
 /// nobody gave.
 constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
+
+/// A vector, but no longer than `most`.
+template <class Real>
+Quad<Real> shortened(const Quad<Real>& v, Real most) {
+  const Real length2 = dot(v, v);
+  return length2 > most * most ? v * (most / std::sqrt(length2)) : v;
+}
 
 }  // namespace
 
@@ -106,12 +113,6 @@ void ClothGuard<Real>::aim(GuardRow<Real>& row, Real dt) const {
   row.least_speed = row.room > 0 ? -row.room / dt : Real(0);
 }
 
-template <class Real>
-void ClothGuard<Real>::drag_anchor(GuardRow<Real>& row) {
-  const Real most = row.radius * static_cast<Real>(kMostSlip), size2 = dot(row.slip, row.slip);
-  if (size2 > most * most) row.slip = row.slip * (most / std::sqrt(size2));
-}
-
 /// One row of a sweep. Friction brings what sticks back to its anchor, and lets it slide where that
 /// takes more than Coulomb's bound.
 /// @return change of the normal velocity [m/s]
@@ -126,11 +127,13 @@ Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
   row.push = push;
   if (row.friction > 0) {
     const Quad<Real> slide = v - row.normal * speed;
-    const Quad<Real> wanted = row.drag - (slide + row.slip * Real(1 / kStickTime)) * row.inertia;
+    const Quad<Real> back =
+        shortened(row.slip * Real(1 / kStickTime), static_cast<Real>(kFastestReturn));
+    const Quad<Real> wanted = row.drag - (slide + back) * row.inertia;
     const Real most = row.friction * push, size2 = dot(wanted, wanted);
     const bool slides = size2 > most * most;
     const Quad<Real> drag = slides ? wanted * (most / std::sqrt(size2)) : wanted;
-    if (slides) drag_anchor(row);
+    if (slides) row.slip = shortened(row.slip, row.radius * static_cast<Real>(kMostSlip));
     change += drag - row.drag;
     row.drag = drag;
   }
@@ -301,7 +304,6 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::finish(ClothState<Real>&);                 \
   template void ClothGuard<Real>::settle(ClothState<Real>&, Real, Profile&); \
   template void ClothGuard<Real>::aim(GuardRow<Real>&, Real) const;          \
-  template void ClothGuard<Real>::drag_anchor(GuardRow<Real>&);              \
   template Real ClothGuard<Real>::solve_row(GuardRow<Real>&);                \
   template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
   template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \

@@ -124,6 +124,22 @@ TEST_CASE("a crumpling sheet leaves the same bits with one and two threads") {
   CHECK(one.hash() == two.hash());
 }
 
+TEST_CASE("what cloth wanted in a step in which it is made to stand still counts as lost") {
+  World<float> world(upright_drop(14, 0.25));
+  jolt(world, 0.3, 3);
+  for (int tick = 0; tick < 40; ++tick) world.step();
+  ClothState<float> state = world.state();
+  ClothGuard<float> guard(world.model());
+  Profile profile;
+  guard.solve(state, 1e-4F, profile);
+  guard.certify(state, 1e-4F, profile);
+  const double wanted = guard.counts().wanted;
+  CHECK(wanted > 0);
+  CHECK(guard.counts().truncated < 0.5 * wanted);
+  guard.stand_still();
+  CHECK(guard.counts().truncated == Approx(wanted));
+}
+
 TEST_CASE("the same sheet without the guard crosses itself") {
   WorldDef def = upright_drop(20, 0.25);
   def.contact.seed.self = SelfContact::none;
