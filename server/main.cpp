@@ -80,7 +80,8 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   serve.add_option("--scenes", o.scenes, "Directory of scenes and meshes that clients may name");
   serve.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   add_number(serve, "--rate", o.rate, kRates, "Ticks a second (the scene's)");
-  add_number(serve, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
+  add_number(serve, "--threads", o.threads, kThreadCounts,
+             "Threads for the physics (2, or 1 where there is one core)");
   add_switch(serve, "--paused", o.paused, "Start paused");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option("--allow-origin", o.allowed_origins,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <thread>
 #include <utility>
 
 #include <boost/asio/ip/address.hpp>
@@ -55,6 +56,10 @@ int parse_whole_number(const char* field, const std::string& text, const OptionR
 
 double parse_number(const char* field, const std::string& text, const OptionRange& range) {
   return parse<double>(field, text, range, "a number");
+}
+
+int usual_threads() {
+  return std::thread::hardware_concurrency() > 1 ? 2 : 1;
 }
 
 bool is_loopback(const std::string& address) {

@@ -55,6 +55,10 @@ struct ConnectionLimits {
   std::size_t waiting_commands = 1024;  ///< commands of one viewer that wait for the room
 };
 
+/// Threads for the physics where nobody says how many: two where there are two cores, as contact
+/// has work for them in many a tick, and no more. They never change a bit of the motion.
+int usual_threads();
+
 /// Everything that `weft serve` can be told.
 struct ServerOptions {
   std::string bind = "127.0.0.1";  ///< address; others than loopback need `open`
@@ -63,7 +67,7 @@ struct ServerOptions {
   std::string scene = "default";   ///< a name, or a file that ends in .json
   std::string scenes;              ///< directory with further scenes and meshes; empty: none
   double rate = 0;                 ///< ticks a second, 1 to 1000; 0: the scene's own
-  int threads = 1;                 ///< for the physics, 1 to 64
+  int threads = usual_threads();   ///< for the physics, 1 to 64
   bool paused = false;             ///< start paused
   std::string web;                 ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;                   ///< besides the server's own

@@ -158,10 +158,10 @@ TEST_CASE("over another cloth a cloth slides 1 degree above atan(mu) as on a pla
   CHECK(upper_cloth(world) - before == Approx(acceleration * 1.5 * 1.5 / 2).epsilon(0.1));
 }
 
-TEST_CASE("over another cloth a cloth creeps 1 degree below atan(mu) by less than 0.2 mm in 3 s") {
+TEST_CASE("over another cloth a cloth creeps 1 degree below atan(mu) by less than 0.6 mm in 3 s") {
   const double friction = GENERATE(0.2, 0.5);
   World<float> world(cloth_on_cloth(std::atan(friction) - std::atan(1.0) / 45, friction));
   const double before = upper_cloth(world);
   test::advance(world, 3);
-  CHECK(std::abs(upper_cloth(world) - before) < 2e-4);
+  CHECK(std::abs(upper_cloth(world) - before) < 6e-4);
 }

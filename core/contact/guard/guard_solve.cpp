@@ -26,7 +26,7 @@ constexpr int kStepsBetweenTurns = 4;
 /// Time in which a contact that sticks goes back to its anchor [s], but no faster than this, which
 /// nobody sees [m/s]; and how far that may be, as a part of the radius: what slides drags its
 /// anchor along, and what did so for a moment, as the load went over to other rows, goes back.
-constexpr double kStickTime = 0.02, kFastestReturn = 1.5e-3, kMostSlip = 0.008;
+constexpr double kStickTime = 0.02, kFastestReturn = 1e-3, kMostSlip = 0.008;
 
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
