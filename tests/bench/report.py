@@ -162,8 +162,8 @@ def report_text(data):
             "far the particles end from where they were (rms).", "", tables.parts(parts), "",
             "## Threads", "",
             "One thread against two, by wall time and by CPU time of the whole process. What runs in "
-            "chunks is the search for contacts with objects; springs, bending, air, self-contact and "
-            "the sweeps over contacts are on one thread. To share the springs, threads would have to "
+            "chunks is the search for contacts with objects and for pairs of cloth with cloth; springs, "
+            "bending, air and the sweeps over contacts are on one thread. To share the springs, threads would have to "
             "meet at each of 30 to 300 substeps a tick, and lose more wherever another process "
             "takes a core. On a machine that does nothing else the time falls by half of the share at "
             "best; where the pool's thread comes late, by nothing.", "",
