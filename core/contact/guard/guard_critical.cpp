@@ -118,13 +118,11 @@ void ClothGuard<Real>::note_ends(const ClothState<Real>& state, Real dt) {
 template <class Real>
 void ClothGuard<Real>::note_paths() {
   noted_off_path_ = off_path_;
-  Real fastest2 = 0;
   for (std::size_t i = 0; i < calm_paths_.base.size(); ++i) {
     calm_paths_.base[i] = to_vector(on_path(i, 0) + off_path_);
     calm_paths_.velocity[i] = to_vector(velocity_[i]);
-    fastest2 = std::max(fastest2, dot(velocity_[i], velocity_[i]));
   }
-  calm_paths_.fastest = std::sqrt(fastest2);
+  calm_paths_.fastest = fastest_;
   calm_paths_.time = elapsed_;
   calm_paths_.horizon = horizon_;
   ++calm_paths_.number;

@@ -89,6 +89,7 @@ void ClothGuard<Real>::predict(Real past) {
     fastest2 = std::max(fastest2, dot(velocity_[i], velocity_[i]));
   }
   fastest_ = std::sqrt(fastest2);
+  leeway_ = 0;  // was told from other paths
 }
 
 /// Gives particles that leave their paths new ones, and collects their pairs anew; the others go
