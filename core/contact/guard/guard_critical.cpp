@@ -27,6 +27,24 @@ constexpr double kDiagonal = 1.7321;
 /// Particles stop so much before their plane, as a part of their way to it.
 constexpr double kStopShort = 1e-4;
 
+/// A bound of how far anybody is off his straight path after the drift [m].
+/// @param base      where the paths are at time 0 [m]
+/// @param velocity  along them [m/s]
+/// @param time      at the end of the drift [s]
+template <class Real>
+Real farthest_off(const ClothState<Real>& state, Real dt, const Vec3Array<Real>& base,
+                  const Vec3Array<Real>& velocity, Real time) {
+  PathPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.base = base.data()->data();
+  pass.velocity = velocity.data()->data();
+  pass.time = time;
+  return largest_deviation(pass) * static_cast<Real>(kDiagonal);
+}
+
 }  // namespace
 
 template <class Real>
@@ -79,15 +97,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
 template <class Real>
 bool ClothGuard<Real>::stays_calm(const ClothState<Real>& state, Real dt) const {
   if (!collected_ || !(elapsed_ <= horizon_)) return false;
-  PathPass<Real> pass;
-  pass.particles = state.x.size();
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.base = calm_paths_.base.data()->data();
-  pass.velocity = calm_paths_.velocity.data()->data();
-  pass.time = elapsed_;
-  return largest_deviation(pass) * static_cast<Real>(kDiagonal) <= reach_;
+  return farthest_off(state, dt, calm_paths_.base, calm_paths_.velocity, elapsed_) <= reach_;
 }
 
 /// Whether, by a bound for all at once, nobody leaves the ball around his path or the room around
@@ -95,15 +105,8 @@ bool ClothGuard<Real>::stays_calm(const ClothState<Real>& state, Real dt) const 
 template <class Real>
 bool ClothGuard<Real>::has_leeway(const ClothState<Real>& state, Real dt) const {
   if (!(leeway_ > 0) || !collected_ || !(elapsed_ <= horizon_) || !dirty_.empty()) return false;
-  PathPass<Real> pass;
-  pass.particles = state.x.size();
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.base = pass.velocity = ends_.data()->data();
-  pass.time = 0;  // they stand still
   const Real along_paths = (fastest_ + length(common_velocity_)) * (elapsed_ - looked_);
-  return largest_deviation(pass) * static_cast<Real>(kDiagonal) + along_paths <= leeway_;
+  return farthest_off(state, dt, ends_, ends_, Real(0)) + along_paths <= leeway_;
 }
 
 /// Writes down where everybody is at the end of a step, if that leaves leeway for others.

@@ -60,12 +60,12 @@ HWY_EXPORT(separate_f32);
 HWY_EXPORT(separate_f64);
 
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs, std::size_t first, std::size_t last) {
-  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs, first, last);
+                    PairColumns<float>& pairs) {
+  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs);
 }
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs, std::size_t first, std::size_t last) {
-  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs, first, last);
+                    PairColumns<double>& pairs) {
+  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs);
 }
 
 template struct PairColumns<float>;

@@ -48,18 +48,10 @@ struct PairColumns {
 
 /// Fills the columns from `gap` on.
 /// @param x    positions [m]
-/// @param end    positions for `end_gap`; if it is x, that column is left as it is
-/// @param first  pair, a multiple of `kPairPadding`
-/// @param last   behind the last one
+/// @param end  positions for `end_gap`; if it is x, that column is left as it is
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs, std::size_t first, std::size_t last);
+                    PairColumns<float>& pairs);
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs, std::size_t first, std::size_t last);
-/// All of them.
-template <class Real>
-void separate_pairs(const QuadArray<Real>& x, const QuadArray<Real>& end,
-                    PairColumns<Real>& pairs) {
-  separate_pairs(x, end, pairs, 0, pairs.size());
-}
+                    PairColumns<double>& pairs);
 
 }  // namespace weft
