@@ -4,7 +4,7 @@ namespace weft::server {
 namespace {
 
 /// Looks out for something so many times, some tens of microseconds.
-constexpr int kLooks = 1500;
+constexpr int kLooks = 5000;
 
 template <class Predicate>
 void look_out_for(Predicate&& happened) {
@@ -15,6 +15,19 @@ void look_out_for(Predicate&& happened) {
   }
 }
 
+// A ticket: 32 bits for the number of the job, and the chunks that are left from a first one, in 16
+// bits, to before an end.
+constexpr std::uint64_t make_ticket(std::uint32_t job, int chunks) {
+  return std::uint64_t{job} << 32 | static_cast<std::uint64_t>(chunks);
+}
+constexpr std::uint64_t kOneFromTheFront = 1 << 16, kOneFromTheEnd = 1;
+constexpr int first_of(std::uint64_t ticket) {
+  return static_cast<int>(ticket >> 16 & 0xffff);
+}
+constexpr int end_of(std::uint64_t ticket) {
+  return static_cast<int>(ticket & 0xffff);
+}
+
 }  // namespace
 
 ThreadPool::ThreadPool(int threads) {
@@ -22,51 +35,44 @@ ThreadPool::ThreadPool(int threads) {
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  started_.notify_all();
+  stopping_ = true;
+  ++posted_;
+  posted_.notify_all();
 }
 
 void ThreadPool::run(int chunks, void (*work)(void* context, int chunk), void* context) {
-  std::unique_lock lock(mutex_);
-  job_ = {chunks, work, context};
-  next_chunk_ = 0;
-  open_ = chunks;
-  ++posted_;
-  if (chunks > 1) started_.notify_all();
-  take_chunks(lock);
-  if (open_ > 0) {
-    lock.unlock();
-    look_out_for([this] { return open_ == 0; });
-    lock.lock();
-  }
-  finished_.wait(lock, [this] { return open_ == 0; });
-  job_ = {};
+  if (chunks < 1) return;
+  work_.store(work, std::memory_order_relaxed);
+  context_.store(context, std::memory_order_relaxed);
+  open_.store(chunks, std::memory_order_relaxed);
+  const std::uint32_t job = posted_.load(std::memory_order_relaxed) + 1;
+  ticket_.store(make_ticket(job, chunks), std::memory_order_release);
+  posted_.store(job);
+  if (chunks > 1) posted_.notify_all();
+  take_chunks(true);
+  look_out_for([this] { return open_ == 0; });
+  for (int left = open_; left > 0; left = open_) open_.wait(left);
 }
 
 void ThreadPool::serve() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    started_.wait(lock, [this] { return stopping_ || next_chunk_ < job_.chunks; });
-    if (stopping_) return;
-    take_chunks(lock);
-    const std::uint32_t seen = posted_;
-    lock.unlock();
+  for (std::uint32_t seen = 0; !stopping_;) {
+    take_chunks(false);
     look_out_for([&] { return posted_ != seen; });
-    lock.lock();
+    posted_.wait(seen);
+    seen = posted_;
   }
 }
 
-void ThreadPool::take_chunks(std::unique_lock<std::mutex>& lock) {
-  while (next_chunk_ < job_.chunks) {
-    const Job job = job_;
-    const int chunk = next_chunk_++;
-    lock.unlock();
-    job.work(job.context, chunk);
-    lock.lock();
-    if (--open_ == 0) finished_.notify_one();
+void ThreadPool::take_chunks(bool from_the_front) {
+  std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
+  while (first_of(ticket) < end_of(ticket)) {
+    const auto work = work_.load(std::memory_order_relaxed);
+    void* const context = context_.load(std::memory_order_relaxed);
+    const std::uint64_t rest = from_the_front ? ticket + kOneFromTheFront : ticket - kOneFromTheEnd;
+    if (!ticket_.compare_exchange_weak(ticket, rest, std::memory_order_acq_rel)) continue;
+    work(context, from_the_front ? first_of(ticket) : end_of(rest));
+    if (open_.fetch_sub(1) == 1) open_.notify_one();
+    ticket = ticket_.load(std::memory_order_acquire);
   }
 }
 

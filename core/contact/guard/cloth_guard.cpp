@@ -65,10 +65,12 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
   is_pushed_.assign(n, 0);
   for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
     columns_of(kind).kind = kind;
-  searches_.resize(kMostSearches);
-  for (PairSearch& s : searches_) {
-    for (std::size_t k = 0; k < 2; ++k) s.columns[k].kind = static_cast<PairKind>(k);
-  }
+  searches_.resize(kMostParts);
+  anchor_parts_.resize(kMostParts);
+  turn_parts_.resize(RowSlabs<Real>::kLists);
+  name_kinds(searches_);
+  name_kinds(anchor_parts_);
+  name_kinds(turn_parts_);
   resting_.assign(tree_.patch_count(), 0);
   is_heap_.assign(particles_of_.size(), 0);
   crossings_of_.assign(particles_of_.size(), 0);

@@ -11,17 +11,16 @@
 #include "core/cloth/neighbours.h"
 #include "core/contact/feature_pair.h"
 #include "core/contact/guard/guard_pair.h"
+#include "core/contact/guard/guard_parts.h"
 #include "core/contact/guard/guard_row.h"
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/patch_boxes.h"
+#include "core/contact/guard/row_slabs.h"
 #include "core/contact/tangles/cloth_tangles.h"
 #include "core/executor.h"
 #include "core/world/profile.h"
 
 namespace weft {
-
-/// The search for pairs is done in at most so many parts.
-inline constexpr std::size_t kMostSearches = 16;
 
 /// Contact of cloths with themselves and each other, with the promise that no particle passes a
 /// triangle and no edge another one (PHYSICS.md section 4).
@@ -132,22 +131,6 @@ class ClothGuard {
   const ClothTangles<Real>& tangles() const { return tangles_; }
 
  private:
-  /// A pair of a particle that is being anchored.
-  struct Claim {
-    Index pair = 0, particle = 0;
-    Real own = 0, other = 0;  ///< rooms of those who keep their anchors, on its side and across [m]
-    bool on_first = false;    ///< the particle is on the first side
-    bool ample = false;       ///< the bound is far more than anybody needs
-  };
-
-  /// What a part of the search for pairs needs for itself, and what it found.
-  struct PairSearch {
-    std::array<PairColumns<Real>, 2> columns;  ///< of each kind, to be looked at together
-    PatchOverlaps overlaps;                    ///< of the patches that are being tested
-    std::vector<GuardedPair<Real>> found;
-    std::uint64_t tests = 0;
-  };
-
   /// A pair whose coming step is certified by itself.
   struct Critical {
     Index pair;
@@ -199,15 +182,15 @@ class ClothGuard {
   // guard_patches.cpp
   void test_near_patches(bool all, Profile& profile);
   void fit_near_patches();
-  void search(std::size_t first, std::size_t last, bool all, PairSearch& s) const;
-  void test_patches(Index p, Index q, bool all, PairSearch& s) const;
+  void search(std::size_t first, std::size_t last, bool all, PairSearch<Real>& s) const;
+  void test_patches(Index p, Index q, bool all, PairSearch<Real>& s) const;
   void test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps,
-                      PairSearch& s) const;
-  void test_edges(Index p, Index q, bool all, PairSearch& s) const;
+                      PairSearch<Real>& s) const;
+  void test_edges(Index p, Index q, bool all, PairSearch<Real>& s) const;
   typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle,
-                 PairSearch& s) const;
-  void keep_near(PairColumns<Real>& columns, PairSearch& s) const;
+                 PairSearch<Real>& s) const;
+  void keep_near(PairColumns<Real>& columns, PairSearch<Real>& s) const;
 
   // guard_tangles.cpp
   void find_tangles(const ClothState<Real>& state);
@@ -231,9 +214,10 @@ class ClothGuard {
   void anchor_wave(bool first);
   void anchor_all();
   void measure(GuardedPair<Real>& pair);
-  void list_claims(Index particle);
-  void measure_claimed();
-  Real share_claims(std::span<const Claim> claims, bool first);
+  void list_claims(Index particle, AnchorPart<Real>& part);
+  void measure_claimed(AnchorPart<Real>& part) const;
+  Real share_claims(std::span<const AnchorClaim<Real>> claims, bool first,
+                    AnchorPart<Real>& part) const;
 
   // guard_critical.cpp
   bool stays_calm(const ClothState<Real>& state, Real dt) const;
@@ -257,7 +241,9 @@ class ClothGuard {
   void add_near_rows(const ClothState<Real>& state, Profile& profile);
   bool has_row(const GuardedPair<Real>& pair) const;
   void turn_rows(const ClothState<Real>& state, Profile& profile);
-  void turn(const ClothState<Real>& state, const PairSeparation<Real>& s, GuardRow<Real>& row);
+  void turn_rows(const ClothState<Real>& state, std::size_t list);
+  void turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
+            GuardRow<Real>& row) const;
   bool weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
              GuardRow<Real>& row) const;
   void add_arrived(const ClothState<Real>& state, Profile& profile);
@@ -279,6 +265,7 @@ class ClothGuard {
   void aim(GuardRow<Real>& row, Real dt) const;
   Real solve_row(GuardRow<Real>& row);
   void find_busy_rows(Real dt);
+  bool is_busy(GuardRow<Real>& row, Real time) const;
   void warm_rows(Real dt, Real kicked);
   Real sweep_rows();
   void measure_pressures();
@@ -324,7 +311,7 @@ class ClothGuard {
   std::vector<std::pair<Index, Index>> near_patches_;  ///< whose features are to be tested
   PatchBoxes<Real> boxes_;
   std::vector<Index> to_fit_;                 ///< patches among these whose boxes do not fit
-  std::vector<PairSearch> searches_;          ///< of parts of these
+  std::vector<PairSearch<Real>> searches_;    ///< of parts of these
   std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
@@ -351,9 +338,9 @@ class ClothGuard {
   std::vector<std::uint64_t> anchored_at_;  ///< step in which each was anchored last
   std::uint32_t wave_ = 0;
   std::uint64_t substep_ = 0;
-  std::uint64_t measured_steps_ = 0;  ///< step in which step_length_ was measured last
-  std::vector<Real> step_length_;     ///< of step_ [m]
-  std::vector<Claim> claims_;         ///< of the particles of a wave
+  std::uint64_t measured_steps_ = 0;            ///< step in which step_length_ was measured last
+  std::vector<Real> step_length_;               ///< of step_ [m]
+  std::vector<AnchorPart<Real>> anchor_parts_;  ///< of the particles of a wave
   std::vector<Index> loose_, next_, wave_list_, anchored_, dirty_, tight_;
   double lost_ = 0;     ///< motion truncated in this step [m]
   double allowed_ = 0;  ///< and what is left of it, in the last one that was looked at [m]
@@ -372,18 +359,19 @@ class ClothGuard {
   std::vector<GuardRow<Real>> rows_, old_rows_;
   std::vector<std::pair<std::uint64_t, Index>> old_keys_;
   std::vector<GuardedPair<Real>> arrived_;  ///< pairs that came since rows were built
-  std::vector<Index> row_particles_;        ///< of all rows
   std::vector<char> in_rows_;
   std::vector<Index> first_row_;  ///< for each particle the last row whose first one it is
   std::vector<Index> next_row_;   ///< and for each row the one before
   std::vector<Index> moved_particles_;
   std::vector<Index> passed_;  ///< over the border of a triangle that carries them
   std::vector<char> is_moved_;
-  QuadArray<Real> quad_v_;          ///< their velocities while rows are solved [m/s]
-  QuadArray<Real> extra_;           ///< velocity of the push [m/s]
-  std::vector<Index> busy_rows_;    ///< that push or soon may
-  std::vector<Real> inverse_area_;  ///< of fabric that belongs to each particle [1/m^2]
-  std::vector<Real> pressure_;      ///< about particles in rows, now [Pa]
+  QuadArray<Real> quad_v_;                  ///< their velocities while rows are solved [m/s]
+  QuadArray<Real> extra_;                   ///< velocity of the push [m/s]
+  RowSlabs<Real> busy_rows_;                ///< that push or soon may
+  std::vector<std::uint8_t> list_of_row_;   ///< among these, or none
+  std::vector<TurnPart<Real>> turn_parts_;  ///< of each of their lists
+  std::vector<Real> inverse_area_;          ///< of fabric that belongs to each particle [1/m^2]
+  std::vector<Real> pressure_;              ///< about particles in rows, now [Pa]
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it

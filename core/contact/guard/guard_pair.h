@@ -17,10 +17,9 @@ struct GuardedPair {
   bool open = false;  ///< not apart, or free to part (ClothTangles): nothing is promised about it
   bool gone = false;  ///< looked at again since, as one of its particles left its path
   std::array<Index, 4> particle = {0, 0, 0, 0};
-  Index a = 0, b = 0;          ///< particle and triangle, or two edges, the lower one first
-  Real bound = 0;              ///< the features at their anchors are at least so far apart [m]
-  std::uint32_t measured = 0;  ///< wave in which the bound was measured last
-  std::uint32_t listed = 0;    ///< search for critical pairs that met it last
+  Index a = 0, b = 0;        ///< particle and triangle, or two edges, the lower one first
+  Real bound = 0;            ///< the features at their anchors are at least so far apart [m]
+  std::uint32_t listed = 0;  ///< search for critical pairs that met it last
   /// Of each particle its next pair, if it came after all were collected: number x 4 + place.
   std::array<Index, 4> next = {kNone, kNone, kNone, kNone};
 };

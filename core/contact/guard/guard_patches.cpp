@@ -27,12 +27,6 @@ void for_each_bit(std::uint32_t bits, Visit&& visit) {
   for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-/// How many parts work is done in, at least `each` in one: by its amount alone, so that threads
-/// make no difference.
-std::size_t parts_of(std::size_t amount, std::size_t each) {
-  return std::clamp<std::size_t>(amount / each, 1, kMostSearches);
-}
-
 }  // namespace
 
 /// Which features of a patch have a changed particle.
@@ -57,7 +51,7 @@ void ClothGuard<Real>::test_near_patches(bool all, Profile& profile) {
     search(count * n / parts, count * (n + 1) / parts, all, searches_[n]);
   });
   for (std::size_t n = 0; n < parts; ++n) {
-    PairSearch& s = searches_[n];
+    PairSearch<Real>& s = searches_[n];
     profile[Stage::pairs].work += s.tests;
     pairs_.insert(pairs_.end(), s.found.begin(), s.found.end());
     for (const GuardedPair<Real>& pair : s.found) open_pairs_ += pair.open ? 1 : 0;
@@ -83,7 +77,8 @@ void ClothGuard<Real>::fit_near_patches() {
 
 /// Tests the features of a part of the patches that are near each other.
 template <class Real>
-void ClothGuard<Real>::search(std::size_t first, std::size_t last, bool all, PairSearch& s) const {
+void ClothGuard<Real>::search(std::size_t first, std::size_t last, bool all,
+                              PairSearch<Real>& s) const {
   s.tests = 0;
   for (std::size_t k = first; k < last; ++k)
     test_patches(near_patches_[k].first, near_patches_[k].second, all, s);
@@ -91,7 +86,7 @@ void ClothGuard<Real>::search(std::size_t first, std::size_t last, bool all, Pai
 }
 
 template <class Real>
-void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch& s) const {
+void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch<Real>& s) const {
   if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return;
   if (in_heap(p) || in_heap(q)) return;
   overlap_patches(boxes_.columns(p), boxes_.columns(q), s.overlaps);
@@ -103,7 +98,8 @@ void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch& s) c
 /// Particles of one patch against triangles of another one.
 template <class Real>
 void ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
-                                      const PatchOverlaps::Bits& overlaps, PairSearch& s) const {
+                                      const PatchOverlaps::Bits& overlaps,
+                                      PairSearch<Real>& s) const {
   const auto& vertices = tree_.patch(p).vertices;
   const auto& triangles = tree_.patch(q).triangles;
   const std::uint32_t changed = changed_in(p, all).vertices, others = changed_in(q, all).triangles;
@@ -120,7 +116,7 @@ void ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
 
 /// Edges of two patches, or of one with each other.
 template <class Real>
-void ClothGuard<Real>::test_edges(Index p, Index q, bool all, PairSearch& s) const {
+void ClothGuard<Real>::test_edges(Index p, Index q, bool all, PairSearch<Real>& s) const {
   const auto &first = tree_.patch(p).edges, &second = tree_.patch(q).edges;
   const std::uint32_t changed = changed_in(p, all).edges, others = changed_in(q, all).edges;
   for (std::size_t k = 0; k < first.size(); ++k) {
@@ -139,7 +135,7 @@ void ClothGuard<Real>::test_edges(Index p, Index q, bool all, PairSearch& s) con
 /// Puts a pair among those that are to be tested.
 template <class Real>
 void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
-                                 const std::array<Index, 4>& particle, PairSearch& s) const {
+                                 const std::array<Index, 4>& particle, PairSearch<Real>& s) const {
   if (share_particle(particle, kind)) return;
   PairColumns<Real>& columns = s.columns[static_cast<std::size_t>(kind)];
   columns.add(a, b, particle);
@@ -149,7 +145,7 @@ void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
 /// Keeps pairs unless one axis separates the balls of their particles at both ends of the horizon,
 /// and thereby all along.
 template <class Real>
-void ClothGuard<Real>::keep_near(PairColumns<Real>& columns, PairSearch& s) const {
+void ClothGuard<Real>::keep_near(PairColumns<Real>& columns, PairSearch<Real>& s) const {
   separate_pairs(motion_.start, motion_.end, columns);
   const Real apart = 2 * motion_.radius;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -166,18 +162,18 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns, PairSearch& s) cons
   columns.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;     \
-  template void ClothGuard<Real>::test_near_patches(bool, Profile&);                             \
-  template void ClothGuard<Real>::fit_near_patches();                                            \
-  template void ClothGuard<Real>::search(std::size_t, std::size_t, bool, PairSearch&) const;     \
-  template void ClothGuard<Real>::test_patches(Index, Index, bool, PairSearch&) const;           \
-  template void ClothGuard<Real>::test_triangles(Index, Index, bool, const PatchOverlaps::Bits&, \
-                                                 PairSearch&) const;                             \
-  template void ClothGuard<Real>::test_edges(Index, Index, bool, PairSearch&) const;             \
-  template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&, \
-                                            PairSearch&) const;                                  \
-  template void ClothGuard<Real>::keep_near(PairColumns<Real>&, PairSearch&) const;
+#define WEFT_INSTANTIATE(Real)                                                                     \
+  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;       \
+  template void ClothGuard<Real>::test_near_patches(bool, Profile&);                               \
+  template void ClothGuard<Real>::fit_near_patches();                                              \
+  template void ClothGuard<Real>::search(std::size_t, std::size_t, bool, PairSearch<Real>&) const; \
+  template void ClothGuard<Real>::test_patches(Index, Index, bool, PairSearch<Real>&) const;       \
+  template void ClothGuard<Real>::test_triangles(Index, Index, bool, const PatchOverlaps::Bits&,   \
+                                                 PairSearch<Real>&) const;                         \
+  template void ClothGuard<Real>::test_edges(Index, Index, bool, PairSearch<Real>&) const;         \
+  template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&,   \
+                                            PairSearch<Real>&) const;                              \
+  template void ClothGuard<Real>::keep_near(PairColumns<Real>&, PairSearch<Real>&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

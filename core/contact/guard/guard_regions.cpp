@@ -25,6 +25,9 @@ constexpr double kLeastOfGap = kLeastShare / (1 + 2 * kLeastShare) * 0.999;
 /// Part of the reach beyond which a particle is given a new path with those that have left theirs.
 constexpr double kSoon = 0.6;
 
+/// Particles are anchored in parts with at least so many.
+constexpr std::size_t kAnchoredAtLeast = 8;
+
 }  // namespace
 
 /// How far everybody in a pair wants to move in the coming step.
@@ -102,7 +105,6 @@ void ClothGuard<Real>::find_loose() {
 template <class Real>
 void ClothGuard<Real>::measure(GuardedPair<Real>& pair) {
   pair.bound = separate_pair(pair.kind, points(pair, anchor_)).gap;
-  pair.measured = wave_;
 }
 
 /// Anchors particles where they are, and gives them room anew. Who is in their way with more room
@@ -141,53 +143,88 @@ void ClothGuard<Real>::anchor_wave(bool first) {
     if (moved == 0) continue;
     for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
   }
-  claims_.clear();
-  for (const Index k : wave_list_) list_claims(k);
-  measure_claimed();
-  auto claim = claims_.begin();
-  for (const Index k : wave_list_) {
-    const auto begin = claim;
-    while (claim != claims_.end() && claim->particle == k) ++claim;
-    room_[static_cast<std::size_t>(k)] = share_claims({begin, claim}, first);
+  const std::size_t count = wave_list_.size(), parts = parts_of(count, kAnchoredAtLeast);
+  const auto in_parts = [&](auto&& work) {
+    run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts),
+               [&](int part) { work(static_cast<std::size_t>(part)); });
+  };
+  in_parts([&](std::size_t n) {
+    AnchorPart<Real>& part = anchor_parts_[n];
+    part.claims.clear();
+    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
+      list_claims(wave_list_[k], part);
+    measure_claimed(part);
+  });
+  in_parts([&](std::size_t n) {
+    for (PairColumns<Real>& columns : anchor_parts_[n].columns) {
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.gap[k];
+      columns.clear();
+    }
+  });
+  in_parts([&](std::size_t n) {
+    AnchorPart<Real>& part = anchor_parts_[n];
+    auto claim = part.claims.begin();
+    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k) {
+      const auto begin = claim;
+      while (claim != part.claims.end() && claim->particle == wave_list_[k]) ++claim;
+      room_[static_cast<std::size_t>(wave_list_[k])] = share_claims({begin, claim}, first, part);
+    }
+  });
+  for (std::size_t n = 0; n < parts; ++n) {
+    std::vector<Index>& next = anchor_parts_[n].next;
+    next_.insert(next_.end(), next.begin(), next.end());
+    next.clear();
   }
 }
 
 /// Lists the pairs of a particle with the rooms that others have in them, and for measuring those
-/// whose bound may not be enough.
+/// whose bound may not be enough for one who is being anchored: the first of these in the pair asks
+/// for all.
 template <class Real>
-void ClothGuard<Real>::list_claims(Index particle) {
-  const auto i = static_cast<std::size_t>(particle);
-  const Real ahead = step_length_[i] * Real(2 * kStepsOfRoom) + smallest_gap_;
-  for_pairs_of(i, [&](GuardedPair<Real>& pair) {
+void ClothGuard<Real>::list_claims(Index particle, AnchorPart<Real>& part) {
+  const auto ahead_of = [this](std::size_t j) {
+    return step_length_[j] * Real(2 * kStepsOfRoom) + smallest_gap_;
+  };
+  for_pairs_of(static_cast<std::size_t>(particle), [&](const GuardedPair<Real>& pair) {
     const std::size_t middle = first_side(pair.kind);
+    Real rooms[2] = {0, 0}, ahead[2] = {-1, -1};
+    Index first = kNone;
     std::size_t at = 0;
-    while (pair.particle[at] != particle) ++at;
-    Claim c;
-    c.pair = static_cast<Index>(&pair - pairs_.data());
-    c.particle = particle;
-    c.on_first = at < middle;
     for (std::size_t m = 0; m < 4; ++m) {
       const auto j = static_cast<std::size_t>(pair.particle[m]);
-      if (wave_of_[j] == wave_) continue;
-      Real& most = (m < middle) == c.on_first ? c.own : c.other;
-      most = std::max(most, room_[j]);
+      const std::size_t side = m < middle ? 0 : 1;
+      if (wave_of_[j] != wave_) {
+        rooms[side] = std::max(rooms[side], room_[j]);
+        continue;
+      }
+      if (first == kNone) first = pair.particle[m];
+      if (pair.particle[m] == particle) at = side;
+      ahead[side] = std::max(ahead[side], ahead_of(j));
     }
-    c.ample = pair.bound > std::max(c.own, c.other) + c.other + ahead;
-    if (!c.ample && std::exchange(pair.measured, wave_) != wave_)
-      columns_of(pair.kind).add(c.pair, 0, pair.particle);
-    claims_.push_back(c);
+    const auto is_ample = [&](std::size_t side, Real way) {
+      return pair.bound > std::max(rooms[0], rooms[1]) + rooms[1 - side] + way;
+    };
+    const bool ample = is_ample(at, ahead_of(static_cast<std::size_t>(particle)));
+    part.claims.push_back({static_cast<Index>(&pair - pairs_.data()), particle, rooms[at],
+                           rooms[1 - at], at == 0, ample});
+    if (first != particle) return;
+    const auto wants = [&](std::size_t side) {
+      return ahead[side] >= 0 && !is_ample(side, ahead[side]);
+    };
+    if (!wants(0) && !wants(1)) return;
+    part.columns[static_cast<std::size_t>(pair.kind)].add(part.claims.back().pair, 0,
+                                                          pair.particle);
   });
 }
 
-/// Measures the pairs in the columns.
+/// Measures the gaps of the pairs in the columns.
 template <class Real>
-void ClothGuard<Real>::measure_claimed() {
-  for (PairColumns<Real>& columns : columns_) {
-    if (columns.size() == 0) continue;
+void ClothGuard<Real>::measure_claimed(AnchorPart<Real>& part) const {
+  for (PairColumns<Real>& columns : part.columns) {
     separate_pairs(anchor_, anchor_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k)
-      pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.certified_gap(k, anchor_);
-    columns.clear();
+      columns.gap[k] = columns.certified_gap(k, anchor_);
   }
 }
 
@@ -195,9 +232,10 @@ void ClothGuard<Real>::measure_claimed() {
 /// other side has not taken. Lists who has taken too much.
 /// @param claims  all of one particle
 template <class Real>
-Real ClothGuard<Real>::share_claims(std::span<const Claim> claims, bool first) {
+Real ClothGuard<Real>::share_claims(std::span<const AnchorClaim<Real>> claims, bool first,
+                                    AnchorPart<Real>& part) const {
   Real room = std::numeric_limits<Real>::infinity();
-  for (const Claim& claim : claims) {
+  for (const AnchorClaim<Real>& claim : claims) {
     const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(claim.pair)];
     const Real gap = std::max(Real(0), pair.bound - smallest_gap_);
     // What is far apart, even if its side gets the least share, changes nothing.
@@ -216,9 +254,9 @@ Real ClothGuard<Real>::share_claims(std::span<const Claim> claims, bool first) {
     for (const Index j : pair.particle) {
       if (wave_of_[static_cast<std::size_t>(j)] != wave_ &&
           (room_[static_cast<std::size_t>(j)] > 0 || greedy))
-        next_.push_back(j);
+        part.next.push_back(j);
     }
-    next_.push_back(claim.particle);
+    part.next.push_back(claim.particle);
   }
   return room;
 }
@@ -248,9 +286,10 @@ void ClothGuard<Real>::anchor_all() {
   template void ClothGuard<Real>::measure(GuardedPair<Real>&);                                  \
   template void ClothGuard<Real>::anchor(const std::vector<Index>&);                            \
   template void ClothGuard<Real>::anchor_wave(bool);                                            \
-  template void ClothGuard<Real>::list_claims(Index);                                           \
-  template void ClothGuard<Real>::measure_claimed();                                            \
-  template Real ClothGuard<Real>::share_claims(std::span<const Claim>, bool);                   \
+  template void ClothGuard<Real>::list_claims(Index, AnchorPart<Real>&);                        \
+  template void ClothGuard<Real>::measure_claimed(AnchorPart<Real>&) const;                     \
+  template Real ClothGuard<Real>::share_claims(std::span<const AnchorClaim<Real>>, bool,        \
+                                               AnchorPart<Real>&) const;                        \
   template void ClothGuard<Real>::anchor_all();
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

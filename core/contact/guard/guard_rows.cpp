@@ -122,12 +122,12 @@ void ClothGuard<Real>::drop_moved_rows() {
   }
   rows_.resize(kept);
   std::sort(old_keys_.begin(), old_keys_.end());
-  for (const Index k : row_particles_) {
+  busy_rows_.visit_particles(nullptr, [this](Index k) {
     const auto i = static_cast<std::size_t>(k);
     in_rows_[i] = 0;
     first_row_[i] = kNone;
-  }
-  row_particles_.clear();
+  });
+  busy_rows_.clear_particles();
   next_row_.clear();
   for (std::size_t r = 0; r < rows_.size(); ++r) list_row(r);
 }
@@ -139,7 +139,7 @@ void ClothGuard<Real>::list_row(std::size_t r) {
   next_row_.push_back(std::exchange(first_row_[first], static_cast<Index>(r)));
   for (const Index i : rows_[r].particle) {
     if (std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) continue;
-    row_particles_.push_back(i);
+    busy_rows_.add_particle(i);
     pressure_[static_cast<std::size_t>(i)] = 0;
   }
 }
@@ -149,7 +149,7 @@ template <class Real>
 void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& profile) {
   for (PairColumns<Real>& columns : columns_) {
     profile[Stage::narrow_phase].work += columns.size();
-    separate_pairs(legal_, legal_, columns);
+    separate_pairs(legal_, legal_, columns, executor_);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (columns.gap[k] > thickest_ * Real(kRowReach)) continue;
       add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], columns.separation(k, legal_));
@@ -180,7 +180,9 @@ void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profi
     const std::size_t before = rows_.size();
     if (has_row(pair)) continue;
     add_row(state, pair, separate_pair(pair.kind, points(pair, legal_)));
-    if (rows_.size() > before) busy_rows_.push_back(static_cast<Index>(before));
+    if (rows_.size() > before) {
+      busy_rows_.add(static_cast<Index>(before), busy_rows_.list_of(pair.particle));
+    }
   }
   arrived_.clear();
 }
@@ -254,12 +256,28 @@ bool ClothGuard<Real>::weigh(const ClothState<Real>& state, const PairSeparation
 template <class Real>
 void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::narrow_phase, 0);
-  for (const Index k : busy_rows_) {
-    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    if (row.push > 0) columns_of(kind_of(row)).add(k, 0, row.particle);
+  const bool few = busy_rows_.count() < RowSlabs<Real>::kFewRows;
+  run_chunks(few ? nullptr : executor_, static_cast<int>(turn_parts_.size()),
+             [&](int list) { turn_rows(state, static_cast<std::size_t>(list)); });
+  for (TurnPart<Real>& part : turn_parts_) {
+    passed_.insert(passed_.end(), part.passed.begin(), part.passed.end());
+    part.passed.clear();
+    for (PairColumns<Real>& columns : part.columns) {
+      profile[Stage::narrow_phase].work += columns.size();
+      columns.clear();
+    }
   }
-  for (PairColumns<Real>& columns : columns_) {
-    profile[Stage::narrow_phase].work += columns.size();
+}
+
+/// Turns the rows of a list.
+template <class Real>
+void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, std::size_t list) {
+  TurnPart<Real>& part = turn_parts_[list];
+  for (const Index k : busy_rows_.list(list)) {
+    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    if (row.push > 0) part.columns[static_cast<std::size_t>(kind_of(row))].add(k, 0, row.particle);
+  }
+  for (PairColumns<Real>& columns : part.columns) {
     separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       GuardRow<Real>& row = rows_[static_cast<std::size_t>(columns.a[k])];
@@ -267,15 +285,14 @@ void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile
       turn(state, s, row);
       if (columns.kind == PairKind::edge_edge || s.inside) continue;
       // Who has gone over a border is carried by the triangle beyond, and by none that tilts.
-      if (!owns_nearest(triangle_of(row), row.particle, s)) passed_.push_back(row.particle[0]);
+      if (!owns_nearest(triangle_of(row), row.particle, s)) part.passed.push_back(row.particle[0]);
     }
-    columns.clear();
   }
 }
 
 template <class Real>
 void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
-                            GuardRow<Real>& row) {
+                            GuardRow<Real>& row) const {
   if (!(s.gap > 0)) return;
   const Quad<Real> slipped = row.slip + (weighted(row, legal_) - row.apart);
   // Edges that are nearest at an end leave it to the particle there.
@@ -324,8 +341,9 @@ void ClothGuard<Real>::remember(GuardRow<Real>& row) {
 
 #define WEFT_INSTANTIATE(Real)                                                                \
   template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);               \
+  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, std::size_t);            \
   template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,  \
-                                       GuardRow<Real>&);                                      \
+                                       GuardRow<Real>&) const;                                \
   template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
                                         GuardRow<Real>&) const;                               \
   template bool ClothGuard<Real>::find_moved();                                               \

@@ -14,6 +14,10 @@ namespace {
 constexpr int kStepsBetweenLooks = 4;
 constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
 
+/// Rows are looked through in parts with at least so many.
+constexpr std::size_t kRowsAtLeast = 256;
+constexpr std::uint8_t kNoList = 0xff;
+
 /// Where cloths meet nothing but each other sweeps are repeated, up to so many, while one changes
 /// what something moves in the step by more than this part of the thickness. What one sweep leaves
 /// under load sinks in, and the push that leads it out again does work that nobody gave.
@@ -22,6 +26,9 @@ constexpr double kResidual = 0.01;
 
 /// Rows that push turn with their features every so many steps.
 constexpr int kStepsBetweenTurns = 4;
+
+/// Space is cut anew into slabs every so many steps, before a look.
+constexpr int kStepsBetweenCuts = 64;
 
 /// Time in which a contact that sticks goes back to its anchor [s], but no faster than this, which
 /// nobody sees [m/s]; and how far that may be, as a part of the radius: what slides drags its
@@ -65,6 +72,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   rows_time_ += dt;
   ++rows_steps_;
   if (find_moved()) renew_rows(state, profile);
+  if (rows_steps_ % kStepsBetweenCuts == 0) busy_rows_.cut(active_, legal_);
   if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) {
     busy_rows_.clear();
@@ -83,18 +91,18 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
 
 template <class Real>
 void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
-  for (const Index k : row_particles_) {
+  busy_rows_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     quad_v_[i] = to_quad(state.v[i]);
-  }
+  });
 }
 
 template <class Real>
 void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
-  for (const Index k : row_particles_) {
+  busy_rows_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     state.v[i] = to_vector(quad_v_[i]);
-  }
+  });
 }
 
 /// Normal velocity that a row must reach: no nearer than its radius within the step. Adds to the
@@ -164,19 +172,28 @@ void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
 template <class Real>
 void ClothGuard<Real>::find_busy_rows(Real dt) {
   const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
+  const std::size_t count = rows_.size(), parts = parts_of(count, kRowsAtLeast);
+  list_of_row_.resize(count);
+  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
+    const auto n = static_cast<std::size_t>(part);
+    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
+      list_of_row_[k] = is_busy(rows_[k], time) ? busy_rows_.list_of(rows_[k].particle) : kNoList;
+  });
   busy_rows_.clear();
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    GuardRow<Real>& row = rows_[k];
-    if (row.push == 0) {
-      const Real room = dot(row.normal, weighted(row, legal_)) - row.radius;
-      const Real approach = -dot(row.normal, weighted(row, quad_v_));
-      if (room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time) {
-        row.slip = {};
-        continue;
-      }
-    }
-    busy_rows_.push_back(static_cast<Index>(k));
+  for (std::size_t k = 0; k < count; ++k) {
+    if (list_of_row_[k] != kNoList) busy_rows_.add(static_cast<Index>(k), list_of_row_[k]);
   }
+}
+
+/// Whether a row pushes or may within a time [s]. Forgets the slip of one that does not.
+template <class Real>
+bool ClothGuard<Real>::is_busy(GuardRow<Real>& row, Real time) const {
+  if (row.push != 0) return true;
+  const Real room = dot(row.normal, weighted(row, legal_)) - row.radius;
+  const Real approach = -dot(row.normal, weighted(row, quad_v_));
+  if (!(room > row.radius * Real(kBusyRoom) + std::max(Real(0), approach) * time)) return true;
+  row.slip = {};
+  return false;
 }
 
 /// Starts from the impulses of the last step.
@@ -185,47 +202,43 @@ template <class Real>
 void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
   const Real warm = kicked_ > 0 ? kicked / kicked_ : Real(0);
   kicked_ = kicked;
-  for (const Index k : busy_rows_) {
+  busy_rows_.visit(executor_, true, [&](Index k) {
     GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     aim(row, dt);
-    if (row.push == 0) continue;
+    if (row.push == 0) return Real(0);
     row.push *= warm;
     row.drag = row.drag * warm;
     share_out(row, row.normal * row.push + row.drag, quad_v_);
-  }
+    return row.push;
+  });
 }
 
 /// A sweep of projected Gauss-Seidel, from either end in turn.
 /// @return largest change of a normal velocity [m/s]
 template <class Real>
 Real ClothGuard<Real>::sweep_rows() {
-  Real largest = 0;
-  const auto visit = [&](std::size_t k) {
-    largest = std::max(largest, solve_row(rows_[static_cast<std::size_t>(busy_rows_[k])]));
-  };
   upwards_ = !upwards_;
-  if (upwards_) {
-    for (std::size_t k = 0; k < busy_rows_.size(); ++k) visit(k);
-  } else {
-    for (std::size_t k = busy_rows_.size(); k-- > 0;) visit(k);
-  }
-  return largest;
+  return busy_rows_.visit(executor_, upwards_, [this](Index k) {
+    return solve_row(rows_[static_cast<std::size_t>(k)]);
+  });
 }
 
 /// Pressure about each particle of a row, from what pushes it: single rows share a load by chance.
 /// Layers are pressed from both sides.
 template <class Real>
 void ClothGuard<Real>::measure_pressures() {
-  for (const Index i : row_particles_) pressure_[static_cast<std::size_t>(i)] = 0;
-  for (const Index k : busy_rows_) {
+  busy_rows_.visit_particles(executor_,
+                             [this](Index i) { pressure_[static_cast<std::size_t>(i)] = 0; });
+  busy_rows_.visit(executor_, true, [&](Index k) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    if (row.push == 0) continue;
+    if (row.push == 0) return Real(0);
     const Real force = row.push / (2 * kicked_);
     for (std::size_t n = 0; n < 4; ++n) {
       const auto i = static_cast<std::size_t>(row.particle[n]);
       pressure_[i] += std::abs(row.weight[n]) * force * inverse_area_[i];
     }
-  }
+    return force;
+  });
 }
 
 /// How much a row lacks of its radius, less what the pressure on its features takes [m].
@@ -240,24 +253,22 @@ Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
 
 template <class Real>
 void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
-  const auto is_near = [&](Index k) {
+  const Real most = busy_rows_.visit(executor_, true, [this](Index k) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    return -row.room > row.radius * Real(kPushSlack);
-  };
-  if (std::none_of(busy_rows_.begin(), busy_rows_.end(), is_near)) return;
-  for (const Index k : busy_rows_) {
-    if (!is_near(k)) continue;
-    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
+    if (!(-row.room > row.radius * Real(kPushSlack))) return Real(0);
     const Real lack = lack_of(row);
-    if (!(lack > row.radius * Real(kPushSlack))) continue;
+    if (!(lack > row.radius * Real(kPushSlack))) return Real(0);
     const Real wanted = std::min(lack * Real(kPushRate), static_cast<Real>(kPushSpeed));
     const Real more = wanted - dot(row.normal, weighted(row, extra_));
-    if (!(more > 0)) continue;
+    if (!(more > 0)) return Real(0);
     share_out(row, row.normal * (more * row.inertia), extra_);
-    for (const Index i : row.particle) {
-      if (!std::exchange(is_pushed_[static_cast<std::size_t>(i)], 1)) pushed_.push_back(i);
-    }
-  }
+    for (const Index i : row.particle) is_pushed_[static_cast<std::size_t>(i)] = 1;
+    return more;
+  });
+  if (!(most > 0)) return;
+  busy_rows_.visit_particles(nullptr, [this](Index i) {
+    if (is_pushed_[static_cast<std::size_t>(i)]) pushed_.push_back(i);
+  });
   for (const Index k : pushed_) {
     const auto i = static_cast<std::size_t>(k);
     state.v[i] += to_vector(extra_[i]);
@@ -289,8 +300,9 @@ template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   profile[Stage::contact].work += rows_.size();
-  for (const Index k : row_particles_)
+  busy_rows_.visit_particles(nullptr, [&](Index k) {
     legal_[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
+  });
   load_rows(state);
   warm_rows(dt, dt / 2);
   store_rows(state);
@@ -308,6 +320,7 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template Real ClothGuard<Real>::sweep(ClothState<Real>&);                  \
   template void ClothGuard<Real>::respond_alone(ClothState<Real>&, Real);    \
   template void ClothGuard<Real>::find_busy_rows(Real);                      \
+  template bool ClothGuard<Real>::is_busy(GuardRow<Real>&, Real) const;      \
   template void ClothGuard<Real>::warm_rows(Real, Real);                     \
   template Real ClothGuard<Real>::sweep_rows();                              \
   template void ClothGuard<Real>::measure_pressures();                       \

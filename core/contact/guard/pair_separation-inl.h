@@ -137,11 +137,12 @@ HWY_INLINE V gap_of(PairKind kind, const Triple<V>& b, const Triple<V>& c, const
 }
 
 template <class Real>
-HWY_INLINE void separate(const Real* x, const Real* end, PairColumns<Real>& pairs) {
+HWY_INLINE void separate(const Real* x, const Real* end, std::size_t first, std::size_t last,
+                         PairColumns<Real>& pairs) {
   const hn::CappedTag<Real, kPairPadding> d;
   using V = hn::Vec<decltype(d)>;
   const V zero = hn::Zero(d);
-  for (std::size_t k = 0; k < pairs.size(); k += hn::Lanes(d)) {
+  for (std::size_t k = first; k < last; k += hn::Lanes(d)) {
     const auto at = [&](const Real* quads, std::size_t side)
                         HWY_ATTR { return gather(d, quads, pairs.particle[side].data() + k); };
     const Triple<V> a = at(x, 0), b = at(x, 1) - a, c = at(x, 2) - a, e = at(x, 3) - a;
@@ -166,11 +167,13 @@ HWY_INLINE void separate(const Real* x, const Real* end, PairColumns<Real>& pair
   }
 }
 
-HWY_ATTR void separate_f32(const float* x, const float* end, PairColumns<float>& pairs) {
-  separate(x, end, pairs);
+HWY_ATTR void separate_f32(const float* x, const float* end, std::size_t first, std::size_t last,
+                           PairColumns<float>& pairs) {
+  separate(x, end, first, last, pairs);
 }
-HWY_ATTR void separate_f64(const double* x, const double* end, PairColumns<double>& pairs) {
-  separate(x, end, pairs);
+HWY_ATTR void separate_f64(const double* x, const double* end, std::size_t first, std::size_t last,
+                           PairColumns<double>& pairs) {
+  separate(x, end, first, last, pairs);
 }
 
 }  // namespace HWY_NAMESPACE

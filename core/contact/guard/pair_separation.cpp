@@ -17,6 +17,22 @@ namespace {
 /// An edge that is closest at its end, within this part of it, belongs to a particle instead.
 constexpr double kEdgeEnd = 0.01;
 
+/// Pairs of a block that is worth a thread's while: whole vectors.
+constexpr std::size_t kBlock = 64 * kPairPadding;
+
+/// Calls separate(first, last) for all pairs, in blocks if there are threads.
+template <class Separate>
+void for_blocks(std::size_t pairs, Executor* executor, Separate&& separate) {
+  if (!executor || pairs <= kBlock) {
+    separate(0, pairs);
+    return;
+  }
+  run_chunks(executor, static_cast<int>((pairs + kBlock - 1) / kBlock), [&](int chunk) {
+    const std::size_t first = kBlock * static_cast<std::size_t>(chunk);
+    separate(first, std::min(first + kBlock, pairs));
+  });
+}
+
 template <class Real>
 const Real* numbers_of(const QuadArray<Real>& quads) {
   return reinterpret_cast<const Real*>(quads.data());
@@ -60,12 +76,16 @@ HWY_EXPORT(separate_f32);
 HWY_EXPORT(separate_f64);
 
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs) {
-  HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), pairs);
+                    PairColumns<float>& pairs, Executor* executor) {
+  for_blocks(pairs.size(), executor, [&](std::size_t first, std::size_t last) {
+    HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), first, last, pairs);
+  });
 }
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs) {
-  HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), pairs);
+                    PairColumns<double>& pairs, Executor* executor) {
+  for_blocks(pairs.size(), executor, [&](std::size_t first, std::size_t last) {
+    HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), first, last, pairs);
+  });
 }
 
 template struct PairColumns<float>;

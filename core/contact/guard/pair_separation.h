@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/contact/feature_pair.h"
+#include "core/executor.h"
 #include "core/math/quad.h"
 #include "core/types.h"
 
@@ -47,11 +48,12 @@ struct PairColumns {
 };
 
 /// Fills the columns from `gap` on.
-/// @param x    positions [m]
-/// @param end  positions for `end_gap`; if it is x, that column is left as it is
+/// @param x         positions [m]
+/// @param end       positions for `end_gap`; if it is x, that column is left as it is
+/// @param executor  works through many pairs in chunks; may be null
 void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs);
+                    PairColumns<float>& pairs, Executor* executor = nullptr);
 void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs);
+                    PairColumns<double>& pairs, Executor* executor = nullptr);
 
 }  // namespace weft

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/executor.h"
+#include "core/math/quad.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Rows of contact, sorted so that they can be swept on several threads with the same bits as on
+/// one. Space is cut into slabs with equally many particles, and a row belongs to the first slab
+/// that it has a particle in. Rows are short: nearly all reach no farther than the slab behind.
+/// Those of every second slab so have no particle in common, and are swept at the same time; then
+/// those of the slabs between; last, or first on the way back, one by one the few that are longer.
+template <class Real>
+class RowSlabs {
+ public:
+  /// Few enough that a slab of a pile of some thousand particles is wider than its rows are long.
+  static constexpr std::size_t kSlabs = 8;
+  /// Lists of rows: one for each slab, and one of long rows.
+  static constexpr std::size_t kLists = kSlabs + 1;
+  /// With fewer rows threads take longer to meet than to sweep.
+  static constexpr std::size_t kFewRows = 600;
+
+  /// Cuts space anew, across its longest extent. Rows that were added before have to be added anew.
+  /// @param particles  where rows may be
+  /// @param x          positions of all particles, also of others [m]
+  void cut(const std::vector<Index>& particles, const QuadArray<Real>& x);
+
+  void clear();
+  bool empty() const { return count_ == 0; }
+
+  /// The list that a row belongs to.
+  std::uint8_t list_of(const std::array<Index, 4>& particles) const;
+  /// Adds a row at the end of its list.
+  void add(Index row, std::uint8_t list) {
+    rows_[list].push_back(row);
+    ++count_;
+  }
+  const std::vector<Index>& list(std::size_t number) const { return rows_[number]; }
+  std::size_t count() const { return count_; }
+
+  /// Calls visit(row) for each row, which may change what belongs to the row and its particles.
+  /// @param executor  does what it does on its threads if that is worth while; may be null
+  /// @param upwards   in the order in which rows were added to their slabs, or all the other way
+  /// @return largest of what visit returns, and 0
+  template <class Visit>
+  Real visit(Executor* executor, bool upwards, Visit&& visit);
+
+  /// Lists a particle that rows have, once.
+  void add_particle(Index particle) {
+    particles_[slab_of_.empty() ? 0 : slab_of_[static_cast<std::size_t>(particle)]].push_back(
+        particle);
+    ++particle_count_;
+  }
+  void clear_particles();
+
+  /// Calls visit(particle) for each particle that is listed, which may change what belongs to it.
+  template <class Visit>
+  void visit_particles(Executor* executor, Visit&& visit) const {
+    run_chunks(particle_count_ < kFewRows ? nullptr : executor, static_cast<int>(kSlabs),
+               [&](int slab) {
+                 for (const Index i : particles_[static_cast<std::size_t>(slab)]) visit(i);
+               });
+  }
+
+  /// Calls visit(row) for each row, one by one.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const std::vector<Index>& list : rows_) std::for_each(list.begin(), list.end(), visit);
+  }
+
+ private:
+  std::vector<std::uint8_t> slab_of_;            ///< each particle
+  std::array<std::vector<Index>, kLists> rows_;  ///< of each slab; last the long ones
+  std::array<std::vector<Real>, 3> samples_;     ///< of positions, along each axis [m]
+  std::size_t count_ = 0;
+  std::array<std::vector<Index>, kSlabs> particles_;  ///< by the slab that they were in when listed
+  std::size_t particle_count_ = 0;
+};
+
+template <class Real>
+template <class Visit>
+Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
+  std::array<Real, kLists> largest{};
+  const auto sweep = [&](std::size_t slab) {
+    const std::vector<Index>& rows = rows_[slab];
+    Real most = 0;
+    if (upwards) {
+      for (const Index row : rows) most = std::max(most, visit(row));
+    } else {
+      for (auto row = rows.rbegin(); row != rows.rend(); ++row) most = std::max(most, visit(*row));
+    }
+    largest[slab] = most;
+  };
+  const auto sweep_every_second = [&](std::size_t first) {
+    run_chunks(count_ < kFewRows ? nullptr : executor, static_cast<int>(kSlabs / 2),
+               [&](int chunk) { sweep(2 * static_cast<std::size_t>(chunk) + first); });
+  };
+  if (!upwards) sweep(kSlabs);
+  sweep_every_second(upwards ? 0 : 1);
+  sweep_every_second(upwards ? 1 : 0);
+  if (upwards) sweep(kSlabs);
+  return *std::max_element(largest.begin(), largest.end());
+}
+
+extern template class RowSlabs<float>;
+extern template class RowSlabs<double>;
+
+}  // namespace weft
