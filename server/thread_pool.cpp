@@ -3,8 +3,8 @@
 namespace weft::server {
 namespace {
 
-/// Looks out for something so many times, some tens of microseconds.
-constexpr int kLooks = 5000;
+/// Looks out for something so many times, some hundred microseconds.
+constexpr int kLooks = 20000;
 
 template <class Predicate>
 void look_out_for(Predicate&& happened) {

@@ -67,9 +67,11 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
     columns_of(kind).kind = kind;
   searches_.resize(kMostParts);
   anchor_parts_.resize(kMostParts);
+  row_parts_.resize(kMostParts);
   turn_parts_.resize(RowSlabs<Real>::kLists);
   name_kinds(searches_);
   name_kinds(anchor_parts_);
+  name_kinds(row_parts_);
   name_kinds(turn_parts_);
   resting_.assign(tree_.patch_count(), 0);
   is_heap_.assign(particles_of_.size(), 0);

@@ -238,19 +238,23 @@ class ClothGuard {
   bool has_moved(const std::array<Index, 4>& particles) const;
   void drop_moved_rows();
   void list_row(std::size_t r);
-  void add_near_rows(const ClothState<Real>& state, Profile& profile);
+  void list_moved_pairs();
+  void make_near_rows(const ClothState<Real>& state, RowPart<Real>& part) const;
   bool has_row(const GuardedPair<Real>& pair) const;
+  void add_arrived(const ClothState<Real>& state, Profile& profile);
+  bool is_beyond(const GuardedPair<Real>& pair) const;
+  bool make_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
+                const PairSeparation<Real>& s, GuardRow<Real>& row) const;
+  void add_row(GuardRow<Real>& row);
+  Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
+
+  // guard_turns.cpp
   void turn_rows(const ClothState<Real>& state, Profile& profile);
   void turn_rows(const ClothState<Real>& state, std::size_t list);
   void turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
             GuardRow<Real>& row) const;
   bool weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
              GuardRow<Real>& row) const;
-  void add_arrived(const ClothState<Real>& state, Profile& profile);
-  bool is_beyond(const GuardedPair<Real>& pair) const;
-  void add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
-               const PairSeparation<Real>& s);
-  Real radius_of(const GuardedPair<Real>& pair, Index p, Index q) const;
   GuardRow<Real>* row_before(const GuardRow<Real>& row);
   void remember(GuardRow<Real>& row);
 
@@ -363,12 +367,14 @@ class ClothGuard {
   std::vector<Index> first_row_;  ///< for each particle the last row whose first one it is
   std::vector<Index> next_row_;   ///< and for each row the one before
   std::vector<Index> moved_particles_;
+  std::vector<Index> looked_at_;  ///< pairs of these
+  std::vector<RowPart<Real>> row_parts_;
   std::vector<Index> passed_;  ///< over the border of a triangle that carries them
   std::vector<char> is_moved_;
   QuadArray<Real> quad_v_;                  ///< their velocities while rows are solved [m/s]
   QuadArray<Real> extra_;                   ///< velocity of the push [m/s]
   RowSlabs<Real> busy_rows_;                ///< that push or soon may
-  std::vector<std::uint8_t> list_of_row_;   ///< among these, or none
+  bool rows_listed_ = false;                ///< there, all of them
   std::vector<TurnPart<Real>> turn_parts_;  ///< of each of their lists
   std::vector<Real> inverse_area_;          ///< of fabric that belongs to each particle [1/m^2]
   std::vector<Real> pressure_;              ///< about particles in rows, now [Pa]

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/guard/guard_pair.h"
+#include "core/contact/guard/guard_row.h"
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/patch_boxes.h"
 #include "core/types.h"
@@ -48,6 +49,13 @@ struct AnchorPart {
   std::array<PairColumns<Real>, 2> columns;  ///< of pairs whose bounds are to be measured
   std::vector<AnchorClaim<Real>> claims;     ///< of its particles, in their order
   std::vector<Index> next;                   ///< who is to be anchored besides
+};
+
+/// Some of the pairs that may have rows, and the rows of each kind.
+template <class Real>
+struct RowPart {
+  std::array<PairColumns<Real>, 2> columns;
+  std::array<std::vector<GuardRow<Real>>, 2> rows;
 };
 
 /// Some of the rows that turn with their features.

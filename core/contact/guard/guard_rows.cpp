@@ -19,6 +19,9 @@ constexpr double kRowMargin = 0.1;
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 constexpr int kStepsBetweenMotions = 4;
 
+/// Pairs are looked at in parts with at least so many.
+constexpr std::size_t kPairsAtLeast = 512;
+
 /// If more than this part of all have moved, all pairs are gone through.
 constexpr std::size_t kManyMoved = 8;
 
@@ -28,10 +31,6 @@ constexpr double kRowReach = 2;
 
 /// Edges keep less than the thickness, so that particles and triangles respond first.
 constexpr double kEdgeRadius = 0.85;
-
-/// A particle that goes over the border of a triangle takes its impulses along if the directions
-/// are so much alike: cosine between them.
-constexpr double kSameWay = 0.99;
 
 /// What lies so near in the fabric keeps no more than this part of its distance there.
 constexpr double kFabricPart = 0.8;
@@ -74,22 +73,23 @@ void ClothGuard<Real>::renew_rows(const ClothState<Real>& state, Profile& profil
     const auto i = static_cast<std::size_t>(k);
     moved_[i] = length(legal_[i] - anchor_[i]);
   }
-  const auto look_at = [&](const GuardedPair<Real>& pair) {
-    if (!is_beyond(pair))
-      columns_of(pair.kind).add(static_cast<Index>(&pair - pairs_.data()), 0, pair.particle);
-  };
-  if (moved_particles_.size() > active_.size() / kManyMoved) {
-    for (const GuardedPair<Real>& pair : pairs_) {
-      if (!pair.open && !pair.gone && has_moved(pair.particle)) look_at(pair);
+  looked_at_.clear();
+  const bool many = moved_particles_.size() > active_.size() / kManyMoved;
+  if (!many) list_moved_pairs();
+  const std::size_t count = many ? pairs_.size() : looked_at_.size();
+  const std::size_t parts = parts_of(count, kPairsAtLeast);
+  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
+    const auto n = static_cast<std::size_t>(part);
+    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k) {
+      const std::size_t at = many ? k : static_cast<std::size_t>(looked_at_[k]);
+      const GuardedPair<Real>& pair = pairs_[at];
+      if (many && (pair.open || pair.gone || !has_moved(pair.particle))) continue;
+      if (is_beyond(pair)) continue;
+      row_parts_[n].columns[static_cast<std::size_t>(pair.kind)].add(static_cast<Index>(at), 0,
+                                                                     pair.particle);
     }
-  } else {
-    ++listing_;
-    for (const Index k : moved_particles_) {
-      for_pairs_of(static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
-        if (std::exchange(pair.listed, listing_) != listing_) look_at(pair);
-      });
-    }
-  }
+    make_near_rows(state, row_parts_[n]);
+  });
   for (const Index k : moved_particles_) {
     const auto i = static_cast<std::size_t>(k);
     is_moved_[i] = 0;
@@ -97,7 +97,28 @@ void ClothGuard<Real>::renew_rows(const ClothState<Real>& state, Profile& profil
   }
   if (!rows_built_) arrived_.clear();
   rows_built_ = true;
-  add_near_rows(state, profile);
+  rows_listed_ = false;
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    for (std::size_t n = 0; n < parts; ++n) {
+      RowPart<Real>& part = row_parts_[n];
+      profile[Stage::narrow_phase].work += part.columns[kind].size();
+      part.columns[kind].clear();
+      for (GuardRow<Real>& row : part.rows[kind]) add_row(row);
+      part.rows[kind].clear();
+    }
+  }
+}
+
+/// Lists the pairs of the particles that have moved, each once.
+template <class Real>
+void ClothGuard<Real>::list_moved_pairs() {
+  ++listing_;
+  for (const Index k : moved_particles_) {
+    for_pairs_of(static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+      if (std::exchange(pair.listed, listing_) != listing_)
+        looked_at_.push_back(static_cast<Index>(&pair - pairs_.data()));
+    });
+  }
 }
 
 template <class Real>
@@ -112,9 +133,11 @@ void ClothGuard<Real>::drop_moved_rows() {
   old_rows_.clear();
   old_keys_.clear();
   std::size_t kept = 0;
-  for (const GuardRow<Real>& row : rows_) {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const GuardRow<Real>& row = rows_[k];
     if (rows_built_ && !has_moved(row.particle)) {
-      rows_[kept++] = row;
+      if (kept != k) rows_[kept] = row;
+      ++kept;
     } else if (row.push > 0 || dot(row.slip, row.slip) > 0) {
       old_keys_.push_back({row.key, static_cast<Index>(old_rows_.size())});
       old_rows_.push_back(row);
@@ -144,17 +167,19 @@ void ClothGuard<Real>::list_row(std::size_t r) {
   }
 }
 
-/// Adds the rows of the pairs in the columns.
+/// Makes the rows of the pairs in the columns.
 template <class Real>
-void ClothGuard<Real>::add_near_rows(const ClothState<Real>& state, Profile& profile) {
-  for (PairColumns<Real>& columns : columns_) {
-    profile[Stage::narrow_phase].work += columns.size();
-    separate_pairs(legal_, legal_, columns, executor_);
+void ClothGuard<Real>::make_near_rows(const ClothState<Real>& state, RowPart<Real>& part) const {
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    PairColumns<Real>& columns = part.columns[kind];
+    separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (columns.gap[k] > thickest_ * Real(kRowReach)) continue;
-      add_row(state, pairs_[static_cast<std::size_t>(columns.a[k])], columns.separation(k, legal_));
+      GuardRow<Real> row;
+      if (make_row(state, pairs_[static_cast<std::size_t>(columns.a[k])],
+                   columns.separation(k, legal_), row))
+        part.rows[kind].push_back(row);
     }
-    columns.clear();
   }
 }
 
@@ -177,12 +202,11 @@ template <class Real>
 void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::narrow_phase, arrived_.size());
   for (const GuardedPair<Real>& pair : arrived_) {
-    const std::size_t before = rows_.size();
+    GuardRow<Real> row;
     if (has_row(pair)) continue;
-    add_row(state, pair, separate_pair(pair.kind, points(pair, legal_)));
-    if (rows_.size() > before) {
-      busy_rows_.add(static_cast<Index>(before), busy_rows_.list_of(pair.particle));
-    }
+    if (!make_row(state, pair, separate_pair(pair.kind, points(pair, legal_)), row)) continue;
+    busy_rows_.add(static_cast<Index>(rows_.size()), pair.particle);
+    add_row(row);
   }
   arrived_.clear();
 }
@@ -208,158 +232,54 @@ bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>& pair) const {
   return pair.bound - side[0] - side[1] > thickest_ * Real(kRowReach);
 }
 
+/// @return whether a pair is near enough for a row, and nobody else's
 template <class Real>
-void ClothGuard<Real>::add_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
-                               const PairSeparation<Real>& s) {
-  if (s.gap > thickest_ * Real(kRowReach) || !(s.gap > 0)) return;
+bool ClothGuard<Real>::make_row(const ClothState<Real>& state, const GuardedPair<Real>& pair,
+                                const PairSeparation<Real>& s, GuardRow<Real>& row) const {
+  if (s.gap > thickest_ * Real(kRowReach) || !(s.gap > 0)) return false;
   if (!s.inside && (pair.kind == PairKind::edge_edge || !owns_nearest(pair.b, pair.particle, s)))
-    return;
+    return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
     approach -= s.weight[k] * s.normal.dot(state.v[static_cast<std::size_t>(pair.particle[k])]);
   const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
   const Real margin = std::max(thickest_ * Real(kRowMargin), soon);
-  if (s.gap > thickest_ + margin) return;
+  if (s.gap > thickest_ + margin) return false;
   const Index p = part_of(pair.particle[0]), q = part_of(pair.particle[2]);
-  GuardRow<Real> row;
   row.radius = radius_of(pair, p, q);
-  if (s.gap > row.radius + margin) return;
+  if (s.gap > row.radius + margin) return false;
   row.particle = pair.particle;
-  if (!weigh(state, s, row)) return;
+  if (!weigh(state, s, row)) return false;
   row.friction =
       (friction_[static_cast<std::size_t>(p)] + friction_[static_cast<std::size_t>(q)]) / 2;
   row.key = key_of(pair);
   row.apart = weighted(row, legal_);
+  return true;
+}
+
+/// Adds a row, which goes on from the one before.
+template <class Real>
+void ClothGuard<Real>::add_row(GuardRow<Real>& row) {
   remember(row);
   rows_.push_back(row);
   list_row(rows_.size() - 1);
 }
 
-/// Direction and weights of a row.
-/// @return whether anybody can move in it
-template <class Real>
-bool ClothGuard<Real>::weigh(const ClothState<Real>& state, const PairSeparation<Real>& s,
-                             GuardRow<Real>& row) const {
-  Real mobility = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    row.weight[k] = s.weight[k];
-    row.share[k] = s.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])];
-    mobility += row.share[k] * row.weight[k];
-  }
-  row.inertia = mobility > 0 ? 1 / mobility : Real(0);
-  row.normal = to_quad(s.normal);
-  return mobility > 0;
-}
-
-/// Turns the rows that push with their features. Frozen until rows are built anew they jump there,
-/// and what rests on them never comes to rest.
-template <class Real>
-void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile) {
-  const StageTimer timer(profile, Stage::narrow_phase, 0);
-  const bool few = busy_rows_.count() < RowSlabs<Real>::kFewRows;
-  run_chunks(few ? nullptr : executor_, static_cast<int>(turn_parts_.size()),
-             [&](int list) { turn_rows(state, static_cast<std::size_t>(list)); });
-  for (TurnPart<Real>& part : turn_parts_) {
-    passed_.insert(passed_.end(), part.passed.begin(), part.passed.end());
-    part.passed.clear();
-    for (PairColumns<Real>& columns : part.columns) {
-      profile[Stage::narrow_phase].work += columns.size();
-      columns.clear();
-    }
-  }
-}
-
-/// Turns the rows of a list.
-template <class Real>
-void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, std::size_t list) {
-  TurnPart<Real>& part = turn_parts_[list];
-  for (const Index k : busy_rows_.list(list)) {
-    const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    if (row.push > 0) part.columns[static_cast<std::size_t>(kind_of(row))].add(k, 0, row.particle);
-  }
-  for (PairColumns<Real>& columns : part.columns) {
-    separate_pairs(legal_, legal_, columns);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      GuardRow<Real>& row = rows_[static_cast<std::size_t>(columns.a[k])];
-      const PairSeparation<Real> s = columns.separation(k, legal_);
-      turn(state, s, row);
-      if (columns.kind == PairKind::edge_edge || s.inside) continue;
-      // Who has gone over a border is carried by the triangle beyond, and by none that tilts.
-      if (!owns_nearest(triangle_of(row), row.particle, s)) part.passed.push_back(row.particle[0]);
-    }
-  }
-}
-
-template <class Real>
-void ClothGuard<Real>::turn(const ClothState<Real>& state, const PairSeparation<Real>& s,
-                            GuardRow<Real>& row) const {
-  if (!(s.gap > 0)) return;
-  const Quad<Real> slipped = row.slip + (weighted(row, legal_) - row.apart);
-  // Edges that are nearest at an end leave it to the particle there.
-  if ((kind_of(row) == PairKind::edge_edge && !s.inside) || !weigh(state, s, row)) {
-    row.push = 0;
-    row.slip = {};
-    return;
-  }
-  row.drag = tangential(row, row.drag);
-  row.slip = tangential(row, slipped);
-  row.apart = weighted(row, legal_);
-}
-
-/// The row that was there before: of the same pair or, where a particle went over the border of a
-/// triangle, of the same particle in nearly the same direction. Null if there was none.
-template <class Real>
-GuardRow<Real>* ClothGuard<Real>::row_before(const GuardRow<Real>& row) {
-  const auto from = [&](std::uint64_t key) {
-    return std::lower_bound(old_keys_.begin(), old_keys_.end(),
-                            std::pair<std::uint64_t, Index>{key, 0});
-  };
-  const auto at = [&](auto found) { return &old_rows_[static_cast<std::size_t>(found->second)]; };
-  const auto same = from(row.key);
-  if (same != old_keys_.end() && same->first == row.key) return at(same);
-  if (kind_of(row) == PairKind::edge_edge) return nullptr;
-  const std::uint64_t particle = row.key >> 31;
-  for (auto found = from(particle << 31);
-       found != old_keys_.end() && found->first >> 31 == particle; ++found) {
-    if (dot(at(found)->normal, row.normal) > static_cast<Real>(kSameWay)) return at(found);
-  }
-  return nullptr;
-}
-
-/// Goes on with the impulses and the anchor of the row before, which are given once.
-template <class Real>
-void ClothGuard<Real>::remember(GuardRow<Real>& row) {
-  GuardRow<Real>* old = row_before(row);
-  if (!old) return;
-  row.push = std::exchange(old->push, Real(0));
-  row.drag = tangential(row, std::exchange(old->drag, {}));
-  // What it slipped since it was last aimed counts too.
-  const Quad<Real> apart = weighted(*old, legal_);
-  row.slip = tangential(row, std::exchange(old->slip, {}) + (apart - old->apart));
-  old->apart = apart;
-}
-
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, Profile&);               \
-  template void ClothGuard<Real>::turn_rows(const ClothState<Real>&, std::size_t);            \
-  template void ClothGuard<Real>::turn(const ClothState<Real>&, const PairSeparation<Real>&,  \
-                                       GuardRow<Real>&) const;                                \
-  template bool ClothGuard<Real>::weigh(const ClothState<Real>&, const PairSeparation<Real>&, \
-                                        GuardRow<Real>&) const;                               \
-  template bool ClothGuard<Real>::find_moved();                                               \
-  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);              \
-  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;               \
-  template void ClothGuard<Real>::drop_moved_rows();                                          \
-  template void ClothGuard<Real>::list_row(std::size_t);                                      \
-  template void ClothGuard<Real>::add_near_rows(const ClothState<Real>&, Profile&);           \
-  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                    \
-  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);             \
-  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                  \
-  template void ClothGuard<Real>::add_row(const ClothState<Real>&, const GuardedPair<Real>&,  \
-                                          const PairSeparation<Real>&);                       \
-  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;    \
-  template GuardRow<Real>* ClothGuard<Real>::row_before(const GuardRow<Real>&);               \
-  template void ClothGuard<Real>::remember(GuardRow<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template bool ClothGuard<Real>::find_moved();                                                  \
+  template void ClothGuard<Real>::renew_rows(const ClothState<Real>&, Profile&);                 \
+  template bool ClothGuard<Real>::has_moved(const std::array<Index, 4>&) const;                  \
+  template void ClothGuard<Real>::drop_moved_rows();                                             \
+  template void ClothGuard<Real>::list_row(std::size_t);                                         \
+  template void ClothGuard<Real>::make_near_rows(const ClothState<Real>&, RowPart<Real>&) const; \
+  template void ClothGuard<Real>::list_moved_pairs();                                            \
+  template bool ClothGuard<Real>::has_row(const GuardedPair<Real>&) const;                       \
+  template void ClothGuard<Real>::add_arrived(const ClothState<Real>&, Profile&);                \
+  template bool ClothGuard<Real>::is_beyond(const GuardedPair<Real>&) const;                     \
+  template bool ClothGuard<Real>::make_row(const ClothState<Real>&, const GuardedPair<Real>&,    \
+                                           const PairSeparation<Real>&, GuardRow<Real>&) const;  \
+  template void ClothGuard<Real>::add_row(GuardRow<Real>&);                                      \
+  template Real ClothGuard<Real>::radius_of(const GuardedPair<Real>&, Index, Index) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

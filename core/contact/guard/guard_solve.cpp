@@ -14,10 +14,6 @@ namespace {
 constexpr int kStepsBetweenLooks = 4;
 constexpr double kBusyRoom = 0.02, kBusyApproach = 2;
 
-/// Rows are looked through in parts with at least so many.
-constexpr std::size_t kRowsAtLeast = 256;
-constexpr std::uint8_t kNoList = 0xff;
-
 /// Where cloths meet nothing but each other sweeps are repeated, up to so many, while one changes
 /// what something moves in the step by more than this part of the thickness. What one sweep leaves
 /// under load sinks in, and the push that leads it out again does work that nobody gave.
@@ -72,7 +68,10 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   rows_time_ += dt;
   ++rows_steps_;
   if (find_moved()) renew_rows(state, profile);
-  if (rows_steps_ % kStepsBetweenCuts == 0) busy_rows_.cut(active_, legal_);
+  if (rows_steps_ % kStepsBetweenCuts == 0) {
+    busy_rows_.cut(active_, legal_);
+    rows_listed_ = false;
+  }
   if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) {
     busy_rows_.clear();
@@ -171,18 +170,15 @@ void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
 /// Lists the rows that push somebody or may have to before the next look.
 template <class Real>
 void ClothGuard<Real>::find_busy_rows(Real dt) {
-  const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
-  const std::size_t count = rows_.size(), parts = parts_of(count, kRowsAtLeast);
-  list_of_row_.resize(count);
-  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
-    const auto n = static_cast<std::size_t>(part);
-    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
-      list_of_row_[k] = is_busy(rows_[k], time) ? busy_rows_.list_of(rows_[k].particle) : kNoList;
-  });
-  busy_rows_.clear();
-  for (std::size_t k = 0; k < count; ++k) {
-    if (list_of_row_[k] != kNoList) busy_rows_.add(static_cast<Index>(k), list_of_row_[k]);
+  if (!std::exchange(rows_listed_, true)) {
+    busy_rows_.clear();
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      busy_rows_.add(static_cast<Index>(k), rows_[k].particle);
   }
+  const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
+  busy_rows_.choose(executor_, [this, time](Index k) {
+    return is_busy(rows_[static_cast<std::size_t>(k)], time);
+  });
 }
 
 /// Whether a row pushes or may within a time [s]. Forgets the slip of one that does not.

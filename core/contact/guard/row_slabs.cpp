@@ -40,8 +40,11 @@ void RowSlabs<Real>::cut(const std::vector<Index>& particles, const QuadArray<Re
 
 template <class Real>
 void RowSlabs<Real>::clear() {
-  for (std::vector<Index>& list : rows_) list.clear();
-  count_ = 0;
+  for (std::size_t k = 0; k < kLists; ++k) {
+    rows_[k].clear();
+    busy_[k].clear();
+  }
+  busy_count_ = 0;
 }
 
 template <class Real>

@@ -23,28 +23,35 @@ class RowSlabs {
   static constexpr std::size_t kSlabs = 8;
   /// Lists of rows: one for each slab, and one of long rows.
   static constexpr std::size_t kLists = kSlabs + 1;
-  /// With fewer rows threads take longer to meet than to sweep.
-  static constexpr std::size_t kFewRows = 600;
 
   /// Cuts space anew, across its longest extent. Rows that were added before have to be added anew.
   /// @param particles  where rows may be
   /// @param x          positions of all particles, also of others [m]
   void cut(const std::vector<Index>& particles, const QuadArray<Real>& x);
 
+  /// Forgets all rows.
   void clear();
-  bool empty() const { return count_ == 0; }
-
-  /// The list that a row belongs to.
-  std::uint8_t list_of(const std::array<Index, 4>& particles) const;
-  /// Adds a row at the end of its list.
-  void add(Index row, std::uint8_t list) {
+  /// Adds a row at the end of its list, as one that is busy.
+  void add(Index row, const std::array<Index, 4>& particles) {
+    const std::uint8_t list = list_of(particles);
     rows_[list].push_back(row);
-    ++count_;
+    busy_[list].push_back(row);
+    ++busy_count_;
   }
-  const std::vector<Index>& list(std::size_t number) const { return rows_[number]; }
-  std::size_t count() const { return count_; }
+  /// Chooses the busy rows, which alone are visited: those for which is_busy(row) is true, which
+  /// may change what belongs to the row.
+  template <class IsBusy>
+  void choose(Executor* executor, IsBusy&& is_busy);
 
-  /// Calls visit(row) for each row, which may change what belongs to the row and its particles.
+  /// Whether no row is busy.
+  bool empty() const { return busy_count_ == 0; }
+  /// Whether so few are that other threads are no help.
+  bool are_few() const { return busy_count_ < kFewRows; }
+  /// The busy rows of a list, of kLists.
+  const std::vector<Index>& list(std::size_t number) const { return busy_[number]; }
+
+  /// Calls visit(row) for each busy row, which may change what belongs to the row and its
+  /// particles.
   /// @param executor  does what it does on its threads if that is worth while; may be null
   /// @param upwards   in the order in which rows were added to their slabs, or all the other way
   /// @return largest of what visit returns, and 0
@@ -68,27 +75,43 @@ class RowSlabs {
                });
   }
 
-  /// Calls visit(row) for each row, one by one.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (const std::vector<Index>& list : rows_) std::for_each(list.begin(), list.end(), visit);
-  }
-
  private:
-  std::vector<std::uint8_t> slab_of_;            ///< each particle
-  std::array<std::vector<Index>, kLists> rows_;  ///< of each slab; last the long ones
-  std::array<std::vector<Real>, 3> samples_;     ///< of positions, along each axis [m]
-  std::size_t count_ = 0;
+  /// With fewer rows threads take longer to meet than to sweep.
+  static constexpr std::size_t kFewRows = 600;
+
+  /// The list that a row belongs to.
+  std::uint8_t list_of(const std::array<Index, 4>& particles) const;
+
+  std::vector<std::uint8_t> slab_of_;                   ///< each particle
+  std::array<std::vector<Index>, kLists> rows_, busy_;  ///< of each slab; last the long ones
+  std::array<std::vector<Real>, 3> samples_;            ///< of positions, along each axis [m]
+  std::size_t busy_count_ = 0;
   std::array<std::vector<Index>, kSlabs> particles_;  ///< by the slab that they were in when listed
   std::size_t particle_count_ = 0;
 };
+
+template <class Real>
+template <class IsBusy>
+void RowSlabs<Real>::choose(Executor* executor, IsBusy&& is_busy) {
+  std::size_t rows = 0;
+  for (const std::vector<Index>& list : rows_) rows += list.size();
+  run_chunks(rows < kFewRows ? nullptr : executor, static_cast<int>(kLists), [&](int chunk) {
+    const auto list = static_cast<std::size_t>(chunk);
+    busy_[list].clear();
+    for (const Index row : rows_[list]) {
+      if (is_busy(row)) busy_[list].push_back(row);
+    }
+  });
+  busy_count_ = 0;
+  for (const std::vector<Index>& list : busy_) busy_count_ += list.size();
+}
 
 template <class Real>
 template <class Visit>
 Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
   std::array<Real, kLists> largest{};
   const auto sweep = [&](std::size_t slab) {
-    const std::vector<Index>& rows = rows_[slab];
+    const std::vector<Index>& rows = busy_[slab];
     Real most = 0;
     if (upwards) {
       for (const Index row : rows) most = std::max(most, visit(row));
@@ -98,7 +121,7 @@ Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
     largest[slab] = most;
   };
   const auto sweep_every_second = [&](std::size_t first) {
-    run_chunks(count_ < kFewRows ? nullptr : executor, static_cast<int>(kSlabs / 2),
+    run_chunks(are_few() ? nullptr : executor, static_cast<int>(kSlabs / 2),
                [&](int chunk) { sweep(2 * static_cast<std::size_t>(chunk) + first); });
   };
   if (!upwards) sweep(kSlabs);

@@ -44,8 +44,7 @@ struct Pile {
   RowSlabs<float> slabs() const {
     RowSlabs<float> slabs;
     slabs.cut(particles, x);
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      slabs.add(static_cast<Index>(r), slabs.list_of(rows[r]));
+    for (std::size_t r = 0; r < rows.size(); ++r) slabs.add(static_cast<Index>(r), rows[r]);
     return slabs;
   }
 };
