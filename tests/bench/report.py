@@ -162,9 +162,13 @@ def report_text(data):
             "far the particles end from where they were (rms).", "", tables.parts(parts), "",
             "## Threads", "",
             "One thread against two, by wall time and by CPU time of the whole process. What runs in "
-            "chunks is the search for contacts with objects and for pairs of cloth with cloth; springs, "
-            "bending, air and the sweeps over contacts are on one thread. To share the springs, threads would have to "
-            "meet at each of 30 to 300 substeps a tick, and lose more wherever another process "
+            "chunks is the search for contacts with objects and for pairs of cloth with cloth, the regions of "
+            "many particles at once and, where a cloth touches itself at some hundred places, the sweeps over "
+            "these, in slabs of space. Springs, bending, air and the sweeps over contacts with objects are on "
+            "one thread: threads meet some hundred times a tick in a pile, where each time has its few "
+            "microseconds of work, and who waits looks out for the next one instead of sleeping, which is CPU "
+            "time too. To share the springs they would have to meet at each of 30 to 300 substeps a tick for "
+            "little work, and lose more wherever another process "
             "takes a core. On a machine that does nothing else the time falls by half of the share at "
             "best; where the pool's thread comes late, by nothing.", "",
             tables.taken(threads), "", tables.threads(threads), "",
