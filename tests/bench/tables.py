@@ -218,6 +218,16 @@ def taken(rows):
             f"the end {rows[0]['load']}.")
 
 
+def sizes_taken(cells):
+    """Where the sizes of the accuracy come from, as some may be measured in a run of their own."""
+    sizes, runs = {}, {}
+    for cell in cells:
+        sizes.setdefault(cell["commit"], set()).add(cell["n"])
+        runs[cell["commit"]] = max(runs.get(cell["commit"], 0), cell["timed_runs"])
+    return "; ".join(f"{', '.join(f'{n}²' for n in sorted(sizes[commit]))} at commit {commit}, medians of up to "
+                     f"{runs[commit]} runs" for commit in sorted(sizes, key=lambda c: min(sizes[c]))) + "."
+
+
 def kernels(rows):
     table = []
     for row in rows:
