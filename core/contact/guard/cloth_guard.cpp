@@ -63,16 +63,10 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
   anchored_at_.assign(n, 0);
   is_tight_.assign(n, 0);
   is_pushed_.assign(n, 0);
-  for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
-    columns_of(kind).kind = kind;
   searches_.resize(kMostParts);
   anchor_parts_.resize(kMostParts);
   row_parts_.resize(kMostParts);
   turn_parts_.resize(RowSlabs<Real>::kLists);
-  name_kinds(searches_);
-  name_kinds(anchor_parts_);
-  name_kinds(row_parts_);
-  name_kinds(turn_parts_);
   resting_.assign(tree_.patch_count(), 0);
   is_heap_.assign(particles_of_.size(), 0);
   crossings_of_.assign(particles_of_.size(), 0);
@@ -90,7 +84,7 @@ template <class Real>
 void ClothGuard<Real>::reset() {
   collected_ = rows_built_ = false;
   rows_.clear();
-  busy_rows_.clear();
+  row_slabs_.clear();
   arrived_.clear();
   passed_.clear();
   pairs_.clear();

@@ -150,7 +150,6 @@ class ClothGuard {
     return from_[i] + velocity_[i] * (time - since_[i]);
   }
   void predict(Real past);
-  PairColumns<Real>& columns_of(PairKind kind) { return columns_[static_cast<std::size_t>(kind)]; }
   /// Mean of value(i) over all particles that are awake.
   template <class Value>
   Quad<Real> mean_awake(Value&& value) const {
@@ -314,9 +313,9 @@ class ClothGuard {
   Real smallest_gap_ = 0;           ///< that is left between features after every step [m]
   std::vector<std::pair<Index, Index>> near_patches_;  ///< whose features are to be tested
   PatchBoxes<Real> boxes_;
-  std::vector<Index> to_fit_;                 ///< patches among these whose boxes do not fit
-  std::vector<PairSearch<Real>> searches_;    ///< of parts of these
-  std::array<PairColumns<Real>, 2> columns_;  ///< pairs of each kind that are looked at together
+  std::vector<Index> to_fit_;               ///< patches among these whose boxes do not fit
+  std::vector<PairSearch<Real>> searches_;  ///< of parts of these
+  ColumnsByKind<Real> columns_;             ///< pairs of each kind that are looked at together
   std::vector<GuardedPair<Real>> pairs_;
   std::size_t open_pairs_ = 0;
   ClothTangles<Real> tangles_;
@@ -373,7 +372,7 @@ class ClothGuard {
   std::vector<char> is_moved_;
   QuadArray<Real> quad_v_;                  ///< their velocities while rows are solved [m/s]
   QuadArray<Real> extra_;                   ///< velocity of the push [m/s]
-  RowSlabs<Real> busy_rows_;                ///< that push or soon may
+  RowSlabs<Real> row_slabs_;                ///< those that push or soon may are busy
   bool rows_listed_ = false;                ///< there, all of them
   std::vector<TurnPart<Real>> turn_parts_;  ///< of each of their lists
   std::vector<Real> inverse_area_;          ///< of fabric that belongs to each particle [1/m^2]

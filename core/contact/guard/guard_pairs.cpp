@@ -172,7 +172,7 @@ void ClothGuard<Real>::admit_pairs(std::size_t first) {
     }
   });
   for (std::size_t k = first; k < pairs_.size(); ++k)
-    columns_of(pairs_[k].kind).add(static_cast<Index>(k), 0, pairs_[k].particle);
+    columns_[pairs_[k].kind].add(static_cast<Index>(k), 0, pairs_[k].particle);
   for (PairColumns<Real>& columns : columns_) {
     separate_pairs(anchor_, anchor_, columns, executor_);
     for (std::size_t k = 0; k < columns.size(); ++k)

@@ -9,6 +9,7 @@
 #include "core/contact/guard/guard_row.h"
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/patch_boxes.h"
+#include "core/executor.h"
 #include "core/types.h"
 
 // The work of ClothGuard is done in parts that know nothing of each other, on whatever threads
@@ -25,11 +26,21 @@ inline std::size_t parts_of(std::size_t amount, std::size_t each) {
   return std::clamp<std::size_t>(amount / each, 1, kMostParts);
 }
 
+/// Calls work(part, first, last) for each of the parts that items are shared out to.
+/// @param executor  does them on its threads; may be null
+template <class Work>
+void run_parts(Executor* executor, std::size_t amount, std::size_t parts, Work&& work) {
+  run_chunks(parts > 1 ? executor : nullptr, static_cast<int>(parts), [&](int chunk) {
+    const auto part = static_cast<std::size_t>(chunk);
+    work(part, amount * part / parts, amount * (part + 1) / parts);
+  });
+}
+
 /// What a part of the search for pairs needs for itself, and what it found.
 template <class Real>
 struct PairSearch {
-  std::array<PairColumns<Real>, 2> columns;  ///< of each kind, to be looked at together
-  PatchOverlaps overlaps;                    ///< of the patches that are being tested
+  ColumnsByKind<Real> columns;  ///< of each kind, to be looked at together
+  PatchOverlaps overlaps;       ///< of the patches that are being tested
   std::vector<GuardedPair<Real>> found;
   std::uint64_t tests = 0;
 };
@@ -46,31 +57,23 @@ struct AnchorClaim {
 /// Some of the particles that are anchored together.
 template <class Real>
 struct AnchorPart {
-  std::array<PairColumns<Real>, 2> columns;  ///< of pairs whose bounds are to be measured
-  std::vector<AnchorClaim<Real>> claims;     ///< of its particles, in their order
-  std::vector<Index> next;                   ///< who is to be anchored besides
+  ColumnsByKind<Real> columns;            ///< of pairs whose bounds are to be measured
+  std::vector<AnchorClaim<Real>> claims;  ///< of its particles, in their order
+  std::vector<Index> next;                ///< who is to be anchored besides
 };
 
 /// Some of the pairs that may have rows, and the rows of each kind.
 template <class Real>
 struct RowPart {
-  std::array<PairColumns<Real>, 2> columns;
+  ColumnsByKind<Real> columns;
   std::array<std::vector<GuardRow<Real>>, 2> rows;
 };
 
 /// Some of the rows that turn with their features.
 template <class Real>
 struct TurnPart {
-  std::array<PairColumns<Real>, 2> columns;
+  ColumnsByKind<Real> columns;
   std::vector<Index> passed;  ///< particles over the border of the triangle that carries them
 };
-
-/// One for each kind of pair, in both of the columns.
-template <class Part>
-void name_kinds(std::vector<Part>& parts) {
-  for (Part& part : parts) {
-    for (std::size_t k = 0; k < 2; ++k) part.columns[k].kind = static_cast<PairKind>(k);
-  }
-}
 
 }  // namespace weft

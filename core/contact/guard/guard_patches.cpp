@@ -46,9 +46,8 @@ void ClothGuard<Real>::test_near_patches(bool all, Profile& profile) {
   const std::size_t count = near_patches_.size(), parts = parts_of(count, kPatchesAtLeast);
   profile[Stage::broad_phase].work += count;
   fit_near_patches();
-  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
-    const auto n = static_cast<std::size_t>(part);
-    search(count * n / parts, count * (n + 1) / parts, all, searches_[n]);
+  run_parts(executor_, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+    search(from, to, all, searches_[n]);
   });
   for (std::size_t n = 0; n < parts; ++n) {
     PairSearch<Real>& s = searches_[n];
@@ -68,9 +67,8 @@ void ClothGuard<Real>::fit_near_patches() {
     if (!boxes_.mark_fitted(q)) to_fit_.push_back(q);
   }
   const std::size_t count = to_fit_.size(), parts = parts_of(count, kFitsAtLeast);
-  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
-    const auto n = static_cast<std::size_t>(part);
-    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
+  run_parts(executor_, count, parts, [&](std::size_t, std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k)
       boxes_.fit(to_fit_[k], tree_.patch(to_fit_[k]), motion_, changed_);
   });
 }
@@ -137,7 +135,7 @@ template <class Real>
 void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
                                  const std::array<Index, 4>& particle, PairSearch<Real>& s) const {
   if (share_particle(particle, kind)) return;
-  PairColumns<Real>& columns = s.columns[static_cast<std::size_t>(kind)];
+  PairColumns<Real>& columns = s.columns[kind];
   columns.add(a, b, particle);
   if (columns.size() >= kPairsAtOnce) keep_near(columns, s);
 }

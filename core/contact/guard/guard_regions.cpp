@@ -144,28 +144,23 @@ void ClothGuard<Real>::anchor_wave(bool first) {
     for_pairs_of(i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
   }
   const std::size_t count = wave_list_.size(), parts = parts_of(count, kAnchoredAtLeast);
-  const auto in_parts = [&](auto&& work) {
-    run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts),
-               [&](int part) { work(static_cast<std::size_t>(part)); });
-  };
-  in_parts([&](std::size_t n) {
+  run_parts(executor_, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
     AnchorPart<Real>& part = anchor_parts_[n];
     part.claims.clear();
-    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k)
-      list_claims(wave_list_[k], part);
+    for (std::size_t k = from; k < to; ++k) list_claims(wave_list_[k], part);
     measure_claimed(part);
   });
-  in_parts([&](std::size_t n) {
+  run_parts(executor_, count, parts, [&](std::size_t n, std::size_t, std::size_t) {
     for (PairColumns<Real>& columns : anchor_parts_[n].columns) {
       for (std::size_t k = 0; k < columns.size(); ++k)
         pairs_[static_cast<std::size_t>(columns.a[k])].bound = columns.gap[k];
       columns.clear();
     }
   });
-  in_parts([&](std::size_t n) {
+  run_parts(executor_, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
     AnchorPart<Real>& part = anchor_parts_[n];
     auto claim = part.claims.begin();
-    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k) {
+    for (std::size_t k = from; k < to; ++k) {
       const auto begin = claim;
       while (claim != part.claims.end() && claim->particle == wave_list_[k]) ++claim;
       room_[static_cast<std::size_t>(wave_list_[k])] = share_claims({begin, claim}, first, part);
@@ -213,8 +208,7 @@ void ClothGuard<Real>::list_claims(Index particle, AnchorPart<Real>& part) {
       return ahead[side] >= 0 && !is_ample(side, ahead[side]);
     };
     if (!wants(0) && !wants(1)) return;
-    part.columns[static_cast<std::size_t>(pair.kind)].add(part.claims.back().pair, 0,
-                                                          pair.particle);
+    part.columns[pair.kind].add(part.claims.back().pair, 0, pair.particle);
   });
 }
 

@@ -78,15 +78,13 @@ void ClothGuard<Real>::renew_rows(const ClothState<Real>& state, Profile& profil
   if (!many) list_moved_pairs();
   const std::size_t count = many ? pairs_.size() : looked_at_.size();
   const std::size_t parts = parts_of(count, kPairsAtLeast);
-  run_chunks(parts > 1 ? executor_ : nullptr, static_cast<int>(parts), [&](int part) {
-    const auto n = static_cast<std::size_t>(part);
-    for (std::size_t k = count * n / parts; k < count * (n + 1) / parts; ++k) {
+  run_parts(executor_, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) {
       const std::size_t at = many ? k : static_cast<std::size_t>(looked_at_[k]);
       const GuardedPair<Real>& pair = pairs_[at];
       if (many && (pair.open || pair.gone || !has_moved(pair.particle))) continue;
       if (is_beyond(pair)) continue;
-      row_parts_[n].columns[static_cast<std::size_t>(pair.kind)].add(static_cast<Index>(at), 0,
-                                                                     pair.particle);
+      row_parts_[n].columns[pair.kind].add(static_cast<Index>(at), 0, pair.particle);
     }
     make_near_rows(state, row_parts_[n]);
   });
@@ -98,13 +96,14 @@ void ClothGuard<Real>::renew_rows(const ClothState<Real>& state, Profile& profil
   if (!rows_built_) arrived_.clear();
   rows_built_ = true;
   rows_listed_ = false;
-  for (std::size_t kind = 0; kind < 2; ++kind) {
+  for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge}) {
     for (std::size_t n = 0; n < parts; ++n) {
-      RowPart<Real>& part = row_parts_[n];
-      profile[Stage::narrow_phase].work += part.columns[kind].size();
-      part.columns[kind].clear();
-      for (GuardRow<Real>& row : part.rows[kind]) add_row(row);
-      part.rows[kind].clear();
+      PairColumns<Real>& columns = row_parts_[n].columns[kind];
+      profile[Stage::narrow_phase].work += columns.size();
+      columns.clear();
+      std::vector<GuardRow<Real>>& rows = row_parts_[n].rows[static_cast<std::size_t>(kind)];
+      for (GuardRow<Real>& row : rows) add_row(row);
+      rows.clear();
     }
   }
 }
@@ -145,12 +144,12 @@ void ClothGuard<Real>::drop_moved_rows() {
   }
   rows_.resize(kept);
   std::sort(old_keys_.begin(), old_keys_.end());
-  busy_rows_.visit_particles(nullptr, [this](Index k) {
+  row_slabs_.visit_particles(nullptr, [this](Index k) {
     const auto i = static_cast<std::size_t>(k);
     in_rows_[i] = 0;
     first_row_[i] = kNone;
   });
-  busy_rows_.clear_particles();
+  row_slabs_.clear_particles();
   next_row_.clear();
   for (std::size_t r = 0; r < rows_.size(); ++r) list_row(r);
 }
@@ -162,7 +161,7 @@ void ClothGuard<Real>::list_row(std::size_t r) {
   next_row_.push_back(std::exchange(first_row_[first], static_cast<Index>(r)));
   for (const Index i : rows_[r].particle) {
     if (std::exchange(in_rows_[static_cast<std::size_t>(i)], 1)) continue;
-    busy_rows_.add_particle(i);
+    row_slabs_.add_particle(i);
     pressure_[static_cast<std::size_t>(i)] = 0;
   }
 }
@@ -170,15 +169,14 @@ void ClothGuard<Real>::list_row(std::size_t r) {
 /// Makes the rows of the pairs in the columns.
 template <class Real>
 void ClothGuard<Real>::make_near_rows(const ClothState<Real>& state, RowPart<Real>& part) const {
-  for (std::size_t kind = 0; kind < 2; ++kind) {
-    PairColumns<Real>& columns = part.columns[kind];
+  for (PairColumns<Real>& columns : part.columns) {
     separate_pairs(legal_, legal_, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (columns.gap[k] > thickest_ * Real(kRowReach)) continue;
       GuardRow<Real> row;
       if (make_row(state, pairs_[static_cast<std::size_t>(columns.a[k])],
                    columns.separation(k, legal_), row))
-        part.rows[kind].push_back(row);
+        part.rows[static_cast<std::size_t>(columns.kind)].push_back(row);
     }
   }
 }
@@ -205,7 +203,7 @@ void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profi
     GuardRow<Real> row;
     if (has_row(pair)) continue;
     if (!make_row(state, pair, separate_pair(pair.kind, points(pair, legal_)), row)) continue;
-    busy_rows_.add(static_cast<Index>(rows_.size()), pair.particle);
+    row_slabs_.add(static_cast<Index>(rows_.size()), pair.particle);
     add_row(row);
   }
   arrived_.clear();

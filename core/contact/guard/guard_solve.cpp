@@ -60,7 +60,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   if (calm_) {
     x_before_ = state.x;
     rows_.clear();
-    busy_rows_.clear();
+    row_slabs_.clear();
     return;
   }
   for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
@@ -69,12 +69,12 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   ++rows_steps_;
   if (find_moved()) renew_rows(state, profile);
   if (rows_steps_ % kStepsBetweenCuts == 0) {
-    busy_rows_.cut(active_, legal_);
+    row_slabs_.cut(active_, legal_);
     rows_listed_ = false;
   }
   if (!arrived_.empty()) add_arrived(state, profile);
   if (rows_.empty()) {
-    busy_rows_.clear();
+    row_slabs_.clear();
     return;
   }
   load_rows(state);
@@ -90,7 +90,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
 
 template <class Real>
 void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
-  busy_rows_.visit_particles(executor_, [&](Index k) {
+  row_slabs_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     quad_v_[i] = to_quad(state.v[i]);
   });
@@ -98,7 +98,7 @@ void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
 
 template <class Real>
 void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
-  busy_rows_.visit_particles(executor_, [&](Index k) {
+  row_slabs_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     state.v[i] = to_vector(quad_v_[i]);
   });
@@ -150,7 +150,7 @@ Real ClothGuard<Real>::solve_row(GuardRow<Real>& row) {
 
 template <class Real>
 Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
-  if (busy_rows_.empty()) return 0;
+  if (row_slabs_.empty()) return 0;
   load_rows(state);
   const Real largest = sweep_rows();
   store_rows(state);
@@ -171,12 +171,12 @@ void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
 template <class Real>
 void ClothGuard<Real>::find_busy_rows(Real dt) {
   if (!std::exchange(rows_listed_, true)) {
-    busy_rows_.clear();
+    row_slabs_.clear();
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      busy_rows_.add(static_cast<Index>(k), rows_[k].particle);
+      row_slabs_.add(static_cast<Index>(k), rows_[k].particle);
   }
   const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
-  busy_rows_.choose(executor_, [this, time](Index k) {
+  row_slabs_.choose(executor_, [this, time](Index k) {
     return is_busy(rows_[static_cast<std::size_t>(k)], time);
   });
 }
@@ -198,14 +198,13 @@ template <class Real>
 void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
   const Real warm = kicked_ > 0 ? kicked / kicked_ : Real(0);
   kicked_ = kicked;
-  busy_rows_.visit(executor_, true, [&](Index k) {
+  row_slabs_.visit(executor_, [&](Index k) {
     GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     aim(row, dt);
-    if (row.push == 0) return Real(0);
+    if (row.push == 0) return;
     row.push *= warm;
     row.drag = row.drag * warm;
     share_out(row, row.normal * row.push + row.drag, quad_v_);
-    return row.push;
   });
 }
 
@@ -214,7 +213,7 @@ void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
 template <class Real>
 Real ClothGuard<Real>::sweep_rows() {
   upwards_ = !upwards_;
-  return busy_rows_.visit(executor_, upwards_, [this](Index k) {
+  return row_slabs_.largest(executor_, upwards_, [this](Index k) {
     return solve_row(rows_[static_cast<std::size_t>(k)]);
   });
 }
@@ -223,17 +222,16 @@ Real ClothGuard<Real>::sweep_rows() {
 /// Layers are pressed from both sides.
 template <class Real>
 void ClothGuard<Real>::measure_pressures() {
-  busy_rows_.visit_particles(executor_,
+  row_slabs_.visit_particles(executor_,
                              [this](Index i) { pressure_[static_cast<std::size_t>(i)] = 0; });
-  busy_rows_.visit(executor_, true, [&](Index k) {
+  row_slabs_.visit(executor_, [&](Index k) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    if (row.push == 0) return Real(0);
+    if (row.push == 0) return;
     const Real force = row.push / (2 * kicked_);
     for (std::size_t n = 0; n < 4; ++n) {
       const auto i = static_cast<std::size_t>(row.particle[n]);
       pressure_[i] += std::abs(row.weight[n]) * force * inverse_area_[i];
     }
-    return force;
   });
 }
 
@@ -249,7 +247,7 @@ Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
 
 template <class Real>
 void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
-  const Real most = busy_rows_.visit(executor_, true, [this](Index k) {
+  const Real most = row_slabs_.largest(executor_, true, [this](Index k) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     if (!(-row.room > row.radius * Real(kPushSlack))) return Real(0);
     const Real lack = lack_of(row);
@@ -262,7 +260,7 @@ void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
     return more;
   });
   if (!(most > 0)) return;
-  busy_rows_.visit_particles(nullptr, [this](Index i) {
+  row_slabs_.visit_particles(nullptr, [this](Index i) {
     if (is_pushed_[static_cast<std::size_t>(i)]) pushed_.push_back(i);
   });
   for (const Index k : pushed_) {
@@ -296,7 +294,7 @@ template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   if (rows_.empty()) return;
   profile[Stage::contact].work += rows_.size();
-  busy_rows_.visit_particles(nullptr, [&](Index k) {
+  row_slabs_.visit_particles(nullptr, [&](Index k) {
     legal_[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
   });
   load_rows(state);

@@ -35,7 +35,7 @@ bool ClothGuard<Real>::weigh(const ClothState<Real>& state, const PairSeparation
 template <class Real>
 void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile) {
   const StageTimer timer(profile, Stage::narrow_phase, 0);
-  run_chunks(busy_rows_.are_few() ? nullptr : executor_, static_cast<int>(turn_parts_.size()),
+  run_chunks(row_slabs_.are_few() ? nullptr : executor_, static_cast<int>(turn_parts_.size()),
              [&](int list) { turn_rows(state, static_cast<std::size_t>(list)); });
   for (TurnPart<Real>& part : turn_parts_) {
     passed_.insert(passed_.end(), part.passed.begin(), part.passed.end());
@@ -51,9 +51,9 @@ void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, Profile& profile
 template <class Real>
 void ClothGuard<Real>::turn_rows(const ClothState<Real>& state, std::size_t list) {
   TurnPart<Real>& part = turn_parts_[list];
-  for (const Index k : busy_rows_.list(list)) {
+  for (const Index k : row_slabs_.list(list)) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
-    if (row.push > 0) part.columns[static_cast<std::size_t>(kind_of(row))].add(k, 0, row.particle);
+    if (row.push > 0) part.columns[kind_of(row)].add(k, 0, row.particle);
   }
   for (PairColumns<Real>& columns : part.columns) {
     separate_pairs(legal_, legal_, columns);

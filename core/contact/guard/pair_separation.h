@@ -47,6 +47,22 @@ struct PairColumns {
   }
 };
 
+/// Columns of either kind of pair.
+template <class Real>
+class ColumnsByKind {
+ public:
+  ColumnsByKind() {
+    for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge})
+      (*this)[kind].kind = kind;
+  }
+  PairColumns<Real>& operator[](PairKind kind) { return both_[static_cast<std::size_t>(kind)]; }
+  auto begin() { return both_.begin(); }
+  auto end() { return both_.end(); }
+
+ private:
+  std::array<PairColumns<Real>, 2> both_;
+};
+
 /// Fills the columns from `gap` on.
 /// @param x         positions [m]
 /// @param end       positions for `end_gap`; if it is x, that column is left as it is

@@ -53,10 +53,18 @@ class RowSlabs {
   /// Calls visit(row) for each busy row, which may change what belongs to the row and its
   /// particles.
   /// @param executor  does what it does on its threads if that is worth while; may be null
-  /// @param upwards   in the order in which rows were added to their slabs, or all the other way
-  /// @return largest of what visit returns, and 0
   template <class Visit>
-  Real visit(Executor* executor, bool upwards, Visit&& visit);
+  void visit(Executor* executor, Visit&& visit) {
+    largest(executor, true, [&](Index row) {
+      visit(row);
+      return Real(0);
+    });
+  }
+  /// The same with a number from each row.
+  /// @param upwards  in the order in which rows were added to their slabs, or all the other way
+  /// @return largest of these numbers, and 0
+  template <class Visit>
+  Real largest(Executor* executor, bool upwards, Visit&& visit);
 
   /// Lists a particle that rows have, once.
   void add_particle(Index particle) {
@@ -108,8 +116,8 @@ void RowSlabs<Real>::choose(Executor* executor, IsBusy&& is_busy) {
 
 template <class Real>
 template <class Visit>
-Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
-  std::array<Real, kLists> largest{};
+Real RowSlabs<Real>::largest(Executor* executor, bool upwards, Visit&& visit) {
+  std::array<Real, kLists> of_list{};
   const auto sweep = [&](std::size_t slab) {
     const std::vector<Index>& rows = busy_[slab];
     Real most = 0;
@@ -118,7 +126,7 @@ Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
     } else {
       for (auto row = rows.rbegin(); row != rows.rend(); ++row) most = std::max(most, visit(*row));
     }
-    largest[slab] = most;
+    of_list[slab] = most;
   };
   const auto sweep_every_second = [&](std::size_t first) {
     run_chunks(are_few() ? nullptr : executor, static_cast<int>(kSlabs / 2),
@@ -128,7 +136,7 @@ Real RowSlabs<Real>::visit(Executor* executor, bool upwards, Visit&& visit) {
   sweep_every_second(upwards ? 0 : 1);
   sweep_every_second(upwards ? 1 : 0);
   if (upwards) sweep(kSlabs);
-  return *std::max_element(largest.begin(), largest.end());
+  return *std::max_element(of_list.begin(), of_list.end());
 }
 
 extern template class RowSlabs<float>;

@@ -1,6 +1,7 @@
 #include "core/contact/guard/row_slabs.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -54,7 +55,7 @@ std::vector<double> swept(const Pile& pile, Executor* executor) {
   RowSlabs<float> slabs = pile.slabs();
   std::vector<double> value(pile.x.size(), 1);
   for (const bool upwards : {true, false, true}) {
-    slabs.visit(executor, upwards, [&](Index r) {
+    slabs.largest(executor, upwards, [&](Index r) {
       const std::array<Index, 4>& row = pile.rows[static_cast<std::size_t>(r)];
       for (std::size_t k = 0; k < 4; ++k)
         value[static_cast<std::size_t>(row[k])] +=
@@ -95,12 +96,12 @@ TEST_CASE("a sweep visits each row once, and the next one in the opposite order"
   const Pile pile(2);
   RowSlabs<float> slabs = pile.slabs();
   std::vector<Index> up, down;
-  const float largest = slabs.visit(nullptr, true, [&](Index r) {
+  const float largest = slabs.largest(nullptr, true, [&](Index r) {
     up.push_back(r);
     return static_cast<float>(r);
   });
   CHECK(largest == static_cast<float>(pile.rows.size() - 1));
-  slabs.visit(nullptr, false, [&](Index r) {
+  slabs.largest(nullptr, false, [&](Index r) {
     down.push_back(r);
     return 0.F;
   });
