@@ -183,10 +183,10 @@ class ClothGuard {
   void fit_near_patches();
   void search(std::size_t first, std::size_t last, bool all, PairSearch<Real>& s) const;
   void test_patches(Index p, Index q, bool all, PairSearch<Real>& s) const;
-  void test_triangles(Index p, Index q, bool all, const PatchOverlaps::Bits& overlaps,
+  void test_triangles(Index p, Index q, const PatchOverlaps::Bits& overlaps,
                       PairSearch<Real>& s) const;
-  void test_edges(Index p, Index q, bool all, PairSearch<Real>& s) const;
-  typename PatchBoxes<Real>::Marks changed_in(Index p, bool all) const;
+  void test_edges(Index p, Index q, PairSearch<Real>& s) const;
+  PatchMarks changed_in(Index p, bool all) const;
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle,
                  PairSearch<Real>& s) const;
   void keep_near(PairColumns<Real>& columns, PairSearch<Real>& s) const;

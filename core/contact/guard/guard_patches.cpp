@@ -32,9 +32,9 @@ void for_each_bit(std::uint32_t bits, Visit&& visit) {
 /// Which features of a patch have a changed particle.
 /// @param all  all have
 template <class Real>
-typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index p, bool all) const {
+PatchMarks ClothGuard<Real>::changed_in(Index p, bool all) const {
   if (all) return {~0u, ~0u, ~0u};
-  return tree_.is_marked(p) ? boxes_.changed(p) : typename PatchBoxes<Real>::Marks{};
+  return tree_.is_marked(p) ? boxes_.changed(p) : PatchMarks{};
 }
 
 /// Tests the features of all patches that are near each other, in parts that know nothing of each
@@ -87,23 +87,21 @@ template <class Real>
 void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch<Real>& s) const {
   if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return;
   if (in_heap(p) || in_heap(q)) return;
-  overlap_patches(boxes_.columns(p), boxes_.columns(q), s.overlaps);
-  test_triangles(p, q, all, s.overlaps.first_vertices, s);
-  if (p != q) test_triangles(q, p, all, s.overlaps.second_vertices, s);
-  test_edges(p, q, all, s);
+  overlap_patches(boxes_.columns(p), boxes_.columns(q), changed_in(p, all), changed_in(q, all),
+                  s.overlaps);
+  test_triangles(p, q, s.overlaps.first_vertices, s);
+  if (p != q) test_triangles(q, p, s.overlaps.second_vertices, s);
+  test_edges(p, q, s);
 }
 
 /// Particles of one patch against triangles of another one.
 template <class Real>
-void ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
-                                      const PatchOverlaps::Bits& overlaps,
+void ClothGuard<Real>::test_triangles(Index p, Index q, const PatchOverlaps::Bits& overlaps,
                                       PairSearch<Real>& s) const {
   const auto& vertices = tree_.patch(p).vertices;
   const auto& triangles = tree_.patch(q).triangles;
-  const std::uint32_t changed = changed_in(p, all).vertices, others = changed_in(q, all).triangles;
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const std::uint32_t near = overlaps[k] & (((changed >> k) & 1) != 0 ? ~0u : others);
-    for_each_bit(near, [&](std::size_t n) {
+    for_each_bit(overlaps[k], [&](std::size_t n) {
       const Index v = vertices[k], t = triangles[n];
       const Triangle& c = triangles_[static_cast<std::size_t>(t)];
       test_pair(PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]}, s);
@@ -114,12 +112,10 @@ void ClothGuard<Real>::test_triangles(Index p, Index q, bool all,
 
 /// Edges of two patches, or of one with each other.
 template <class Real>
-void ClothGuard<Real>::test_edges(Index p, Index q, bool all, PairSearch<Real>& s) const {
+void ClothGuard<Real>::test_edges(Index p, Index q, PairSearch<Real>& s) const {
   const auto &first = tree_.patch(p).edges, &second = tree_.patch(q).edges;
-  const std::uint32_t changed = changed_in(p, all).edges, others = changed_in(q, all).edges;
   for (std::size_t k = 0; k < first.size(); ++k) {
-    const std::uint32_t overlaps = s.overlaps.first_edges[k];
-    std::uint32_t near = overlaps & (((changed >> k) & 1) != 0 ? ~0u : others);
+    std::uint32_t near = s.overlaps.first_edges[k];
     if (p == q) near &= ~0u << k << 1;  // each two once
     for_each_bit(near, [&](std::size_t n) {
       const auto [e, f] = std::minmax(first[k], second[n]);
@@ -161,14 +157,14 @@ void ClothGuard<Real>::keep_near(PairColumns<Real>& columns, PairSearch<Real>& s
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
-  template typename PatchBoxes<Real>::Marks ClothGuard<Real>::changed_in(Index, bool) const;       \
+  template PatchMarks ClothGuard<Real>::changed_in(Index, bool) const;                             \
   template void ClothGuard<Real>::test_near_patches(bool, Profile&);                               \
   template void ClothGuard<Real>::fit_near_patches();                                              \
   template void ClothGuard<Real>::search(std::size_t, std::size_t, bool, PairSearch<Real>&) const; \
   template void ClothGuard<Real>::test_patches(Index, Index, bool, PairSearch<Real>&) const;       \
-  template void ClothGuard<Real>::test_triangles(Index, Index, bool, const PatchOverlaps::Bits&,   \
+  template void ClothGuard<Real>::test_triangles(Index, Index, const PatchOverlaps::Bits&,         \
                                                  PairSearch<Real>&) const;                         \
-  template void ClothGuard<Real>::test_edges(Index, Index, bool, PairSearch<Real>&) const;         \
+  template void ClothGuard<Real>::test_edges(Index, Index, PairSearch<Real>&) const;               \
   template void ClothGuard<Real>::test_pair(PairKind, Index, Index, const std::array<Index, 4>&,   \
                                             PairSearch<Real>&) const;                              \
   template void ClothGuard<Real>::keep_near(PairColumns<Real>&, PairSearch<Real>&) const;

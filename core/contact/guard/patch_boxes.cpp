@@ -46,7 +46,7 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
     }
     shape.begin = numbers;
     numbers += kComponents * (padded(shape.edges.size()) + padded(shape.triangles.size()) +
-                              padded(shape.vertices.size()));
+                              padded(shape.vertices.size()) + 1);
     shapes_.push_back(std::move(shape));
   }
   // What pads a column is empty.
@@ -73,6 +73,7 @@ PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
   all.edges = take(shape.edges.size());
   all.triangles = take(shape.triangles.size());
   all.vertices = take(shape.vertices.size());
+  all.whole = at;
   return all;
 }
 
@@ -106,6 +107,7 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
                            const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
   const auto number = static_cast<std::size_t>(p);
   CornerBoxes corner;
+  QuadBox<Real> whole;
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < patch.particles.size(); ++k) {
     const auto i = static_cast<std::size_t>(patch.particles[k]);
@@ -113,12 +115,18 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
     box.add(motion.start[i]);
     box.add(motion.end[i]);
     corner[k] = box.grown(motion.radius);
+    whole.add(corner[k]);
     bits |= static_cast<std::uint32_t>(changed[i] != 0) << k;
   }
   const PatchColumns<Real> all = columns(p);
   const auto numbers = [&](const BoxColumns<Real>& kind) {
     return numbers_.data() + (kind.numbers - numbers_.data());
   };
+  Real* const around = numbers_.data() + (all.whole - numbers_.data());
+  for (int c = 0; c < 3; ++c) {
+    around[c] = whole.lower[c];
+    around[c + 3] = whole.upper[c];
+  }
   const Shape& shape = shapes_[number];
   changed_[number] = {
       fit_features(shape.vertices, corner, bits, all.vertices.pitch, numbers(all.vertices)),
@@ -130,12 +138,14 @@ HWY_EXPORT(overlap_f32);
 HWY_EXPORT(overlap_f64);
 
 void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
+                     const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps) {
-  HWY_DYNAMIC_DISPATCH(overlap_f32)(p, q, overlaps);
+  HWY_DYNAMIC_DISPATCH(overlap_f32)(p, q, marked_p, marked_q, overlaps);
 }
 void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
+                     const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps) {
-  HWY_DYNAMIC_DISPATCH(overlap_f64)(p, q, overlaps);
+  HWY_DYNAMIC_DISPATCH(overlap_f64)(p, q, marked_p, marked_q, overlaps);
 }
 
 template class PatchBoxes<float>;

@@ -19,24 +19,34 @@ struct BoxColumns {
   std::size_t count = 0, pitch = 0;  ///< boxes, and numbers a component
 };
 
-/// The boxes of a patch. Those of edges and triangles are padded with empty ones.
+/// The boxes of a patch. Those of each kind are padded with empty ones.
 template <class Real>
 struct PatchColumns {
   BoxColumns<Real> vertices, edges, triangles;
+  const Real* whole = nullptr;  ///< the box around them all: lower x y z, upper x y z [m]
+};
+
+/// A bit for each feature of a patch.
+struct PatchMarks {
+  std::uint32_t vertices = 0, edges = 0, triangles = 0;
 };
 
 /// Which features of two patches have boxes that overlap: for each of the one a bit for each of the
-/// other.
+/// other. Only pairs of which a feature is marked.
 struct PatchOverlaps {
   using Bits = std::array<std::uint32_t, kMostPatchFeatures>;
   Bits first_vertices, second_vertices;  ///< of either patch, with the triangles of the other one
   Bits first_edges;                      ///< with the edges of the second patch
 };
 
-/// Tests the features of two patches, many at a time.
+/// Tests the features of two patches, many at a time: first those of the one with the box around
+/// the other, as patches mostly touch with an edge or a corner.
+/// @param marked_p, marked_q  pairs without a marked feature are left out
 void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
+                     const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps);
 void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
+                     const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps);
 
 /// Boxes around the motion of the features of patches, in the order in which the patches list them.
@@ -63,12 +73,8 @@ class PatchBoxes {
   void fit(Index p, const typename PatchTree<Real>::Patch& patch,
            const PredictedMotion<Real>& motion, const std::vector<char>& changed);
 
-  /// A bit for each feature of a patch.
-  struct Marks {
-    std::uint32_t vertices = 0, edges = 0, triangles = 0;
-  };
-  /// Which of them had a particle with a changed motion when the patch was fitted.
-  const Marks& changed(Index p) const { return changed_[static_cast<std::size_t>(p)]; }
+  /// Which features had a particle with a changed motion when the patch was fitted.
+  const PatchMarks& changed(Index p) const { return changed_[static_cast<std::size_t>(p)]; }
 
   /// The boxes, which must fit.
   PatchColumns<Real> columns(Index p) const;
@@ -94,7 +100,7 @@ class PatchBoxes {
   std::vector<Shape> shapes_;
   AlignedVector<Real> numbers_;
   std::vector<char> fits_;
-  std::vector<Marks> changed_;
+  std::vector<PatchMarks> changed_;
 };
 
 extern template class PatchBoxes<float>;
