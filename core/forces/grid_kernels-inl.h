@@ -32,8 +32,12 @@ namespace HWY_NAMESPACE {
   HWY_ATTR ElasticEnergy elastic_energy_##Kind(const GridView<Real>& grid) {                    \
     return elastic_energy(grid);                                                                \
   }                                                                                             \
-  HWY_ATTR double advance_##Kind(const GridView<Real>& grid, const GridStep<Real>& step) {      \
-    return advance(grid, step);                                                                 \
+  HWY_ATTR void begin_rows_##Kind(const GridView<Real>& grid, std::ptrdiff_t first) {           \
+    begin_rows(grid, first);                                                                    \
+  }                                                                                             \
+  HWY_ATTR void advance_##Kind(const GridView<Real>& grid, const GridStep<Real>& step,          \
+                               std::ptrdiff_t first, std::ptrdiff_t last) {                     \
+    advance(grid, step, first, last);                                                           \
   }                                                                                             \
   HWY_ATTR double drift_##Kind(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, \
                                Real* x) {                                                       \

@@ -13,40 +13,45 @@
 
 namespace weft {
 
-#define WEFT_DISPATCH(Real, Kind)                                                               \
-  HWY_EXPORT(take_apart_##Kind);                                                                \
-  HWY_EXPORT(put_together_##Kind);                                                              \
-  HWY_EXPORT(internal_forces_##Kind);                                                           \
-  HWY_EXPORT(elastic_energy_##Kind);                                                            \
-  HWY_EXPORT(advance_##Kind);                                                                   \
-  HWY_EXPORT(drift_##Kind);                                                                     \
-  HWY_EXPORT(air_forces_##Kind);                                                                \
-  HWY_EXPORT(box_paths_##Kind);                                                                 \
-  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                  \
-                       std::ptrdiff_t pitch) {                                                  \
-    HWY_DYNAMIC_DISPATCH(take_apart_##Kind)(grid, from, to, pitch);                             \
-  }                                                                                             \
-  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,    \
-                         Real* to) {                                                            \
-    HWY_DYNAMIC_DISPATCH(put_together_##Kind)(grid, from, pitch, to);                           \
-  }                                                                                             \
-  void grid_internal_forces(const GridView<Real>& grid) {                                       \
-    HWY_DYNAMIC_DISPATCH(internal_forces_##Kind)(grid);                                         \
-  }                                                                                             \
-  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid) {                               \
-    return HWY_DYNAMIC_DISPATCH(elastic_energy_##Kind)(grid);                                   \
-  }                                                                                             \
-  double grid_advance(const GridView<Real>& grid, const GridStep<Real>& step) {                 \
-    return HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step);                                    \
-  }                                                                                             \
-  double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x) { \
-    return HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, pulled, v, x);                          \
-  }                                                                                             \
-  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                  \
-    HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                              \
-  }                                                                                             \
-  void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box) {    \
-    HWY_DYNAMIC_DISPATCH(box_paths_##Kind)(grid, paths, time, box);                             \
+#define WEFT_DISPATCH(Real, Kind)                                                                 \
+  HWY_EXPORT(take_apart_##Kind);                                                                  \
+  HWY_EXPORT(put_together_##Kind);                                                                \
+  HWY_EXPORT(internal_forces_##Kind);                                                             \
+  HWY_EXPORT(elastic_energy_##Kind);                                                              \
+  HWY_EXPORT(begin_rows_##Kind);                                                                  \
+  HWY_EXPORT(advance_##Kind);                                                                     \
+  HWY_EXPORT(drift_##Kind);                                                                       \
+  HWY_EXPORT(air_forces_##Kind);                                                                  \
+  HWY_EXPORT(box_paths_##Kind);                                                                   \
+  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                    \
+                       std::ptrdiff_t pitch) {                                                    \
+    HWY_DYNAMIC_DISPATCH(take_apart_##Kind)(grid, from, to, pitch);                               \
+  }                                                                                               \
+  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,      \
+                         Real* to) {                                                              \
+    HWY_DYNAMIC_DISPATCH(put_together_##Kind)(grid, from, pitch, to);                             \
+  }                                                                                               \
+  void grid_internal_forces(const GridView<Real>& grid) {                                         \
+    HWY_DYNAMIC_DISPATCH(internal_forces_##Kind)(grid);                                           \
+  }                                                                                               \
+  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid) {                                 \
+    return HWY_DYNAMIC_DISPATCH(elastic_energy_##Kind)(grid);                                     \
+  }                                                                                               \
+  void grid_begin_rows(const GridView<Real>& grid, std::ptrdiff_t first) {                        \
+    HWY_DYNAMIC_DISPATCH(begin_rows_##Kind)(grid, first);                                         \
+  }                                                                                               \
+  void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first, \
+                    std::ptrdiff_t last) {                                                        \
+    HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step, first, last);                                \
+  }                                                                                               \
+  double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x) {   \
+    return HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, pulled, v, x);                            \
+  }                                                                                               \
+  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                    \
+    HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                                \
+  }                                                                                               \
+  void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box) {      \
+    HWY_DYNAMIC_DISPATCH(box_paths_##Kind)(grid, paths, time, box);                               \
   }
 WEFT_DISPATCH(float, f32)
 WEFT_DISPATCH(double, f64)

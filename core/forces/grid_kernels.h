@@ -20,8 +20,13 @@ namespace weft {
   void grid_internal_forces(const GridView<Real>& grid);                                           \
   /** Energies of springs and bending and the largest strain. */                                   \
   ElasticEnergy grid_elastic_energy(const GridView<Real>& grid);                                   \
-  /** All forces, kick and drift in one pass. @returns power of the external forces [W] */         \
-  double grid_advance(const GridView<Real>& grid, const GridStep<Real>& step);                     \
+  /** Clears the scratch, and brings there what the two rows above carry to row `first`. */        \
+  void grid_begin_rows(const GridView<Real>& grid, std::ptrdiff_t first);                          \
+  /** All forces, kick and drift of rows from `first` to before `last` in one pass, after          \
+   * `grid_begin_rows` or the rows above. Adds powers of the external forces [W] by column to      \
+   * their line of scratch. */                                                                     \
+  void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first,  \
+                    std::ptrdiff_t last);                                                          \
   /** Drift with velocities and positions of the model, which are taken over. @returns power of    \
    * the external forces [W], 0 if not pulled */                                                   \
   double grid_drift(const GridView<Real>& grid, Real dt, bool pulled, const Real* v, Real* x);     \

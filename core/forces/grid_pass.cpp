@@ -7,6 +7,24 @@
 #include "core/forces/grid_kernels.h"
 
 namespace weft {
+namespace {
+
+/// Bands of rows have at least so many particles, and so many rows: threads that meet at every
+/// substep, and the two rows that a band looks up again, cost more than they save on smaller ones.
+constexpr std::ptrdiff_t kBandParticles = 2048, kBandRows = 16;
+constexpr std::ptrdiff_t kMostBands = 4;
+
+/// Sum of what a pass has added up by column, in their order; the line is cleared for the next.
+template <class Real>
+double take_power(const GridView<Real>& view) {
+  Real* const line = view.scratch + kPowerLine * view.scratch_line();
+  double sum = 0;
+  for (std::ptrdiff_t c = 0; c < view.columns; ++c) sum += static_cast<double>(line[c]);
+  std::fill_n(line, view.scratch_line(), Real(0));
+  return sum;
+}
+
+}  // namespace
 
 template <class Real>
 void GridPass<Real>::lay_out(const ClothPart<Real>& part) {
@@ -79,6 +97,7 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
   view_.motion = allocate(motion_, (view_.rows + 2) * GridView<Real>::kMotionLines);
   for (AlignedVector<Real>* array : {&external_, &wind_, &paths_, &kept_}) array->clear();
+  bands_.clear();
   scratch_.assign(static_cast<std::size_t>(kGridScratchLines * view_.scratch_line()), Real(0));
   view_.scratch = scratch_.data();
   allocate(odd_, 1);
@@ -168,8 +187,84 @@ void GridPass<Real>::store_external(Vec3Array<Real>& force) const {
 }
 
 template <class Real>
-double GridPass<Real>::advance(const GridStep<Real>& step) {
-  return grid_advance(view_, step);
+int GridPass<Real>::band_count() const {
+  const std::ptrdiff_t rows = view_.rows;
+  return static_cast<int>(std::clamp<std::ptrdiff_t>(
+      std::min(rows / kBandRows, rows * view_.columns / kBandParticles), 1, kMostBands));
+}
+
+/// An even one, as what rows carry changes places from each to the next.
+template <class Real>
+std::ptrdiff_t GridPass<Real>::first_row(int band) const {
+  const int bands = band_count();
+  return band == bands ? view_.rows : std::ptrdiff_t{view_.rows} * band / bands / 2 * 2;
+}
+
+template <class Real>
+void GridPass<Real>::make_room_for_bands() {
+  bands_.clear();
+  if (band_count() == 1) return;
+  bands_.resize(static_cast<std::size_t>(band_count()));
+  for (Band& band : bands_) {
+    band.scratch.assign(scratch_.size(), Real(0));
+    allocate(band.tail, 4 * GridView<Real>::kMotionLines);
+  }
+}
+
+template <class Real>
+GridView<Real> GridPass<Real>::view_of(Band& band) const {
+  GridView<Real> view = view_;
+  view.scratch = band.scratch.data();
+  return view;
+}
+
+/// Looks at rows of other bands while nobody moves them.
+template <class Real>
+void GridPass<Real>::begin_band(int number) {
+  Band& band = bands_[static_cast<std::size_t>(number)];
+  grid_begin_rows(view_of(band), first_row(number));
+  const std::ptrdiff_t tail = first_row(number + 1) - 2;
+  if (tail + 2 < view_.rows)
+    std::copy_n(view_.motion + tail * view_.pitch(), 4 * view_.pitch(), band.tail.data());
+}
+
+/// The last two rows look at the first two of the next band, which has moved them by then: they are
+/// advanced where their neighbours are still as they were.
+template <class Real>
+void GridPass<Real>::advance_band(int number, const GridStep<Real>& step) {
+  Band& band = bands_[static_cast<std::size_t>(number)];
+  const std::ptrdiff_t first = first_row(number), last = first_row(number + 1);
+  GridView<Real> view = view_of(band);
+  if (last == view_.rows) {
+    grid_advance(view, step, first, last);
+  } else {
+    const std::ptrdiff_t tail = last - 2;
+    grid_advance(view, step, first, tail);
+    view.row += tail;
+    view.motion = band.tail.data();
+    if (step.pulled) view.external += 3 * tail * view_.line;
+    grid_advance(view, step, 0, 2);
+    std::copy_n(view.motion, 2 * view.pitch(), view_.motion + tail * view.pitch());
+  }
+  band.power = take_power(view);
+}
+
+template <class Real>
+double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
+  const int bands = band_count();
+  double power = 0;
+  if (!executor || bands_.empty()) {
+    grid_begin_rows(view_, 0);
+    for (int band = 0; band < bands; ++band) {
+      grid_advance(view_, step, first_row(band), first_row(band + 1));
+      power += take_power(view_);
+    }
+    return power;
+  }
+  run_chunks(executor, bands, [this](int band) { begin_band(band); });
+  run_chunks(executor, bands, [&](int band) { advance_band(band, step); });
+  for (const Band& band : bands_) power += band.power;
+  return power;
 }
 
 template <class Real>
@@ -201,6 +296,7 @@ std::size_t GridPass<Real>::bytes() const {
   for (const AlignedVector<Real>* array :
        {&motion_, &external_, &wind_, &coefficients_, &odd_, &scratch_, &paths_, &kept_})
     numbers += array->capacity();
+  for (const Band& band : bands_) numbers += band.scratch.capacity() + band.tail.capacity();
   return numbers * sizeof(Real) + rows_.capacity() * sizeof(GridRow<Real>);
 }
 

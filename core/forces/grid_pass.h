@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/executor.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_view.h"
 #include "core/geometry/aabb.h"
@@ -32,6 +33,9 @@ class GridPass {
   /// Sizes what `load_paths` and `keep` fill. Until then neither may be called.
   void make_room_for_paths();
 
+  /// Sizes what `advance` needs to run on several threads. Until then it runs on one.
+  void make_room_for_bands();
+
   bool fits() const { return view_.rows > 0; }
 
   /// Takes positions and velocities of the whole model for the calls below.
@@ -58,8 +62,10 @@ class GridPass {
   void store_external(Vec3Array<Real>& force) const;
 
   /// One substep with the forces of springs, dashpots, bending and, if the step says so, the
-  /// external ones. @returns power of the external forces at the new velocities [W]
-  double advance(const GridStep<Real>& step);
+  /// external ones.
+  /// @param executor  does bands of rows on its threads; may be null
+  /// @returns power of the external forces at the new velocities [W]
+  double advance(const GridStep<Real>& step, Executor* executor = nullptr);
 
   /// Takes over the model's velocities, and its positions after it has moved them by dt.
   /// @returns power of the external forces [W]; 0 if not pulled
@@ -81,6 +87,18 @@ class GridPass {
   std::size_t bytes() const;
 
  private:
+  /// What a band of rows needs of its own to be advanced while others are: scratch, and its last
+  /// two rows with the next two as they were before.
+  struct Band {
+    AlignedVector<Real> scratch, tail;
+    double power = 0;  ///< of the external forces [W]
+  };
+
+  int band_count() const;
+  std::ptrdiff_t first_row(int band) const;
+  GridView<Real> view_of(Band& band) const;
+  void begin_band(int band);
+  void advance_band(int band, const GridStep<Real>& step);
   Real* allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const;
   void load_velocities(const Vec3Array<Real>& v);
   void lay_out(const ClothPart<Real>& part);
@@ -90,6 +108,7 @@ class GridPass {
   GridView<Real> view_;
   Real air_normal_ = 0, air_tangential_ = 0;
   std::vector<GridRow<Real>> rows_;
+  std::vector<Band> bands_;
   AlignedVector<Real> motion_, external_, wind_, coefficients_, odd_, scratch_;
   AlignedVector<Real> paths_, kept_;
 };

@@ -187,13 +187,25 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
   });
 }
 
-/// The whole substep.
-/// @returns power of the external forces at the new velocities [W]
+/// Clears the lines of scratch, and brings there what the rows above carry to row `first`: springs
+/// reach one row down, bending two.
 template <class Real>
-HWY_INLINE double advance(const GridView<Real>& g, const GridStep<Real>& step) {
+HWY_INLINE void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
   clear_lines(g);
+  for (std::ptrdiff_t r = std::max<std::ptrdiff_t>(0, first - 2); r < first; ++r) {
+    const ForceLines<Real> lines(g, r);
+    compute_factors(g, r, lines);
+    for (int component = 0; component < 3; ++component) add_up_forces(g, r, component, lines);
+  }
+}
+
+/// The whole substep of rows from `first` to before `last`, after `begin_rows` or the rows above.
+/// Powers of the external forces at the new velocities are added up in their line.
+template <class Real>
+HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
+                        std::ptrdiff_t last) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
-  for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
+  for (std::ptrdiff_t r = first; r < last; ++r) {
     const ForceLines<Real> lines(g, r);
     compute_factors(g, r, lines);
     for (int component = 0; component < 3; ++component) {
@@ -204,7 +216,6 @@ HWY_INLINE double advance(const GridView<Real>& g, const GridStep<Real>& step) {
         move_row<false>(g, r, component, step, lines, power);
     }
   }
-  return step.pulled ? sum_of_columns(g, power) : 0;
 }
 
 /// Moves positions of the model by its velocities and takes both over.

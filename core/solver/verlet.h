@@ -73,9 +73,11 @@ struct VerletWorkspace {
   std::vector<MeshPass<Real>> meshes;  ///< for each other part its form by gathering, likewise
   bool all_grids = false;              ///< every part fits as a grid
   std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths that the grids have; 0: none
+  Executor* executor = nullptr;        ///< advances bands of large grids on its threads
 
   /// Sizes the arrays for a cloth on which neither air nor shots act.
-  void prepare(const ClothModel<Real>& model, const SolverDef& solver);
+  /// @param executor  may be null
+  void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* executor);
 
   /// Sizes what air and shots need besides. To be called before a tick that has them.
   void make_room(const ClothModel<Real>& model, bool air, bool shots);

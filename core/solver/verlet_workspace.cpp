@@ -5,7 +5,9 @@
 namespace weft {
 
 template <class Real>
-void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverDef& solver) {
+void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverDef& solver,
+                                    Executor* threads) {
+  executor = threads;
   grids.clear();
   grids.resize(model.parts.size());
   meshes.assign(model.parts.size(), {});
@@ -14,6 +16,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   bool listed = solver.damping_sweeps > 1;  // somebody needs forces as numbers of the whole model
   for (std::size_t p = 0; p < grids.size(); ++p) {
     grids[p].prepare(model.parts[p]);
+    if (executor && grids[p].fits()) grids[p].make_room_for_bands();
     if (!grids[p].fits()) meshes[p].prepare(model, model.parts[p]);
     all_grids = all_grids && grids[p].fits();
     listed = listed || !kicks_at_once(model, p);

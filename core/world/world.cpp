@@ -157,7 +157,7 @@ const TickReport& World<Real>::step() {
 template <class Real>
 void World<Real>::prepare_solver() {
   if (solver_of(def_) == SolverKind::verlet)
-    verlet_.prepare(model_, def_.solver);
+    verlet_.prepare(model_, def_.solver, runtime_.executor);
   else
     relaxation_.prepare(model_);
   if (guard_ && solver_of(def_) == SolverKind::verlet) verlet_.make_room_for_paths();

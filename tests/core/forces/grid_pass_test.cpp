@@ -1,5 +1,7 @@
 #include "core/forces/grid_pass.h"
 
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 #include <hwy/targets.h>
 
@@ -7,6 +9,7 @@
 #include "core/forces/force_pass.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
+#include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -20,6 +23,16 @@ void use_targets(std::int64_t targets) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
+/// Runs chunks one after the other, the last one first.
+class Backwards : public Executor {
+ public:
+  void run(int chunks, void (*work)(void* context, int chunk), void* context) override {
+    most_chunks = std::max(most_chunks, chunks);
+    for (int chunk = chunks - 1; chunk >= 0; --chunk) work(context, chunk);
+  }
+  int most_chunks = 0;
+};
+
 template <class Real>
 struct Moved {
   Vec3Array<Real> x, v;
@@ -29,7 +42,7 @@ struct Moved {
 
 /// A shaken cloth after some substeps in the wind, with two particles pinned.
 template <class Real>
-Moved<Real> moved(const ClothDef& def) {
+Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
   const ClothModel<Real> model = build_cloth<Real>(def);
   Random random(11);
   Moved<Real> cloth;
@@ -42,13 +55,14 @@ Moved<Real> moved(const ClothDef& def) {
   GridPass<Real> grid;
   grid.prepare(model.parts[0]);
   grid.make_room(true);
+  if (executor) grid.make_room_for_bands();
   grid.load(cloth.x, cloth.v);
   grid.load_inverse_mass(inverse_mass);
   grid.load_wind(wind);
   GridStep<Real> step{Real(0.999), Real(1e-4), {0, Real(-9.81), 1}, Real(1e-4), true};
   for (int k = 0; k < 5; ++k) {
     grid.compute_air_forces(1.225);
-    cloth.power += grid.advance(step);
+    cloth.power += grid.advance(step, executor);
   }
   grid.store_positions(cloth.x);
   grid.store_velocities(cloth.v);
@@ -92,6 +106,27 @@ TEST_CASE("every instruction set moves a grid to the same bits") {
   check_all_targets<double>(def);
 }
 
+TEMPLATE_TEST_CASE("bands of a grid move it to the same bits, whichever comes first", "", float,
+                   double) {
+  const auto [rows, columns, bands] =
+      GENERATE(table<int, int, int>({{31, 300, 1}, {32, 128, 2}, {61, 101, 3}, {300, 60, 4}}));
+  ClothDef def = test::flat_cloth(rows, columns, 0.03 * columns, 0.03 * rows);
+  def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
+  def.fabric.shear = 0.5;
+  def.fabric.bending_warp = 2e-3;
+  Backwards backwards;
+  test::TwoThreads two_threads;
+  const Moved<TestType> alone = moved<TestType>(def);
+  for (Executor* executor :
+       {static_cast<Executor*>(&backwards), static_cast<Executor*>(&two_threads)}) {
+    const Moved<TestType> other = moved<TestType>(def, executor);
+    CHECK(other.x == alone.x);
+    CHECK(other.v == alone.v);
+    CHECK(other.power == alone.power);
+  }
+  CHECK(std::max(1, backwards.most_chunks) == bands);
+}
+
 TEST_CASE("a pinned particle stays where it is, and what pulls it counts no power") {
   ClothDef def = test::flat_cloth(5, 9);
   const ClothModel<float> model = build_cloth<float>(def);
@@ -113,7 +148,8 @@ TEST_CASE("a pinned particle stays where it is, and what pulls it counts no powe
 
 TEST_CASE("verlet takes at most 100 bytes a particle of a large grid, until air or hands come") {
   WorldDef def = test::empty_world(test::flat_cloth(128, 128));
-  World<float> world(def);
+  test::TwoThreads two_threads;
+  World<float> world(def, {&two_threads, nullptr});
   const double particles = 128 * 128;
   CHECK(static_cast<double>(world.solver_bytes()) <= 100 * particles);
   def.environment = world.environment();
