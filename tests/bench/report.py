@@ -164,14 +164,13 @@ def report_text(data):
             "## Threads", "",
             "One thread against two, by wall time and by CPU time of the whole process. What runs in "
             "chunks is the search for contacts with objects and for pairs of cloth with cloth, the regions of "
-            "many particles at once and, where a cloth touches itself at some hundred places, the sweeps over "
-            "these, in slabs of space. Springs, bending, air and the sweeps over contacts with objects are on "
-            "one thread: threads meet some hundred times a tick in a pile, where each time has its few "
-            "microseconds of work, and who waits looks out for the next one instead of sleeping, which is CPU "
-            "time too. To share the springs they would have to meet at each of 30 to 300 substeps a tick for "
-            "little work, and lose more wherever another process "
-            "takes a core. On a machine that does nothing else the time falls by half of the share at "
-            "best; where the pool's thread comes late, by nothing.", "",
+            "many particles at once, where a cloth touches itself at some hundred places the sweeps over "
+            "these, in slabs of space, and springs, bending, kick and drift of grids from 64² on, in bands of "
+            "rows. Air, meshes and the sweeps over contacts with objects are on one thread. Threads meet some "
+            "hundred times a tick for a few microseconds of work, and who waits looks out for the next time "
+            "instead of sleeping, which is CPU time too. On a machine that does nothing else the time falls by "
+            "half of the share at best; where another process takes the other core, it may rise by a tenth or "
+            "two.", "",
             tables.taken(threads), "", tables.threads(threads), "",
             "## Contact of a cloth with itself", "",
             "What each phase costs, in CPU milliseconds a tick of 1/60 s, for a square metre of cotton with a "

@@ -91,6 +91,13 @@ std::vector<ThreadFigure> measure_threads(bool quick, const std::string& mesh_di
   const int n = quick ? 64 : 128;
   const std::string name = "drape, soft, " + std::to_string(n) + " x " + std::to_string(n);
   figures.push_back(compare(name, large->make(n, bench_fabrics().front().fabric), ticks / 4, runs));
+  const auto swing =
+      std::find_if(bench_scenes().begin(), bench_scenes().end(),
+                   [](const BenchScene& s) { return s.name == std::string("swing"); });
+  for (const int side : {n / 2, n, 2 * n})
+    figures.push_back(compare(
+        "swing, cotton, " + std::to_string(side) + " x " + std::to_string(side),
+        swing->make(side, bench_fabrics().back().fabric), side > n ? ticks / 6 : ticks / 2, runs));
   return figures;
 }
 

@@ -14,6 +14,7 @@
 #include "core/contact/objects/contact_log.h"
 #include "core/contact/objects/contact_row.h"
 #include "core/contact/objects/feature_distance.h"
+#include "core/contact/objects/lone_rows.h"
 #include "core/contact/objects/mesh_shape.h"
 #include "core/executor.h"
 #include "core/world/profile.h"
@@ -268,8 +269,12 @@ class Contact {
   bool stands_still() const {
     return !any_tracked_ && moving_rows_.empty() && way_rows_ == 0 && way_step_ == 0 && gone_ == 0;
   }
-  bool measure_pushed_way(const ClothState<Real>& state, Real dt);
+  bool measure_pushed_way(ClothState<Real>& state, Real dt);
   void measure_rooms();
+  void find_lone_rows(std::size_t particles);
+  LonePass<Real> lone_pass(ClothState<Real>& state, Real dt);
+  template <class Visit>
+  void for_joint_rows(Visit&& visit) const;
   Real farthest2(const RowRoom& room) const;
   void find_busy_rows();
   /// How high above a plane who moves must be after the coming drift, who is at a height now [m].
@@ -279,7 +284,7 @@ class Contact {
   }
   void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
-  void aim_rows(const ClothState<Real>& state, Real dt);
+  void aim_rows(ClothState<Real>& state, Real dt);
   Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations);
   void solve_rows(ClothState<Real>& state, Real dt, Profile& profile, ClothGuard<Real>* guard);
   void certify(ClothState<Real>& state, Real dt, bool others);
@@ -370,6 +375,9 @@ class Contact {
   std::vector<RowRoom> rooms_;            ///< of the rows
   std::vector<std::size_t> busy_rows_;    ///< rows that can respond in this step
   std::vector<std::size_t> pushed_rows_;  ///< those that have, some more than once
+  LoneRows<Real> lone_rows_;              ///< those that know of no other one
+  std::vector<std::size_t> joint_rows_;   ///< all others
+  bool lone_apart_ = false;  ///< in this step lone rows are worked on apart, all at once
 
   std::vector<Plane> own_planes_;  ///< as defined
   std::vector<Ball> own_balls_;

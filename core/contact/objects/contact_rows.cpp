@@ -100,6 +100,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   add_triangles_on_meshes(state, profile);
   std::erase_if(exits_, [](const BadStart<Real>& exit) { return exit.particles == 0; });
   measure_rooms();
+  find_lone_rows(n);
   rows_built_ = true;
 }
 

@@ -74,8 +74,8 @@ bool Contact<Real>::measure_way(const ClothState<Real>& state, Real dt) {
 
 /// The same for those alone whom the rows have moved or pushed since everybody was measured.
 template <class Real>
-bool Contact<Real>::measure_pushed_way(const ClothState<Real>& state, Real dt) {
-  bool within = true;
+bool Contact<Real>::measure_pushed_way(ClothState<Real>& state, Real dt) {
+  bool within = !lone_apart_ || lone_rows_.measure_pushed(lone_pass(state, dt));
   for (const std::size_t r : pushed_rows_) {
     const ContactRow<Real>& row = rows_[r];
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
@@ -107,6 +107,51 @@ void Contact<Real>::measure_rooms() {
   }
 }
 
+/// Rows of a single particle that is in no other one, and responds without a bounce, are lone.
+template <class Real>
+void Contact<Real>::find_lone_rows(std::size_t particles) {
+  const auto cloth = [this](const ContactRow<Real>& row) -> const ContactDef& {
+    return cloths_[static_cast<std::size_t>(row.cloth)];
+  };
+  lone_rows_.find(
+      rows_, particles,
+      [&](const ContactRow<Real>& row) {
+        return row.responds && row.mover == kNone && cloth(row).restitution == 0;
+      },
+      [&](const ContactRow<Real>& row) { return static_cast<Real>(cloth(row).friction); });
+  lone_rows_.set_rooms(rooms_);
+  joint_rows_.clear();
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    if (!lone_rows_.has(r)) joint_rows_.push_back(r);
+  }
+}
+
+template <class Real>
+LonePass<Real> Contact<Real>::lone_pass(ClothState<Real>& state, Real dt) {
+  LonePass<Real> pass;
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.slack = Real(kTouchSlack);
+  pass.push_part = Real(kPushOutPart);
+  pass.push_most = Real(kPushOutSpeed) * dt;
+  pass.from = x_rows_.data()->data();
+  pass.reach = row_reach_.data();
+  pass.travel2 = travel2_.data();
+  return pass;
+}
+
+/// Visits rows by number, without the lone ones if these are worked on apart.
+template <class Real>
+template <class Visit>
+void Contact<Real>::for_joint_rows(Visit&& visit) const {
+  if (lone_apart_) {
+    for (const std::size_t r : joint_rows_) visit(r);
+  } else {
+    for (std::size_t r = 0; r < rows_.size(); ++r) visit(r);
+  }
+}
+
 /// Squared way of the particle of a row that goes farthest.
 template <class Real>
 Real Contact<Real>::farthest2(const RowRoom& room) const {
@@ -122,30 +167,38 @@ void Contact<Real>::find_busy_rows() {
   busy_rows_.clear();
   pushed_rows_.clear();
   const bool all = !stands_still();
-  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+  // Who wants to know of contacts is told by the rows one by one.
+  lone_apart_ = !all && !log_.wanted();
+  if (lone_apart_) lone_rows_.begin_step();
+  for_joint_rows([&](std::size_t r) {
     if (all ? rows_[r].responds : !(farthest2(rooms_[r]) < rooms_[r].touch2))
       busy_rows_.push_back(r);
-  }
+  });
 }
 
 template <class Real>
 void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
-  x_unpushed_ = state.x;
+  // Where nothing moves, only pushes are taken back.
+  if (!lone_apart_) x_unpushed_ = state.x;
   for (const std::size_t r : busy_rows_) {
     const ContactRow<Real>& row = rows_[r];
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
+    if (lone_apart_ && pushed_rows_.empty()) x_unpushed_ = state.x;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
     share_out<Real>(row, row.normal * step, state.x);
     pushed_rows_.push_back(r);
   }
   if (!pushed_rows_.empty()) take_back_pushes(state);
+  // A lone particle goes away from the only plane that it could come too near to.
+  if (lone_apart_) lone_rows_.push_out(lone_pass(state, dt));
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,
 /// none when touching, and a bounce after an impact.
 template <class Real>
-void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
+void Contact<Real>::aim_rows(ClothState<Real>& state, Real dt) {
+  if (lone_apart_) lone_rows_.aim(lone_pass(state, dt));
   for (const std::size_t r : busy_rows_) {
     ContactRow<Real>& row = rows_[r];
     const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
@@ -173,6 +226,7 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
 template <class Real>
 Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations) {
   Real largest = 0;
+  if (lone_apart_) largest = lone_rows_.sweep(lone_pass(state, Real(0)), friction_evaluations);
   for (const std::size_t r : busy_rows_) {
     const ContactRow<Real>& row = rows_[r];
     Vec3<Real> v = weighted(row, state.v);
@@ -285,10 +339,16 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
     measure_way(state, dt);
   }
   bool kept = false;
-  for (std::size_t r = 0; r < rooms_.size(); ++r) {
+  for_joint_rows([&](std::size_t r) {
     if (!still || !(farthest2(rooms_[r]) < rooms_[r].cross2))
       kept |= keep_off(rows_[r], false, state, dt);
-  }
+  });
+  const std::size_t lone = lone_apart_ ? lone_rows_.size() : 0;
+  const auto next = [&](std::size_t k) {
+    return k < lone ? lone_rows_.next_crossing(travel2_.data(), k) : lone;
+  };
+  for (std::size_t k = next(0); k < lone; k = next(k + 1))
+    kept |= keep_off(rows_[lone_rows_.row(k)], false, state, dt);
   if (!kept) return;
   for (int round = 1; round < kCertifyRounds && kept; ++round) {
     kept = false;
@@ -302,13 +362,15 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
 
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);                       \
-  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real);                \
+  template bool Contact<Real>::measure_pushed_way(ClothState<Real>&, Real);                      \
   template void Contact<Real>::measure_rooms();                                                  \
+  template void Contact<Real>::find_lone_rows(std::size_t);                                      \
+  template LonePass<Real> Contact<Real>::lone_pass(ClothState<Real>&, Real);                     \
   template Real Contact<Real>::farthest2(const RowRoom&) const;                                  \
   template void Contact<Real>::find_busy_rows();                                                 \
   template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
-  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
+  template void Contact<Real>::aim_rows(ClothState<Real>&, Real);                                \
   template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&);                    \
   template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&, ClothGuard<Real>*); \
   template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \

@@ -1,0 +1,83 @@
+#include "core/contact/objects/lone_rows.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/world/world.h"
+#include "tests/support/random.h"
+#include "tests/support/worlds.h"
+
+// Contacts of single particles are worked on several at a time, with the bits that one after the
+// other gives. Whoever asks for contact forces is told by the rows one after the other.
+
+using namespace weft;
+using test::Random;
+
+namespace {
+
+/// Cloths that fall on the ground, a ball, a rod and each other's edges, with a little motion of
+/// their own.
+WorldDef heap_of_shapes(double friction, unsigned seed) {
+  WorldDef def = test::empty_world(test::flat_cloth(23, 31));
+  ClothDef& cloth = def.cloths[0];
+  cloth.origin = Vec3d(-0.5, 0.45, -0.4);
+  cloth.v = Vec3d(0, 0.3, 1).normalized();
+  cloth.fabric.thickness = 0.006;
+  cloth.fabric.friction = friction;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.drag = 1;
+  def.colliders = {{"ground", PlaneDef{}},
+                   {"ball", SphereDef{Vec3d(0.1, 0.2, 0), 0.2}},
+                   {"rod", CapsuleDef{Vec3d(-0.4, 0.1, -0.5), Vec3d(-0.3, 0.15, 0.5), 0.05}}};
+  def.contact.seed.self = seed % 2 == 0 ? SelfContact::none : SelfContact::guard;
+  return def;
+}
+
+struct Fall {
+  std::uint64_t hash = 0, rubbed = 0;
+};
+
+template <class Real>
+Fall fall(const WorldDef& def, unsigned seed, bool told) {
+  World<Real> world(def);
+  Random random(seed);
+  for (Vec3<Real>& v : world.state().v) v = random.vector(0.5).cast<Real>();
+  world.accept_state();
+  world.measure_forces(told);
+  Fall result;
+  for (int tick = 0; tick < 60; ++tick) result.rubbed += world.step().profile[Stage::friction].work;
+  result.hash = world.hash();
+  return result;
+}
+
+ContactRow<float> row_of(std::initializer_list<Index> particles) {
+  ContactRow<float> row;
+  for (const Index i : particles) row.particle[static_cast<std::size_t>(row.count++)] = i;
+  return row;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("contacts worked on all at once leave the bits of one after the other", "",
+                   float, double) {
+  const double friction = GENERATE(0.0, 0.4);
+  const unsigned seed = GENERATE(1u, 2u, 3u, 4u);
+  const WorldDef def = heap_of_shapes(friction, seed);
+  const Fall at_once = fall<TestType>(def, seed, false), singly = fall<TestType>(def, seed, true);
+  CHECK(at_once.hash == singly.hash);
+  CHECK(at_once.rubbed == singly.rubbed);
+  CHECK((at_once.rubbed > 0) == (friction > 0));
+}
+
+TEST_CASE("a row is lone if its particle is in no other one and it responds simply") {
+  std::vector<ContactRow<float>> rows = {row_of({7}), row_of({5}), row_of({5}), row_of({2, 3}),
+                                         row_of({3}), row_of({1}), row_of({0})};
+  rows[5].responds = false;
+  LoneRows<float> lone;
+  lone.find(
+      rows, 9, [](const ContactRow<float>& row) { return row.responds; },
+      [](const ContactRow<float>&) { return 0.f; });
+  REQUIRE(lone.size() == 2);
+  CHECK(lone.row(0) == 6);  // by particle
+  CHECK(lone.row(1) == 0);
+  for (std::size_t r = 0; r < rows.size(); ++r) CHECK(lone.has(r) == (r == 0 || r == 6));
+}
