@@ -10,9 +10,11 @@
 
 #include "core/cloth/cloth_state.h"
 #include "core/contact/colliders/collider_frame.h"
+#include "core/contact/objects/analytic_shapes.h"
 #include "core/contact/objects/cloth_patches.h"
 #include "core/contact/objects/contact_log.h"
 #include "core/contact/objects/contact_row.h"
+#include "core/contact/objects/corners.h"
 #include "core/contact/objects/feature_distance.h"
 #include "core/contact/objects/lone_rows.h"
 #include "core/contact/objects/mesh_shape.h"
@@ -114,21 +116,10 @@ class Contact {
   std::vector<ContactPoint> contacts(const Vec3Array<Real>& x) const;
 
  private:
-  struct Plane {
-    Vec3<Real> normal;
-    Real offset;
-    std::size_t collider;
-  };
-  struct Ball {
-    Vec3<Real> centre;
-    Real radius;
-    std::size_t collider;
-  };
-  struct Rod {
-    Vec3<Real> a, b;
-    Real radius;
-    std::size_t collider;
-  };
+  using Plane = ObjectPlane<Real>;
+  using Ball = ObjectBall<Real>;
+  using Rod = ObjectRod<Real>;
+  using Round = RoundObject<Real>;
   using Pairs = std::vector<ContactCandidate<Real>>;
   using Measure = void (*)(const FeatureTable<Real>&);
   /// Features of a cloth's patch, or of a mesh near it, as rows or columns of a FeatureTable.
@@ -156,12 +147,6 @@ class Contact {
     Features particles, edges, triangles;
     std::vector<Real> distance2;
   };
-  /// How far the particles of a row may go without its mattering.
-  struct RowRoom {
-    std::array<Index, 3> particle;
-    Real touch2;  ///< squared, until it responds [m^2]
-    Real cross2;  ///< squared, until somebody could cross its plane [m^2]
-  };
   /// Near features of a patch, as ranges of their lists.
   struct NearPatch {
     std::size_t patch = 0;
@@ -175,16 +160,6 @@ class Contact {
   };
   /// Who is inside what, when the rows are built: number of the collider.
   static constexpr Index kOutside = -1, kInsideSeveral = -2;
-  /// What the corners of an edge or a triangle keep to while the rows hold.
-  struct Corners {
-    Real span = 0;   ///< no point is farther from the nearest of them [m]
-    Real reach = 0;  ///< that none goes beyond [m]
-    Real gap = std::numeric_limits<Real>::infinity();  ///< from all meshes, at least [m]
-    Real unseen = 0;                                   ///< that may be missing in a distance [m]
-
-    bool clear(Real core, Real radius) const;
-    bool clear(const Rise<Real>& rise) const;
-  };
   /// What is to be done about features of the cloth and a mesh that could meet.
   struct Look {
     Real reach = 0;        ///< that none of the cloth's particles goes beyond [m]
@@ -236,10 +211,8 @@ class Contact {
   void rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void add_particle_rows(const ClothState<Real>& state, Profile& profile);
   std::uint64_t add_mesh_rows(const ClothState<Real>& state, std::size_t m, Index i);
-  Corners corners_of(const ClothState<Real>& state, const Index* first, int count) const;
-  void add_edges_on_rounds(const ClothState<Real>& state, Profile& profile);
+  Corners<Real> corners_of(const ClothState<Real>& state, const Index* first, int count) const;
   void add_edges_on_meshes(const ClothState<Real>& state, Profile& profile);
-  void add_triangles_on_rounds(const ClothState<Real>& state, Profile& profile);
   void add_triangles_on_meshes(const ClothState<Real>& state, Profile& profile);
   std::optional<Look> look_at(const ClothState<Real>& state, const ContactCandidate<Real>& pair,
                               std::span<const Index> particles, double span, const Rise<Real>& rise,
@@ -256,6 +229,13 @@ class Contact {
   Real beyond_reach(Real reach) const {
     return reach + smallest_gap_ + thickness_ * Real(kRoomForPush);
   }
+
+  // contact_rounds.cpp
+  CornerBound<Real> bound_of(const ClothState<Real>& state, const Index* first, int count) const;
+  void measure_cores(const ClothState<Real>& state, const Round& round);
+  void add_features_on_rounds(const ClothState<Real>& state, Profile& profile);
+  void add_edges_on(const Round& round, const ClothState<Real>& state);
+  void add_triangles_on(const Round& round, const ClothState<Real>& state, Profile& profile);
 
   // contact_exits.cpp
   Real distance_from(std::size_t collider, const Vec3<Real>& p) const;
@@ -275,7 +255,7 @@ class Contact {
   LonePass<Real> lone_pass(ClothState<Real>& state, Real dt);
   template <class Visit>
   void for_joint_rows(Visit&& visit) const;
-  Real farthest2(const RowRoom& room) const;
+  Real farthest2(const RowRoom<Real>& room) const;
   void find_busy_rows();
   /// How high above a plane who moves must be after the coming drift, who is at a height now [m].
   /// What is nearer than the smallest gap must not come nearer, rounding included.
@@ -367,12 +347,15 @@ class Contact {
   std::array<Found, kChunks> found_;
   std::vector<std::size_t> cursor_;  ///< place in each mesh's particle pairs while rows are built
   std::vector<MeshDistance<Real>>
-      nearby_;                 ///< triangles near one particle, while its rows are built
+      nearby_;  ///< triangles near one particle, while its rows are built
+  std::vector<CornerBound<Real>> edge_bounds_,
+      triangle_bounds_;        ///< of the near ones, while rows are built
+  std::vector<Real> core_;     ///< distance of active particles from the core of a round object [m]
   std::vector<Index> inside_;  ///< of each particle the collider that it is inside of
   std::vector<BadStart<Real>> exits_;
   std::vector<ContactRow<Real>> rows_;
   std::vector<Real> travel2_;             ///< see measure_way [m^2]
-  std::vector<RowRoom> rooms_;            ///< of the rows
+  std::vector<RowRoom<Real>> rooms_;      ///< of the rows
   std::vector<std::size_t> busy_rows_;    ///< rows that can respond in this step
   std::vector<std::size_t> pushed_rows_;  ///< those that have, some more than once
   LoneRows<Real> lone_rows_;              ///< those that know of no other one

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/contact/objects/contact.h"
-#include "core/contact/objects/corner_span.h"
+#include "core/contact/objects/corners.h"
 
 namespace weft {
 namespace {

@@ -46,6 +46,14 @@ struct ContactRow {
   bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
+/// How far the particles of a row may go without its mattering.
+template <class Real>
+struct RowRoom {
+  std::array<Index, 3> particle;
+  Real touch2;  ///< squared, until it responds [m^2]
+  Real cross2;  ///< squared, until somebody could cross its plane [m^2]
+};
+
 /// What a row with an object that moves has besides.
 template <class Real>
 struct MovingRow {

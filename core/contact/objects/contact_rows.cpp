@@ -94,8 +94,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   gap_.resize(n);
   for (std::size_t i = 0; i < n; ++i) gap_[i] = thickness_ + row_reach_[i];
   add_particle_rows(state, profile);
-  add_edges_on_rounds(state, profile);
-  add_triangles_on_rounds(state, profile);
+  add_features_on_rounds(state, profile);
   add_edges_on_meshes(state, profile);
   add_triangles_on_meshes(state, profile);
   std::erase_if(exits_, [](const BadStart<Real>& exit) { return exit.particles == 0; });

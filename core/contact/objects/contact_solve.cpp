@@ -97,7 +97,7 @@ void Contact<Real>::measure_rooms() {
   const auto square = [](Real room) { return room > 0 ? room * room : Real(-1); };
   rooms_.clear();
   for (const ContactRow<Real>& row : rows_) {
-    RowRoom room;
+    RowRoom<Real> room;
     for (std::size_t k = 0; k < 3; ++k)
       room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
     room.touch2 = row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * kRoom)
@@ -154,7 +154,7 @@ void Contact<Real>::for_joint_rows(Visit&& visit) const {
 
 /// Squared way of the particle of a row that goes farthest.
 template <class Real>
-Real Contact<Real>::farthest2(const RowRoom& room) const {
+Real Contact<Real>::farthest2(const RowRoom<Real>& room) const {
   return std::max({travel2_[static_cast<std::size_t>(room.particle[0])],
                    travel2_[static_cast<std::size_t>(room.particle[1])],
                    travel2_[static_cast<std::size_t>(room.particle[2])]});
@@ -366,7 +366,7 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
   template void Contact<Real>::measure_rooms();                                                  \
   template void Contact<Real>::find_lone_rows(std::size_t);                                      \
   template LonePass<Real> Contact<Real>::lone_pass(ClothState<Real>&, Real);                     \
-  template Real Contact<Real>::farthest2(const RowRoom&) const;                                  \
+  template Real Contact<Real>::farthest2(const RowRoom<Real>&) const;                            \
   template void Contact<Real>::find_busy_rows();                                                 \
   template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <limits>
+
+#include "core/contact/objects/mesh_shape.h"
+#include "core/types.h"
+
+// What the corners of edges and triangles of a cloth say of all their points.
+
+namespace weft {
+
+/// No point of an edge or a triangle is farther from its nearest corner than this part of its
+/// longest side, which is 1/sqrt(3) for the centre of an equilateral triangle; by the square of it
+/// the distance of a point from anything may fall short of that of the corners.
+inline constexpr double kEdgeSpan = 0.5, kTriangleSpan = 0.578;
+
+/// What the corners of an edge or a triangle keep to while rows hold.
+template <class Real>
+struct Corners {
+  Real span = 0;   ///< no point is farther from the nearest of them [m]
+  Real reach = 0;  ///< that none goes beyond [m]
+  Real gap = std::numeric_limits<Real>::infinity();  ///< from all meshes, at least [m]
+  Real unseen = 0;                                   ///< that may be missing in a distance [m]
+
+  /// Whether corners alone keep off a round object, as they are so far from its core: of points at
+  /// x_i with weights w_i the middle is off any point q by less than the corners are, in squares,
+  /// by sum w_i w_j |x_i - x_j|^2 over pairs.
+  /// @param core  of the nearest corner, when the rows are built [m]
+  bool clear(Real core, Real radius) const {
+    const Real least = core - reach, most = radius + unseen;
+    return least > 0 && least * least - span * span > most * most;
+  }
+  /// Whether corners alone keep off a ridge or corner of a mesh, if it goes on as it is there: an
+  /// estimate, and nothing to rely on.
+  bool clear(const Rise<Real>& rise) const { return gap > rise.over(span) + unseen; }
+
+  /// What keeps them off where they lie, while what they may come to is only certified: at rest
+  /// particles alone carry the cloth on a smooth object.
+  /// @param part  kEdgeSpan or kTriangleSpan
+  /// @param off   gap that they lie off by [m]
+  Corners as_lying(double part, Real off) const {
+    Corners corners = *this;
+    corners.span -= 2 * corners.reach * static_cast<Real>(part);
+    corners.gap = off;
+    corners.reach = 0;
+    return corners;
+  }
+};
+
+/// The same on round objects, told quickly and not too well.
+template <class Real>
+struct CornerBound {
+  Real reach = 0;  ///< that none goes beyond [m]
+  Real span2 = 0;  ///< no point is farther from the nearest of them, squared [m^2]
+
+  /// @param core  distance of the nearest one from the core of an object [m]
+  /// @param most  that a point must be from there to be off [m]
+  bool clear(Real core, Real most) const {
+    const Real least = core - reach;
+    return least > 0 && least * least - span2 > most * most;
+  }
+};
+
+}  // namespace weft
