@@ -264,8 +264,8 @@ class Contact {
   }
   void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
-  void aim_rows(ClothState<Real>& state, Real dt);
-  Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations);
+  void aim_rows(const ClothState<Real>& state, Real dt);
+  Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations, bool again = false);
   void solve_rows(ClothState<Real>& state, Real dt, Profile& profile, ClothGuard<Real>* guard);
   void certify(ClothState<Real>& state, Real dt, bool others);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt);

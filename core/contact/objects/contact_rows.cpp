@@ -13,6 +13,9 @@ namespace {
 /// Substeps of a particle's present motion for which rows shall hold.
 constexpr double kRowSubsteps = 14;
 
+/// Rows shall hold for so much of the way of a particle to the next analytic shape, too.
+constexpr double kFreePart = 0.4;
+
 /// Whether a triangle has the corner, or both corners of the edge, that another one is nearest at.
 template <class Real>
 bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, Index t) {
@@ -74,7 +77,12 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
       const Real step = state.v[i].norm() * dt;
       // An object and what it carries along both go its way.
       enough &= left >= step * Real(1.5) + way_step_ * Real(3);
-      const Real wanted = std::max(thickness_ / 2, (step + way_step_) * Real(kRowSubsteps));
+      Real wanted = std::max(thickness_ / 2, (step + way_step_) * Real(kRowSubsteps));
+      // Who is clear of everything may go farther without touching.
+      if (meshes_.empty() && paired_[i] && wanted < left)
+        wanted =
+            std::max(wanted, (analytic_clearance(state.x[i], left / Real(kFreePart)) - thickness_) *
+                                 Real(kFreePart));
       row_reach_[i] = paired_[i] ? std::min(left, wanted) : left;
     }
     return enough;

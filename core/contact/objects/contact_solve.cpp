@@ -191,14 +191,13 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   }
   if (!pushed_rows_.empty()) take_back_pushes(state);
   // A lone particle goes away from the only plane that it could come too near to.
-  if (lone_apart_) lone_rows_.push_out(lone_pass(state, dt));
+  if (lone_apart_) lone_rows_.push_and_aim(lone_pass(state, dt));
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,
 /// none when touching, and a bounce after an impact.
 template <class Real>
-void Contact<Real>::aim_rows(ClothState<Real>& state, Real dt) {
-  if (lone_apart_) lone_rows_.aim(lone_pass(state, dt));
+void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
   for (const std::size_t r : busy_rows_) {
     ContactRow<Real>& row = rows_[r];
     const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
@@ -222,12 +221,17 @@ void Contact<Real>::aim_rows(ClothState<Real>& state, Real dt) {
 /// most friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
 /// What jaws squeeze has besides the normal impulses that cancel there, and their friction does
 /// not.
+/// @param again  nobody but these rows has changed a velocity since the last sweep: lone ones have
+///               what they want
 /// @return largest change of a normal velocity [m/s]
 template <class Real>
-Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations) {
+Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations,
+                               bool again) {
   Real largest = 0;
-  if (lone_apart_) largest = lone_rows_.sweep(lone_pass(state, Real(0)), friction_evaluations);
+  if (lone_apart_ && !again)
+    largest = lone_rows_.sweep(lone_pass(state, Real(0)), friction_evaluations);
   for (const std::size_t r : busy_rows_) {
+    if (again && lone_rows_.has(r)) continue;
     const ContactRow<Real>& row = rows_[r];
     Vec3<Real> v = weighted(row, state.v);
     if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
@@ -268,7 +272,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profil
   std::uint64_t friction_evaluations = 0;
   Real left = 0, among_cloths = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    left = std::max(left, sweep_rows(state, friction_evaluations));
+    left = std::max(left, sweep_rows(state, friction_evaluations, sweep > 0 && !guard));
     if (guard && sweep == 0) among_cloths = guard->sweep(state);
   }
   if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
@@ -370,8 +374,8 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
   template void Contact<Real>::find_busy_rows();                                                 \
   template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
-  template void Contact<Real>::aim_rows(ClothState<Real>&, Real);                                \
-  template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&);                    \
+  template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
+  template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&, bool);              \
   template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&, ClothGuard<Real>*); \
   template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \
   template void Contact<Real>::log_stop(const ContactRow<Real>&, std::size_t, const Vec3<Real>&, \

@@ -57,34 +57,28 @@ HWY_INLINE hn::Mask<D> busy(D d, const LoneView<Real>& rows, const LonePass<Real
   return hn::Not(hn::Lt(hn::LoadU(d, pass.travel2 + i), hn::LoadU(d, rows.touch2 + k)));
 }
 
-template <class Real>
-HWY_INLINE void push_out(const LoneView<Real>& rows, const LonePass<Real>& pass) {
+/// @tparam Pushes  push out first; who is pushed still lacks thickness then, and has no room
+template <bool Pushes, class Real>
+HWY_INLINE void aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {
   for_each_run(rows, [&](auto d, std::size_t k, std::size_t i) HWY_ATTR {
     const auto n = normals(d, rows, k), x = load_particles(d, pass.x + 3 * i);
     const auto gap = hn::Sub(dot_as_single(n, x), hn::LoadU(d, rows.offset + k));
-    const auto lack = hn::Sub(hn::LoadU(d, rows.thickness + k), gap);
-    const auto pushed = hn::And(busy(d, rows, pass, k, i), hn::Gt(lack, hn::Set(d, pass.slack)));
+    const auto thickness = hn::LoadU(d, rows.thickness + k), slack = hn::Set(d, pass.slack);
+    const auto acts = busy(d, rows, pass, k, i);
+    const auto over = hn::Sub(hn::Sub(gap, thickness), slack), zero = hn::Zero(d);
+    const auto room = hn::IfThenElse(hn::Gt(over, zero), over, zero);
+    const auto any = hn::Set(d, -std::numeric_limits<Real>::infinity());
+    const auto least = hn::Div(hn::Neg(room), hn::Set(d, pass.dt));
+    hn::StoreU(hn::IfThenElse(acts, least, any), d, rows.least_speed + k);
+    if constexpr (!Pushes) return;
+    const auto lack = hn::Sub(thickness, gap);
+    const auto pushed = hn::And(acts, hn::Gt(lack, slack));
     if (hn::AllFalse(d, pushed)) return;
     const auto part = hn::Mul(lack, hn::Set(d, pass.push_part)), most = hn::Set(d, pass.push_most);
     const auto step = hn::IfThenElse(hn::Lt(most, part), most, part);
     store_particles(d, select(pushed, x + n * step, x), pass.x + 3 * i);
     const auto one = hn::Set(d, Real(1));
     hn::StoreU(hn::IfThenElse(pushed, one, hn::LoadU(d, rows.pushed + k)), d, rows.pushed + k);
-  });
-}
-
-template <class Real>
-HWY_INLINE void aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {
-  for_each_run(rows, [&](auto d, std::size_t k, std::size_t i) HWY_ATTR {
-    const auto n = normals(d, rows, k), x = load_particles(d, pass.x + 3 * i);
-    const auto gap = hn::Sub(dot_as_single(n, x), hn::LoadU(d, rows.offset + k));
-    const auto over =
-        hn::Sub(hn::Sub(gap, hn::LoadU(d, rows.thickness + k)), hn::Set(d, pass.slack));
-    const auto zero = hn::Zero(d);
-    const auto room = hn::IfThenElse(hn::Gt(over, zero), over, zero);
-    const auto any = hn::Set(d, -std::numeric_limits<Real>::infinity());
-    const auto least = hn::Div(hn::Neg(room), hn::Set(d, pass.dt));
-    hn::StoreU(hn::IfThenElse(busy(d, rows, pass, k, i), least, any), d, rows.least_speed + k);
   });
 }
 
@@ -155,11 +149,11 @@ HWY_INLINE std::size_t next_crossing(const LoneView<Real>& rows, const Real* tra
 }
 
 #define WEFT_LONE_KERNELS(Real, Kind)                                                           \
-  HWY_ATTR void push_out_##Kind(const LoneView<Real>& rows, const LonePass<Real>& pass) {       \
-    push_out(rows, pass);                                                                       \
+  HWY_ATTR void push_and_aim_##Kind(const LoneView<Real>& rows, const LonePass<Real>& pass) {   \
+    aim<true>(rows, pass);                                                                      \
   }                                                                                             \
   HWY_ATTR void aim_##Kind(const LoneView<Real>& rows, const LonePass<Real>& pass) {            \
-    aim(rows, pass);                                                                            \
+    aim<false>(rows, pass);                                                                     \
   }                                                                                             \
   HWY_ATTR Real sweep_##Kind(const LoneView<Real>& rows, const LonePass<Real>& pass,            \
                              std::uint64_t& evaluations) {                                      \

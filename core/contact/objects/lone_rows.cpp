@@ -14,13 +14,13 @@ namespace weft {
 namespace {
 
 #define WEFT_DISPATCH(Real, Kind)                                                                \
-  HWY_EXPORT(push_out_##Kind);                                                                   \
+  HWY_EXPORT(push_and_aim_##Kind);                                                               \
   HWY_EXPORT(aim_##Kind);                                                                        \
   HWY_EXPORT(sweep_##Kind);                                                                      \
   HWY_EXPORT(measure_pushed_##Kind);                                                             \
   HWY_EXPORT(next_crossing_##Kind);                                                              \
-  void run_push_out(const LoneView<Real>& rows, const LonePass<Real>& pass) {                    \
-    HWY_DYNAMIC_DISPATCH(push_out_##Kind)(rows, pass);                                           \
+  void run_push_and_aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {                \
+    HWY_DYNAMIC_DISPATCH(push_and_aim_##Kind)(rows, pass);                                       \
   }                                                                                              \
   void run_aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {                         \
     HWY_DYNAMIC_DISPATCH(aim_##Kind)(rows, pass);                                                \
@@ -67,8 +67,8 @@ void LoneRows<Real>::clear() {
 }
 
 template <class Real>
-void LoneRows<Real>::push_out(const LonePass<Real>& pass) {
-  run_push_out(view(), pass);
+void LoneRows<Real>::push_and_aim(const LonePass<Real>& pass) {
+  run_push_and_aim(view(), pass);
 }
 
 template <class Real>

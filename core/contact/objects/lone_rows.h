@@ -65,11 +65,11 @@ class LoneRows {
 
   /// Nobody has been moved yet in this step.
   void begin_step() { pushed_.assign(row_.size(), Real(0)); }
-  /// Moves out particles that lack thickness.
-  void push_out(const LonePass<Real>& pass);
-  /// Normal velocity that each row must reach: no farther down than the thickness within the step.
-  /// Rows that are farther from touching than their particles go reach any.
+  /// Sets the normal velocity that each row must reach: no farther down than the thickness within
+  /// the step. Rows that are farther from touching than their particles go reach any.
   void aim(const LonePass<Real>& pass);
+  /// The same after moving out particles that lack thickness.
+  void push_and_aim(const LonePass<Real>& pass);
   /// One response of each row (see Contact::sweep_rows).
   /// @param evaluations  counts those of friction
   /// @return largest change of a normal velocity [m/s]
