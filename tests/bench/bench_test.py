@@ -149,11 +149,16 @@ class Bench(unittest.TestCase):
             key: row[key] for key in ("vectors", "load", "commit")}}
         self.assertIn("not measured: one tick takes 30 CPU s", contact_tables.speed([missing]))
 
-    def test_sizes_that_were_measured_apart_name_their_commits_and_runs(self):
-        cells = [{"commit": "b", "n": 64, "timed_runs": 5}, {"commit": "b", "n": 32, "timed_runs": 0},
-                 {"commit": "a", "n": 256, "timed_runs": 3}]
+    def test_sizes_and_scenes_that_were_measured_apart_name_their_commits_and_runs(self):
+        def cell(commit, n, runs, scene="swing"):
+            return {"commit": commit, "n": n, "timed_runs": runs, "scene": scene}
+        cells = [cell("b", 64, 5), cell("b", 32, 0), cell("a", 256, 3)]
         self.assertEqual(tables.sizes_taken(cells), "32², 64² at commit b, medians of up to 5 runs; "
                                                     "256² at commit a, medians of up to 3 runs.")
+        self.assertEqual(tables.sizes_taken(cells + [cell("c", 64, 4, "drape")]),
+                         "32², 64² of swing at commit b, medians of up to 5 runs; "
+                         "64² of drape at commit c, medians of up to 4 runs; "
+                         "256² at commit a, medians of up to 3 runs.")
 
     def test_a_commit_is_not_taken_for_a_number(self):
         self.assertEqual([tables.number(text) for text in ("5311e71", "1.5e-05", "3e+20", "-2", "yes")],

@@ -219,13 +219,21 @@ def taken(rows):
 
 
 def sizes_taken(cells):
-    """Where the sizes of the accuracy come from, as some may be measured in a run of their own."""
-    sizes, runs = {}, {}
+    """Where the cells of the accuracy come from, as some may be measured in a run of their own."""
+    sizes, scenes, runs = {}, {}, {}
     for cell in cells:
-        sizes.setdefault(cell["commit"], set()).add(cell["n"])
-        runs[cell["commit"]] = max(runs.get(cell["commit"], 0), cell["timed_runs"])
-    return "; ".join(f"{', '.join(f'{n}²' for n in sorted(sizes[commit]))} at commit {commit}, medians of up to "
-                     f"{runs[commit]} runs" for commit in sorted(sizes, key=lambda c: min(sizes[c]))) + "."
+        commit = cell["commit"]
+        sizes.setdefault(commit, set()).add(cell["n"])
+        scenes.setdefault(commit, set()).add(cell["scene"])
+        runs[commit] = max(runs.get(commit, 0), cell["timed_runs"])
+
+    def part(commit):
+        all_there = {cell["scene"] for cell in cells if cell["n"] in sizes[commit]}
+        of = "" if scenes[commit] == all_there else f" of {', '.join(sorted(scenes[commit]))}"
+        return (f"{', '.join(f'{n}²' for n in sorted(sizes[commit]))}{of} at commit {commit}, medians of up to "
+                f"{runs[commit]} runs")
+
+    return "; ".join(part(commit) for commit in sorted(sizes, key=lambda c: min(sizes[c]))) + "."
 
 
 def kernels(rows):
