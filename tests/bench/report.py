@@ -153,10 +153,10 @@ def report_text(data):
             "The largest square of particles whose swing, with verlet as scenes run it, needs at most "
             "half of one core.", "", tables.real_time_sizes(kernels), "",
             "## Is an implicit solver called for?", "",
-            "It is built as soon as a built-in scene, or cotton at 128², costs more than a second of "
-            "CPU a simulated second with verlet. Each of Weft's own scenes, but no "
+            "It is built as soon as verlet cannot hold a built-in scene, or cotton at 128², in real time: on "
+            "one thread, or by the clock on the two that a server has here. Each of Weft's own scenes, but no "
             "hard cases: all it costs with contact and air, and the share of springs, bending and "
-            "integration, which is what another solver could save.", "", tables.need_of_implicit(parts, cells), "",
+            "integration, which is what another solver could save.", "", tables.need_of_implicit(parts, cells, threads), "",
             "## What each part of the model costs", "",
             "Each built-in scene as it is and with one part switched off, over its first second or a "
             "part of it (the hard cases are left out); how "

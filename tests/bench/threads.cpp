@@ -85,19 +85,17 @@ std::vector<ThreadFigure> measure_threads(bool quick, const std::string& mesh_di
   if (std::filesystem::exists(mesh_directory + "/bunny.ply"))
     figures.push_back(
         compare("drop-on-bunny", make_scene("drop-on-bunny", mesh_directory), ticks, runs));
-  const auto large =
-      std::find_if(bench_scenes().begin(), bench_scenes().end(),
-                   [](const BenchScene& s) { return s.name == std::string("drape"); });
+  const auto add = [&](const std::string& name, int side, int count) {
+    const auto scene = std::find_if(bench_scenes().begin(), bench_scenes().end(),
+                                    [&](const BenchScene& s) { return s.name == name; });
+    const std::string size = std::to_string(side) + " x " + std::to_string(side);
+    figures.push_back(compare(name + ", cotton, " + size,
+                              scene->make(side, bench_fabrics().back().fabric), count, runs));
+  };
   const int n = quick ? 64 : 128;
-  const std::string name = "drape, soft, " + std::to_string(n) + " x " + std::to_string(n);
-  figures.push_back(compare(name, large->make(n, bench_fabrics().front().fabric), ticks / 4, runs));
-  const auto swing =
-      std::find_if(bench_scenes().begin(), bench_scenes().end(),
-                   [](const BenchScene& s) { return s.name == std::string("swing"); });
-  for (const int side : {n / 2, n, 2 * n})
-    figures.push_back(compare(
-        "swing, cotton, " + std::to_string(side) + " x " + std::to_string(side),
-        swing->make(side, bench_fabrics().back().fabric), side > n ? ticks / 6 : ticks / 2, runs));
+  add("drape", n, 2 * ticks);  // long enough to lie there
+  for (const int side : {n / 2, n}) add("swing", side, ticks / 2);
+  add("swing", 2 * n, ticks / 6);
   return figures;
 }
 

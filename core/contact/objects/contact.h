@@ -169,6 +169,11 @@ class Contact {
   /// A particle that is pushed out may go so much farther than its reach; more than a push does
   /// [part of the thickness].
   static constexpr double kRoomForPush = 0.125;
+  /// A gap this much wider than the thickness still counts as touching, so that rounding of
+  /// positions does not let a resting particle fall for a substep, and its friction with it [m].
+  static constexpr double kTouchSlack = 2e-5;
+  /// Push-out: part of the lack taken each substep, and its largest speed [m/s].
+  static constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
 
   bool empty() const {
     return planes_.empty() && balls_.empty() && rods_.empty() && meshes_.empty();
@@ -243,19 +248,20 @@ class Contact {
                   std::size_t collider);
   Vec3<Real> find_way_out(const ClothState<Real>& state, std::size_t collider, Index cloth) const;
 
-  // contact_solve.cpp
+  // contact_ways.cpp
   bool measure_way(const ClothState<Real>& state, Real dt);
-  /// Whether no object moves or has moved since the lists were made.
-  bool stands_still() const {
-    return !any_tracked_ && moving_rows_.empty() && way_rows_ == 0 && way_step_ == 0 && gone_ == 0;
-  }
   bool measure_pushed_way(ClothState<Real>& state, Real dt);
   void measure_rooms();
   void find_lone_rows(std::size_t particles);
   LonePass<Real> lone_pass(ClothState<Real>& state, Real dt);
+
+  // contact_solve.cpp
+  /// Whether no object moves or has moved since the lists were made.
+  bool stands_still() const {
+    return !any_tracked_ && moving_rows_.empty() && way_rows_ == 0 && way_step_ == 0 && gone_ == 0;
+  }
   template <class Visit>
   void for_joint_rows(Visit&& visit) const;
-  Real farthest2(const RowRoom<Real>& room) const;
   void find_busy_rows();
   /// How high above a plane who moves must be after the coming drift, who is at a height now [m].
   /// What is nearer than the smallest gap must not come nearer, rounding included.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "core/types.h"
 
@@ -53,6 +55,15 @@ struct RowRoom {
   Real touch2;  ///< squared, until it responds [m^2]
   Real cross2;  ///< squared, until somebody could cross its plane [m^2]
 };
+
+/// Squared way of the particle of a row that goes farthest [m^2].
+/// @param travel2  of each particle
+template <class Real>
+Real farthest2(const RowRoom<Real>& room, const std::vector<Real>& travel2) {
+  return std::max({travel2[static_cast<std::size_t>(room.particle[0])],
+                   travel2[static_cast<std::size_t>(room.particle[1])],
+                   travel2[static_cast<std::size_t>(room.particle[2])]});
+}
 
 /// What a row with an object that moves has besides.
 template <class Real>
