@@ -91,17 +91,22 @@ class Bench(unittest.TestCase):
         self.assertIn("CPU s, more than", tables.cost_of_accuracy(cells))
 
     def test_the_verdict_on_an_implicit_solver_follows_the_figures(self):
-        def verdict(slowest, share, cotton):
+        def verdict(slowest, share, cotton, wall=None):
             part = {"scene": "sling", "solver": "verlet", "off": "nothing", "cpu_per_second": 0.5,
                     "slowest_second": slowest, "seconds_looked_at": 4, "share_of_solver": share}
             cell = {"scene": "swing", "fabric": "cotton", "n": 128, "solver": "verlet",
                     "setting": "x1", "outcome": "ran", "cpu_per_second": cotton}
-            return tables.need_of_implicit([part], [cell]).splitlines()[0]
+            two = {"scene": "swing, cotton, 128 x 128", "ticks": 120, "wall_s_one_thread": 4, "wall_ratio": wall}
+            return tables.need_of_implicit([part], [cell], [two] if wall else []).splitlines()[0]
 
         self.assertIn("**No**", verdict(0.9, 1, 0.9))
         self.assertNotIn("Not in real time", verdict(0.9, 1, 0.9))
         self.assertIn("does not hold sling (2.5 CPU", verdict(2.5, 0.5, 0.9))
         self.assertIn("does not hold cotton at 128²", verdict(0.9, 1, 1.1))
+        # What two threads hold by the clock is told, and what they do not.
+        self.assertIn("**No**", verdict(0.9, 1, 1.1, 0.4))
+        self.assertIn("(1.1 CPU s per s on one thread, 0.8 s per s by the clock on two)", verdict(0.9, 1, 1.1, 0.4))
+        self.assertIn("(1.1 CPU s per s, 1.2 s by the clock on two threads)", verdict(0.9, 1, 1.1, 0.6))
         # What contact costs is no reason for another solver, but is told.
         self.assertIn("**No**", verdict(2.5, 0.1, 0.9))
         self.assertIn("sling (2.5 CPU s in its dearest second", verdict(2.5, 0.1, 0.9))
