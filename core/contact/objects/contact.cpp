@@ -170,8 +170,8 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   if (!guard || guard->rows().empty()) return;
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {
-    guard->sweep(state);
-    sweep_rows(state, friction_evaluations);
+    const bool changed = guard->sweep(state) > 0;
+    sweep_rows(state, friction_evaluations, !changed);
   }
   profile[Stage::friction].work += friction_evaluations;
 }

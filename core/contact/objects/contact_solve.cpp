@@ -171,7 +171,8 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profil
   std::uint64_t friction_evaluations = 0;
   Real left = 0, among_cloths = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    left = std::max(left, sweep_rows(state, friction_evaluations, sweep > 0 && !guard));
+    left =
+        std::max(left, sweep_rows(state, friction_evaluations, sweep > 0 && !(among_cloths > 0)));
     if (guard && sweep == 0) among_cloths = guard->sweep(state);
   }
   if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
