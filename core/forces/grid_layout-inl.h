@@ -35,14 +35,6 @@ HWY_INLINE void store(D d, const Triple<hn::Vec<D>>& a, Real* at, std::ptrdiff_t
   hn::StoreU(a.z, d, at + 2 * line);
 }
 
-/// Sum of what a pass has added up by column, so that the width of a vector does not matter.
-template <class Real>
-HWY_INLINE double sum_of_columns(const GridView<Real>& g, const Real* values) {
-  double sum = 0;
-  for (std::ptrdiff_t c = 0; c < g.columns; ++c) sum += static_cast<double>(values[c]);
-  return sum;
-}
-
 /// Calls body(d, row, column, particle) for stretches of the grid's rows: `particle` is the place
 /// of their first number in arrays of x y z x y z. Whole vectors where a row has as many; the rest
 /// of it particle by particle, so that nobody is visited twice.

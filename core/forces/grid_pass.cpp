@@ -14,12 +14,13 @@ namespace {
 constexpr std::ptrdiff_t kBandParticles = 2048, kBandRows = 16;
 constexpr std::ptrdiff_t kMostBands = 4;
 
-/// Sum of what a pass has added up by column, in their order; the line is cleared for the next.
+/// Sum of the powers that a pass has added up; their line is cleared for the next, and stays clear
+/// if nothing is pulled.
 template <class Real>
-double take_power(const GridView<Real>& view) {
+double take_power(const GridView<Real>& view, bool pulled) {
+  if (!pulled) return 0;
   Real* const line = view.scratch + kPowerLine * view.scratch_line();
-  double sum = 0;
-  for (std::ptrdiff_t c = 0; c < view.columns; ++c) sum += static_cast<double>(line[c]);
+  const double sum = sum_of_columns(view, line);
   std::fill_n(line, view.scratch_line(), Real(0));
   return sum;
 }
@@ -246,7 +247,7 @@ void GridPass<Real>::advance_band(int number, const GridStep<Real>& step) {
     grid_advance(view, step, 0, 2);
     std::copy_n(view.motion, 2 * view.pitch(), view_.motion + tail * view.pitch());
   }
-  band.power = take_power(view);
+  band.power = take_power(view, step.pulled);
 }
 
 template <class Real>
@@ -257,7 +258,7 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
     grid_begin_rows(view_, 0);
     for (int band = 0; band < bands; ++band) {
       grid_advance(view_, step, first_row(band), first_row(band + 1));
-      power += take_power(view_);
+      power += take_power(view_, step.pulled);
     }
     return power;
   }
@@ -269,7 +270,8 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
 
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x) {
-  return grid_drift(view_, dt, pulled, v.data()->data(), x.data()->data());
+  grid_drift(view_, dt, pulled, v.data()->data(), x.data()->data());
+  return take_power(view_, pulled);
 }
 
 template <class Real>

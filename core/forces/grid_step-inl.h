@@ -218,12 +218,11 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
   }
 }
 
-/// Moves positions of the model by its velocities and takes both over.
-/// @returns power of the external forces [W]
+/// Moves positions of the model by its velocities and takes both over. Powers of the external
+/// forces are added up in their line.
 template <class Real>
-HWY_INLINE double drift(const GridView<Real>& g, Real dt, bool pulled, const Real* v, Real* x) {
+HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool pulled, const Real* v, Real* x) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
-  for (std::ptrdiff_t c = 0; c < g.columns; ++c) power[c] = 0;
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
         const auto speed = load_particles(d, v + number);
@@ -236,7 +235,6 @@ HWY_INLINE double drift(const GridView<Real>& g, Real dt, bool pulled, const Rea
         const auto external = load(d, g.external + 3 * r * g.line + c, g.line);
         hn::StoreU(fused_dot(d, external, speed, hn::LoadU(d, power + c)), d, power + c);
       });
-  return pulled ? sum_of_columns(g, power) : 0;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -54,6 +54,15 @@ struct GridView {
 /// the row below (see grid_step-inl.h), powers by column.
 inline constexpr int kPowerLine = 19, kGridScratchLines = 20;
 
+/// Sum of what a pass has added up by column, in their order, so that the width of a vector does
+/// not matter.
+template <class Real>
+double sum_of_columns(const GridView<Real>& grid, const Real* values) {
+  double sum = 0;
+  for (int c = 0; c < grid.columns; ++c) sum += static_cast<double>(values[c]);
+  return sum;
+}
+
 /// What a pass over a grid does with the forces: v <- keep v + push (f/m + g), x <- x + dt v.
 /// Particles without inverse mass get velocity 0.
 template <class Real>
