@@ -7,22 +7,11 @@
 #include <cmath>
 
 #include "core/contact/feature_pair.h"
+#include "core/contact/objects/apart.h"
 #include "core/contact/objects/contact.h"
 #include "core/contact/objects/corners.h"
 
 namespace weft {
-namespace {
-
-/// So near, the direction between two points is rounding [m].
-constexpr double kTouching = 1e-6;
-
-template <class Real>
-Vec3d in_double(const Vec3<Real>& v) {
-  return v.template cast<double>();
-}
-
-}  // namespace
-
 /// What the corners of an edge or a triangle keep to while the rows hold.
 template <class Real>
 Corners<Real> Contact<Real>::corners_of(const ClothState<Real>& state, const Index* first,
@@ -102,7 +91,7 @@ void Contact<Real>::add_edges_on_meshes(const ClothState<Real>& state, Profile& 
       Vec3<Real> normal = s.normal.template cast<Real>();
       Barrier barrier;
       barrier.distance = std::max(distance, Real(0));
-      if (!(s.gap > kTouching)) normal = outward;
+      if (!(s.gap > kNoDirection)) normal = outward;
       // An edge that cuts a ridge of what its cloth is just leaving goes on outward.
       if (mesh.closed && s.inside && normal.dot(outward) < 0 && still_leaves(e[0], collider)) {
         normal = -normal;
@@ -142,7 +131,7 @@ void Contact<Real>::add_triangles_on_meshes(const ClothState<Real>& state, Profi
       Barrier barrier;
       barrier.distance = std::max(distance, Real(0));
       const Vec3<Real> normal =
-          s.gap > kTouching ? (-s.normal).template cast<Real>().eval() : mesh.vertex_normals[v];
+          s.gap > kNoDirection ? (-s.normal).template cast<Real>().eval() : mesh.vertex_normals[v];
       barrier.normal = frame.world_direction(normal);
       barrier.top = top_of(m, barrier.normal, {pair.feature});
       std::array<Real, 3> weights;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/contact/feature_pair.h"
+#include "core/contact/objects/apart.h"
 #include "core/contact/objects/contact.h"
 #include "core/contact/objects/corners.h"
 
@@ -14,32 +15,11 @@ namespace {
 /// A pair of edges closest at an end belongs to a particle or a vertex instead.
 constexpr double kEdgeEnd = 0.01;
 
-/// So near, the direction between two points is rounding [m].
-constexpr double kTouching = 1e-6;
-
 /// What a bound is widened by for rounding.
 constexpr double kSurely = 1.001;
 
 bool between_ends(double s) {
   return s > kEdgeEnd && s < 1 - kEdgeEnd;
-}
-
-template <class Real>
-Vec3d in_double(const Vec3<Real>& v) {
-  return v.template cast<double>();
-}
-
-/// Direction in which p is from q, and how far.
-struct Apart {
-  Vec3d normal;
-  double distance;  ///< [m]
-};
-
-Apart apart(const Vec3d& p, const Vec3d& q) {
-  const Vec3d away = p - q;
-  const double distance = away.norm();
-  if (!(distance > kTouching)) return {Vec3d::UnitY(), 0};
-  return {away / distance, distance};
 }
 
 }  // namespace

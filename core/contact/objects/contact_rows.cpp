@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/objects/apart.h"
 #include "core/contact/objects/contact.h"
 
 namespace weft {
@@ -27,22 +28,6 @@ bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, In
   };
   if (d.feature == 0) return false;
   return d.feature <= 3 ? has(d.feature - 1) : has(d.feature - 4) && has(d.feature - 3);
-}
-
-/// Direction from q to p, and their distance.
-template <class Real>
-struct Separation {
-  Vec3<Real> normal;
-  Real distance;
-};
-
-/// In double precision: the direction between points that are near each other shall be right.
-template <class Real>
-Separation<Real> separate(const Vec3d& p, const Vec3d& q) {
-  const Vec3d away = p - q;
-  const double distance = away.norm();
-  if (!(distance > 1e-6)) return {Vec3<Real>::UnitY(), Real(0)};
-  return {(away / distance).template cast<Real>(), static_cast<Real>(distance)};
 }
 
 }  // namespace
@@ -213,16 +198,16 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
     const Real far = radius + reach_of(i) + smallest_gap_;
     if ((x - from - (to - from) * closest_on_segment(x, from, to)).squaredNorm() > far * far)
       return;
-    const Vec3d p = x.template cast<double>(), a = from.template cast<double>(),
-                b = to.template cast<double>();
+    const Vec3d p = in_double(x), a = in_double(from), b = in_double(to);
     const Vec3d q = a + (b - a) * closest_on_segment<double>(p, a, b);
-    const Separation<Real> s = separate<Real>(p, q);
-    const Real distance = s.distance - radius;
+    const Apart side = apart(p, q);
+    const Vec3<Real> normal = side.normal.cast<Real>();
+    const Real distance = static_cast<Real>(side.distance) - radius;
     if (distance > reach_of(i)) return;
-    if (distance < 0) return add_inside(state, i, s.normal, distance, collider);
-    const Vec3d n = s.normal.template cast<double>();
+    if (distance < 0) return add_inside(state, i, normal, distance, collider);
+    const Vec3d n = in_double(normal);
     const double top = std::max(n.dot(a), n.dot(b)) + static_cast<double>(radius);
-    add_row(state, {i}, {Real(1), 0, 0}, {s.normal, top, distance}, collider);
+    add_row(state, {i}, {Real(1), 0, 0}, {normal, top, distance}, collider);
   };
   for (BadStart<Real>& exit : exits_) exit.particles = 0;
   cursor_.assign(meshes_.size(), 0);

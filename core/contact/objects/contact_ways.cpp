@@ -58,19 +58,10 @@ void Contact<Real>::measure_rooms() {
   }
 }
 
-/// Rows of a single particle that is in no other one, and responds without a bounce, are lone.
+/// Lone rows are worked on apart from the others.
 template <class Real>
 void Contact<Real>::find_lone_rows(std::size_t particles) {
-  const auto cloth = [this](const ContactRow<Real>& row) -> const ContactDef& {
-    return cloths_[static_cast<std::size_t>(row.cloth)];
-  };
-  lone_rows_.find(
-      rows_, particles,
-      [&](const ContactRow<Real>& row) {
-        return row.responds && row.mover == kNone && cloth(row).restitution == 0;
-      },
-      [&](const ContactRow<Real>& row) { return static_cast<Real>(cloth(row).friction); });
-  lone_rows_.set_rooms(rooms_);
+  lone_rows_.find(rows_, rooms_, cloths_, particles);
   joint_rows_.clear();
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     if (!lone_rows_.has(r)) joint_rows_.push_back(r);

@@ -61,9 +61,46 @@ template <class Real>
 void LoneRows<Real>::clear() {
   row_.clear();
   particle_.clear();
-  for (AlignedVector<Real>* array :
-       {&normal_[0], &normal_[1], &normal_[2], &offset_, &thickness_, &friction_})
+  for (AlignedVector<Real>* array : {&normal_[0], &normal_[1], &normal_[2], &offset_, &thickness_,
+                                     &friction_, &touch2_, &cross2_})
     array->clear();
+}
+
+template <class Real>
+void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
+                          const std::vector<RowRoom<Real>>& rooms,
+                          const std::vector<ContactDef>& cloths, std::size_t particles) {
+  constexpr Index kNoRow = -1, kSeveral = -2;
+  const auto cloth = [&](const ContactRow<Real>& row) -> const ContactDef& {
+    return cloths[static_cast<std::size_t>(row.cloth)];
+  };
+  clear();
+  is_lone_.assign(rows.size(), 0);
+  row_of_.assign(particles, kNoRow);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const ContactRow<Real>& row = rows[r];
+    const bool alone =
+        row.count == 1 && row.responds && row.mover == kNone && cloth(row).restitution == 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      Index& known = row_of_[static_cast<std::size_t>(row.particle[k])];
+      known = known == kNoRow && alone ? static_cast<Index>(r) : kSeveral;
+    }
+  }
+  for (std::size_t i = 0; i < particles; ++i) {
+    if (row_of_[i] < 0) continue;
+    const auto r = static_cast<std::size_t>(row_of_[i]);
+    is_lone_[r] = 1;
+    row_.push_back(r);
+    particle_.push_back(static_cast<Index>(i));
+    for (std::size_t c = 0; c < 3; ++c) normal_[c].push_back(rows[r].normal[static_cast<Index>(c)]);
+    offset_.push_back(rows[r].offset);
+    thickness_.push_back(rows[r].thickness);
+    friction_.push_back(static_cast<Real>(cloth(rows[r]).friction));
+    touch2_.push_back(rooms[r].touch2);
+    cross2_.push_back(rooms[r].cross2);
+  }
+  least_speed_.resize(row_.size());
+  begin_step();
 }
 
 template <class Real>

@@ -44,12 +44,11 @@ struct LoneView {
 template <class Real>
 class LoneRows {
  public:
-  /// Looks for them among all rows.
-  /// @param responds  responds(row): whether the response of the row is the simple one of this file
-  /// @param friction  friction(row): Coulomb coefficient
-  template <class Responds, class Friction>
-  void find(const std::vector<ContactRow<Real>>& rows, std::size_t particles, Responds&& responds,
-            Friction&& friction);
+  /// Looks for them among all rows: those that respond without a bounce to an object at rest.
+  /// @param rooms   of the rows
+  /// @param cloths  whose friction and restitution rows have
+  void find(const std::vector<ContactRow<Real>>& rows, const std::vector<RowRoom<Real>>& rooms,
+            const std::vector<ContactDef>& cloths, std::size_t particles);
   void clear();
 
   std::size_t size() const { return row_.size(); }
@@ -57,11 +56,6 @@ class LoneRows {
   bool has(std::size_t row) const { return is_lone_[row] != 0; }
   /// Number among all rows.
   std::size_t row(std::size_t k) const { return row_[k]; }
-
-  /// Sets the squared ways until a row responds, and until its particle could cross the plane.
-  /// @param rooms  by number among all rows, with touch2 and cross2 [m^2]
-  template <class Rooms>
-  void set_rooms(const Rooms& rooms);
 
   /// Nobody has been moved yet in this step.
   void begin_step() { pushed_.assign(row_.size(), Real(0)); }
@@ -92,48 +86,6 @@ class LoneRows {
   AlignedVector<Real> least_speed_, pushed_;  ///< [m/s]; 1 for who was moved or pushed, else 0
   std::vector<Index> row_of_;                 ///< each particle: its only row; while they are found
 };
-
-template <class Real>
-template <class Responds, class Friction>
-void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows, std::size_t particles,
-                          Responds&& responds, Friction&& friction) {
-  constexpr Index kNoRow = -1, kSeveral = -2;
-  clear();
-  is_lone_.assign(rows.size(), 0);
-  row_of_.assign(particles, kNoRow);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const bool alone = rows[r].count == 1 && responds(rows[r]);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(rows[r].count); ++k) {
-      Index& known = row_of_[static_cast<std::size_t>(rows[r].particle[k])];
-      known = known == kNoRow && alone ? static_cast<Index>(r) : kSeveral;
-    }
-  }
-  for (std::size_t i = 0; i < particles; ++i) {
-    if (row_of_[i] < 0) continue;
-    const auto r = static_cast<std::size_t>(row_of_[i]);
-    const ContactRow<Real>& row = rows[r];
-    is_lone_[r] = 1;
-    row_.push_back(r);
-    particle_.push_back(static_cast<Index>(i));
-    for (std::size_t c = 0; c < 3; ++c) normal_[c].push_back(row.normal[static_cast<Index>(c)]);
-    offset_.push_back(row.offset);
-    thickness_.push_back(row.thickness);
-    friction_.push_back(friction(row));
-  }
-  least_speed_.resize(row_.size());
-  begin_step();
-}
-
-template <class Real>
-template <class Rooms>
-void LoneRows<Real>::set_rooms(const Rooms& rooms) {
-  touch2_.clear();
-  cross2_.clear();
-  for (const std::size_t r : row_) {
-    touch2_.push_back(rooms[r].touch2);
-    cross2_.push_back(rooms[r].cross2);
-  }
-}
 
 extern template class LoneRows<float>;
 extern template class LoneRows<double>;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/contact/objects/apart.h"
 #include "core/math/angle.h"
 
 namespace weft {
@@ -207,12 +208,10 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
   MeshDistance<Real> result;
   result.triangle = t;
   result.feature = nearest.feature;
-  // So near the surface that the direction is rounding, the feature's normal serves.
-  constexpr double kTouching = 1e-6;
   const double sign = mesh.closed && away.dot(outward.template cast<double>()) < 0 ? -1 : 1;
   result.distance = static_cast<Real>(sign * distance);
-  result.normal = outward;
-  if (distance > kTouching) result.normal = (away * (sign / distance)).template cast<Real>();
+  result.normal = outward;  // serves where there is no direction
+  if (distance > kNoDirection) result.normal = (away * (sign / distance)).template cast<Real>();
   return result;
 }
 

@@ -73,9 +73,7 @@ TEST_CASE("a row is lone if its particle is in no other one and it responds simp
                                          row_of({3}), row_of({1}), row_of({0})};
   rows[5].responds = false;
   LoneRows<float> lone;
-  lone.find(
-      rows, 9, [](const ContactRow<float>& row) { return row.responds; },
-      [](const ContactRow<float>&) { return 0.f; });
+  lone.find(rows, std::vector<RowRoom<float>>(rows.size()), {ContactDef{}}, 9);
   REQUIRE(lone.size() == 2);
   CHECK(lone.row(0) == 6);  // by particle
   CHECK(lone.row(1) == 0);
