@@ -163,7 +163,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   profile[Stage::contact].work += rows_.size();
   measure_way(state, dt);
   find_busy_rows();
-  if (lone_apart_) lone_rows_.aim(lone_pass(state, dt));
+  if (lone_apart_) lone_response_ = lone_rows_.respond(lone_pass(state, dt));
   aim_rows(state, dt);
   if (any_jaw_) share_squeeze(state, dt / 2);
   solve_rows(state, dt, profile, guard);

@@ -157,6 +157,7 @@ class Contact {
     Vec3<Real> normal = Vec3<Real>::UnitY();  ///< out of the object
     double top = 0;                           ///< normal.x of the feature's highest point [m]
     Real distance = 0;                        ///< of the cloth's feature from it [m]
+    Real keep = 0;                            ///< height that particles keep besides [m]
   };
   /// Who is inside what, when the rows are built: number of the collider.
   static constexpr Index kOutside = -1, kInsideSeveral = -2;
@@ -237,6 +238,7 @@ class Contact {
 
   // contact_rounds.cpp
   CornerBound<Real> bound_of(const ClothState<Real>& state, const Index* first, int count) const;
+  Real kept_height(Index particle, Real distance) const;
   void measure_cores(const ClothState<Real>& state, const Round& round);
   void add_features_on_rounds(const ClothState<Real>& state, Profile& profile);
   void add_edges_on(const Round& round, const ClothState<Real>& state);
@@ -250,7 +252,7 @@ class Contact {
 
   // contact_ways.cpp
   bool measure_way(const ClothState<Real>& state, Real dt);
-  bool measure_pushed_way(ClothState<Real>& state, Real dt);
+  bool measure_pushed_way(const ClothState<Real>& state, Real dt);
   void measure_rooms();
   void find_lone_rows(std::size_t particles);
   LonePass<Real> lone_pass(ClothState<Real>& state, Real dt);
@@ -264,9 +266,9 @@ class Contact {
   void for_joint_rows(Visit&& visit) const;
   void find_busy_rows();
   /// How high above a plane who moves must be after the coming drift, who is at a height now [m].
-  /// What is nearer than the smallest gap must not come nearer, rounding included.
-  Real least_end(Real now) const {
-    return now < 0 ? now : std::min(now + smallest_gap_ / 16, smallest_gap_);
+  /// What is nearer than it keeps must not come nearer, rounding included.
+  Real least_end(const ContactRow<Real>& row, Real now) const {
+    return now < 0 ? now : std::min(now + smallest_gap_ / 16, row.keep);
   }
   void hold_within_reach(ClothState<Real>& state, Real dt);
   void push_out(ClothState<Real>& state, Real dt);
@@ -355,8 +357,9 @@ class Contact {
   std::vector<MeshDistance<Real>>
       nearby_;  ///< triangles near one particle, while its rows are built
   std::vector<CornerBound<Real>> edge_bounds_,
-      triangle_bounds_;        ///< of the near ones, while rows are built
-  std::vector<Real> core_;     ///< distance of active particles from the core of a round object [m]
+      triangle_bounds_;  ///< of the near ones, while rows are built
+  /// Distance of active particles from the core of a round object, and what they keep of it [m].
+  std::vector<Real> core_, least_core_;
   std::vector<Index> inside_;  ///< of each particle the collider that it is inside of
   std::vector<BadStart<Real>> exits_;
   std::vector<ContactRow<Real>> rows_;
@@ -366,6 +369,7 @@ class Contact {
   std::vector<std::size_t> pushed_rows_;  ///< those that have, some more than once
   LoneRows<Real> lone_rows_;              ///< those that know of no other one
   std::vector<std::size_t> joint_rows_;   ///< all others
+  LoneResponse<Real> lone_response_;      ///< of this step, before others respond
   bool lone_apart_ = false;  ///< in this step lone rows are worked on apart, all at once
 
   std::vector<Plane> own_planes_;  ///< as defined

@@ -197,7 +197,7 @@ Real Contact<Real>::lack_behind(const ContactRow<Real>& row, std::size_t i,
   if (frame.wary == 0 || !frame.moves) return 0;
   const Real now = row.normal.dot(state.x[i]) - row.offset;
   const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
-  return least_end(now) - end;
+  return least_end(row, now) - end;
 }
 
 /// Lifts each particle of a row off an object that comes, or holds it back from one that goes.
@@ -273,7 +273,7 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = height_after(row, state.x[i] + state.v[i] * dt);
     const bool moves = mover && frames_[collider].moves;
-    Real least = moves ? std::min(now, smallest_gap_) : least_end(now);
+    Real least = moves ? std::min(now, smallest_gap_) : least_end(row, now);
     if (moves) least = std::max(least, std::min(now, least_height(row, true)) - Real(kCarrySlack));
     const bool held = state.inverse_mass[i] == 0;
     const Vec3<Real> before = state.v[i];

@@ -18,8 +18,19 @@ constexpr double kEdgeEnd = 0.01;
 /// What a bound is widened by for rounding.
 constexpr double kSurely = 1.001;
 
+/// Part of its thickness that a cloth keeps of a round object even if it is pressed on it.
+constexpr double kKeptPart = 0.25;
+
 bool between_ends(double s) {
   return s > kEdgeEnd && s < 1 - kEdgeEnd;
+}
+
+/// The smallest of the corners' numbers.
+template <class Real, class Feature>
+Real nearest(const std::vector<Real>& numbers, const Feature& corners) {
+  Real least = numbers[static_cast<std::size_t>(corners[0])];
+  for (const Index i : corners) least = std::min(least, numbers[static_cast<std::size_t>(i)]);
+  return least;
 }
 
 }  // namespace
@@ -30,28 +41,43 @@ CornerBound<Real> Contact<Real>::bound_of(const ClothState<Real>& state, const I
                                           int count) const {
   const Real part = static_cast<Real>(count == 2 ? kEdgeSpan : kTriangleSpan);
   CornerBound<Real> bound;
-  Real longest2 = 0;
+  Real longest2 = 0, reach = 0;
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(first[k]),
                j = static_cast<std::size_t>(first[(k + 1) % count]);
     longest2 = std::max(longest2, (state.x[i] - state.x[j]).squaredNorm());
-    bound.reach = std::max(bound.reach, row_reach_[i]);
+    reach = std::max(reach, row_reach_[i]);
   }
-  const Real both2 = longest2 + 4 * bound.reach * bound.reach;
+  const Real both2 = longest2 + 4 * reach * reach;
   bound.span2 = part * part * 2 * both2 * static_cast<Real>(kSurely);
   return bound;
 }
 
-/// Distance of each active particle from the core of a round object [m].
+/// Height over the plane between it and a round object that a particle keeps while the rows hold,
+/// so that edges and triangles are proved off by their corners. Where objects move none is kept.
+/// @param distance  when the rows are built [m]
+template <class Real>
+Real Contact<Real>::kept_height(Index particle, Real distance) const {
+  if (any_tracked_) return 0;
+  return std::min(thickness_of(particle) * Real(kKeptPart), distance / 2);
+}
+
+/// Distance of each active particle from the core of a round object, now and while the rows hold: a
+/// particle within reach of the object is kept over a plane.
 template <class Real>
 void Contact<Real>::measure_cores(const ClothState<Real>& state, const Round& round) {
   core_.resize(state.x.size());
+  least_core_.resize(state.x.size());
   const auto& [a, b, radius, collider] = round.rod;
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3<Real> from = state.x[i] - a;
     core_[i] = round.is_ball ? from.norm()
                              : (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
+    least_core_[i] = core_[i] - row_reach_[i];
+    if (state.inverse_mass[i] > 0 && core_[i] > radius)
+      least_core_[i] =
+          std::max(least_core_[i], radius + kept_height(k, core_[i] - radius) - smallest_gap_);
   }
 }
 
@@ -81,11 +107,10 @@ void Contact<Real>::add_edges_on(const Round& round, const ClothState<Real>& sta
   const Real most = round.rod.radius + smallest_gap_;
   for (std::size_t n = 0; n < near_edges_.size(); ++n) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(near_edges_[n])];
-    const Real core =
-        std::min(core_[static_cast<std::size_t>(e[0])], core_[static_cast<std::size_t>(e[1])]);
-    if (edge_bounds_[n].clear(core, most)) continue;
+    const Real least = nearest(least_core_, e);
+    if (edge_bounds_[n].clear(least, most)) continue;
     const Corners<Real> ends = corners_of(state, e.data(), 2);
-    if (ends.clear(core, round.rod.radius)) continue;
+    if (ends.clear(least, round.rod.radius)) continue;
     if (is_inside(e[0], round.rod.collider) || is_inside(e[1], round.rod.collider)) continue;
     const Vec3d from = in_double(state.x[static_cast<std::size_t>(e[0])]),
                 to = in_double(state.x[static_cast<std::size_t>(e[1])]);
@@ -97,7 +122,8 @@ void Contact<Real>::add_edges_on(const Round& round, const ClothState<Real>& sta
     const Vec3d normal = in_double(barrier.normal);
     barrier.top =
         std::max(normal.dot(base), normal.dot(tip)) + static_cast<double>(round.rod.radius);
-    const bool carried = ends.as_lying(kEdgeSpan, Real(0)).clear(core, round.rod.radius);
+    const bool carried =
+        ends.as_lying(kEdgeSpan, Real(0)).clear(nearest(core_, e), round.rod.radius);
     const Real s = static_cast<Real>(c.s);
     add_row(state, {e[0], e[1]}, {Real(1) - s, s, 0}, barrier, round.rod.collider,
             !carried && between_ends(c.s));
@@ -129,15 +155,14 @@ void Contact<Real>::add_triangles_on(const Round& round, const ClothState<Real>&
   };
   for (std::size_t n = 0; n < near_triangles_.size(); ++n) {
     const Triangle& t = patches_.triangles[static_cast<std::size_t>(near_triangles_[n])];
-    const Real core =
-        std::min({core_[static_cast<std::size_t>(t[0])], core_[static_cast<std::size_t>(t[1])],
-                  core_[static_cast<std::size_t>(t[2])]});
-    if (triangle_bounds_[n].clear(core, most)) continue;
+    const Real least = nearest(least_core_, t);
+    if (triangle_bounds_[n].clear(least, most)) continue;
     const Corners<Real> corners = corners_of(state, t.data(), 3);
-    if (corners.clear(core, round.rod.radius)) continue;
+    if (corners.clear(least, round.rod.radius)) continue;
     const auto is_barred = [&](Index i) { return is_inside(i, round.rod.collider); };
     if (std::any_of(t.begin(), t.end(), is_barred)) continue;
-    const bool responds = !corners.as_lying(kTriangleSpan, Real(0)).clear(core, round.rod.radius);
+    const bool responds =
+        !corners.as_lying(kTriangleSpan, Real(0)).clear(nearest(core_, t), round.rod.radius);
     add(t, corners, round.rod.a, responds);
     if (!round.is_ball) add(t, corners, round.rod.b, responds);
   }
@@ -146,6 +171,7 @@ void Contact<Real>::add_triangles_on(const Round& round, const ClothState<Real>&
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template CornerBound<Real> Contact<Real>::bound_of(const ClothState<Real>&, const Index*, int) \
       const;                                                                                     \
+  template Real Contact<Real>::kept_height(Index, Real) const;                                   \
   template void Contact<Real>::measure_cores(const ClothState<Real>&, const Round&);             \
   template void Contact<Real>::add_features_on_rounds(const ClothState<Real>&, Profile&);        \
   template void Contact<Real>::add_edges_on(const Round&, const ClothState<Real>&);              \

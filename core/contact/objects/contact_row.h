@@ -40,6 +40,7 @@ struct ContactRow {
   Real offset = 0;                         ///< [m]
   Real distance = 0;                       ///< when the row was built [m]
   Real least_height = 0;                   ///< of a particle over the plane, then [m]
+  Real keep = 0;                           ///< height over the plane that its particles keep [m]
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
   Real thickness = 0;                      ///< that the cloth keeps [m]
   Index cloth = 0;                         ///< whose friction and restitution it has

@@ -11,8 +11,10 @@
 namespace weft {
 namespace {
 
-/// Substeps of a particle's present motion for which rows shall hold.
-constexpr double kRowSubsteps = 14;
+/// Substeps of a particle's present motion for which rows shall hold. Among objects at rest it need
+/// not go farther than so many thicknesses, or in long substeps for so few of them: of who may go
+/// far, edges and triangles need rows of their own.
+constexpr double kRowSubsteps = 14, kRowThicknesses = 2, kFewSubsteps = 2;
 
 /// Rows shall hold for so much of the way of a particle to the next analytic shape, too.
 constexpr double kFreePart = 0.4;
@@ -62,7 +64,11 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
       const Real step = state.v[i].norm() * dt;
       // An object and what it carries along both go its way.
       enough &= left >= step * Real(1.5) + way_step_ * Real(3);
-      Real wanted = std::max(thickness_ / 2, (step + way_step_) * Real(kRowSubsteps));
+      Real wanted = (step + way_step_) * Real(kRowSubsteps);
+      if (!any_tracked_)
+        wanted = std::min(wanted,
+                          std::max(thickness_ * Real(kRowThicknesses), step * Real(kFewSubsteps)));
+      wanted = std::max(wanted, thickness_ / 2);
       // Who is clear of everything may go farther without touching.
       if (meshes_.empty() && paired_[i] && wanted < left)
         wanted =
@@ -122,6 +128,7 @@ void Contact<Real>::add_row(const ClothState<Real>& state, std::initializer_list
         row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
   row.least_height = static_cast<Real>(least);
   row.distance = barrier.distance;
+  row.keep = std::max(barrier.keep, smallest_gap_);
   row.collider = static_cast<Index>(collider);
   row.responds = responds && !held;
   row.cloth = cloth_of(row.particle[0]);
@@ -207,7 +214,8 @@ void Contact<Real>::add_particle_rows(const ClothState<Real>& state, Profile& pr
     if (distance < 0) return add_inside(state, i, normal, distance, collider);
     const Vec3d n = in_double(normal);
     const double top = std::max(n.dot(a), n.dot(b)) + static_cast<double>(radius);
-    add_row(state, {i}, {Real(1), 0, 0}, {normal, top, distance}, collider);
+    add_row(state, {i}, {Real(1), 0, 0}, {normal, top, distance, kept_height(i, distance)},
+            collider);
   };
   for (BadStart<Real>& exit : exits_) exit.particles = 0;
   cursor_.assign(meshes_.size(), 0);

@@ -68,7 +68,7 @@ void Contact<Real>::find_busy_rows() {
   const bool all = !stands_still();
   // Who wants to know of contacts is told by the rows one by one.
   lone_apart_ = !all && !log_.wanted();
-  if (lone_apart_) lone_rows_.begin_step();
+  lone_response_ = {};
   for_joint_rows([&](std::size_t r) {
     if (all ? rows_[r].responds : !(farthest2(rooms_[r], travel2_) < rooms_[r].touch2))
       busy_rows_.push_back(r);
@@ -90,7 +90,7 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   }
   if (!pushed_rows_.empty()) take_back_pushes(state);
   // A lone particle goes away from the only plane that it could come too near to.
-  if (lone_apart_) lone_rows_.push_and_aim(lone_pass(state, dt));
+  if (lone_apart_) lone_response_ = lone_rows_.push_and_respond(lone_pass(state, dt));
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,
@@ -127,8 +127,11 @@ template <class Real>
 Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations,
                                bool again) {
   Real largest = 0;
-  if (lone_apart_ && !again)
-    largest = lone_rows_.sweep(lone_pass(state, Real(0)), friction_evaluations);
+  if (lone_apart_ && !again) {
+    const LoneResponse<Real> lone = lone_rows_.sweep(lone_pass(state, Real(0)));
+    largest = lone.largest;
+    friction_evaluations += lone.friction_evaluations;
+  }
   for (const std::size_t r : busy_rows_) {
     if (again && lone_rows_.has(r)) continue;
     const ContactRow<Real>& row = rows_[r];
@@ -168,11 +171,11 @@ Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_
 template <class Real>
 void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profile,
                                ClothGuard<Real>* guard) {
-  std::uint64_t friction_evaluations = 0;
-  Real left = 0, among_cloths = 0;
+  std::uint64_t friction_evaluations = lone_response_.friction_evaluations;
+  Real left = lone_response_.largest, among_cloths = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    left =
-        std::max(left, sweep_rows(state, friction_evaluations, sweep > 0 && !(among_cloths > 0)));
+    const bool again = sweep == 0 ? lone_apart_ : !(among_cloths > 0);
+    left = std::max(left, sweep_rows(state, friction_evaluations, again));
     if (guard && sweep == 0) among_cloths = guard->sweep(state);
   }
   if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
@@ -208,7 +211,7 @@ bool Contact<Real>::keep_off(const ContactRow<Real>& row, bool hold, ClothState<
     const auto i = static_cast<std::size_t>(row.particle[k]);
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = row.normal.dot(state.x[i] + state.v[i] * dt) - row.offset;
-    const Real least = least_end(now);
+    const Real least = least_end(row, now);
     if (end >= least || state.inverse_mass[i] == 0 || state.v[i].isZero(0)) continue;
     kept = true;
     const Vec3<Real> before = state.v[i];
@@ -247,12 +250,10 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
     if (!still || !(farthest2(rooms_[r], travel2_) < rooms_[r].cross2))
       kept |= keep_off(rows_[r], false, state, dt);
   });
-  const std::size_t lone = lone_apart_ ? lone_rows_.size() : 0;
-  const auto next = [&](std::size_t k) {
-    return k < lone ? lone_rows_.next_crossing(travel2_.data(), k) : lone;
-  };
-  for (std::size_t k = next(0); k < lone; k = next(k + 1))
-    kept |= keep_off(rows_[lone_rows_.row(k)], false, state, dt);
+  if (lone_apart_) {
+    lone_rows_.for_each_crossing(
+        travel2_.data(), [&](std::size_t r) { kept |= keep_off(rows_[r], false, state, dt); });
+  }
   if (!kept) return;
   for (int round = 1; round < kCertifyRounds && kept; ++round) {
     kept = false;

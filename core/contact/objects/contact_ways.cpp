@@ -23,10 +23,11 @@ bool Contact<Real>::measure_way(const ClothState<Real>& state, Real dt) {
   return measure_travel(pass);
 }
 
-/// The same for those alone whom the rows have moved or pushed since everybody was measured.
+/// The same for those alone whom the rows have moved or pushed since everybody was measured; lone
+/// ones have been as they responded.
 template <class Real>
-bool Contact<Real>::measure_pushed_way(ClothState<Real>& state, Real dt) {
-  bool within = !lone_apart_ || lone_rows_.measure_pushed(lone_pass(state, dt));
+bool Contact<Real>::measure_pushed_way(const ClothState<Real>& state, Real dt) {
+  bool within = lone_response_.within;
   for (const std::size_t r : pushed_rows_) {
     const ContactRow<Real>& row = rows_[r];
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
@@ -53,7 +54,7 @@ void Contact<Real>::measure_rooms() {
       room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
     room.touch2 = row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * kRoom)
                                : std::numeric_limits<Real>::infinity();
-    room.cross2 = square(row.least_height - smallest_gap_);
+    room.cross2 = square(row.least_height - row.keep);
     rooms_.push_back(room);
   }
 }
@@ -83,11 +84,11 @@ LonePass<Real> Contact<Real>::lone_pass(ClothState<Real>& state, Real dt) {
   return pass;
 }
 
-#define WEFT_INSTANTIATE(Real)                                              \
-  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);  \
-  template bool Contact<Real>::measure_pushed_way(ClothState<Real>&, Real); \
-  template void Contact<Real>::measure_rooms();                             \
-  template void Contact<Real>::find_lone_rows(std::size_t);                 \
+#define WEFT_INSTANTIATE(Real)                                                    \
+  template bool Contact<Real>::measure_way(const ClothState<Real>&, Real);        \
+  template bool Contact<Real>::measure_pushed_way(const ClothState<Real>&, Real); \
+  template void Contact<Real>::measure_rooms();                                   \
+  template void Contact<Real>::find_lone_rows(std::size_t);                       \
   template LonePass<Real> Contact<Real>::lone_pass(ClothState<Real>&, Real);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -25,9 +25,9 @@ struct Corners {
   /// Whether corners alone keep off a round object, as they are so far from its core: of points at
   /// x_i with weights w_i the middle is off any point q by less than the corners are, in squares,
   /// by sum w_i w_j |x_i - x_j|^2 over pairs.
-  /// @param core  of the nearest corner, when the rows are built [m]
-  bool clear(Real core, Real radius) const {
-    const Real least = core - reach, most = radius + unseen;
+  /// @param least  that they are from it while the rows hold [m]
+  bool clear(Real least, Real radius) const {
+    const Real most = radius + unseen;
     return least > 0 && least * least - span * span > most * most;
   }
   /// Whether corners alone keep off a ridge or corner of a mesh, if it goes on as it is there: an
@@ -50,13 +50,11 @@ struct Corners {
 /// The same on round objects, told quickly and not too well.
 template <class Real>
 struct CornerBound {
-  Real reach = 0;  ///< that none goes beyond [m]
   Real span2 = 0;  ///< no point is farther from the nearest of them, squared [m^2]
 
-  /// @param core  distance of the nearest one from the core of an object [m]
-  /// @param most  that a point must be from there to be off [m]
-  bool clear(Real core, Real most) const {
-    const Real least = core - reach;
+  /// @param least  distance that they keep from the core of an object [m]
+  /// @param most   that a point must be from there to be off [m]
+  bool clear(Real least, Real most) const {
     return least > 0 && least * least - span2 > most * most;
   }
 };

@@ -9,62 +9,48 @@
 #include "core/contact/objects/lone_rows-inl.h"
 
 #if HWY_ONCE
+#include <algorithm>
+#include <limits>
+
 namespace weft {
 
 namespace {
 
-#define WEFT_DISPATCH(Real, Kind)                                                                \
-  HWY_EXPORT(push_and_aim_##Kind);                                                               \
-  HWY_EXPORT(aim_##Kind);                                                                        \
-  HWY_EXPORT(sweep_##Kind);                                                                      \
-  HWY_EXPORT(measure_pushed_##Kind);                                                             \
-  HWY_EXPORT(next_crossing_##Kind);                                                              \
-  void run_push_and_aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {                \
-    HWY_DYNAMIC_DISPATCH(push_and_aim_##Kind)(rows, pass);                                       \
-  }                                                                                              \
-  void run_aim(const LoneView<Real>& rows, const LonePass<Real>& pass) {                         \
-    HWY_DYNAMIC_DISPATCH(aim_##Kind)(rows, pass);                                                \
-  }                                                                                              \
-  Real run_sweep(const LoneView<Real>& rows, const LonePass<Real>& pass, std::uint64_t& count) { \
-    return HWY_DYNAMIC_DISPATCH(sweep_##Kind)(rows, pass, count);                                \
-  }                                                                                              \
-  bool run_measure_pushed(const LoneView<Real>& rows, const LonePass<Real>& pass) {              \
-    return HWY_DYNAMIC_DISPATCH(measure_pushed_##Kind)(rows, pass);                              \
-  }                                                                                              \
-  std::size_t run_next_crossing(const LoneView<Real>& rows, const Real* travel2,                 \
-                                std::size_t from) {                                              \
-    return HWY_DYNAMIC_DISPATCH(next_crossing_##Kind)(rows, travel2, from);                      \
+#define WEFT_DISPATCH(Real, Kind)                                                                 \
+  HWY_EXPORT(push_and_respond_##Kind);                                                            \
+  HWY_EXPORT(respond_##Kind);                                                                     \
+  HWY_EXPORT(sweep_##Kind);                                                                       \
+  HWY_EXPORT(next_crossing_##Kind);                                                               \
+  LoneResponse<Real> run_push_and_respond(std::span<LoneBlock<Real>> blocks,                      \
+                                          const LonePass<Real>& pass) {                           \
+    return HWY_DYNAMIC_DISPATCH(push_and_respond_##Kind)(blocks, pass);                           \
+  }                                                                                               \
+  LoneResponse<Real> run_respond(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) { \
+    return HWY_DYNAMIC_DISPATCH(respond_##Kind)(blocks, pass);                                    \
+  }                                                                                               \
+  LoneResponse<Real> run_sweep(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {   \
+    return HWY_DYNAMIC_DISPATCH(sweep_##Kind)(blocks, pass);                                      \
+  }                                                                                               \
+  std::size_t run_next_crossing(std::span<const LoneBlock<Real>> blocks, const Real* travel2,     \
+                                std::size_t from) {                                               \
+    return HWY_DYNAMIC_DISPATCH(next_crossing_##Kind)(blocks, travel2, from);                     \
   }
 WEFT_DISPATCH(float, f32)
 WEFT_DISPATCH(double, f64)
 #undef WEFT_DISPATCH
 
+/// Nothing is done to any of its particles.
+template <class Real>
+LoneBlock<Real> empty_block(std::size_t first) {
+  LoneBlock<Real> block{};
+  std::fill_n(block.touch2, kLoneLanes, std::numeric_limits<Real>::infinity());
+  std::fill_n(block.cross2, kLoneLanes, std::numeric_limits<Real>::infinity());
+  std::fill_n(block.row, kLoneLanes, kNone);
+  block.first = static_cast<Index>(first);
+  return block;
+}
+
 }  // namespace
-
-template <class Real>
-LoneView<Real> LoneRows<Real>::view() {
-  LoneView<Real> view;
-  view.count = row_.size();
-  view.particle = particle_.data();
-  for (std::size_t c = 0; c < 3; ++c) view.normal[c] = normal_[c].data();
-  view.offset = offset_.data();
-  view.thickness = thickness_.data();
-  view.friction = friction_.data();
-  view.touch2 = touch2_.data();
-  view.cross2 = cross2_.data();
-  view.least_speed = least_speed_.data();
-  view.pushed = pushed_.data();
-  return view;
-}
-
-template <class Real>
-void LoneRows<Real>::clear() {
-  row_.clear();
-  particle_.clear();
-  for (AlignedVector<Real>* array : {&normal_[0], &normal_[1], &normal_[2], &offset_, &thickness_,
-                                     &friction_, &touch2_, &cross2_})
-    array->clear();
-}
 
 template <class Real>
 void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
@@ -74,7 +60,7 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
   const auto cloth = [&](const ContactRow<Real>& row) -> const ContactDef& {
     return cloths[static_cast<std::size_t>(row.cloth)];
   };
-  clear();
+  blocks_.clear();
   is_lone_.assign(rows.size(), 0);
   row_of_.assign(particles, kNoRow);
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -86,46 +72,44 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
       known = known == kNoRow && alone ? static_cast<Index>(r) : kSeveral;
     }
   }
-  for (std::size_t i = 0; i < particles; ++i) {
+  // A cloth of fewer particles is worked on row by row.
+  for (std::size_t i = 0; i < particles && particles >= kLoneLanes; ++i) {
     if (row_of_[i] < 0) continue;
+    if (blocks_.empty() || i >= static_cast<std::size_t>(blocks_.back().first) + kLoneLanes)
+      blocks_.push_back(empty_block<Real>(std::min(i, particles - kLoneLanes)));
+    LoneBlock<Real>& block = blocks_.back();
+    const std::size_t k = i - static_cast<std::size_t>(block.first);
     const auto r = static_cast<std::size_t>(row_of_[i]);
     is_lone_[r] = 1;
-    row_.push_back(r);
-    particle_.push_back(static_cast<Index>(i));
-    for (std::size_t c = 0; c < 3; ++c) normal_[c].push_back(rows[r].normal[static_cast<Index>(c)]);
-    offset_.push_back(rows[r].offset);
-    thickness_.push_back(rows[r].thickness);
-    friction_.push_back(static_cast<Real>(cloth(rows[r]).friction));
-    touch2_.push_back(rooms[r].touch2);
-    cross2_.push_back(rooms[r].cross2);
+    for (std::size_t c = 0; c < 3; ++c) block.normal[c][k] = rows[r].normal[static_cast<Index>(c)];
+    block.offset[k] = rows[r].offset;
+    block.thickness[k] = rows[r].thickness;
+    block.friction[k] = static_cast<Real>(cloth(rows[r]).friction);
+    block.touch2[k] = rooms[r].touch2;
+    block.cross2[k] = rooms[r].cross2;
+    block.row[k] = row_of_[i];
   }
-  least_speed_.resize(row_.size());
-  begin_step();
 }
 
 template <class Real>
-void LoneRows<Real>::push_and_aim(const LonePass<Real>& pass) {
-  run_push_and_aim(view(), pass);
+LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass) {
+  return run_push_and_respond(blocks_, pass);
 }
 
 template <class Real>
-void LoneRows<Real>::aim(const LonePass<Real>& pass) {
-  run_aim(view(), pass);
+LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass) {
+  return run_respond(blocks_, pass);
 }
 
 template <class Real>
-Real LoneRows<Real>::sweep(const LonePass<Real>& pass, std::uint64_t& evaluations) {
-  return run_sweep(view(), pass, evaluations);
+LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass) {
+  return run_sweep(blocks_, pass);
 }
 
+/// The first block from number `block` on with a particle that could; size() if there is none.
 template <class Real>
-bool LoneRows<Real>::measure_pushed(const LonePass<Real>& pass) {
-  return run_measure_pushed(view(), pass);
-}
-
-template <class Real>
-std::size_t LoneRows<Real>::next_crossing(const Real* travel2, std::size_t k) {
-  return run_next_crossing(view(), travel2, k);
+std::size_t LoneRows<Real>::next_crossing(const Real* travel2, std::size_t block) const {
+  return run_next_crossing(blocks_, travel2, block);
 }
 
 template class LoneRows<float>;

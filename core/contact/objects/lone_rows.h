@@ -3,10 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/contact/objects/contact_row.h"
-#include "core/math/aligned_vector.h"
 #include "core/types.h"
 
 namespace weft {
@@ -26,15 +26,26 @@ struct LonePass {
   Real* travel2 = nullptr;      ///< squared way, now or after the drift, whichever is longer [m^2]
 };
 
-/// What the kernels of LoneRows read and write: a number a row in each array.
+inline constexpr std::size_t kLoneLanes = 8;
+
+/// The rows of as many particles that follow each other. Who of them is not in a lone row has room
+/// for any way, so that nothing is done to it.
 template <class Real>
-struct LoneView {
-  std::size_t count = 0;
-  const Index* particle = nullptr;
-  const Real* normal[3] = {};
-  const Real *offset = nullptr, *thickness = nullptr, *friction = nullptr;
-  const Real *touch2 = nullptr, *cross2 = nullptr;
-  Real *least_speed = nullptr, *pushed = nullptr;
+struct alignas(64) LoneBlock {
+  Real normal[3][kLoneLanes];
+  Real offset[kLoneLanes], thickness[kLoneLanes], friction[kLoneLanes];
+  Real touch2[kLoneLanes], cross2[kLoneLanes];  ///< see RowRoom [m^2]
+  Real least_speed[kLoneLanes];                 ///< that rows must reach [m/s]
+  Index row[kLoneLanes];                        ///< number among all rows, or kNone
+  Index first;                                  ///< particle
+};
+
+/// What a response of lone rows comes to.
+template <class Real>
+struct LoneResponse {
+  Real largest = 0;                        ///< change of a normal velocity [m/s]
+  bool within = true;                      ///< who was moved or pushed ends within his reach
+  std::uint64_t friction_evaluations = 0;  ///< times friction was worked out
 };
 
 /// Contacts with objects at rest of particles that are in no other contact: nearly all of a cloth
@@ -49,43 +60,45 @@ class LoneRows {
   /// @param cloths  whose friction and restitution rows have
   void find(const std::vector<ContactRow<Real>>& rows, const std::vector<RowRoom<Real>>& rooms,
             const std::vector<ContactDef>& cloths, std::size_t particles);
-  void clear();
 
-  std::size_t size() const { return row_.size(); }
   /// Whether a row is one of them.
   bool has(std::size_t row) const { return is_lone_[row] != 0; }
-  /// Number among all rows.
-  std::size_t row(std::size_t k) const { return row_[k]; }
+  /// By particle.
+  const std::vector<LoneBlock<Real>>& blocks() const { return blocks_; }
 
-  /// Nobody has been moved yet in this step.
-  void begin_step() { pushed_.assign(row_.size(), Real(0)); }
-  /// Sets the normal velocity that each row must reach: no farther down than the thickness within
-  /// the step. Rows that are farther from touching than their particles go reach any.
-  void aim(const LonePass<Real>& pass);
+  /// Works out the normal velocity that each row must reach, which is no farther down than the
+  /// thickness within the step, lets each respond once (see Contact::sweep_rows), and measures the
+  /// ways of those anew that have. Rows that are farther from touching than their particles go do
+  /// nothing.
+  LoneResponse<Real> respond(const LonePass<Real>& pass);
   /// The same after moving out particles that lack thickness.
-  void push_and_aim(const LonePass<Real>& pass);
-  /// One response of each row (see Contact::sweep_rows).
-  /// @param evaluations  counts those of friction
-  /// @return largest change of a normal velocity [m/s]
-  Real sweep(const LonePass<Real>& pass, std::uint64_t& evaluations);
-  /// Measures the ways of those anew that were moved or pushed in this step.
-  /// @return whether all end within their reach
-  bool measure_pushed(const LonePass<Real>& pass);
-  /// The first row from number k on whose particle could cross its plane; size() if there is none.
-  std::size_t next_crossing(const Real* travel2, std::size_t k);
+  LoneResponse<Real> push_and_respond(const LonePass<Real>& pass);
+  /// One more response, after others have changed velocities. Ways are not measured.
+  LoneResponse<Real> sweep(const LonePass<Real>& pass);
+  /// Calls visit(row) for rows whose particles could cross their planes.
+  /// @param travel2  squared way of each particle [m^2]
+  template <class Visit>
+  void for_each_crossing(const Real* travel2, Visit&& visit) const;
 
  private:
-  LoneView<Real> view();
+  std::size_t next_crossing(const Real* travel2, std::size_t block) const;
 
-  std::vector<std::size_t> row_;
+  std::vector<LoneBlock<Real>> blocks_;
   std::vector<char> is_lone_;
-  std::vector<Index> particle_;  ///< ascending, so that most have their neighbours beside them
-  std::array<AlignedVector<Real>, 3> normal_;
-  AlignedVector<Real> offset_, thickness_, friction_;
-  AlignedVector<Real> touch2_, cross2_;       ///< [m^2]
-  AlignedVector<Real> least_speed_, pushed_;  ///< [m/s]; 1 for who was moved or pushed, else 0
-  std::vector<Index> row_of_;                 ///< each particle: its only row; while they are found
+  std::vector<Index> row_of_;  ///< each particle: its only row; while they are found
 };
+
+template <class Real>
+template <class Visit>
+void LoneRows<Real>::for_each_crossing(const Real* travel2, Visit&& visit) const {
+  for (std::size_t b = 0; (b = next_crossing(travel2, b)) < blocks_.size(); ++b) {
+    const LoneBlock<Real>& block = blocks_[b];
+    const Real* const way2 = travel2 + block.first;
+    for (std::size_t k = 0; k < kLoneLanes; ++k)
+      if (block.row[k] != kNone && !(way2[k] < block.cross2[k]))
+        visit(static_cast<std::size_t>(block.row[k]));
+  }
+}
 
 extern template class LoneRows<float>;
 extern template class LoneRows<double>;
