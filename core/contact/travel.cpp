@@ -9,6 +9,9 @@
 #include "core/contact/travel-inl.h"
 
 #if HWY_ONCE
+#include <algorithm>
+#include <array>
+
 namespace weft {
 
 HWY_EXPORT(travel_f32);
@@ -16,12 +19,45 @@ HWY_EXPORT(travel_f64);
 HWY_EXPORT(deviation_f32);
 HWY_EXPORT(deviation_f64);
 
-bool measure_travel(const TravelPass<float>& pass) {
+namespace {
+
+bool run_travel(const TravelPass<float>& pass) {
   return HWY_DYNAMIC_DISPATCH(travel_f32)(pass);
 }
 
-bool measure_travel(const TravelPass<double>& pass) {
+bool run_travel(const TravelPass<double>& pass) {
   return HWY_DYNAMIC_DISPATCH(travel_f64)(pass);
+}
+
+template <class Real>
+bool run_travel_in_parts(const TravelPass<Real>& pass, Executor* executor) {
+  constexpr std::size_t kParts = 4, kFewParticles = 4096;
+  if (!executor || pass.particles < kFewParticles) return run_travel(pass);
+  std::array<bool, kParts> within;
+  run_chunks(executor, static_cast<int>(kParts), [&](int chunk) {
+    const auto part = static_cast<std::size_t>(chunk);
+    const std::size_t first = pass.particles * part / kParts,
+                      last = pass.particles * (part + 1) / kParts;
+    TravelPass<Real> own = pass;
+    own.particles = last - first;
+    own.x += 3 * first;
+    own.v += 3 * first;
+    own.from += 3 * first;
+    own.reach += first;
+    own.travel2 += first;
+    within[part] = run_travel(own);
+  });
+  return std::all_of(within.begin(), within.end(), [](bool part) { return part; });
+}
+
+}  // namespace
+
+bool measure_travel(const TravelPass<float>& pass, Executor* executor) {
+  return run_travel_in_parts(pass, executor);
+}
+
+bool measure_travel(const TravelPass<double>& pass, Executor* executor) {
+  return run_travel_in_parts(pass, executor);
 }
 
 float largest_deviation(const PathPass<float>& pass) {

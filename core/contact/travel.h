@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "core/executor.h"
+
 namespace weft {
 
 // Vector code of the contact over all particles, chosen for the processor when the program runs.
@@ -20,9 +22,10 @@ struct TravelPass {
 };
 
 /// Measures the way of every particle.
+/// @param executor  shares many particles out to its threads; may be null
 /// @return whether all end within their reach; false if something is not a number
-bool measure_travel(const TravelPass<float>& pass);
-bool measure_travel(const TravelPass<double>& pass);
+bool measure_travel(const TravelPass<float>& pass, Executor* executor);
+bool measure_travel(const TravelPass<double>& pass, Executor* executor);
 
 /// Where particles are before a drift, and the straight paths that they are held against; three
 /// numbers a particle.

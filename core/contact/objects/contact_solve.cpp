@@ -90,7 +90,7 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
   }
   if (!pushed_rows_.empty()) take_back_pushes(state);
   // A lone particle goes away from the only plane that it could come too near to.
-  if (lone_apart_) lone_response_ = lone_rows_.push_and_respond(lone_pass(state, dt));
+  if (lone_apart_) lone_response_ = lone_rows_.push_and_respond(lone_pass(state, dt), executor_);
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,

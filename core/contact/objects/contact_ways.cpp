@@ -20,7 +20,7 @@ bool Contact<Real>::measure_way(const ClothState<Real>& state, Real dt) {
   pass.from = x_rows_.data()->data();
   pass.reach = row_reach_.data();
   pass.travel2 = travel2_.data();
-  return measure_travel(pass);
+  return measure_travel(pass, executor_);
 }
 
 /// The same for those alone whom the rows have moved or pushed since everybody was measured; lone

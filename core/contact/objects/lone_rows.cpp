@@ -10,6 +10,7 @@
 
 #if HWY_ONCE
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace weft {
@@ -92,8 +93,26 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
 }
 
 template <class Real>
-LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass) {
-  return run_push_and_respond(blocks_, pass);
+LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass,
+                                                    Executor* executor) {
+  // The last block may have particles of the one before, which are in the same part.
+  constexpr std::size_t kParts = 4, kFewBlocks = 256;
+  const std::span<LoneBlock<Real>> blocks = blocks_;
+  if (!executor || blocks.size() < kFewBlocks) return run_push_and_respond(blocks, pass);
+  std::array<LoneResponse<Real>, kParts> of_part;
+  run_chunks(executor, static_cast<int>(kParts), [&](int chunk) {
+    const auto part = static_cast<std::size_t>(chunk);
+    const std::size_t first = blocks.size() * part / kParts,
+                      last = blocks.size() * (part + 1) / kParts;
+    of_part[part] = run_push_and_respond(blocks.subspan(first, last - first), pass);
+  });
+  LoneResponse<Real> whole;
+  for (const LoneResponse<Real>& part : of_part) {
+    whole.largest = std::max(whole.largest, part.largest);
+    whole.within = whole.within && part.within;
+    whole.friction_evaluations += part.friction_evaluations;
+  }
+  return whole;
 }
 
 template <class Real>

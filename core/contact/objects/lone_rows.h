@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/contact/objects/contact_row.h"
+#include "core/executor.h"
 #include "core/types.h"
 
 namespace weft {
@@ -72,7 +73,8 @@ class LoneRows {
   /// nothing.
   LoneResponse<Real> respond(const LonePass<Real>& pass);
   /// The same after moving out particles that lack thickness.
-  LoneResponse<Real> push_and_respond(const LonePass<Real>& pass);
+  /// @param executor  shares many rows out to its threads; may be null
+  LoneResponse<Real> push_and_respond(const LonePass<Real>& pass, Executor* executor);
   /// One more response, after others have changed velocities. Ways are not measured.
   LoneResponse<Real> sweep(const LonePass<Real>& pass);
   /// Calls visit(row) for rows whose particles could cross their planes.
