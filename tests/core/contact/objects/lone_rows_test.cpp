@@ -7,6 +7,7 @@
 
 #include "core/world/world.h"
 #include "tests/support/random.h"
+#include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
 // Contacts of single particles are worked on several at a time, with the bits that one after the
@@ -69,6 +70,29 @@ TEMPLATE_TEST_CASE("contacts worked on all at once leave the bits of one after t
   CHECK(at_once.hash == singly.hash);
   CHECK(at_once.rubbed == singly.rubbed);
   CHECK((at_once.rubbed > 0) == (friction > 0));
+}
+
+TEST_CASE("a large cloth on the ground has the same bits with one and two threads") {
+  WorldDef def = test::empty_world(test::flat_cloth(71, 73, 1.5, 1.5));
+  def.cloths[0].origin = Vec3d(0, 0.008, 0);
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.colliders = {{"ground", PlaneDef{}}};
+  test::TwoThreads two_threads;
+  World<float> alone(def), shared(def, {&two_threads, nullptr});
+  Random random(1);
+  for (std::size_t i = 0; i < alone.state().v.size(); ++i)
+    alone.state().v[i] = shared.state().v[i] = random.vector(0.5).cast<float>();
+  alone.accept_state();
+  shared.accept_state();
+  std::uint64_t rubbed = 0, steps = 0;
+  for (int tick = 0; tick < 12; ++tick) {
+    rubbed += alone.step().profile[Stage::friction].work;
+    steps += static_cast<std::uint64_t>(alone.report().substeps);
+    shared.step();
+    REQUIRE(alone.hash() == shared.hash());
+  }
+  CHECK(rubbed > 2048 * steps / 2);  // enough to be shared out
+  CHECK(two_threads.shared() > 0);
 }
 
 TEST_CASE("a row is lone if its particle is in no other one and it responds simply") {
