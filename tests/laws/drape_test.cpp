@@ -6,6 +6,7 @@
 #include "core/diagnostics/measurements.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
+#include "tests/support/random.h"
 
 // Cusick's drape test of every preset beside its published band.
 
@@ -18,13 +19,17 @@ struct Drape {
 };
 
 /// @param rigidity  times that of the preset
-Drape draped(const std::string& name, double seconds, double rigidity = 1) {
+/// @param start     0, or which of several starts that are within a micrometre of it
+Drape draped(const std::string& name, double seconds, double rigidity = 1, unsigned start = 0) {
   WorldDef def = make_scene("drape-test");
   FabricDef& fabric = def.cloths[0].fabric;
   fabric = make_fabric(name);
   fabric.bending_warp *= rigidity;
   fabric.bending_weft *= rigidity;
   World<float> world(def);
+  test::Random random(start);
+  for (Vec3f& x : world.state().x) x += random.vector(start > 0 ? 1e-6 : 0).cast<float>();
+  world.accept_state();
   for (int tick = 0; tick < 60 * seconds; ++tick) {
     const TickReport& report = world.step();
     if (report.divergence) throw std::runtime_error(describe(*report.divergence));
@@ -32,10 +37,24 @@ Drape draped(const std::string& name, double seconds, double rigidity = 1) {
   const auto m = measurements(def.test, world.model(), world.state(), 9.81);
   REQUIRE(m.size() == 4);
   const Drape drape{m[0].value, m[1].value, m[2].value, m[3].value};
-  std::cout << name << " (rigidity times " << rigidity << "): drape coefficient "
-            << drape.coefficient << " %, " << drape.folds << " folds, droop " << drape.droop
-            << " m, speed " << drape.speed << " m/s" << std::endl;
+  std::cout << name << " (rigidity times " << rigidity << ", start " << start
+            << "): drape coefficient " << drape.coefficient << " %, " << drape.folds
+            << " folds, droop " << drape.droop << " m, speed " << drape.speed << " m/s"
+            << std::endl;
   return drape;
+}
+
+/// Folds fall as they may, and a micrometre decides which: the mean of some starts tells more.
+Drape mean_drape(const std::string& name, double rigidity) {
+  constexpr unsigned kStarts = 7;
+  Drape mean;
+  for (unsigned start = 0; start < kStarts; ++start) {
+    const Drape drape = draped(name, 3, rigidity, start);
+    mean.coefficient += drape.coefficient / kStarts;
+    mean.folds += drape.folds / kStarts;
+    mean.droop += drape.droop / kStarts;
+  }
+  return mean;
 }
 
 }  // namespace
@@ -58,16 +77,17 @@ TEST_CASE("every preset drapes within its published band, to 5 points") {
 
 TEST_CASE("a stiffer bending droops less and in fewer folds; where it rules, it drapes less") {
   // The coefficient of a light fabric that hardly shears goes with its folds more than with its
-  // bending length; that of one which shears follows it. A factor of 4 in rigidity is more than
-  // what one fold more or less does.
+  // bending length; that of one which shears follows it. Among starts the coefficient differs by
+  // 0.5 to 0.9 points (standard deviation).
   const auto [name, rules] = GENERATE(table<std::string, bool>({{"nylon", false}, {"silk", true}}));
-  const Drape soft = draped(name, 3, 0.25), measured = draped(name, 3, 1),
-              stiff = draped(name, 3, 4);
+  const Drape soft = mean_drape(name, 0.25), measured = mean_drape(name, 1),
+              stiff = mean_drape(name, 4);
   CHECK(soft.droop > measured.droop);
   CHECK(measured.droop > stiff.droop);
-  CHECK(soft.folds >= measured.folds);
-  CHECK(measured.folds >= stiff.folds);
+  CHECK(soft.folds > stiff.folds);
   if (!rules) return;
+  CHECK(soft.folds > measured.folds);
+  CHECK(measured.folds > stiff.folds);
   CHECK(soft.coefficient < measured.coefficient - 2);
   CHECK(measured.coefficient < stiff.coefficient - 2);
   CHECK(soft.coefficient < stiff.coefficient - 10);
