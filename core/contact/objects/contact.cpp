@@ -101,7 +101,10 @@ void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   any_tracked_ = any_jaw_ = false;
   first_substep_ = true;
   surface_speed_ = 0;
-  if (!colliders) return;
+  if (!colliders) {
+    for (ColliderFrame<Real>& frame : frames_) frame.tracked = false;
+    return;
+  }
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     ColliderFrame<Real>& frame = frames_[k];
     const ColliderState& state = (*colliders)[k];

@@ -12,6 +12,7 @@
 #include "core/contact/objects/corners.h"
 
 namespace weft {
+
 /// What the corners of an edge or a triangle keep to while the rows hold.
 template <class Real>
 Corners<Real> Contact<Real>::corners_of(const ClothState<Real>& state, const Index* first,

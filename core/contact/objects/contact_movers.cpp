@@ -161,7 +161,7 @@ Real Contact<Real>::height_after(const ContactRow<Real>& row, const Vec3<Real>& 
 /// What must be left above a row's plane, unless it is less already [m].
 template <class Real>
 Real Contact<Real>::least_height(const ContactRow<Real>& row, bool moves) const {
-  return moves ? std::max(smallest_gap_, row.thickness * Real(kMoverGap)) : smallest_gap_;
+  return moves ? std::max(smallest_gap_, row.thickness * Real(kMoverGap)) : row.keep;
 }
 
 /// Between objects that close, or where cloth is drawn between two, one pushes it out into the

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/feature_pair.h"
 #include "core/contact/objects/apart.h"
@@ -17,6 +18,9 @@ constexpr double kEdgeEnd = 0.01;
 
 /// What a bound is widened by for rounding.
 constexpr double kSurely = 1.001;
+
+/// Times the rounding of a radius that distances from the core may be off.
+constexpr double kRoundings = 16;
 
 /// Part of its thickness that a cloth keeps of a round object even if it is pressed on it.
 constexpr double kKeptPart = 0.25;
@@ -48,6 +52,7 @@ CornerBound<Real> Contact<Real>::bound_of(const ClothState<Real>& state, const I
     longest2 = std::max(longest2, (state.x[i] - state.x[j]).squaredNorm());
     reach = std::max(reach, row_reach_[i]);
   }
+  reach += thickness_ * Real(kRoomForPush);
   const Real both2 = longest2 + 4 * reach * reach;
   bound.span2 = part * part * 2 * both2 * static_cast<Real>(kSurely);
   return bound;
@@ -69,15 +74,17 @@ void Contact<Real>::measure_cores(const ClothState<Real>& state, const Round& ro
   core_.resize(state.x.size());
   least_core_.resize(state.x.size());
   const auto& [a, b, radius, collider] = round.rod;
+  const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kRoundings);
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3<Real> from = state.x[i] - a;
     core_[i] = round.is_ball ? from.norm()
                              : (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
-    least_core_[i] = core_[i] - row_reach_[i];
+    least_core_[i] = core_[i] - row_reach_[i] - thickness_ * Real(kRoomForPush);
     if (state.inverse_mass[i] > 0 && core_[i] > radius)
       least_core_[i] =
           std::max(least_core_[i], radius + kept_height(k, core_[i] - radius) - smallest_gap_);
+    least_core_[i] -= rounding;
   }
 }
 
@@ -104,13 +111,13 @@ void Contact<Real>::add_features_on_rounds(const ClothState<Real>& state, Profil
 template <class Real>
 void Contact<Real>::add_edges_on(const Round& round, const ClothState<Real>& state) {
   const Vec3d base = in_double(round.rod.a), tip = in_double(round.rod.b);
-  const Real most = round.rod.radius + smallest_gap_;
+  const Real most = round.rod.radius + smallest_gap_, push = thickness_ * Real(kRoomForPush);
   for (std::size_t n = 0; n < near_edges_.size(); ++n) {
     const Edge& e = patches_.edges[static_cast<std::size_t>(near_edges_[n])];
     const Real least = nearest(least_core_, e);
     if (edge_bounds_[n].clear(least, most)) continue;
     const Corners<Real> ends = corners_of(state, e.data(), 2);
-    if (ends.clear(least, round.rod.radius)) continue;
+    if (ends.pushed(kEdgeSpan, push).clear(least, round.rod.radius)) continue;
     if (is_inside(e[0], round.rod.collider) || is_inside(e[1], round.rod.collider)) continue;
     const Vec3d from = in_double(state.x[static_cast<std::size_t>(e[0])]),
                 to = in_double(state.x[static_cast<std::size_t>(e[1])]);
@@ -134,7 +141,7 @@ void Contact<Real>::add_edges_on(const Round& round, const ClothState<Real>& sta
 template <class Real>
 void Contact<Real>::add_triangles_on(const Round& round, const ClothState<Real>& state,
                                      Profile& profile) {
-  const Real most = round.rod.radius + smallest_gap_;
+  const Real most = round.rod.radius + smallest_gap_, push = thickness_ * Real(kRoomForPush);
   const auto add = [&](const Triangle& t, const Corners<Real>& corners, const Vec3<Real>& centre,
                        bool responds) {
     const auto at = [&](std::size_t n) {
@@ -158,7 +165,7 @@ void Contact<Real>::add_triangles_on(const Round& round, const ClothState<Real>&
     const Real least = nearest(least_core_, t);
     if (triangle_bounds_[n].clear(least, most)) continue;
     const Corners<Real> corners = corners_of(state, t.data(), 3);
-    if (corners.clear(least, round.rod.radius)) continue;
+    if (corners.pushed(kTriangleSpan, push).clear(least, round.rod.radius)) continue;
     const auto is_barred = [&](Index i) { return is_inside(i, round.rod.collider); };
     if (std::any_of(t.begin(), t.end(), is_barred)) continue;
     const bool responds =

@@ -56,6 +56,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   const std::size_t n = state.x.size();
   row_reach_.resize(n);
   moved_.resize(n);
+  const bool edges_matter = !(balls_.empty() && rods_.empty() && meshes_.empty());
   const auto allow = [&] {
     bool enough = true;
     for (std::size_t i = 0; i < n; ++i) {
@@ -65,7 +66,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
       // An object and what it carries along both go its way.
       enough &= left >= step * Real(1.5) + way_step_ * Real(3);
       Real wanted = (step + way_step_) * Real(kRowSubsteps);
-      if (!any_tracked_)
+      if (edges_matter && !any_tracked_)
         wanted = std::min(wanted,
                           std::max(thickness_ * Real(kRowThicknesses), step * Real(kFewSubsteps)));
       wanted = std::max(wanted, thickness_ / 2);

@@ -34,6 +34,15 @@ struct Corners {
   /// estimate, and nothing to rely on.
   bool clear(const Rise<Real>& rise) const { return gap > rise.over(span) + unseen; }
 
+  /// The same if the last step within their reach pushes them out besides.
+  /// @param part  kEdgeSpan or kTriangleSpan
+  /// @param way   of the push, at most [m]
+  Corners pushed(double part, Real way) const {
+    Corners corners = *this;
+    corners.span += 2 * way * static_cast<Real>(part);
+    return corners;
+  }
+
   /// What keeps them off where they lie, while what they may come to is only certified: at rest
   /// particles alone carry the cloth on a smooth object.
   /// @param part  kEdgeSpan or kTriangleSpan
@@ -42,7 +51,6 @@ struct Corners {
     Corners corners = *this;
     corners.span -= 2 * corners.reach * static_cast<Real>(part);
     corners.gap = off;
-    corners.reach = 0;
     return corners;
   }
 };

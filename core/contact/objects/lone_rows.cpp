@@ -97,6 +97,7 @@ LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass,
                                                     Executor* executor) {
   // The last block may have particles of the one before, which are in the same part.
   constexpr std::size_t kParts = 4, kFewBlocks = 256;
+  static_assert(kFewBlocks >= 2 * kParts);
   const std::span<LoneBlock<Real>> blocks = blocks_;
   if (!executor || blocks.size() < kFewBlocks) return run_push_and_respond(blocks, pass);
   std::array<LoneResponse<Real>, kParts> of_part;
@@ -125,7 +126,8 @@ LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass) {
   return run_sweep(blocks_, pass);
 }
 
-/// The first block from number `block` on with a particle that could; size() if there is none.
+/// The first block from number `block` on with a particle that could; their number if there is
+/// none.
 template <class Real>
 std::size_t LoneRows<Real>::next_crossing(const Real* travel2, std::size_t block) const {
   return run_next_crossing(blocks_, travel2, block);

@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -145,7 +147,48 @@ void abuse_rounds() {
   }
 }
 
+/// A cloth on the ground under a ball that leaves it less than it needs, where rows with the ground
+/// outnumber those with the ball and push it up.
+template <class Real>
+void press_up(double radius, double cell, int grounds, int substeps) {
+  Particles<Real> cloth;
+  cloth.add_patch(kSide, cell, Vec3d(-3.5 * cell, 0, -3.5 * cell), 1e-3, 50, 10);
+  cloth.dashpot = 0.02;
+  cloth.substeps = substeps;
+  const CapsuleDef ball{Vec3d::Zero(), Vec3d::Zero(), radius};
+  PlaneDef ground;
+  ground.point = Vec3d(0, -radius - 1.5e-3, 0);
+  std::vector<ColliderDef> objects(static_cast<std::size_t>(grounds), {"ground", ground});
+  for (std::size_t k = 0; k < objects.size(); ++k) objects[k].name += std::to_string(k);
+  objects.push_back(object_of(ball));
+  // Its middle lies under the ball, at rest on the ground.
+  for (auto& x : cloth.state.x) x[1] = static_cast<Real>(ground.point[1] + 1e-4);
+  Contact<Real> contact = cloth.meet({}, objects);
+  double least = least_distance(cloth, ball);
+  REQUIRE(least > 0);
+  for (int tick = 0; tick < 30; ++tick) {
+    cloth.step(contact, [&](const ClothState<Real>&) {
+      least = std::min(least, least_distance(cloth, ball));
+    });
+  }
+  INFO("radius " << radius << ", cell " << cell << ", " << grounds << " grounds, " << substeps);
+  CHECK(least > 0);
+}
+
 }  // namespace
+
+TEST_CASE("a cloth pushed up by the ground does not let a ball through its edges and areas") {
+  for (const int substeps : {20, 100}) {
+    for (const int grounds : {1, 2, 5}) {
+      for (const double radius : {0.02, 0.1, 0.5}) {
+        for (const double part : {0.03, 0.04, 0.045, 0.05, 0.065}) {
+          press_up<double>(radius, part * std::sqrt(radius), grounds, substeps);
+          press_up<float>(radius, part * std::sqrt(radius), grounds, substeps);
+        }
+      }
+    }
+  }
+}
 
 TEST_CASE("a cloth torn about on balls and rods is never inside them, edges and areas neither") {
   SECTION("double") {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -91,8 +93,78 @@ TEST_CASE("a large cloth on the ground has the same bits with one and two thread
     shared.step();
     REQUIRE(alone.hash() == shared.hash());
   }
-  CHECK(rubbed > 2048 * steps / 2);  // enough to be shared out
+  CHECK(rubbed > 2048 * steps / 2);  // most of it touches
+}
+
+namespace {
+
+/// Particles about the ground, each with a row but for every `gap`-th, moved as one step does.
+struct Layer {
+  explicit Layer(std::size_t count, std::size_t gap) : x(3 * count), v(3 * count), reach(count, 1) {
+    Random random(7);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        x[3 * i + c] = static_cast<float>(random.uniform(0, 0.006));
+        v[3 * i + c] = static_cast<float>(random.uniform(-1, 1));
+      }
+      if (i % gap == 0) continue;
+      ContactRow<float> row = row_of({static_cast<Index>(i)});
+      row.normal = Vec3f::UnitY();
+      row.thickness = 0.004f;
+      rows.push_back(row);
+    }
+    from = x;
+    travel2.assign(count, 0);
+    lone.find(rows, std::vector<RowRoom<float>>(rows.size(), {{}, -1, 1}), {ContactDef{}}, count);
+  }
+  LoneResponse<float> respond(Executor* executor) {
+    LonePass<float> pass{x.data(), v.data(), 1e-3f, 1e-6f, 0.2f, 5e-4f};
+    pass.from = from.data();
+    pass.reach = reach.data();
+    pass.travel2 = travel2.data();
+    return lone.push_and_respond(pass, executor);
+  }
+  std::vector<float> x, v, from, reach, travel2;
+  std::vector<ContactRow<float>> rows;
+  LoneRows<float> lone;
+};
+
+}  // namespace
+
+TEST_CASE("lone rows that are shared out to threads leave what one thread does") {
+  // The last block of rows begins among the particles of the one before.
+  const std::size_t gap = GENERATE(3u, 1000u);
+  Layer alone(2405, gap), shared(2405, gap);
+  test::TwoThreads two_threads;
+  const LoneResponse<float> one = alone.respond(nullptr), two = shared.respond(&two_threads);
   CHECK(two_threads.shared() > 0);
+  CHECK(one.friction_evaluations > 100);
+  CHECK(one.friction_evaluations == two.friction_evaluations);
+  CHECK(one.largest == two.largest);
+  CHECK(one.within == two.within);
+  CHECK(alone.x == shared.x);
+  CHECK(alone.v == shared.v);
+  CHECK(alone.travel2 == shared.travel2);
+  CHECK(alone.x != alone.from);
+}
+
+TEST_CASE("who is in no lone row is not touched, wherever it goes") {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::size_t count : {3u, 8u, 12u, 21u}) {
+    Layer layer(count, 2);
+    for (std::size_t i = 0; i < count; i += 2) layer.travel2[i] = kNan;
+    const std::vector<float> x = layer.x, v = layer.v;
+    layer.respond(nullptr);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (k / 3 % 2 == 1) continue;
+      CHECK(layer.x[k] == x[k]);
+      CHECK(layer.v[k] == v[k]);
+    }
+    std::size_t crossing = 0;
+    for (std::size_t i = 0; i < count; ++i) layer.travel2[i] = i % 2 == 0 ? kNan : 2.f;
+    layer.lone.for_each_crossing(layer.travel2.data(), [&](std::size_t) { ++crossing; });
+    CHECK(crossing == (count < kLoneLanes ? 0 : layer.rows.size()));
+  }
 }
 
 TEST_CASE("a row is lone if its particle is in no other one and it responds simply") {
