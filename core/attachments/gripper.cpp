@@ -63,7 +63,7 @@ std::array<ColliderDef, 2> jaws_of(const GripperDef& def) {
     jaws[k].name = def.name + (k == 0 ? ".left" : ".right");
     jaws[k].shape =
         BoxDef{def.centre + offset_of_jaw(def, k, def.opening), def.half_extents, def.orientation};
-    jaws[k].max_force = 1e6;  // it is the gripper that gives way
+    jaws[k].max_force = def.max_force;
   }
   return jaws;
 }
@@ -147,6 +147,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       jaw.move = MoveDef{
           {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
       jaw.pace = 1;
+      jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.press = press_of(gripper, k);
       jaw.squeeze = gripper.gripping ? gripper.force : 0;
     }

@@ -27,6 +27,7 @@ struct GripperDef {
   Vec3d half_extents = Vec3d(0.005, 0.02, 0.02);  ///< of each jaw [m], each 0.001 to 1
   double opening = 0.04;                ///< between the jaws' faces at the start [m], 0 to 1
   double force = 5;                     ///< with which each jaw presses [N], 0 to 1000
+  double max_force = 100;               ///< resistance beyond which it lags [N], 0.01 to 1e6
   double speed = 0.25;                  ///< of its middle, at most [m/s], 0.001 to 20
   double turn_speed = 2;                ///< about it, at most [rad/s], 0.001 to 60
   double closing_speed = 0.05;          ///< of each jaw [m/s], 0.001 to 1
@@ -93,6 +94,8 @@ void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
         gripper.half_extents);
   visit(FieldInfo{"opening", 0, 1, "m", "between the jaws' faces at the start"}, gripper.opening);
   visit(FieldInfo{"force", 0, 1000, "N", "with which each jaw presses"}, gripper.force);
+  visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which it lags"},
+        gripper.max_force);
   visit(FieldInfo{"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle, at most"},
         gripper.speed);
   visit(FieldInfo{"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "about it, at most"},

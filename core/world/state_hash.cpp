@@ -26,6 +26,7 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
   if (state.pose == rest_pose(def.shape) && !state.move && state.pace == 1) return;
   const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace);
   feed(hash, own.data(), own.size());
+  if (state.overload > 0) feed(hash, &state.overload, 1);
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
   feed(hash, wanted.data(), wanted.size());

@@ -123,6 +123,75 @@ TEST_CASE("jaws close on a cloth, stop at its two thicknesses, lift it, and it d
   CHECK(pinched(world).empty());
 }
 
+TEST_CASE("the contacts of each jaw press with its force, and rub with no more than friction") {
+  World<float> world(hung_between_jaws());
+  const double friction = world.def().cloths[0].fabric.friction;
+  const double force = 2 * weight_of(world) / friction;
+  world.measure_forces(true);
+  command(world, 0, force);
+  test::advance(world, 1);
+  free_pins(world);
+  test::advance(world, 2);
+  REQUIRE(world.grippers()[0].gripping);
+  Vec3d rubbed = Vec3d::Zero();
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::size_t jaw = world.grippers()[0].jaw[k];
+    double pressed = 0;
+    std::size_t count = 0;
+    for (const ContactPoint& c : world.reactions()->contacts) {
+      if (c.collider != static_cast<Index>(jaw)) continue;
+      ++count;
+      pressed += c.normal_force;
+      rubbed += c.friction;
+      CHECK(c.friction.norm() <= friction * c.normal_force * 1.001 + 1e-9);
+    }
+    CHECK(count > 10);
+    CHECK(pressed == Approx(force).epsilon(0.01));
+    // Along its direction of pressing the cloth resists it with as much.
+    const Vec3d press = press_of(world.grippers()[0], k);
+    CHECK(-press.dot(world.reactions()->colliders[jaw]) == Approx(force).epsilon(0.01));
+  }
+  CHECK(rubbed[1] == Approx(weight_of(world)).epsilon(0.01));
+}
+
+TEST_CASE("jaws that come down on folded cloth stop with their force and do not drive it") {
+  WorldDef def = make_scene("gripper");
+  World<float> world(def);
+  const auto go = [&world](const Vec3d& position, double speed, double opening) {
+    GripperCommand command;
+    command.position = position;
+    command.speed = speed;
+    command.opening = opening;
+    world.command_gripper(0, command);
+  };
+  world.step();
+  go(Vec3d(0.28, 0.9, 0), 5, 0.08);  // folds the border over
+  test::advance(world, 0.5);
+  go(Vec3d(0, 0.5, 0), 1, 0.02);
+  test::advance(world, 0.75);
+  // The space between the lower jaw and the table ends long before the way does.
+  const double speed = GENERATE(0.5, 1.0);
+  go(Vec3d(0, 0.25, 0), speed, 0.02);
+  const double most = def.grippers[0].max_force;
+  double sum = 0;
+  for (int t = 0; t < 100; ++t) {
+    const TickReport& report = world.step();
+    REQUIRE_FALSE(report.divergence);
+    REQUIRE(report.largest_strain < 1);
+    REQUIRE(report.energies.kinetic + report.energies.stretch < 1);
+    const double force = world.colliders()[world.grippers()[0].jaw[0]].force.norm();
+    CHECK(force < 10 * most);  // the blow of the first tick
+    if (t >= 70) sum += force / 30;
+  }
+  CHECK(world.grippers()[0].opening > 0.015);  // both jaws stand
+  CHECK(world.grippers()[0].pose.position[1] > 0.3);
+  CHECK(sum < 1.5 * most);
+  // It lets itself be lifted again.
+  go(Vec3d(0, 0.6, 0), 1, 0.02);
+  test::advance(world, 1);
+  CHECK(world.grippers()[0].pose.position[1] == Approx(0.6));
+}
+
 TEST_CASE("jaws whose friction is less than the weight let the cloth slip") {
   World<float> world(hung_between_jaws());
   const double least = weight_of(world) / (2 * world.def().cloths[0].fabric.friction);

@@ -15,6 +15,10 @@ constexpr double kPaceGain = 0.1;
 /// Slower than this it stands [part of its speed].
 constexpr double kLeastPace = 0.01;
 
+/// What resists for no longer is an impact, to which force has no time to answer [s]; and how many
+/// times that impulse is made good at most.
+constexpr double kImpactSeconds = 1e-3, kMostOverload = 4;
+
 /// A collider that was held back follows its keyframes by this much faster than they ever go.
 constexpr double kCatchUp = 1.25;
 
@@ -37,9 +41,15 @@ std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderS
 }
 
 /// Surface speed of a wanted twist, for the resistance against it [m/s].
-double surface_speed(const ShapeDef& shape, const Twist& twist) {
-  const double turn = twist.angular.norm();
-  return twist.linear.norm() + (turn > 0 ? turn * radius_of(shape) : 0);
+double surface_speed(const ColliderState& state) {
+  const double turn = state.wanted.angular.norm();
+  return state.wanted.linear.norm() + (turn > 0 ? turn * state.radius : 0);
+}
+
+void clear_impulses(ColliderState& state) {
+  for (Vec3d* sum : {&state.impulse, &state.angular_impulse, &state.counted, &state.angular_counted,
+                     &state.squeezed})
+    sum->setZero();
 }
 
 }  // namespace
@@ -83,6 +93,8 @@ ColliderStates initial_states(const std::vector<ColliderDef>& colliders) {
     const ColliderDef& def = colliders[k];
     states[k].pose = def.motion.keyframes.empty() ? rest_pose(def.shape) : keyframed_pose(def, 0);
     states[k].start = states[k].goal = states[k].pose;
+    states[k].radius = radius_of(def.shape);
+    states[k].max_force = def.max_force;
   }
   return states;
 }
@@ -92,12 +104,12 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
     state.start = state.goal = state.pose;
+    state.start_overload = state.overload;
     state.wanted = state.twist = {};
     state.progress = 0;
     state.blocked = false;
     state.forced = state.move ? state.move->force : colliders[k].force;
-    state.impulse.setZero();
-    state.angular_impulse.setZero();
+    clear_impulses(state);
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
     if (!wish) continue;
     const Vec3d step = wish->goal.position - state.pose.position;
@@ -119,11 +131,25 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
 void take_back_motion(ColliderStates& states) {
   for (ColliderState& state : states) {
     state.pose = state.start;
+    state.overload = state.start_overload;
     state.progress = 0;
     state.blocked = false;
-    state.impulse.setZero();
-    state.angular_impulse.setZero();
+    clear_impulses(state);
   }
+}
+
+bool count_resistance(double seconds, ColliderState& state) {
+  const Vec3d impulse = state.impulse - state.counted;
+  const Vec3d angular = state.angular_impulse - state.angular_counted;
+  state.counted = state.impulse;
+  state.angular_counted = state.angular_impulse;
+  if (state.wanted.is_zero()) return false;
+  const double resisted =
+      (impulse.dot(state.wanted.linear) + angular.dot(state.wanted.angular)) / surface_speed(state);
+  const double most = state.max_force * kImpactSeconds;
+  state.overload =
+      std::clamp(state.overload + resisted - state.max_force * seconds, 0.0, most * kMostOverload);
+  return state.overload > most;
 }
 
 void advance_collider(double seconds, double tick_seconds, ColliderState& state) {
@@ -137,12 +163,12 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
                    ColliderStates& states) {
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    state.force = -state.impulse / seconds;
+    state.force = -(state.impulse + state.squeezed) / seconds;
     if (state.wanted.is_zero()) continue;
     const double most = colliders[k].max_force;
     const double work =
         state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);
-    const double resistance = work / (seconds * surface_speed(colliders[k].shape, state.wanted));
+    const double resistance = work / (seconds * surface_speed(state));
     if (resistance > most)
       state.pace *= most / resistance;
     else

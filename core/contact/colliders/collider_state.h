@@ -27,9 +27,19 @@ struct ColliderState {
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 
   // Of a jaw of a gripper.
-  Vec3d press = Vec3d::Zero();  ///< unit direction in which it presses; zero: it is none
-  double squeeze = 0;           ///< with which it presses what is before it in this tick [N]
-  double facing = 0;            ///< thickness of the cloth that is before it; 0: there is none [m]
+  Vec3d press = Vec3d::Zero();     ///< unit direction in which it presses; zero: it is none
+  double squeeze = 0;              ///< with which it presses what is before it in this tick [N]
+  Vec3d squeezed = Vec3d::Zero();  ///< impulse of that on the cloth so far in the tick [N s]
+  double facing = 0;  ///< thickness of the cloth that is before it; 0: there is none [m]
+
+  // Its force, in a substep: beyond it, it stands.
+  double radius = 0;              ///< of the surface about the pivot [m]
+  double max_force = 0;           ///< [N]
+  Index mate = kNone;             ///< stands when this one does: the other jaw
+  Vec3d counted = Vec3d::Zero();  ///< of `impulse`, so much has been held against the force
+  Vec3d angular_counted = Vec3d::Zero();
+  double overload = 0;        ///< impulse above what the force gives, not yet made good [N s]
+  double start_overload = 0;  ///< the same at the beginning of the tick
 
   Vec3d force = Vec3d::Zero();  ///< of the cloth on it, mean of the last tick [N]
 
@@ -65,6 +75,12 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
 
 /// Back to the start of the tick under way.
 void take_back_motion(ColliderStates& states);
+
+/// Holds what has resisted a collider since the last time against its force.
+/// @param seconds  since then
+/// @return whether it is to stand: it has been resisted by more than its force, and for longer than
+///         an impact lasts
+bool count_resistance(double seconds, ColliderState& state);
 
 /// Moves a collider on by part of the tick [s]; it ends exactly at its goal.
 void advance_collider(double seconds, double tick_seconds, ColliderState& state);

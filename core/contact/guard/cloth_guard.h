@@ -270,6 +270,8 @@ class ClothGuard {
   void find_busy_rows(Real dt);
   bool is_busy(GuardRow<Real>& row, Real time) const;
   void warm_rows(Real dt, Real kicked);
+  Real kept_part(const GuardRow<Real>& row) const;
+  Real pressure_on(const GuardRow<Real>& row) const;
   Real sweep_rows();
   void measure_pressures();
   Real lack_of(const GuardRow<Real>& row) const;

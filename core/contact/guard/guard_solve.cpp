@@ -44,6 +44,10 @@ constexpr double kPushSlack = 0.1;
 /// nobody gave.
 constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
 
+/// Harder pressed than this, as only between objects, layers let go of so much of what they press
+/// each other with in a step, at twice the pressure [Pa].
+constexpr double kCrushing = 2e4, kLeak = 0.1;
+
 /// A vector, but no longer than `most`.
 template <class Real>
 Quad<Real> shortened(const Quad<Real>& v, Real most) {
@@ -192,6 +196,18 @@ bool ClothGuard<Real>::is_busy(GuardRow<Real>& row, Real time) const {
   return false;
 }
 
+/// What a row that is pressed very hard keeps of its impulse from one step to the next.
+///
+/// Between objects that do not give way, layers can press each other and the objects with any force
+/// whatever: it is in balance and none of it is seen in a velocity. Each error adds to it and
+/// nothing takes from it, until its own errors drive the cloth. So it leaks away; what is needed
+/// comes back in the sweeps.
+template <class Real>
+Real ClothGuard<Real>::kept_part(const GuardRow<Real>& row) const {
+  const Real over = pressure_on(row) / static_cast<Real>(kCrushing) - 1;
+  return 1 - static_cast<Real>(kLeak) * std::clamp(over, Real(0), Real(1));
+}
+
 /// Starts from the impulses of the last step.
 /// @param kicked  time of the forces since then that they have to stand against [s]
 template <class Real>
@@ -202,8 +218,9 @@ void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
     GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     aim(row, dt);
     if (row.push == 0) return;
-    row.push *= warm;
-    row.drag = row.drag * warm;
+    const Real kept = warm * kept_part(row);
+    row.push *= kept;
+    row.drag = row.drag * kept;
     share_out(row, row.normal * row.push + row.drag, quad_v_);
   });
 }
@@ -235,13 +252,19 @@ void ClothGuard<Real>::measure_pressures() {
   });
 }
 
-/// How much a row lacks of its radius, less what the pressure on its features takes [m].
+/// Mean pressure on the features of a row [Pa].
 template <class Real>
-Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
+Real ClothGuard<Real>::pressure_on(const GuardRow<Real>& row) const {
   Real both = 0;
   for (std::size_t n = 0; n < 4; ++n)
     both += std::abs(row.weight[n]) * pressure_[static_cast<std::size_t>(row.particle[n])];
-  const Real pressed = std::min(both * Real(1 / (2 * kFlattening)), Real(kMostFlattening));
+  return both / 2;
+}
+
+/// How much a row lacks of its radius, less what the pressure on its features takes [m].
+template <class Real>
+Real ClothGuard<Real>::lack_of(const GuardRow<Real>& row) const {
+  const Real pressed = std::min(pressure_on(row) * Real(1 / kFlattening), Real(kMostFlattening));
   return -row.room - row.radius * pressed;
 }
 
@@ -318,6 +341,8 @@ void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile
   template void ClothGuard<Real>::warm_rows(Real, Real);                     \
   template Real ClothGuard<Real>::sweep_rows();                              \
   template void ClothGuard<Real>::measure_pressures();                       \
+  template Real ClothGuard<Real>::kept_part(const GuardRow<Real>&) const;    \
+  template Real ClothGuard<Real>::pressure_on(const GuardRow<Real>&) const;  \
   template Real ClothGuard<Real>::lack_of(const GuardRow<Real>&) const;      \
   template void ClothGuard<Real>::push_apart(ClothState<Real>&);
 WEFT_INSTANTIATE(float)

@@ -286,6 +286,7 @@ class Contact {
 
   // contact_movers.cpp
   void place_collider(std::size_t collider, const Pose& pose);
+  void stop_overloaded(double dt);
   void plan_colliders(Real dt);
   void move_colliders(Real dt);
   void take_to_own(const Vec3Array<Real>& x);
@@ -344,8 +345,7 @@ class Contact {
   std::vector<Real> moved_;      ///< of each since the collection, when the rows are built [m]
   std::vector<Real> row_reach_;  ///< how far each may move before the next rows
   std::vector<Real> gap_;        ///< of each from all meshes when the rows are built, at least [m]
-  std::vector<Real>
-      span_;  ///< farthest that a point of an edge or triangle is from its nearest corner
+  std::vector<Real> span_;       ///< how far a feature's points may be from its nearest corner [m]
   std::vector<char> near_, active_;  ///< near an object; near, or joined to one that is
   std::vector<char> paired_;         ///< in a candidate pair, or near an analytic shape
   std::vector<Index> active_particles_, near_edges_, near_triangles_;

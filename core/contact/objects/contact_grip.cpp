@@ -22,8 +22,9 @@ bool Contact<Real>::faces(const ContactRow<Real>& row, const ColliderState& jaw)
 }
 
 /// Two jaws that squeeze cloth press it from both sides; the impulses of that cancel in the cloth
-/// and are not solved for. What they allow in friction is shared evenly by the rows that touch: of
-/// each jaw friction times squeeze in all, and so twice that of both.
+/// and are not solved for, but told to those who ask for forces. What they allow in friction is
+/// shared evenly by the rows that touch: of each jaw friction times squeeze in all, and so twice
+/// that of both.
 template <class Real>
 void Contact<Real>::share_squeeze(const ClothState<Real>& state, Real dt) {
   for (std::size_t k = 0; k < colliders_->size(); ++k) {
@@ -49,6 +50,9 @@ void Contact<Real>::share_squeeze(const ClothState<Real>& state, Real dt) {
     const Real each = static_cast<Real>(jaw.squeeze) * dt / std::max(touching, Real(1));
     for (MovingRow<Real>& moving : moving_rows_) {
       if (moving.collider != k || moving.grip == 0) continue;
+      const Vec3d impulse = (rows_[moving.row].normal * each).template cast<double>();
+      jaw.squeezed += impulse;
+      if (log_.wanted()) log_.add_impulse(rows_[moving.row], impulse);
       const auto cloth = static_cast<std::size_t>(rows_[moving.row].cloth);
       moving.grip = each * moving.mobility * static_cast<Real>(cloths_[cloth].friction);
     }

@@ -48,6 +48,12 @@ class ContactLog {
     if (mobility > 0) note(row, change.template cast<double>() / mobility);
   }
 
+  /// Notes an impulse of an object on a row of particles [N s].
+  template <class Row>
+  void add_impulse(const Row& row, const Vec3d& impulse) {
+    note(row, impulse);
+  }
+
   /// Contacts of the tick: those that pushed, and those of `rows` that touch now.
   /// @param x        positions now [m]
   /// @param reach    touching is what is nearer than this part of the thickness

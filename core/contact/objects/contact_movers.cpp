@@ -51,11 +51,26 @@ void Contact<Real>::place(const ColliderStates& colliders) {
   for (std::size_t k = 0; k < frames_.size(); ++k) place_collider(k, colliders[k].pose);
 }
 
+/// Objects that have been resisted by more than their force stand in the coming substep, and both
+/// jaws if one does.
+template <class Real>
+void Contact<Real>::stop_overloaded(double dt) {
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    ColliderState& state = (*colliders_)[k];
+    if (!frames_[k].tracked || !count_resistance(dt, state)) continue;
+    frames_[k].rest = std::max(frames_[k].rest, 1);
+    if (state.mate == kNone) continue;
+    ColliderFrame<Real>& mate = frames_[static_cast<std::size_t>(state.mate)];
+    mate.rest = std::max(mate.rest, 1);
+  }
+}
+
 /// How each object moves in the coming substep.
 template <class Real>
 void Contact<Real>::plan_colliders(Real dt) {
   way_step_ = way_rows_ = gone_ = 0;
   if (!colliders_) return;
+  stop_overloaded(static_cast<double>(dt));
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     ColliderFrame<Real>& frame = frames_[k];
     frame.wary = std::max(0, frame.wary - 1);
@@ -298,14 +313,19 @@ bool Contact<Real>::hold_row(const ContactRow<Real>& row, bool carry, ClothState
   return changed;
 }
 
-/// Makes an object stand still in the coming substep.
+/// Makes an object stand still in the coming substep, and its mate with it.
 template <class Real>
 void Contact<Real>::block(std::size_t collider) {
-  frames_[collider].stand();
-  frames_[collider].blocked = true;
-  frames_[collider].rest = kRest;
-  frames_[collider].wary = kWary;
-  (*colliders_)[collider].blocked = true;
+  const auto stop = [this](std::size_t k) {
+    frames_[k].stand();
+    frames_[k].blocked = true;
+    frames_[k].rest = kRest;
+    frames_[k].wary = kWary;
+    (*colliders_)[k].blocked = true;
+  };
+  stop(collider);
+  const Index mate = (*colliders_)[collider].mate;
+  if (mate != kNone) stop(static_cast<std::size_t>(mate));
   way_rows_ = 0;
   for (const ColliderFrame<Real>& frame : frames_)
     way_rows_ = std::max(way_rows_, frame.way_rows + frame.way);
@@ -314,6 +334,7 @@ void Contact<Real>::block(std::size_t collider) {
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template void Contact<Real>::place_collider(std::size_t, const Pose&);                          \
   template void Contact<Real>::place(const ColliderStates&);                                      \
+  template void Contact<Real>::stop_overloaded(double);                                           \
   template void Contact<Real>::plan_colliders(Real);                                              \
   template void Contact<Real>::move_colliders(Real);                                              \
   template void Contact<Real>::take_to_own(const Vec3Array<Real>&);                               \
