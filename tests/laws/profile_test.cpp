@@ -85,6 +85,8 @@ TEST_CASE("a grid that is flat at rest has no hinge: its bending is the quadrati
 TEST_CASE("on a flat grid no hinge angle is evaluated, and hinges switched off change no bit") {
   WorldDef def = falling_cloth();
   REQUIRE(def.cloths[0].rest_angle == 0);
+  const World<float> flat(def);
+  CHECK(flat.model().hinges.empty());
   const Run automatic = run(def);
   def.cloths[0].bending_model = BendingModel::quadratic;
   CHECK(run(def).hash == automatic.hash);
