@@ -111,6 +111,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
+  add_number(simulate, "--check-every", o.check_every, kTickCounts,
+             "Count crossings after every so many ticks (1); exit code 3 if there are any");
 }
 
 /// What is wrong with an option that is known: no value, two, or one where none belongs.

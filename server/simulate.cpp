@@ -9,12 +9,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/diagnostics/crossings.h"
 #include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
 #include "core/world/verdict.h"
 #include "core/world/world.h"
+#include "core/world/world_crossings.h"
 #include "server/clock.h"
 #include "server/options.h"
 #include "server/scene_library.h"
@@ -27,9 +27,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Looking for penetrations and crossings costs more than a tick, and what it reads takes the place
-/// of what the step needs in the caches; so only some ticks are looked at, and the last.
-constexpr int kTicksBetweenChecks = 6;
+/// Exit code where something crossed.
+constexpr int kCrossed = 3;
 
 double cpu_seconds() {
   timespec now{};
@@ -46,9 +45,12 @@ struct Measurement {
   int divergences = 0;
   int least_substeps = 0, most_substeps = 0;
   double largest_strain = 0;  ///< over the whole run
-  std::size_t crossings = 0;  ///< of the cloths with themselves and each other, over all checks
-  std::size_t crossed_ticks = 0;
-  Verdict<float> verdict;  // of a hard case
+  std::size_t cloth_crossings =
+      0;  ///< of the cloths with themselves and each other, over all checks
+  std::size_t object_crossings = 0;          ///< of cloths with objects, over all checks
+  int crossed_ticks = 0, first_crossed = 0;  ///< the first one's number; 0: none
+  std::size_t late_crossings = 0;            ///< after the time in which the scene may have some
+  Verdict<float> verdict;                    // of a hard case
 };
 
 void measure_tick(World<float>& world, Measurement& m) {
@@ -69,20 +71,28 @@ void measure_tick(World<float>& world, Measurement& m) {
   m.largest_strain = std::max(m.largest_strain, report.largest_strain);
 }
 
-Measurement run(World<float>& world, int ticks) {
+/// Looks for penetrations and counts crossings.
+void look(World<float>& world, bool judged, Bvh<double>& tree, Measurement& m) {
+  ++m.checks;
+  m.deepest = std::max(m.deepest, world.deepest_penetration());
+  const WorldCrossings found = judged ? m.verdict.crossing_now : count_crossings(world, tree);
+  if (found.total() == 0) return;
+  m.cloth_crossings += found.cloths.proper + found.cloths.touching;
+  m.object_crossings += found.objects.proper + found.objects.touching;
+  ++m.crossed_ticks;
+  if (m.first_crossed == 0) m.first_crossed = static_cast<int>(world.tick());
+  if (world.report().time > world.def().verdict.clear_after) m.late_crossings += found.total();
+}
+
+Measurement run(World<float>& world, const SimulateOptions& options) {
   Measurement m;
-  m.ticks.reserve(static_cast<std::size_t>(ticks));
+  m.ticks.reserve(static_cast<std::size_t>(options.ticks));
   Bvh<double> tree;
-  for (int i = 1; i <= ticks; ++i) {
+  const bool judged = world.def().verdict.strain > 0;
+  for (int i = 1; i <= options.ticks; ++i) {
     measure_tick(world, m);
-    if (world.def().verdict.strain > 0) m.verdict.look(world);
-    if (i % kTicksBetweenChecks != 0 && i != ticks) continue;
-    ++m.checks;
-    m.deepest = std::max(m.deepest, world.deepest_penetration());
-    const Crossings found =
-        count_self_crossings(world.state().x, world.model().edges, world.model().triangles, tree);
-    m.crossings += found.proper + found.touching;
-    m.crossed_ticks += found.proper + found.touching > 0 ? 1 : 0;
+    if (judged) m.verdict.look(world);
+    if (i % options.check_every == 0 || i == options.ticks) look(world, judged, tree, m);
   }
   std::sort(m.ticks.begin(), m.ticks.end());
   return m;
@@ -172,9 +182,12 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
        {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
       {"measurements", measured},
       {"deepest_penetration", m.deepest},
-      {"penetration_checks", m.checks},
-      {"self_crossings", m.crossings},
-      {"ticks_with_self_crossings", m.crossed_ticks},
+      {"crossings",
+       {{"cloth_with_cloth", m.cloth_crossings},
+        {"cloth_with_object", m.object_crossings},
+        {"ticks_looked_at", m.checks},
+        {"ticks_with_any", m.crossed_ticks},
+        {"first_tick", m.first_crossed > 0 ? Json(m.first_crossed) : Json()}}},
       {"guard", guard_summary(world)},
       {"verdict", verdict_summary(world, m.verdict)},
       {"hash", proto::hash_text(world.hash())},
@@ -209,6 +222,18 @@ TriangleMesh cloth_mesh(const World<float>& world) {
   return mesh;
 }
 
+/// Says so where something crossed.
+/// @return exit code: that of failure if it did after the time in which the scene may
+int warn_of_crossings(const Measurement& m) {
+  if (m.crossed_ticks == 0) return 0;
+  std::fprintf(stderr,
+               "weft: %zu crossings of cloth with cloth and %zu with objects in %d of %d ticks, "
+               "from tick %d on%s\n",
+               m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
+               m.late_crossings > 0 ? "" : ", none after the time that the scene has for them");
+  return m.late_crossings > 0 ? kCrossed : 0;
+}
+
 /// Tells what is wrong before minutes are spent.
 void check_out(const std::string& out) {
   if (out.empty()) return;
@@ -225,19 +250,20 @@ void check_out(const std::string& out) {
 int simulate(const SimulateOptions& options) {
   check_range("--ticks", options.ticks, kTickCounts);
   check_range("--threads", options.threads, kThreadCounts);
+  check_range("--check-every", options.check_every, kTickCounts);
   check_out(options.out);
   WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
-  const Measurement measurement = run(world, options.ticks);
+  const Measurement measurement = run(world, options);
   if (!options.out.empty()) write_mesh(cloth_mesh(world), options.out);
   const Json result = summary(options, world, measurement);
   if (options.json)
     std::printf("%s\n", result.dump(2).c_str());
   else
     print_table(result, "");
-  return 0;
+  return warn_of_crossings(measurement);
 }
 
 int list_scenes(const ScenesOptions& options) {

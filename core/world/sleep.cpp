@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <utility>
 
 #include "core/contact/objects/cloth_patches.h"
@@ -76,24 +75,20 @@ void Sleep<Real>::disturb_all() {
   std::fill(disturbed_.begin(), disturbed_.end(), char{1});
 }
 
-/// Where particles are and soon could be, with the cloth's thickness around.
+/// Makes a box hold where a particle is and soon could be.
 template <class Real>
-template <class Particles>
-Aabb<Real> Sleep<Real>::box_around(const Particles& particles, const ClothState<Real>& state,
-                                   std::size_t part) const {
-  Aabb<Real> box;
-  for (const Index i : particles) {
-    const auto k = static_cast<std::size_t>(i);
-    box.add(state.x[k]);
-    box.add(state.x[k] + state.v[k] * (tick_seconds_ * Real(kTicksAhead)));
-  }
-  return box.grown(margin_[part]);
+void Sleep<Real>::add_coming(Index particle, const ClothState<Real>& state, Aabb<Real>& box) const {
+  const auto k = static_cast<std::size_t>(particle);
+  box.add(state.x[k]);
+  box.add(state.x[k] + state.v[k] * (tick_seconds_ * Real(kTicksAhead)));
 }
 
 template <class Real>
 void Sleep<Real>::enclose(std::size_t part, const ClothState<Real>& state) {
   const IndexRange& all = particles_[part];
-  boxes_[part].whole = box_around(std::views::iota(all.first, all.end()), state, part);
+  Aabb<Real> box;
+  for (Index i = all.first; i < all.end(); ++i) add_coming(i, state, box);
+  boxes_[part].whole = box.grown(margin_[part]);
   boxes_[part].fitted = false;
 }
 
@@ -101,8 +96,11 @@ template <class Real>
 void Sleep<Real>::fit(std::size_t part, const ClothState<Real>& state) {
   Boxes& boxes = boxes_[part];
   if (boxes.fitted) return;
-  for (std::size_t k = 0; k < boxes.patches.size(); ++k)
-    boxes.list[k] = box_around(boxes.patches[k], state, part);
+  for (std::size_t k = 0; k < boxes.patches.size(); ++k) {
+    Aabb<Real> box;
+    for (const Index i : boxes.patches[k]) add_coming(i, state, box);
+    boxes.list[k] = box.grown(margin_[part]);
+  }
   boxes.tree.refit(boxes.list);
   boxes.fitted = true;
 }

@@ -82,9 +82,7 @@ class Sleep {
     bool fitted = false;  ///< list and tree belong to `whole`
   };
 
-  template <class Particles>
-  Aabb<Real> box_around(const Particles& particles, const ClothState<Real>& state,
-                        std::size_t part) const;
+  void add_coming(Index particle, const ClothState<Real>& state, Aabb<Real>& box) const;
   void enclose(std::size_t part, const ClothState<Real>& state);
   void fit(std::size_t part, const ClothState<Real>& state);
   bool could_touch(std::size_t a, std::size_t b, const ClothState<Real>& state);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/geometry/distance.h"
 
@@ -13,16 +12,6 @@ namespace {
 
 /// Parts of the energy at play, and of the extent, that may be amiss.
 constexpr double kMostExcess = 0.01, kBack = 0.01;
-
-/// A collider's triangles where it is; none if it has no triangles.
-TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
-  TriangleMesh mesh;
-  if (const auto* box = std::get_if<BoxDef>(&def.shape)) mesh = world_mesh(*box);
-  if (const auto* given = std::get_if<MeshDef>(&def.shape)) mesh = given->mesh;
-  const Vec3d pivot = pivot_of(def.shape);
-  for (Vec3d& p : mesh.positions) p = pose.position + pose.rotation * (p - pivot);
-  return mesh;
-}
 
 /// Distance of two features of cloths where they are now [m]: the normals of rows are from when
 /// these were built, and a pair that has just come near has no row yet.
@@ -54,21 +43,6 @@ double change_of_heights(const ClothModel<Real>& model, const Vec3Array<Real>& f
 }
 
 }  // namespace
-
-template <class Real>
-std::uint64_t Verdict<Real>::count_crossings_of(const World<Real>& world) {
-  const ClothModel<Real>& model = world.model();
-  const Vec3Array<Real>& x = world.state().x;
-  const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
-  std::uint64_t count = self.proper + self.touching;
-  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
-    const TriangleMesh mesh = mesh_now(world.def().colliders[k], world.colliders()[k].pose);
-    if (mesh.triangles.empty()) continue;
-    const Crossings with = count_crossings(x, model.edges, model.triangles, mesh);
-    count += with.proper + with.touching;
-  }
-  return count;
-}
 
 template <class Real>
 void Verdict<Real>::look_at_energy(const World<Real>& world) {
@@ -128,7 +102,8 @@ void Verdict<Real>::look(const World<Real>& world) {
   look_at_energy(world);
   look_at_rest(world);
   look_at_hands(world);
-  const std::uint64_t found = count_crossings_of(world);
+  crossing_now = count_crossings(world, tree_);
+  const std::uint64_t found = crossing_now.total();
   if (world.report().time <= world.def().verdict.clear_after) {
     early_crossings += found;
   } else {

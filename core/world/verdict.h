@@ -7,6 +7,7 @@
 
 #include "core/geometry/bvh.h"
 #include "core/world/world.h"
+#include "core/world/world_crossings.h"
 
 namespace weft {
 
@@ -21,6 +22,7 @@ class Verdict {
   std::uint64_t crossings = 0;        ///< of edges through triangles, over all ticks that count
   std::uint64_t crossed_ticks = 0;    ///< ticks that count with any of them
   std::uint64_t early_crossings = 0;  ///< before the ticks that count
+  WorldCrossings crossing_now;        ///< in the tick looked at last
   double deepest = 0;                 ///< into an object, in ticks that count [m]
   double smallest_gap = std::numeric_limits<double>::infinity();  ///< of near features [m]
   double largest_strain = 0;
@@ -41,7 +43,6 @@ class Verdict {
   std::vector<std::string> failures(const VerdictDef& def) const;
 
  private:
-  std::uint64_t count_crossings_of(const World<Real>& world);
   void look_at_energy(const World<Real>& world);
   void look_at_rest(const World<Real>& world);
   void look_at_hands(const World<Real>& world);

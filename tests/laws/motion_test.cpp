@@ -1,10 +1,11 @@
 #include <catch2/catch.hpp>
 
 #include "tests/laws/reference_5x5.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
-using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -109,7 +110,7 @@ TEST_CASE("without outer forces momentum and angular momentum are kept to 1e-12"
   cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-3;
   if (cloth.bending_model == BendingModel::hinges) cloth.fabric.bending_damping = 0.01;
   World<double> world(test::empty_world(cloth));
-  Random random(21);
+  SeededRandom random(21);
   for (Vec3d& v : world.state().v) v = random.vector(2);
   world.accept_state();
   const Momenta before = momenta(world);

@@ -82,6 +82,24 @@ TEST_CASE("a grid that is flat at rest has no hinge: its bending is the quadrati
   CHECK(bent.step().profile[Stage::bending].work % bent.model().hinges.size() == 0);
 }
 
+TEST_CASE("on a flat grid no hinge angle is evaluated, and hinges switched off change no bit") {
+  WorldDef def = falling_cloth();
+  REQUIRE(def.cloths[0].rest_angle == 0);
+  const World<float> flat(def);
+  CHECK(flat.model().hinges.empty());
+  const Run automatic = run(def);
+  def.cloths[0].bending_model = BendingModel::quadratic;
+  CHECK(run(def).hash == automatic.hash);
+  // Hinges, asked for by name, are counted and are another computation.
+  def.cloths[0].bending_model = BendingModel::hinges;
+  const World<float> hinged(def);
+  const Run bent = run(def);
+  CHECK(hinged.model().hinges.size() > 0);
+  CHECK(bent.work[Stage::bending].work % hinged.model().hinges.size() == 0);
+  CHECK(bent.work[Stage::bending].work != automatic.work[Stage::bending].work);
+  CHECK(bent.hash != automatic.hash);
+}
+
 TEST_CASE("a cloth without rigidity counts no bending, in whatever way it would be computed") {
   WorldDef def = falling_cloth();
   def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 0;
@@ -113,6 +131,28 @@ TEST_CASE("a frictionless contact counts no friction") {
   CHECK(slick.work[Stage::contact].work > 0);
   CHECK(slick.work[Stage::friction].work == 0);
   CHECK(slick.hash != rough.hash);
+}
+
+TEST_CASE("where nothing touches, friction switched off changes no bit and none is evaluated") {
+  WorldDef def = falling_cloth();
+  REQUIRE(def.cloths[0].fabric.friction > 0);
+  const Run rough = run(def);
+  CHECK(rough.work[Stage::friction].work == 0);
+  def.cloths[0].fabric.friction = 0;
+  const Run slick = run(def);
+  CHECK(slick.work[Stage::friction].work == 0);
+  CHECK(slick.hash == rough.hash);
+}
+
+TEST_CASE("a cloth that stays flat tests no feature against its own, and needs no guard") {
+  WorldDef def = falling_cloth();
+  def.pins.clear();
+  def.contact.seed.self = SelfContact::guard;
+  const Run guarded = run(def);
+  CHECK(guarded.work[Stage::pairs].work == 0);
+  CHECK(guarded.work[Stage::contact].work == 0);
+  def.contact.seed.self = SelfContact::none;
+  CHECK(run(def).hash == guarded.hash);
 }
 
 TEST_CASE("no hand counts no hand, and one that was let go leaves nothing to compute") {

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 // A sheet that is pulled along and pushed together across wrinkles. Wrinkles as wide as bending
@@ -14,6 +14,7 @@ using namespace weft;
 
 namespace {
 
+constexpr unsigned kSeed = 17;  ///< of what shakes it out of its plane
 constexpr double kPi = 3.14159265358979323846;
 
 struct Sheet {
@@ -51,7 +52,7 @@ void tighten(World<double>& world, const Sheet& sheet, double push) {
   const double across = (-push * kStretch - sheet.tension * kShear) / determinant;
   const double along = (sheet.tension * kStretch + push * kShear) / determinant;
   const ClothPart<double>& part = world.model().parts[0];
-  test::Random random(17);
+  test::Random random(test::seed_or(kSeed));
   for (int r = 0; r < part.rows; ++r) {
     for (int c = 0; c < part.columns; ++c) {
       const bool border = r == 0 || c == 0 || r + 1 == part.rows || c + 1 == part.columns;
@@ -106,6 +107,7 @@ TEST_CASE("a stretched sheet wrinkles with lambda = 2 sqrt(pi) (B/T)^(1/4) L^(1/
                                      {{1e-5, 12.5, 1}, 0.10601746822889689},
                                      {{4e-5, 12.5}, 0.106017468228896892}}));
   CHECK(sheet.wavelength() == Approx(expected).epsilon(1e-12));
+  const test::Repeatable repeatable(test::seed_or(kSeed));
   WorldDef def = test::empty_world(cloth_of(sheet));
   def.tick_rate = 1000;
   World<double> world(def);

@@ -6,7 +6,9 @@
 
 namespace weft::test {
 
-/// Repeatable random numbers; print the seed with INFO so that a failure can be repeated.
+/// Random numbers that are the same for the same seed. A test case that has one seed takes a
+/// SeededRandom; one that tries several tells each by a Repeatable, so that failures can be
+/// repeated.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}

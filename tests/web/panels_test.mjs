@@ -34,6 +34,9 @@ test('on screens wide and narrow every control is within reach and has a name', 
       }
     }
     await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    // The slider goes when the server says that the fan has gone, not with the click.
+    const fans = page.getByRole('slider', { name: 'Fan', exact: true });
+    await until(async () => (await fans.count()) === 0, 'the slider of the fan has gone');
     for (const role of controls) {
       for (const control of await page.getByRole(role).all()) {
         assert.ok(await control.evaluate((element) => element.matches('[aria-label], label *')));

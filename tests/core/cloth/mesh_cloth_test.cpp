@@ -11,7 +11,7 @@
 #include "core/forces/hinge.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -269,7 +269,7 @@ TEST_CASE("a mesh hangs by its corner, is picked and held, and keeps its momentu
 
   WorldDef free = test::empty_world(sheet_cloth(11, 11, 0.05));
   World<double> flight(free);
-  test::Random random(7);
+  test::SeededRandom random(7);
   flight.state().v = test::random_velocities(flight.model(), 1, random);
   flight.accept_state();
   const auto momentum = [&] {

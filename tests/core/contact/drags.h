@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnostics/crossings.h"
 #include "core/world/world.h"
+#include "core/world/world_crossings.h"
 #include "tests/support/random.h"
 #include "tests/support/sheets.h"
 
@@ -13,66 +13,6 @@ namespace weft::test {
 
 // Hands that take hold of a cloth anywhere, pull it about and let go, and an exact count of what
 // passed through what after each tick.
-
-/// Pairs of an edge and a triangle that meet: of the cloths with themselves and each other, with
-/// the meshes and boxes of the scene where they are now, and triangles of the cloths that a
-/// needle's axis passes.
-class CrossingCount {
- public:
-  explicit CrossingCount(const WorldDef& def) : def_(def) {
-    for (std::size_t k = 0; k < def.colliders.size(); ++k) {
-      const ShapeDef& shape = def.colliders[k].shape;
-      if (const auto* box = std::get_if<BoxDef>(&shape)) meshes_.push_back({k, world_mesh(*box)});
-      if (const auto* given = std::get_if<MeshDef>(&shape)) meshes_.push_back({k, given->mesh});
-    }
-  }
-
-  std::size_t operator()(const World<float>& world) {
-    const ClothModel<float>& model = world.model();
-    const Vec3Array<float>& x = world.state().x;
-    const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
-    std::size_t count = self.proper + self.touching;
-    for (const auto& [collider, mesh] : meshes_) {
-      const Pose& pose = world.colliders()[collider].pose;
-      const Vec3d pivot = pivot_of(def_.colliders[collider].shape);
-      TriangleMesh moved = mesh;
-      if (!(pose == rest_pose(def_.colliders[collider].shape))) {
-        for (Vec3d& p : moved.positions) p = pose.rotation * (p - pivot) + pose.position;
-      }
-      const Crossings with = count_crossings(x, model.edges, model.triangles, moved);
-      count += with.proper + with.touching;
-    }
-    for (const ColliderDef& collider : def_.colliders) {
-      if (const auto* needle = std::get_if<CapsuleDef>(&collider.shape))
-        count += pierced(world, needle->a, needle->b);
-    }
-    return count;
-  }
-
- private:
-  static std::size_t pierced(const World<float>& world, const Vec3d& from, const Vec3d& to) {
-    Aabb<double> axis;
-    axis.add(from);
-    axis.add(to);
-    std::size_t count = 0;
-    for (const Triangle& t : world.model().triangles) {
-      std::array<Vec3d, 3> corner;
-      Aabb<double> box;
-      for (std::size_t k = 0; k < 3; ++k) {
-        corner[k] = world.state().x[static_cast<std::size_t>(t[k])].cast<double>();
-        box.add(corner[k]);
-      }
-      if (!box.overlaps(axis)) continue;
-      const Crossings with = crossing_of(from, to, corner[0], corner[1], corner[2]);
-      count += with.proper + with.touching;
-    }
-    return count;
-  }
-
-  const WorldDef& def_;
-  std::vector<std::pair<std::size_t, TriangleMesh>> meshes_;  ///< with their colliders
-  Bvh<double> tree_;
-};
 
 /// A hand on its way through points at random, each reached at a speed of its own.
 class WanderingHand {
@@ -136,8 +76,8 @@ struct DragFigures {
   int crossed_ticks = 0, first_tick = -1, ticks = 0, blow_ups = 0;
   double deepest = 0, strain = 0, lost = 0;
 
-  void look(const World<float>& world, CrossingCount& count) {
-    const std::size_t found = count(world);
+  void look(const World<float>& world, Bvh<double>& tree) {
+    const std::size_t found = count_crossings(world, tree).total();
     crossings += found;
     if (found > 0 && first_tick < 0) first_tick = static_cast<int>(world.tick());
     crossed_ticks += found > 0 ? 1 : 0;
@@ -157,11 +97,11 @@ inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, 
   World<float> world(def);
   for (Vec3f& v : world.state().v) v += random.vector(0.05).cast<float>();
   world.accept_state();
-  CrossingCount count(world.def());
+  Bvh<double> tree;
   DragFigures figures;
   for (int tick = 0; tick < settle_ticks; ++tick) {
     world.step();
-    figures.look(world, count);
+    figures.look(world, tree);
   }
   for (int drag = 0; drag < drags; ++drag) {
     std::vector<WanderingHand> hands;
@@ -172,7 +112,7 @@ inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, 
       for (WanderingHand& hand : hands) held = hand.move(tick, world, random) || held;
       idle += held ? 0 : 1;
       world.step();
-      figures.look(world, count);
+      figures.look(world, tree);
     }
   }
   return figures;

@@ -11,6 +11,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/scenes.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/sheets.h"
 
 // Random hands pull a cloth about over what it lies on. A seed decides all of it.
@@ -90,20 +91,12 @@ WorldDef stirred(int n, double thickness, unsigned seed) {
   return def;
 }
 
-/// `WEFT_SEED` chooses one of the seeds; without it all are taken.
-bool is_chosen(unsigned seed) {
-  const char* text = std::getenv("WEFT_SEED");
-  return text == nullptr || std::strtoul(text, nullptr, 10) == seed;
-}
-
-void check_drags(const char* test, const WorldDef& def, int settle_ticks, int drags,
-                 unsigned seed) {
+void check_drags(const WorldDef& def, int settle_ticks, int drags, unsigned seed) {
   if (!is_chosen(seed)) return;
+  const Repeatable repeatable(seed);
   const std::clock_t start = std::clock();
   const DragFigures seen = drag_about(def, settle_ticks, drags, seed);
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  INFO("repeat with: WEFT_BUILD_DIR=build WEFT_SEED=" << seed << " build/weft_core_drags_tests \""
-                                                      << test << '"');
   INFO(def.name << ": " << drags << " drags, " << seen.ticks << " ticks, " << seen.crossings
                 << " crossings in " << seen.crossed_ticks << " ticks from tick " << seen.first_tick
                 << " on, lost " << seen.lost << ", strain " << seen.strain << ", inside "
@@ -117,32 +110,28 @@ void check_drags(const char* test, const WorldDef& def, int settle_ticks, int dr
 }  // namespace
 
 TEST_CASE("a few drags of up to ten hands at up to 5 m/s leave no crossing anywhere") {
-  constexpr auto kName = "a few drags of up to ten hands at up to 5 m/s leave no crossing anywhere";
-  check_drags(kName, pile(21), 40, 3, 1);
-  check_drags(kName, scene("hard-needles", 17), 20, 2, 2);
+  check_drags(pile(21), 40, 3, 1);
+  check_drags(scene("hard-needles", 17), 20, 2, 2);
   if (has_bunny())
-    check_drags(kName, scene("drop-on-bunny", 21), 30, 2, 3);
+    check_drags(scene("drop-on-bunny", 21), 30, 2, 3);
   else
     WARN("the bunny's package is not installed");
 }
 
 TEST_CASE("a sharp object that is stirred about in dragged cloth does not pass through it") {
-  constexpr auto kName =
-      "a sharp object that is stirred about in dragged cloth does not pass through it";
-  check_drags(kName, stirred(9, 3e-4, 401), 30, 2, 401);
-  check_drags(kName, stirred(17, 4e-4, 402), 30, 1, 402);
-  check_drags(kName, stirred(13, 2e-3, 403), 30, 2, 403);
+  check_drags(stirred(9, 3e-4, 401), 30, 2, 401);
+  check_drags(stirred(17, 4e-4, 402), 30, 1, 402);
+  check_drags(stirred(13, 2e-3, 403), 30, 2, 403);
 }
 
 TEST_CASE("200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere", "[.long]") {
-  constexpr auto kName = "200 drags of up to ten hands at up to 5 m/s leave no crossing anywhere";
   constexpr int kDrags = 10;
-  for (unsigned seed = 101; seed <= 107; ++seed) check_drags(kName, pile(41), 60, kDrags, seed);
+  for (unsigned seed = 101; seed <= 107; ++seed) check_drags(pile(41), 60, kDrags, seed);
   for (unsigned seed = 201; seed <= 206; ++seed)
-    check_drags(kName, scene("hard-needles", 33), 40, kDrags, seed);
+    check_drags(scene("hard-needles", 33), 40, kDrags, seed);
   for (unsigned seed = 411; seed <= 420; ++seed)
-    check_drags(kName, stirred(seed % 2 ? 9 : 17, seed % 3 ? 4e-4 : 3e-3, seed), 30, 3, seed);
+    check_drags(stirred(seed % 2 ? 9 : 17, seed % 3 ? 4e-4 : 3e-3, seed), 30, 3, seed);
   REQUIRE(has_bunny());
   for (unsigned seed = 301; seed <= 307; ++seed)
-    check_drags(kName, scene("drop-on-bunny", 49), 60, kDrags, seed);
+    check_drags(scene("drop-on-bunny", 49), 60, kDrags, seed);
 }

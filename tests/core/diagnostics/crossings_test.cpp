@@ -6,7 +6,7 @@
 #include "core/math/exact_sign.h"
 #include "tests/support/cloths.h"
 #include "tests/support/meshes.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using namespace weft::test;
@@ -35,7 +35,7 @@ Vec3d in_double(const std::array<long long, 3>& p) {
 }  // namespace
 
 TEST_CASE("the sign of a volume is exact where floating point is not") {
-  Random random(11);
+  SeededRandom random(11);
   int wrong = 0, zeros = 0;
   for (int n = 0; n < 20000; ++n) {
     // A point of the plane through three others, moved by one or not at all.
@@ -102,7 +102,7 @@ TEST_CASE("a flat cloth that a box stands in: both count, cloth edges and box ed
 
 TEST_CASE("crossings of a crumpled cloth are those of Moeller and Trumbore's test of all pairs") {
   const ClothModel<float> model = build_cloth<float>(flat_cloth(9, 8));
-  Random random(3);
+  SeededRandom random(3);
   for (int n = 0; n < 5; ++n) {
     const Vec3Array<float> x = shaken(model, 0.2, random);
     std::size_t expected = 0;

@@ -7,9 +7,10 @@
 #include "core/forces/grid_pass.h"
 #include "core/forces/hinge.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
-using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -63,7 +64,7 @@ ClothModel<double> hinged_cloth(double rest_angle) {
 }  // namespace
 
 TEST_CASE("the force of the springs is minus the gradient of their energy, to 1e-6") {
-  Random random(1);
+  SeededRandom random(1);
   const ClothModel<double> model = build_cloth<double>(test::flat_cloth(4, 5, 1, 0.6));
   const Vec3Array<double> x = test::shaken(model, 0.05, random), rest(x.size(), Vec3d::Zero());
   const auto force = [&](const auto& at, auto& f) { add_spring_forces(model, at, rest, f); };
@@ -73,7 +74,7 @@ TEST_CASE("the force of the springs is minus the gradient of their energy, to 1e
 
 TEST_CASE("the force of the hinges is minus the gradient of their energy, to 1e-6") {
   for (const double rest_angle : {0.0, 0.26, -1.0}) {
-    Random random(2);
+    SeededRandom random(2);
     const ClothModel<double> model = hinged_cloth(rest_angle);
     const Vec3Array<double> x = test::shaken(model, 0.05, random), rest(x.size(), Vec3d::Zero());
     const auto force = [&](const auto& at, auto& f) { add_hinge_forces(model, at, rest, f); };
@@ -83,7 +84,7 @@ TEST_CASE("the force of the hinges is minus the gradient of their energy, to 1e-
 }
 
 TEST_CASE("the force of quadratic bending is minus the gradient of its energy, to 1e-6") {
-  Random random(3);
+  SeededRandom random(3);
   ClothDef def = test::flat_cloth(4, 5, 1, 0.6);
   def.fabric.bending_warp = 3e-4;
   const ClothModel<double> model = build_cloth<double>(def);
@@ -95,7 +96,7 @@ TEST_CASE("the force of quadratic bending is minus the gradient of its energy, t
 }
 
 TEST_CASE("elastic and damping forces add up to no force and no moment, to 1e-12") {
-  Random random(4);
+  SeededRandom random(4);
   ClothDef def = test::flat_cloth(5, 4, 1, 0.6);
   def.fabric.bending_warp = 1e-2;
   def.fabric.bending_damping = 0.05;
@@ -131,7 +132,7 @@ TEST_CASE("a cloth moved and turning as a rigid body feels no force, to 1e-9 of 
 }
 
 TEST_CASE("damping takes energy at every velocity") {
-  Random random(5);
+  SeededRandom random(5);
   ClothDef def = test::flat_cloth(5, 5);
   def.fabric.bending_damping = 0.1;
   ClothModel<double> model = build_cloth<double>(def);
@@ -151,7 +152,7 @@ TEST_CASE("damping takes energy at every velocity") {
 }
 
 TEST_CASE("the force of the air on a triangle is even in its normal and pushes downwind") {
-  Random random(6);
+  SeededRandom random(6);
   for (int trial = 0; trial < 100; ++trial) {
     const Vec3d n = random.vector(0.1), u = random.vector(20);
     const Vec3d f = air_force<double>(n, u, 0.784, 0.01);
@@ -172,7 +173,7 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
   const double tolerance = sizeof(Real) == 4 ? 2e-5 : 1e-12;
   const auto [rows, columns] = GENERATE(
       table<int, int>({{2, 2}, {2, 9}, {9, 2}, {3, 3}, {5, 8}, {17, 16}, {7, 33}, {30, 20}}));
-  Random random(7);
+  SeededRandom random(7);
   ClothDef def = test::flat_cloth(rows, columns, 1, 0.8);
   def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
   def.fabric.stretch_warp = def.fabric.stretch_weft = 5000;

@@ -9,11 +9,13 @@
 #include "core/forces/force_pass.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -130,7 +132,7 @@ TEMPLATE_TEST_CASE("bands of a grid move it to the same bits, whichever comes fi
 TEST_CASE("a pinned particle stays where it is, and what pulls it counts no power") {
   ClothDef def = test::flat_cloth(5, 9);
   const ClothModel<float> model = build_cloth<float>(def);
-  Random random(3);
+  SeededRandom random(3);
   Vec3Array<float> x = test::shaken(model, 0.05, random), v(x.size(), Vec3f::Zero()), pull = x;
   const Vec3Array<float> before = x;
   GridPass<float> grid;

@@ -9,10 +9,12 @@
 #include "core/forces/force_pass.h"
 #include "core/solver/vector_passes.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -113,7 +115,7 @@ double largest(const Vec3Array<Real>& forces) {
 }  // namespace
 
 TEST_CASE("forces gathered by particle are those of the elements, to 1e-12 of the largest") {
-  Random random(7);
+  SeededRandom random(7);
   const ClothDef def = ragged_mesh(GENERATE(18, 27, 63, 64, 65, 200, 700), random);
   const Shaken<double> s = forces_on<double>(def);
   CHECK(s.model.hinges.empty());
@@ -126,7 +128,7 @@ TEST_CASE("forces gathered by particle are those of the elements, to 1e-12 of th
 }
 
 TEST_CASE("gathered forces add up to nothing: no momentum is made") {
-  Random random(8);
+  SeededRandom random(8);
   const Shaken<double> s = forces_on<double>(ragged_mesh(300, random));
   Vec3d sum = Vec3d::Zero(), turn = Vec3d::Zero();
   for (std::size_t i = 0; i < s.x.size(); ++i) {
@@ -138,7 +140,7 @@ TEST_CASE("gathered forces add up to nothing: no momentum is made") {
 }
 
 TEST_CASE("a mesh moved far from the origin bends and stretches with the same forces") {
-  Random random(9);
+  SeededRandom random(9);
   const Shaken<float> s = forces_on<float>(ragged_mesh(200, random));
   MeshPass<float> pass;
   pass.prepare(s.model, s.model.parts[0]);
@@ -151,7 +153,7 @@ TEST_CASE("a mesh moved far from the origin bends and stretches with the same fo
 }
 
 TEST_CASE("every instruction set gathers the same bits") {
-  Random random(10);
+  SeededRandom random(10);
   const ClothDef def = ragged_mesh(200, random);
   const auto best = forces_on<float>(def).gathered;
   const std::int64_t supported = hwy::SupportedTargets();
@@ -168,7 +170,7 @@ TEST_CASE("every instruction set gathers the same bits") {
 }
 
 TEST_CASE("springs whose damping does not go with their stiffness stay element-wise") {
-  Random random(11);
+  SeededRandom random(11);
   ClothModel<float> model = build_cloth<float>(ragged_mesh(100, random));
   model.springs[3].damping *= 2;
   CHECK(!is_gathered(model));
@@ -184,7 +186,7 @@ TEST_CASE("hubs of many springs, and neighbours far apart in memory, stay elemen
 }
 
 TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by them") {
-  Random random(12);
+  SeededRandom random(12);
   const ClothDef def = ragged_mesh(GENERATE(18, 63, 65, 700), random);
   const Shaken<float> s = forces_on<float>(def);
   const Vec3Array<float> pull = test::random_velocities(s.model, 1, random);

@@ -14,6 +14,7 @@
 #include "core/world/world.h"
 #include "tests/support/allocations.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using namespace weft::test;
@@ -86,8 +87,8 @@ TEMPLATE_TEST_CASE("the seed's trees give the pairs of brute force and of the de
   BottomUpTree<Real> particles, triangles;
   particles.build(cloth.particle_boxes, cloth.model.edges);
   triangles.build(cloth.triangle_boxes, pairs_that_touch(cloth.model.triangles));
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    INFO("seed " << seed);
+  for (const unsigned seed : seeds(1, 5)) {
+    const Repeatable repeatable(seed);
     cloth.shake(seed);
     particles.refit(cloth.particle_boxes);
     triangles.refit(cloth.triangle_boxes);

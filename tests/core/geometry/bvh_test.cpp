@@ -6,10 +6,11 @@
 
 #include "core/geometry/distance.h"
 #include "core/geometry/ray_cast.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -60,7 +61,7 @@ void check_queries(const Bvh<Real>& tree, const std::vector<Aabb<Real>>& boxes, 
 
 template <class Real>
 void check_kinds() {
-  Random random(4);
+  SeededRandom random(4);
   for (int kind = 0; kind < 6; ++kind) {
     for (const int count : {0, 1, 2, 5, 64, 1000}) {
       INFO("kind " << kind << " count " << count);
@@ -91,7 +92,7 @@ TEST_CASE("box queries find all that brute force finds, after building and after
 }
 
 TEST_CASE("a query far away visits nothing") {
-  Random random(5);
+  SeededRandom random(5);
   Bvh<double> tree;
   tree.build(boxes_of_kind<double>(0, 500, random));
   Aabb<double> query;
@@ -100,7 +101,7 @@ TEST_CASE("a query far away visits nothing") {
 }
 
 TEST_CASE("a query of a small region visits a small part of the tree") {
-  Random random(6);
+  SeededRandom random(6);
   const auto boxes = boxes_of_kind<double>(2, 10000, random);
   Bvh<double> tree;
   tree.build(boxes);
@@ -115,7 +116,7 @@ TEST_CASE("a query of a small region visits a small part of the tree") {
 }
 
 TEST_CASE("a hundred thousand boxes in one place build a tree that can be searched") {
-  Random random(7);
+  SeededRandom random(7);
   const auto boxes = boxes_of_kind<float>(3, 100000, random);
   Bvh<float> tree;
   tree.build(boxes);
@@ -123,7 +124,7 @@ TEST_CASE("a hundred thousand boxes in one place build a tree that can be search
 }
 
 TEST_CASE("nearest triangle by the tree is as near as by brute force") {
-  Random random(8);
+  SeededRandom random(8);
   for (const int kind : {0, 1, 2}) {
     Vec3Array<double> positions;
     std::vector<Triangle> triangles;

@@ -4,10 +4,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -47,7 +48,7 @@ double excess(const Vec3<Real>& p, const Vec3<Real>& q, const Points<Real>& tria
 
 template <class Real>
 void check_triangles(double tolerance) {
-  Random random(1);
+  SeededRandom random(1);
   for (int n = 0; n < 20000; ++n) {
     const int kind = n % 5;
     const Points<Real> t = any_triangle<Real>(random, kind);
@@ -84,7 +85,7 @@ void check_triangles(double tolerance) {
 
 template <class Real>
 void check_segments(double tolerance) {
-  Random random(2);
+  SeededRandom random(2);
   for (int n = 0; n < 20000; ++n) {
     Points<Real> e;
     for (Vec3<Real>& p : e) p = random_point<Real>(random, 1);
@@ -126,7 +127,7 @@ TEST_CASE("closest point of a triangle meets the optimality condition, degenerat
 }
 
 TEST_CASE("closest point of a triangle is nearer than any sampled point") {
-  Random random(3);
+  SeededRandom random(3);
   for (int n = 0; n < 500; ++n) {
     const Points<double> t = any_triangle<double>(random, n % 5);
     const Vec3d p = random.vector(2);

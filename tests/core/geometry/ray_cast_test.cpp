@@ -6,10 +6,11 @@
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/scenes/dress_form.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -99,7 +100,7 @@ void check_hit(const Soup<Real>& soup, const Vec3d& o, const Vec3d& d, const Ray
 
 template <class Real>
 void check_soups(double tolerance) {
-  Random random(11);
+  SeededRandom random(11);
   for (int kind = 0; kind < 5; ++kind) {
     const Soup<Real> soup = soup_of_kind<Real>(kind, 150, random);
     const Vec3d offset = kind == 4 ? Vec3d(1e3, 1e3, -1e3) : Vec3d::Zero().eval();
@@ -138,7 +139,7 @@ TEST_CASE("the hierarchy finds the hit that brute force finds, bit for bit") {
 }
 
 TEST_CASE("hits agree with an independent test in long double") {
-  Random random(12);
+  SeededRandom random(12);
   const Soup<double> soup = soup_of_kind<double>(0, 100, random);
   for (int n = 0; n < 3000; ++n) {
     const Vec3d o = random.vector(2), d = random.vector(1) - o;
@@ -174,7 +175,7 @@ TEST_CASE("no ray from inside a closed surface escapes, aimed at corners and edg
       REQUIRE(soup.cast(inside, p - inside));
     }
   }
-  Random random(13);
+  SeededRandom random(13);
   for (int n = 0; n < 5000; ++n) REQUIRE(soup.cast(inside, random.vector(1)));
 }
 

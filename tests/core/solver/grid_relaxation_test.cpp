@@ -7,6 +7,7 @@
 #include "core/forces/force_pass.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 // The row-wise form of XPBD against the one spring by spring.
@@ -62,7 +63,7 @@ TEST_CASE("a prediction bends each particle by the force of the stencils, to 1e-
       {{2, 2}, {2, 5}, {3, 3}, {3, 4}, {4, 2}, {9, 12}, {12, 9}, {17, 33}, {5, 64}, {6, 35}}));
   CAPTURE(rows, columns);
   const ClothModel<double> model = build_cloth<double>(soft_cloth(rows, columns));
-  Random random(3);
+  SeededRandom random(3);
   const Vec3Array<double> x = shaken(model, 0.05, random);
   Vec3Array<double> force(x.size(), Vec3d::Zero()), v(x.size(), Vec3d(1, 2, 3));
   add_quadratic_bending_forces(model.parts[0], x, force);
@@ -142,7 +143,7 @@ TEST_CASE("sweeps by rows are XPBD spring by spring in their order, to 1e-12 m")
   const int sweeps = GENERATE(1, 3);
   CAPTURE(rows, columns, sweeps);
   const ClothModel<double> model = build_cloth<double>(soft_cloth(rows, columns));
-  Random random(7);
+  SeededRandom random(7);
   const Vec3Array<double> x = shaken(model, 0.03, random);
   ClothState<double> state = initial_state(model);
   state.inverse_mass.front() = state.inverse_mass.back() = 0;
@@ -173,7 +174,7 @@ TEST_CASE("sweeps by rows keep momentum to 1e-12 and leave pinned particles wher
   WorldDef def = xpbd_world(soft_cloth(9, 12), 7, 3);
   def.environment.gravity.setZero();
   World<double> world(def);
-  Random random(4);
+  SeededRandom random(4);
   world.state().x = shaken(world.model(), 0.02, random);
   world.accept_state();
   const auto momentum = [&] {

@@ -8,6 +8,7 @@
 #include "core/world/world.h"
 #include "tests/support/allocations.h"
 #include "tests/support/cloths.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -181,7 +182,7 @@ TEMPLATE_TEST_CASE("compliance 0, one substep, k sweeps is the seed, bit for bit
   def.relaxation.damping = 0.03125;
   def.pins = {{0, 0}, {11, 0}};
   World<TestType> world(def);
-  Random random(5);
+  SeededRandom random(5);
   world.state().x = shaken(world.model(), 0.01, random);
   world.accept_state();
   LiteralSeed<TestType> seed{world.state().x, world.state().x};
@@ -236,7 +237,7 @@ TEST_CASE("more sweeps over 256 x 256 rigid edges leave less of a shake, and nev
   const auto residual = [&](int sweeps) {
     def.relaxation.sweeps = sweeps;
     World<float> world(def);
-    Random random(6);
+    SeededRandom random(6);
     world.state().x = shaken(world.model(), 0.1 / 255, random);
     world.accept_state();
     REQUIRE_FALSE(world.step().divergence);

@@ -7,7 +7,7 @@
 
 #include "core/contact/feature_pair.h"
 #include "tests/support/cloths.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using namespace weft::test;
@@ -124,7 +124,7 @@ PredictedMotion<float> wrap(const ClothModel<float>& model, double radius, doubl
 }  // namespace
 
 TEST_CASE("patches with and without the cull find every pair that a search of all pairs finds") {
-  Random random(5);
+  SeededRandom random(5);
   for (const auto& [rows, columns] : {std::pair{13, 12}, {9, 17}, {2, 40}}) {
     const ClothModel<float> model =
         build_cloth<float>(flat_cloth(rows, columns, 0.03 * (columns - 1), 0.03 * (rows - 1)));
@@ -145,7 +145,7 @@ TEST_CASE("patches with and without the cull find every pair that a search of al
 }
 
 TEST_CASE("after some particles changed their way, old pairs and changed patches give all pairs") {
-  Random random(9);
+  SeededRandom random(9);
   std::size_t visited = 0, all = 0;
   for (const auto& [rows, columns] : {std::pair{21, 20}, {9, 25}}) {
     const ClothModel<float> model =
@@ -197,7 +197,7 @@ TEST_CASE("after some particles changed their way, old pairs and changed patches
 }
 
 TEST_CASE("a flat or gently waved cloth is culled as one, and no patch of it is visited") {
-  Random random(7);
+  SeededRandom random(7);
   const ClothModel<float> model = build_cloth<float>(flat_cloth(33, 33, 1, 1));
   PatchTree<float> tree(model);
   std::size_t visited = 0;

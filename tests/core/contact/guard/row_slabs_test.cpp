@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/types.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/two_threads.h"
 
 using namespace weft;
@@ -18,12 +18,12 @@ namespace {
 
 /// Particles all over a box, and rows among those that are near each other; a few are long.
 struct Pile {
+  SeededRandom random;
   QuadArray<float> x;
   std::vector<Index> particles;
   std::vector<std::array<Index, 4>> rows;
 
-  explicit Pile(unsigned seed, std::size_t count = 3000) {
-    Random random(seed);
+  explicit Pile(unsigned seed, std::size_t count = 3000) : random(seed) {
     for (std::size_t i = 0; i < count; ++i) {
       x.push_back(to_quad<float>({static_cast<float>(random.uniform(0, 0.2)),
                                   static_cast<float>(random.uniform(0, 1)),

@@ -9,12 +9,12 @@
 #include "tests/support/allocations.h"
 #include "tests/support/meshes.h"
 #include "tests/support/particles.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/two_threads.h"
 
 using namespace weft;
 using test::Particles;
-using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -165,7 +165,7 @@ TEST_CASE("a pinned particle never moves, whether outside, in contact or inside"
 }
 
 TEST_CASE("the deepest penetration is that of the deepest of all particles and points of edges") {
-  Random random(7);
+  SeededRandom random(7);
   const std::vector<ColliderDef> solids = {{"form", MeshDef{make_dress_form()}},
                                            {"ball", SphereDef{Vec3d(0.4, 1.1, 0), 0.1}}};
   int inside = 0;
@@ -258,7 +258,7 @@ bool has_row(const Contact<Real>& contact, const ClothState<Real>& state,
 }  // namespace
 
 TEST_CASE("rows exist for the pairs that brute force finds within reach of the thickness") {
-  Random random(31);
+  SeededRandom random(31);
   const TriangleMesh box = box_mesh(Vec3d(0.08, 0.02, 0.06)), needle = test::needle(0.01, 0.1, 5);
   int pairs = 0;
   for (int round = 0; round < 100; ++round) {

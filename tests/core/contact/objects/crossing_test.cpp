@@ -6,13 +6,14 @@
 #include "core/scenes/dress_form.h"
 #include "tests/support/meshes.h"
 #include "tests/support/particles.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 // Nothing passes through anything.
 
 using namespace weft;
 using test::Particles;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -89,7 +90,7 @@ Particles<Real> shower(const Target& target, double speed, Random& random) {
 
 template <class Real>
 void check_showers(double speed, double tolerance) {
-  Random random(21);
+  SeededRandom random(21);
   for (const Target& target : targets()) {
     Particles<Real> rain = shower<Real>(target, speed, random);
     Contact<Real> contact = rain.meet({}, {{target.name, target.shape}});

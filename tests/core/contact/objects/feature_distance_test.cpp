@@ -9,13 +9,14 @@
 
 #include "core/contact/objects/cloth_patches.h"
 #include "core/geometry/distance.h"
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 // The vector code of the broad phase against the scalar closest points in double, and the patches
 // that it works on.
 
 using namespace weft;
 using test::Random;
+using test::SeededRandom;
 
 namespace {
 
@@ -130,7 +131,7 @@ Case<Real> any_case(Random& random, Kind kind) {
 
 template <class Real>
 void check_against_double(Kind kind, void (*measure)(const FeatureTable<Real>&), double tolerance) {
-  Random random(7);
+  SeededRandom random(7);
   for (int n = 0; n < 2000; ++n) {
     const Case<Real> c = any_case<Real>(random, kind);
     const auto result = c.run(measure);
@@ -180,7 +181,7 @@ TEST_CASE("tables of distances agree with the closest points, degenerate feature
 }
 
 TEST_CASE("every instruction set measures the same bits") {
-  Random random(3);
+  SeededRandom random(3);
   use_targets(0);
   const std::int64_t all = hwy::SupportedTargets();
   for (int n = 0; n < 200; ++n) {
@@ -201,7 +202,7 @@ TEST_CASE("every instruction set measures the same bits") {
 }
 
 TEST_CASE("every feature of a cloth is in one patch, and patches are small") {
-  Random random(5);
+  SeededRandom random(5);
   Vec3Array<float> positions;
   std::vector<Edge> edges;
   std::vector<Triangle> triangles;

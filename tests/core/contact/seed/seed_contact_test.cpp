@@ -7,6 +7,7 @@
 #include "tests/support/allocations.h"
 #include "tests/support/cloths.h"
 #include "tests/support/meshes.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -184,7 +185,7 @@ TEST_CASE("self-collision keeps the total momentum") {
       GENERATE(SelfContact::particles, SelfContact::triangles, SelfContact::triangles_and_edges);
   def.passes = 2;
   SeedContact<double> contact(def, model, {});
-  Random random(4);
+  SeededRandom random(4);
   ClothState<double> state = initial_state(model);
   state.x = shaken(model, 0.15, random);
   state.v = random_velocities(model, 1, random);

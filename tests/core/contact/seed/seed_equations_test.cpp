@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/random.h"
+#include "tests/support/seeded_random.h"
 
 using namespace weft;
 using namespace weft::seed;
@@ -98,7 +98,7 @@ TEST_CASE("the fold map lifts the deepest to eps, leaves tau, and keeps the orde
   CHECK(fold_map(0.03, -0.01, 0.03, 0.002) == 0.03);
   CHECK(fold_map(0.05, -0.01, 0.03, 0.002) == 0.05);
   CHECK(fold_map(0.01, 0.004, 0.03, 0.002) == 0.01);  // nothing is too deep
-  test::Random random(1);
+  test::SeededRandom random(1);
   for (int n = 0; n < 1000; ++n) {
     const double deepest = random.uniform(-0.05, 0);
     double a = random.uniform(deepest, 0.04), b = random.uniform(deepest, 0.04);
