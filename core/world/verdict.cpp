@@ -1,41 +1,15 @@
 #include "core/world/verdict.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "core/diagnostics/crossings.h"
 #include "core/error.h"
-#include "core/geometry/distance.h"
 
 namespace weft {
 namespace {
 
 /// Parts of the energy at play, and of the extent, that may be amiss.
 constexpr double kMostExcess = 0.01, kBack = 0.01;
-
-/// A collider's triangles where it is; none if it has no triangles.
-TriangleMesh mesh_now(const ColliderDef& def, const Pose& pose) {
-  TriangleMesh mesh;
-  if (const auto* box = std::get_if<BoxDef>(&def.shape)) mesh = world_mesh(*box);
-  if (const auto* given = std::get_if<MeshDef>(&def.shape)) mesh = given->mesh;
-  const Vec3d pivot = pivot_of(def.shape);
-  for (Vec3d& p : mesh.positions) p = pose.position + pose.rotation * (p - pivot);
-  return mesh;
-}
-
-/// Distance of two features of cloths where they are now [m]: the normals of rows are from when
-/// these were built, and a pair that has just come near has no row yet.
-template <class Real>
-double gap_of(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) {
-  std::array<Vec3d, 4> p;
-  for (std::size_t k = 0; k < 4; ++k)
-    p[k] = x[static_cast<std::size_t>(pair.particle[k])].template cast<double>();
-  if (pair.kind == PairKind::vertex_triangle)
-    return (p[0] - closest_on_triangle(p[0], p[1], p[2], p[3]).point).norm();
-  const SegmentPoints<double> nearest = closest_of_segments(p[0], p[1], p[2], p[3]);
-  return (nearest.p - nearest.q).norm();
-}
 
 /// Largest change of a cloth's mean height between two states [m].
 template <class Real>
@@ -54,21 +28,6 @@ double change_of_heights(const ClothModel<Real>& model, const Vec3Array<Real>& f
 }
 
 }  // namespace
-
-template <class Real>
-std::uint64_t Verdict<Real>::count_crossings_of(const World<Real>& world) {
-  const ClothModel<Real>& model = world.model();
-  const Vec3Array<Real>& x = world.state().x;
-  const Crossings self = count_self_crossings(x, model.edges, model.triangles, tree_);
-  std::uint64_t count = self.proper + self.touching;
-  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
-    const TriangleMesh mesh = mesh_now(world.def().colliders[k], world.colliders()[k].pose);
-    if (mesh.triangles.empty()) continue;
-    const Crossings with = count_crossings(x, model.edges, model.triangles, mesh);
-    count += with.proper + with.touching;
-  }
-  return count;
-}
 
 template <class Real>
 void Verdict<Real>::look_at_energy(const World<Real>& world) {
@@ -128,22 +87,14 @@ void Verdict<Real>::look(const World<Real>& world) {
   look_at_energy(world);
   look_at_rest(world);
   look_at_hands(world);
-  const std::uint64_t found = count_crossings_of(world);
+  const std::uint64_t found = counter_.count(world).all();
   if (world.report().time <= world.def().verdict.clear_after) {
     early_crossings += found;
   } else {
     crossings += found;
     crossed_ticks += found > 0 ? 1 : 0;
     deepest = std::max(deepest, world.deepest_penetration());
-    for (const ContactRow<Real>& row : world.contact().rows()) {
-      if (!row.responds) continue;
-      smallest_gap = std::min(smallest_gap, static_cast<double>(world.contact().gap_of(row, x)));
-    }
-    if (world.guard()) {
-      for (const GuardedPair<Real>& pair : world.guard()->pairs()) {
-        if (!pair.gone && !pair.open) smallest_gap = std::min(smallest_gap, gap_of(pair, x));
-      }
-    }
+    smallest_gap = std::min(smallest_gap, weft::smallest_gap(world));
   }
   if (!world.guard()) return;
   const GuardCounts& counts = world.guard()->counts();

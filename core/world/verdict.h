@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/bvh.h"
+#include "core/world/crossing_counter.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -41,12 +41,11 @@ class Verdict {
   std::vector<std::string> failures(const VerdictDef& def) const;
 
  private:
-  std::uint64_t count_crossings_of(const World<Real>& world);
   void look_at_energy(const World<Real>& world);
   void look_at_rest(const World<Real>& world);
   void look_at_hands(const World<Real>& world);
 
-  Bvh<double> tree_;
+  CrossingCounter<Real> counter_;
   std::optional<double> start_energy_;  ///< [J]
   double given_ = 0;                    ///< by work and insults since [J]
   double at_play_ = 0, worked_ = 0;  ///< most mechanical energy, and sum of all that is given [J]
