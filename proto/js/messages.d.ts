@@ -140,7 +140,7 @@ export interface Crossings {
   count: number;
   /** When they were counted. */
   tick: number;
-  /** Between what contact keeps apart then [m]; null if nothing is near. */
+  /** Between what contact keeps apart then [m], negative inside an object; null if nothing is near. */
   smallest_gap: number | null;
 }
 

@@ -195,6 +195,7 @@ std::vector<std::string> replies() {
       encode_reply(23, VectorsReply{600, QueryWhat::boxes, std::span<const float>(kBoxes), 6}),
       encode_reply(24, QueryReply{600, std::vector<ContactInfo>{contact()}}),
       encode_reply(25, QueryReply{600, reactions()}),
+      encode_reply(27, QueryReply{600, Crossings{0, 600, {}}}),
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),

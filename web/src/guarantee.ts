@@ -19,6 +19,9 @@ export function guarantee_text({ state, covers, pairs, reasons }: Guarantee): st
 export function crossings_text({ count, smallest_gap }: Crossings): string {
   const crossings = `${count} ${count === 1 ? 'crossing' : 'crossings'}`;
   if (smallest_gap === null) return `${crossings}, nothing near`;
-  const gap = smallest_gap * 1000;
-  return `${crossings}, smallest gap ${gap.toFixed(Math.abs(gap) < 1 ? 2 : 1)} mm`;
+  const size = Math.abs(smallest_gap) * 1000;
+  const text = `${size.toFixed(size < 1 ? 2 : 1)} mm`;
+  return smallest_gap < 0
+    ? `${crossings}, up to ${text} inside an object`
+    : `${crossings}, smallest gap ${text}`;
 }

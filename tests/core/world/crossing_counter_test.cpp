@@ -10,6 +10,7 @@
 // Crossings of a world, counted again and again.
 
 using namespace weft;
+using weft::test::count_allocations;
 
 namespace {
 
