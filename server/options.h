@@ -27,7 +27,7 @@ inline constexpr OptionRange kRates{1, 1000};  // [1/s]
 inline constexpr OptionRange kThreadCounts{1, 64};
 inline constexpr OptionRange kTickCounts{1, 10'000'000};
 inline constexpr OptionRange kCountPauses{0, 1'000'000};  // [ticks]
-inline constexpr OptionRange kRunSeconds{0, 1e7};  // [s]
+inline constexpr OptionRange kRunSeconds{0, 1e7};         // [s]
 inline constexpr OptionRange kViewerCounts{1, 10'000};
 inline constexpr OptionRange kSocketCounts{1, 100'000};
 inline constexpr OptionRange kMessageRates{1, 1e6};    // [1/s]

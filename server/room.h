@@ -41,7 +41,7 @@ struct RoomOptions {
   std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
   std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
-  std::string version, session;  ///< for `welcome`
+  std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
 };
 

@@ -36,7 +36,8 @@ class CrossingCounter {
 };
 
 /// Smallest distance between features that the world's contact holds apart now, or is about to [m];
-/// negative inside an object that it shall leave, infinity if nothing is near, or where the contact does not tell (that of the seed).
+/// negative inside an object that it shall leave, infinity if nothing is near, or where the contact
+/// does not tell (that of the seed).
 template <class Real>
 double smallest_gap(const World<Real>& world);
 

@@ -89,7 +89,8 @@ TEST_CASE("frames tell forces only to those who ask, and nothing is measured bef
 
 /// A room whose cloth lies on the floor, by itself, and sleeps if the scene lets it.
 struct LyingRoom : TestRoom {
-  explicit LyingRoom(const char* sleep_after) : TestRoom(false, {{"environment.drag", "10"}, {"sleep.after", sleep_after}}) {
+  explicit LyingRoom(const char* sleep_after)
+      : TestRoom(false, {{"environment.drag", "10"}, {"sleep.after", sleep_after}}) {
     join(1);
     say(1, R"({"op":"release","all":true})");
     say(1, R"({"op":"move","collider":"ball","position":[5,0,0],"speed":20})");

@@ -58,8 +58,8 @@ TEST_CASE("an unknown gripper and a moved or released jaw are refused, and nothi
   CHECK(jaw["code"] == "out_of_range");
   CHECK(jaw["field"] == "collider");
   for (const char* name : {"gripper.left", "gripper.right"}) {
-    const json released = t.say(
-        1, json{{"op", "move"}, {"id", 3}, {"collider", name}, {"release", true}}.dump());
+    const json released =
+        t.say(1, json{{"op", "move"}, {"id", 3}, {"collider", name}, {"release", true}}.dump());
     CHECK(released["code"] == "out_of_range");
     CHECK(released["field"] == "collider");
     CHECK(released["value"] == name);

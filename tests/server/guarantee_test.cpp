@@ -61,7 +61,9 @@ struct BadRoom : TestRoom {
     }
     return messages;
   }
-  json guarantee() { return say(1, R"({"op":"query","id":99,"what":"state"})")["data"]["guarantee"]; }
+  json guarantee() {
+    return say(1, R"({"op":"query","id":99,"what":"state"})")["data"]["guarantee"];
+  }
   void stand_still() {
     clock.now += 0.3;
     room->finish_turn();
