@@ -218,7 +218,8 @@ enum class QueryWhat : std::uint8_t {
   measurements,
   contacts,
   reactions,
-  grippers
+  grippers,
+  crossings
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 

@@ -13,6 +13,7 @@ namespace weft::proto {
 nlohmann::ordered_json json_of(const Fan& fan);
 nlohmann::ordered_json json_of(const Strain& strain);
 nlohmann::ordered_json json_of(const Energy& energy);
+nlohmann::ordered_json json_of(const Crossings& crossings);
 nlohmann::ordered_json json_of(const State& state);
 nlohmann::ordered_json json_of(const ViewerInfo& viewer);
 nlohmann::ordered_json json_of(const PinInfo& pin);

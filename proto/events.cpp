@@ -79,6 +79,14 @@ Json json_of_collider(const ColliderInfo& collider) {
   return out;
 }
 
+Json json_of_guarantee(const Guarantee& guarantee) {
+  static constexpr std::array kStates = {"held", "bad_start", "void", "none"};
+  return {{"state", kStates[static_cast<std::size_t>(guarantee.state)]},
+          {"covers", guarantee.covers},
+          {"pairs", guarantee.pairs},
+          {"reasons", guarantee.reasons}};
+}
+
 }  // namespace
 
 Json json_of(const Strain& strain) {
@@ -91,6 +99,12 @@ Json json_of(const Energy& energy) {
           {"bending", energy.bending},
           {"gravity", energy.gravity},
           {"total", energy.total}};
+}
+
+Json json_of(const Crossings& crossings) {
+  Json out = {{"count", crossings.count}, {"tick", crossings.tick}, {"smallest_gap", nullptr}};
+  put_if(out, "smallest_gap", crossings.smallest_gap);
+  return out;
 }
 
 Json json_of(const State& state) {
@@ -119,6 +133,8 @@ Json json_of(const State& state) {
           {"step_ms", state.step_ms},
           {"real_time_factor", state.real_time_factor},
           {"sleeping", {{"islands", state.sleeping.islands}, {"cloths", state.sleeping.cloths}}},
+          {"guarantee", json_of_guarantee(state.guarantee)},
+          {"crossings", state.crossings ? json_of(*state.crossings) : Json()},
           {"strain", json_of(state.strain)},
           {"energy", json_of(state.energy)}};
 }

@@ -97,6 +97,28 @@ struct Sleeping {
   std::vector<std::string> cloths;
 };
 
+/// Edges of cloths through triangles of cloths, and of cloths and objects through each other.
+struct Crossings {
+  std::uint64_t count = 0;
+  std::uint64_t tick = 0;              ///< of the state in which they were counted
+  std::optional<double> smallest_gap;  ///< between what contact holds apart then [m]; nothing near
+};
+
+/// Whether it holds that nothing crosses.
+enum class GuaranteeState : std::uint8_t {
+  held,
+  bad_start,  ///< but for what started where it should not be
+  broken,     ///< an object was forced through the cloth; `void` on the wire
+  none,       ///< the contact promises nothing
+};
+
+struct Guarantee {
+  GuaranteeState state = GuaranteeState::held;
+  std::vector<std::string> covers;   ///< of "objects" and "cloth" what cloth is kept apart from
+  std::uint64_t pairs = 0;           ///< about so many nothing is promised
+  std::vector<std::string> reasons;  ///< in words; none if it is held
+};
+
 struct State {
   std::uint64_t tick = 0;
   double time = 0;  ///< simulated [s]
@@ -117,6 +139,8 @@ struct State {
   double step_ms = 0;
   double real_time_factor = 0;
   Sleeping sleeping;
+  Guarantee guarantee;
+  std::optional<Crossings> crossings;  ///< as counted last
   Strain strain;
   Energy energy;
 };

@@ -97,6 +97,7 @@ struct DataName {
   QueryWhat operator()(const std::vector<ContactInfo>&) const { return QueryWhat::contacts; }
   QueryWhat operator()(const ReactionInfo&) const { return QueryWhat::reactions; }
   QueryWhat operator()(const std::vector<GripperInfo>&) const { return QueryWhat::grippers; }
+  QueryWhat operator()(const Crossings&) const { return QueryWhat::crossings; }
 };
 
 struct ReplyWriter {

@@ -214,7 +214,7 @@ struct QueryReply {
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
                std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements,
-               std::vector<ContactInfo>, ReactionInfo, std::vector<GripperInfo>>
+               std::vector<ContactInfo>, ReactionInfo, std::vector<GripperInfo>, Crossings>
       data;
 };
 

@@ -12,10 +12,10 @@
 
 namespace weft::proto {
 
-inline constexpr std::array<const char*, 17> kQueryWhatWords = {
-    "positions", "velocities",   "energies", "strain",    "pins",    "grabs",
-    "camera",    "roster",       "state",    "work",      "trees",   "boxes",
-    "colliders", "measurements", "contacts", "reactions", "grippers"};
+inline constexpr std::array<const char*, 18> kQueryWhatWords = {
+    "positions", "velocities",   "energies", "strain",    "pins",     "grabs",
+    "camera",    "roster",       "state",    "work",      "trees",    "boxes",
+    "colliders", "measurements", "contacts", "reactions", "grippers", "crossings"};
 inline constexpr std::array<const char*, 3> kQueryFormatWords = {"json", "f32", "f64"};
 inline constexpr std::array<const char*, 1> kCodecWords = {"f32"};
 

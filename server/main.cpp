@@ -83,6 +83,8 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_number(serve, "--threads", o.threads, kThreadCounts,
              "Threads for the physics (2, or 1 where there is one core)");
   add_switch(serve, "--paused", o.paused, "Start paused");
+  add_number(serve, "--count-crossings", o.count_crossings, kCountPauses,
+             "Ticks between two counts of crossings (60; 0: none)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option("--allow-origin", o.allowed_origins,
                    "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");

@@ -26,7 +26,8 @@ inline constexpr OptionRange kPorts{0, 65535};
 inline constexpr OptionRange kRates{1, 1000};  // [1/s]
 inline constexpr OptionRange kThreadCounts{1, 64};
 inline constexpr OptionRange kTickCounts{1, 10'000'000};
-inline constexpr OptionRange kRunSeconds{0, 1e7};  // [s]
+inline constexpr OptionRange kCountPauses{0, 1'000'000};  // [ticks]
+inline constexpr OptionRange kRunSeconds{0, 1e7};         // [s]
 inline constexpr OptionRange kViewerCounts{1, 10'000};
 inline constexpr OptionRange kSocketCounts{1, 100'000};
 inline constexpr OptionRange kMessageRates{1, 1e6};    // [1/s]
@@ -69,6 +70,7 @@ struct ServerOptions {
   double rate = 0;                 ///< ticks a second, 1 to 1000; 0: the scene's own
   int threads = usual_threads();   ///< for the physics, 1 to 64
   bool paused = false;             ///< start paused
+  int count_crossings = 60;        ///< ticks between two counts, 0 to 1,000,000; 0: none
   std::string web;                 ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;                   ///< besides the server's own
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order

@@ -29,7 +29,8 @@ constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f",
 Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock,
            Metrics& metrics, Executor* executor)
     : options_(std::move(options)), scenes_(std::move(scenes)), output_(output),
-      clock_(std::move(clock)), metrics_(metrics), executor_(executor), paused_(options_.paused) {
+      clock_(std::move(clock)), metrics_(metrics), executor_(executor), paused_(options_.paused),
+      guarantee_(options_.count_pause, clock_) {
   WorldDef def = options_.scene_def ? *options_.scene_def : definition_of(options_.scene);
   if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
@@ -68,6 +69,7 @@ void Room::start_world(const WorldDef& def) {
   output_.offer_mesh(mesh_.hash, mesh_bytes_);
   wanted_softness_ = 1;
   budget_.restart(world_->def().budget, {});
+  guarantee_.start(*world_);
   output_.set_frame_rate(world_->def().tick_rate * speed());
 }
 
@@ -148,12 +150,16 @@ void Room::leave(proto::ViewerId viewer) {
   roster_changed_ = true;
 }
 
+/// Measures them as long as somebody wants them.
+void Room::measure_forces() {
+  if (output_.wants_forces() == measures_forces_) return;
+  measures_forces_ = !measures_forces_;
+  world_->measure_forces(measures_forces_);
+}
+
 /// @returns what it took [s]
 double Room::step_world() {
-  if (output_.wants_forces() != measures_forces_) {
-    measures_forces_ = !measures_forces_;
-    world_->measure_forces(measures_forces_);
-  }
+  measure_forces();
   const double start = clock_();
   const TickReport& report = world_->step();
   last_tick_done_ = clock_();
@@ -162,11 +168,17 @@ double Room::step_world() {
   if (tick_times_.size() < kTickTimes) tick_times_.resize(tick_times_.size() + 1);
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
-  tell_sleep();
+  if (!report.rested) guarantee_.note_tick(*world_);
+  // What rests is counted once: nothing will change it.
+  const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();
+  if (report.rested || fell_asleep) {
+    if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
+  } else if (guarantee_.count_if_due(*world_)) {
+    state_changed_ = true;
+  }
   if (report.rested) return seconds;
   frame_wanted_ = true;
-  tell_voided();
-  tell_bad_starts();
+  tell_guarantee();
   tell_pins();
   tell_grabs();
   if (!report.divergence) return seconds;
@@ -212,6 +224,8 @@ void Room::finish_turn() {
     state_changed_ = state_changed_ || !world_->report().rested;
     tell_slow_motion(now);
   }
+  const bool stands = !ticking() && !advance_ && now - last_tick_done_ >= kStatePause;
+  if (stands && guarantee_.count_if_stale(*world_)) state_changed_ = true;
   tell_changes();
   // Where no ticks pass by the clock, commands and `advance` shall not make more frames than ticks
   // do.
@@ -269,6 +283,8 @@ void Room::tell_changes() {
 }
 
 void Room::publish() {
+  measure_forces();
+  world_->measure_present_forces();
   grab_samples_.clear();
   for (const Grab<float>& grab : world_->grabs().list) {
     const auto hand = std::find_if(hands_.begin(), hands_.end(),
@@ -331,6 +347,8 @@ proto::State Room::state() const {
   state.budget_ms = budget_.budget().milliseconds;
   state.over_budget = to_wire(budget_.budget().remedy);
   state.real_time_factor = real_time_factor();
+  state.guarantee = guarantee_.guarantee(*world_);
+  state.crossings = guarantee_.crossings();
   if (!tick_times_.empty()) {
     std::vector<double> times = tick_times_;
     const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);

@@ -18,6 +18,7 @@
 #include "server/budget_keeper.h"
 #include "server/clock.h"
 #include "server/command_log.h"
+#include "server/guarantee_watch.h"
 #include "server/inbound.h"
 #include "server/metrics.h"
 #include "server/room_output.h"
@@ -39,7 +40,8 @@ struct RoomOptions {
   /// Reads a scene that a client sends as JSON; throws DefinitionError. Without it none is taken.
   std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
-  std::string version, session;  ///< for `welcome`
+  std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
+  std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
 };
 
@@ -112,11 +114,11 @@ class Room {
   void take_deferred();
   void finish_advance();
   double step_world();
-  void tell_voided();      // room_queries.cpp
-  void tell_bad_starts();  // room_queries.cpp
-  void tell_pins();        // room_queries.cpp
-  void tell_grabs();       // room_queries.cpp
-  void tell_sleep();       // room_queries.cpp
+  void measure_forces();
+  void tell_guarantee();  // room_queries.cpp
+  void tell_pins();       // room_queries.cpp
+  void tell_grabs();      // room_queries.cpp
+  bool tell_sleep();      // room_queries.cpp
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
@@ -219,12 +221,11 @@ class Room {
   std::vector<proto::GrabSample> grab_samples_;
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
-  bool measures_forces_ = false;         // the world does
-  std::vector<char> asleep_;             // of each cloth, as told
-  std::vector<bool> voided_;             // of each collider, as told
-  std::vector<PinId> pins_on_way_;       // as told
-  std::vector<GrabId> scene_grabs_;      // of the scene's own hands, as told
-  std::vector<std::string> bad_starts_;  // as told
+  bool measures_forces_ = false;     // the world does
+  std::vector<char> asleep_;         // of each cloth, as told
+  std::vector<PinId> pins_on_way_;   // as told
+  std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as told
+  GuaranteeWatch guarantee_;
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };

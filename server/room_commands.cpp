@@ -256,6 +256,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   steps_left_ = 0;
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
+  guarantee_.restart();
+  tell_guarantee();
   return proto::Reply(proto::DoneReply{"reset", world_->tick()});
 }
 
@@ -361,6 +363,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
+  tell_guarantee();
   tell_changes();
   return proto::Reply(proto::LoadReply{0, world_->def().name, epoch_});
 }

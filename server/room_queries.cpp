@@ -102,6 +102,9 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       reply.data = std::move(reactions);
       break;
     }
+    case proto::QueryWhat::crossings:
+      reply.data = guarantee_.count(*world_);
+      break;
     case proto::QueryWhat::grippers:
       reply.data = grippers_of(*world_);
       break;
@@ -124,24 +127,21 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
 }
 
 /// Which cloths sleep is told when it changes.
-void Room::tell_sleep() {
+/// @returns whether it did
+bool Room::tell_sleep() {
   const std::vector<char>& asleep = world_->sleep().asleep();
-  if (asleep == asleep_) return;
+  if (asleep == asleep_) return false;
   asleep_ = asleep;
   metrics_.set_asleep(static_cast<int>(std::count(asleep_.begin(), asleep_.end(), 1)));
   state_changed_ = true;
+  return true;
 }
 
-/// Says once of each object that it has gone through the cloth.
-void Room::tell_voided() {
-  voided_.resize(world_->colliders().size(), false);
-  for (std::size_t k = 0; k < voided_.size(); ++k) {
-    const bool voided = world_->colliders()[k].voided;
-    if (voided && !voided_[k])
-      notify(proto::NoticeLevel::warning, "guarantee_void",
-             world_->def().colliders[k].name +
-                 " was forced through the cloth: that nothing crosses is no longer promised");
-    voided_[k] = voided;
+/// Says when the promise that nothing crosses has ended or is back.
+void Room::tell_guarantee() {
+  for (GuaranteeWatch::News& news : guarantee_.take_news()) {
+    notify(news.level, news.code, std::move(news.message));
+    state_changed_ = true;
   }
 }
 
@@ -163,21 +163,6 @@ void Room::tell_grabs() {
   if (held == scene_grabs_) return;
   scene_grabs_ = std::move(held);
   grabs_changed_ = true;
-}
-
-/// Says once what started where nothing can be promised about it, and when all is clear.
-void Room::tell_bad_starts() {
-  std::vector<std::string> found = world_->bad_starts();
-  if (found == bad_starts_) return;
-  for (const std::string& what : found) {
-    if (std::find(bad_starts_.begin(), bad_starts_.end(), what) == bad_starts_.end())
-      notify(proto::NoticeLevel::warning, "guarantee_void",
-             what + ": until it is out, that nothing crosses is not promised there");
-  }
-  if (found.empty())
-    notify(proto::NoticeLevel::info, "guarantee_back",
-           "what started inside is out: nothing crosses from now on");
-  bad_starts_ = std::move(found);
 }
 
 }  // namespace weft::server

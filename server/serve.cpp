@@ -98,6 +98,7 @@ RoomOptions room_options(const ServerOptions& options, const SceneLibrary& libra
   room.tick_rate = options.rate;
   room.settings = options.settings;
   room.paused = options.paused;
+  room.count_pause = static_cast<std::uint32_t>(options.count_crossings);
   room.version = version_info().version;
   room.session = random_session();
   for (const SceneInfo& scene : library.list()) room.scene_names.push_back(scene.name);

@@ -14,7 +14,7 @@
 #include "core/scenes/scenes.h"
 #include "core/world/verdict.h"
 #include "core/world/world.h"
-#include "core/world/world_crossings.h"
+#include "core/world/crossing_counter.h"
 #include "server/clock.h"
 #include "server/options.h"
 #include "server/scene_library.h"
@@ -72,10 +72,10 @@ void measure_tick(World<float>& world, Measurement& m) {
 }
 
 /// Looks for penetrations and counts crossings.
-void look(World<float>& world, bool judged, Bvh<double>& tree, Measurement& m) {
+void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Measurement& m) {
   ++m.checks;
   m.deepest = std::max(m.deepest, world.deepest_penetration());
-  const WorldCrossings found = judged ? m.verdict.crossing_now : count_crossings(world, tree);
+  const WorldCrossings found = judged ? m.verdict.crossing_now : counter.count(world);
   if (found.total() == 0) return;
   m.cloth_crossings += found.cloths.proper + found.cloths.touching;
   m.object_crossings += found.objects.proper + found.objects.touching;
@@ -87,12 +87,12 @@ void look(World<float>& world, bool judged, Bvh<double>& tree, Measurement& m) {
 Measurement run(World<float>& world, const SimulateOptions& options) {
   Measurement m;
   m.ticks.reserve(static_cast<std::size_t>(options.ticks));
-  Bvh<double> tree;
+  CrossingCounter<float> counter;
   const bool judged = world.def().verdict.strain > 0;
   for (int i = 1; i <= options.ticks; ++i) {
     measure_tick(world, m);
     if (judged) m.verdict.look(world);
-    if (i % options.check_every == 0 || i == options.ticks) look(world, judged, tree, m);
+    if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
   std::sort(m.ticks.begin(), m.ticks.end());
   return m;

@@ -1,5 +1,7 @@
 #include "core/diagnostics/crossings.h"
 
+#include <utility>
+
 #include "core/math/exact_sign.h"
 
 namespace weft {
@@ -25,19 +27,23 @@ bool share_vertex(const Edge& edge, const Triangle& t) {
   return false;
 }
 
-/// Adds all pairs of an edge over x and a triangle over y.
-/// @param one_cloth  both belong to the same particles, so pairs that share one are left out
-/// @param tree       empty, or over the same triangles
-void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
-                   const std::vector<Triangle>& triangles, bool one_cloth, Bvh<double>& tree,
-                   Crossings& sum) {
-  std::vector<Aabb<double>> boxes;
+/// Boxes around triangles, which keep their room.
+void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
+               std::vector<Aabb<double>>& boxes) {
+  boxes.clear();
   for (const Triangle& t : triangles) {
     Aabb<double> box;
-    for (const Index v : t) box.add(at(y, v));
+    for (const Index v : t) box.add(at(x, v));
     boxes.push_back(box);
   }
-  tree.empty() ? tree.build(boxes) : tree.refit(boxes);
+}
+
+/// Adds all pairs of an edge over x and a triangle over y.
+/// @param one_cloth  both belong to the same particles, so pairs that share one are left out
+/// @param tree       over the triangles where they are
+void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
+                   const std::vector<Triangle>& triangles, bool one_cloth, const Bvh<double>& tree,
+                   Crossings& sum) {
   for (const Edge& edge : edges) {
     const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
     Aabb<double> box;
@@ -51,6 +57,13 @@ void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Pos
       sum.touching += found.touching;
     });
   }
+}
+
+std::vector<Edge> pairs_of(const std::vector<MeshEdge>& edges) {
+  std::vector<Edge> pairs;
+  pairs.reserve(edges.size());
+  for (const MeshEdge& e : edges) pairs.push_back({e.a, e.b});
+  return pairs;
 }
 
 }  // namespace
@@ -69,11 +82,44 @@ Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3
   return proper ? Crossings{1, 0} : Crossings{0, 1};
 }
 
+CrossingSurface::CrossingSurface(std::vector<Edge> edges, std::vector<Triangle> triangles)
+    : edges_(std::move(edges)), triangles_(std::move(triangles)) {}
+
+CrossingSurface::CrossingSurface(const TriangleMesh& mesh)
+    : CrossingSurface(pairs_of(edges_of(mesh)), mesh.triangles) {}
+
+void CrossingSurface::fit() {
+  if (triangles_.empty()) return;
+  fit_boxes(positions_, triangles_, boxes_);
+  tree_.empty() ? tree_.build(boxes_) : tree_.refit(boxes_);
+}
+
+Crossings count_self_crossings(const CrossingSurface& cloth) {
+  Crossings sum;
+  add_crossings(cloth.positions(), cloth.edges(), cloth.positions(), cloth.triangles(), true,
+                cloth.tree(), sum);
+  return sum;
+}
+
+Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object) {
+  Crossings sum;
+  const auto add = [&sum](const CrossingSurface& a, const CrossingSurface& b) {
+    if (b.triangles().empty()) return;
+    add_crossings(a.positions(), a.edges(), b.positions(), b.triangles(), false, b.tree(), sum);
+  };
+  add(cloth, object);
+  add(object, cloth);
+  return sum;
+}
+
 template <class Real>
 Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
                                const std::vector<Triangle>& triangles, Bvh<double>& tree) {
   Crossings sum;
   const Positions positions = in_double(x);
+  std::vector<Aabb<double>> boxes;
+  fit_boxes(positions, triangles, boxes);
+  tree.empty() ? tree.build(boxes) : tree.refit(boxes);
   add_crossings(positions, edges, positions, triangles, true, tree, sum);
   return sum;
 }
@@ -81,14 +127,10 @@ Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>
 template <class Real>
 Crossings count_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
                           const std::vector<Triangle>& triangles, const TriangleMesh& mesh) {
-  Crossings sum;
-  const Positions positions = in_double(x);
-  Bvh<double> mesh_tree, cloth_tree;
-  add_crossings(positions, edges, mesh.positions, mesh.triangles, false, mesh_tree, sum);
-  std::vector<Edge> mesh_edges;
-  for (const MeshEdge& e : edges_of(mesh)) mesh_edges.push_back({e.a, e.b});
-  add_crossings(mesh.positions, mesh_edges, positions, triangles, false, cloth_tree, sum);
-  return sum;
+  CrossingSurface cloth(edges, triangles), object(mesh);
+  cloth.place(x.size(), [&x](std::size_t i) -> Vec3d { return x[i].template cast<double>(); });
+  object.place(mesh.positions.size(), [&mesh](std::size_t i) { return mesh.positions[i]; });
+  return count_crossings(cloth, object);
 }
 
 #define WEFT_INSTANTIATE(Real)                                                              \

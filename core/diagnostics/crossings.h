@@ -16,11 +16,52 @@ namespace weft {
 struct Crossings {
   std::size_t proper = 0;    ///< the edge passes through the inside of the triangle
   std::size_t touching = 0;  ///< they meet, but an end or a border only; coplanar pairs excepted
+
+  std::size_t all() const { return proper + touching; }
 };
 
 /// Whether and how edge pq and triangle abc meet, exactly. Coplanar ones count as neither.
 Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b,
                       const Vec3d& c);
+
+/// Edges and triangles of cloth or of an object, for those who count again and again: it keeps its
+/// arrays and its tree, so that nothing is allocated from the second placing on.
+class CrossingSurface {
+ public:
+  /// @param edges, triangles  indices into the positions that `place` gets
+  CrossingSurface(std::vector<Edge> edges, std::vector<Triangle> triangles);
+  /// Of a mesh, not placed yet.
+  explicit CrossingSurface(const TriangleMesh& mesh);
+
+  /// Puts vertex i at at(i) [m], finite.
+  /// @param count  of vertices, the same each time
+  template <class At>
+  void place(std::size_t count, At&& at) {
+    positions_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) positions_[i] = at(i);
+    fit();
+  }
+
+  const std::vector<Vec3d>& positions() const { return positions_; }
+  const std::vector<Edge>& edges() const { return edges_; }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const Bvh<double>& tree() const { return tree_; }  ///< over the triangles where they are
+
+ private:
+  void fit();
+
+  std::vector<Edge> edges_;
+  std::vector<Triangle> triangles_;
+  std::vector<Vec3d> positions_;
+  std::vector<Aabb<double>> boxes_;
+  Bvh<double> tree_;
+};
+
+/// Edges through triangles that share no vertex with them. It has been placed.
+Crossings count_self_crossings(const CrossingSurface& cloth);
+
+/// Edges of either through triangles of the other. Both have been placed.
+Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object);
 
 /// Edges of cloths through triangles of cloths that share no particle with them.
 /// @param x     positions of all particles [m], finite

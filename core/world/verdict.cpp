@@ -1,30 +1,15 @@
 #include "core/world/verdict.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/error.h"
-#include "core/geometry/distance.h"
 
 namespace weft {
 namespace {
 
 /// Parts of the energy at play, and of the extent, that may be amiss.
 constexpr double kMostExcess = 0.01, kBack = 0.01;
-
-/// Distance of two features of cloths where they are now [m]: the normals of rows are from when
-/// these were built, and a pair that has just come near has no row yet.
-template <class Real>
-double gap_of(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) {
-  std::array<Vec3d, 4> p;
-  for (std::size_t k = 0; k < 4; ++k)
-    p[k] = x[static_cast<std::size_t>(pair.particle[k])].template cast<double>();
-  if (pair.kind == PairKind::vertex_triangle)
-    return (p[0] - closest_on_triangle(p[0], p[1], p[2], p[3]).point).norm();
-  const SegmentPoints<double> nearest = closest_of_segments(p[0], p[1], p[2], p[3]);
-  return (nearest.p - nearest.q).norm();
-}
 
 /// Largest change of a cloth's mean height between two states [m].
 template <class Real>
@@ -102,7 +87,7 @@ void Verdict<Real>::look(const World<Real>& world) {
   look_at_energy(world);
   look_at_rest(world);
   look_at_hands(world);
-  crossing_now = count_crossings(world, tree_);
+  crossing_now = counter_.count(world);
   const std::uint64_t found = crossing_now.total();
   if (world.report().time <= world.def().verdict.clear_after) {
     early_crossings += found;
@@ -110,15 +95,7 @@ void Verdict<Real>::look(const World<Real>& world) {
     crossings += found;
     crossed_ticks += found > 0 ? 1 : 0;
     deepest = std::max(deepest, world.deepest_penetration());
-    for (const ContactRow<Real>& row : world.contact().rows()) {
-      if (!row.responds) continue;
-      smallest_gap = std::min(smallest_gap, static_cast<double>(world.contact().gap_of(row, x)));
-    }
-    if (world.guard()) {
-      for (const GuardedPair<Real>& pair : world.guard()->pairs()) {
-        if (!pair.gone && !pair.open) smallest_gap = std::min(smallest_gap, gap_of(pair, x));
-      }
-    }
+    smallest_gap = std::min(smallest_gap, weft::smallest_gap(world));
   }
   if (!world.guard()) return;
   const GuardCounts& counts = world.guard()->counts();

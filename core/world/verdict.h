@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/bvh.h"
+#include "core/world/crossing_counter.h"
 #include "core/world/world.h"
-#include "core/world/world_crossings.h"
 
 namespace weft {
 
@@ -47,7 +46,7 @@ class Verdict {
   void look_at_rest(const World<Real>& world);
   void look_at_hands(const World<Real>& world);
 
-  Bvh<double> tree_;
+  CrossingCounter<Real> counter_;
   std::optional<double> start_energy_;  ///< [J]
   double given_ = 0;                    ///< by work and insults since [J]
   double at_play_ = 0, worked_ = 0;  ///< most mechanical energy, and sum of all that is given [J]

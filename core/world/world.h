@@ -70,6 +70,16 @@ struct ClothHit {
   Index nearest_particle = kNone;  ///< the corner nearest to the hit
 };
 
+/// What nothing is promised about, because it started where it should not be.
+struct BadStarts {
+  std::vector<std::string> what;  ///< in words, e.g. "sheet started inside ball"
+  /// Particles inside objects, and pairs of features of cloths that cross or touch, with those
+  /// around them.
+  std::size_t pairs = 0;
+
+  bool operator==(const BadStarts&) const = default;
+};
+
 /// What the world takes from outside. Neither changes any result.
 struct Runtime {
   Executor* executor = nullptr;  ///< runs independent chunks; null: one after the other
@@ -114,7 +124,7 @@ class World {
   bool move_collider(std::size_t collider, const MoveDef& move);
 
   /// Lets a collider follow its keyframes again, or stay where it is if it has none.
-  /// False if there is no such collider.
+  /// Throws DefinitionError if it is the jaw of a gripper. False if there is no such collider.
   bool release_collider(std::size_t collider);
 
   /// Throws DefinitionError if a field is out of range. False if there is no such gripper.
@@ -145,10 +155,18 @@ class World {
   /// What nothing is promised about, because it started where it should not be, in words; empty as
   /// soon as all is clear.
   std::vector<std::string> bad_starts() const;
+  /// So many pairs nothing is promised about; see BadStarts.
+  std::size_t open_pairs() const;
+  /// Those that the coming tick would find and leave, if nothing were changed until then: in a
+  /// world at its start nobody has looked yet. Works on a copy, as `coming_reactions` does.
+  BadStarts coming_bad_starts() const;
 
   /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
   void measure_forces(bool wanted);
-  /// Those of the last tick, if they were measured in it; null otherwise.
+  /// Looks one tick ahead, once, where forces are wanted and no tick has measured them since the
+  /// state was set: `reactions` tells those of `coming_reactions` then.
+  void measure_present_forces();
+  /// Those of the last tick, if they were measured in it, or of the coming one; null otherwise.
   const Reactions* reactions() const { return reactions_ ? &*reactions_ : nullptr; }
   /// Those that the coming tick would have, if nothing were changed until then. Works on a copy of
   /// the world: costs a tick and more memory than the world itself, and changes nothing.
@@ -202,6 +220,7 @@ class World {
   void gather(double radius, std::uint64_t seed);
   void run_script();
   void finish_pins();
+  void refuse_jaw(std::size_t collider) const;
   void masses_changed();
   void sleep_changed();
   void wake(Index particle);

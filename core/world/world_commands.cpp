@@ -76,12 +76,18 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
   return force->template cast<double>() * (ticks * tick_seconds());
 }
 
+/// Throws DefinitionError if the collider is a jaw.
+template <class Real>
+void World<Real>::refuse_jaw(std::size_t collider) const {
+  if (collider < colliders_.size() - 2 * grippers_.size()) return;
+  throw DefinitionError("collider", def_.colliders[collider].name, "an object that is no jaw",
+                        "a gripper moves its jaws: command the gripper");
+}
+
 template <class Real>
 bool World<Real>::move_collider(std::size_t collider, const MoveDef& move) {
   if (collider >= colliders_.size()) return false;
-  if (collider >= colliders_.size() - 2 * grippers_.size())
-    throw DefinitionError("collider", def_.colliders[collider].name, "an object that is no jaw",
-                          "a gripper moves its jaws: command the gripper");
+  refuse_jaw(collider);
   validate(move, "");
   check_may_turn(def_.colliders[collider], move.target, "");
   MoveDef wanted = move;
@@ -101,6 +107,7 @@ bool World<Real>::command_gripper(std::size_t gripper, const GripperCommand& com
 template <class Real>
 bool World<Real>::release_collider(std::size_t collider) {
   if (collider >= colliders_.size()) return false;
+  refuse_jaw(collider);
   colliders_[collider].move.reset();
   return true;
 }
@@ -195,6 +202,14 @@ std::vector<std::string> World<Real>::bad_starts() const {
 }
 
 template <class Real>
+std::size_t World<Real>::open_pairs() const {
+  std::size_t pairs = guard_ ? guard_->open_pairs() : 0;
+  for (const BadStart<Real>& start : contact_.bad_starts())
+    pairs += colliders_[start.collider].voided ? 0 : start.particles;
+  return pairs;
+}
+
+template <class Real>
 std::vector<Aabb<float>> World<Real>::debug_boxes(const std::string& tree, int level) {
   if (!debug_trees_) debug_trees_.emplace(model_, def_.colliders);
   return debug_trees_->boxes(tree, level, state_.x);
@@ -222,6 +237,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template bool World<Real>::move_grab(GrabId, const Vec3d&);                           \
   template bool World<Real>::release(GrabId);                                           \
   template std::optional<Vec3d> World<Real>::fire(GrabId);                              \
+  template void World<Real>::refuse_jaw(std::size_t) const;                             \
   template bool World<Real>::move_collider(std::size_t, const MoveDef&);                \
   template bool World<Real>::command_gripper(std::size_t, const GripperCommand&);       \
   template bool World<Real>::release_collider(std::size_t);                             \
@@ -231,6 +247,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template std::uint64_t World<Real>::hash() const;                                     \
   template double World<Real>::deepest_penetration() const;                             \
   template std::vector<std::string> World<Real>::bad_starts() const;                    \
+  template std::size_t World<Real>::open_pairs() const;                                 \
   template std::vector<Aabb<float>> World<Real>::debug_boxes(const std::string&, int);  \
   template std::vector<std::string> World<Real>::debug_tree_names();                    \
   template int World<Real>::debug_tree_levels(const std::string&);

@@ -174,6 +174,10 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
     parse_field(path, info, text, value);
   });
   if (!found) throw unknown_key(def, key);
+  // The guard belongs to Weft's contact: a scene that has it gets the seed's own in its place.
+  if (wanted == "model" && contact_of(def) == ContactModel::seed &&
+      def.contact.seed.self == SelfContact::guard)
+    def.contact.seed.self = SelfContact::triangles;
 }
 
 std::vector<FieldListing> list_fields(const WorldDef& def) {

@@ -115,7 +115,8 @@ void validate(const WorldDef& def);
 
 /// Sets one field by its path, e.g. "fabric.shear" = "20", "environment.wind" = "3,0,0" or, where
 /// there are several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." are those of the
-/// first. "fabric" = "cotton" (or "cloths[1].fabric") takes all values of a preset.
+/// first. "fabric" = "cotton" (or "cloths[1].fabric") takes all values of a preset. "model" =
+/// "seed" takes the seed's contact of particles with triangles where contact.self is the guard.
 /// Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
 void set_field(WorldDef& def, const std::string& key, const std::string& text);
 

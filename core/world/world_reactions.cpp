@@ -14,6 +14,11 @@ void World<Real>::measure_forces(bool wanted) {
 }
 
 template <class Real>
+void World<Real>::measure_present_forces() {
+  if (measures_forces_ && !reactions_) reactions_ = coming_reactions();
+}
+
+template <class Real>
 void World<Real>::take_reactions() {
   Reactions found;
   found.tick = tick_;
@@ -59,11 +64,20 @@ Reactions World<Real>::coming_reactions() const {
   return *trial.reactions();
 }
 
-#define WEFT_INSTANTIATE(Real)                     \
-  template void World<Real>::measure_forces(bool); \
-  template void World<Real>::take_reactions();     \
-  template World<Real> World<Real>::copy() const;  \
-  template Reactions World<Real>::coming_reactions() const;
+template <class Real>
+BadStarts World<Real>::coming_bad_starts() const {
+  World trial = copy();
+  trial.step();
+  return {trial.bad_starts(), trial.open_pairs()};
+}
+
+#define WEFT_INSTANTIATE(Real)                              \
+  template void World<Real>::measure_forces(bool);          \
+  template void World<Real>::measure_present_forces();      \
+  template void World<Real>::take_reactions();              \
+  template World<Real> World<Real>::copy() const;           \
+  template Reactions World<Real>::coming_reactions() const; \
+  template BadStarts World<Real>::coming_bad_starts() const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -18,7 +18,8 @@ export type QueryWhat =
   | 'measurements'
   | 'contacts'
   | 'reactions'
-  | 'grippers';
+  | 'grippers'
+  | 'crossings';
 
 /** A hierarchy of boxes. */
 export interface Tree {
@@ -124,6 +125,25 @@ export interface Environment {
   fans: Fan[];
 }
 
+/** Whether it holds that cloth goes through nothing. */
+export interface Guarantee {
+  state: 'held' | 'bad_start' | 'void' | 'none';
+  covers: ('objects' | 'cloth')[];
+  /** About so many nothing is promised. */
+  pairs: number;
+  /** In words; none if it is held. */
+  reasons: string[];
+}
+
+/** Edges of cloths through triangles of cloths, and of cloths and objects through each other. */
+export interface Crossings {
+  count: number;
+  /** When they were counted. */
+  tick: number;
+  /** Between what contact keeps apart then [m], negative inside an object; null if nothing is near. */
+  smallest_gap: number | null;
+}
+
 export interface State extends Settings {
   op: 'state';
   tick: number;
@@ -141,6 +161,9 @@ export interface State extends Settings {
   real_time_factor: number;
   /** Cloths at rest that are not stepped; no frames come while all of them are. */
   sleeping: { islands: number; cloths: string[] };
+  guarantee: Guarantee;
+  /** As counted last; null before. */
+  crossings: Crossings | null;
   strain: Strain;
   energy: Energy;
 }

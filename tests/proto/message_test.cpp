@@ -89,6 +89,8 @@ State state() {
   s.particles = 600;
   s.step_ms = 0.42;
   s.real_time_factor = 1;
+  s.guarantee.covers = {"objects", "cloth"};
+  s.crossings = {0, 5158, 0.0031};
   s.strain = {0.021, 0.012};
   s.energy = kEnergy;
   return s;
@@ -193,6 +195,7 @@ std::vector<std::string> replies() {
       encode_reply(23, VectorsReply{600, QueryWhat::boxes, std::span<const float>(kBoxes), 6}),
       encode_reply(24, QueryReply{600, std::vector<ContactInfo>{contact()}}),
       encode_reply(25, QueryReply{600, reactions()}),
+      encode_reply(27, QueryReply{600, Crossings{0, 600, {}}}),
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),
@@ -298,6 +301,23 @@ TEST_CASE("Contacts of cloth with cloth name no object, unknown forces of pins a
   ReactionInfo unknown = reactions();
   unknown.pins.reset();
   CHECK_FALSE(json::parse(encode_reply(1, QueryReply{0, unknown}))["data"].contains("pins"));
+}
+
+TEST_CASE("A guarantee that does not hold is told with its reasons, what was not counted is null") {
+  State s = state();
+  s.crossings.reset();
+  s.guarantee = {GuaranteeState::bad_start, {"objects"}, 12, {"scarf started inside ball"}};
+  const json told = json::parse(encode_state(s));
+  CHECK(told["crossings"].is_null());
+  CHECK(told["guarantee"] == json::parse(R"({"state":"bad_start","covers":["objects"],"pairs":12,
+                                             "reasons":["scarf started inside ball"]})"));
+  const auto word = [&s](GuaranteeState guarantee) {
+    s.guarantee.state = guarantee;
+    return json::parse(encode_state(s))["guarantee"]["state"].get<std::string>();
+  };
+  CHECK(word(GuaranteeState::held) == "held");
+  CHECK(word(GuaranteeState::broken) == "void");
+  CHECK(word(GuaranteeState::none) == "none");
 }
 
 TEST_CASE("Vectors are written as rows of three and read back bit for bit") {

@@ -64,6 +64,12 @@ class CommandLine(unittest.TestCase):
             (["simulate", "--ticks", "0"], "1 to 10000000"),
             (["simulate", "--threads", "65"], "1 to 64"),
             (["simulate", "--check-every", "0"], "1 to 10000000"),
+            (["serve", "--count-crossings", "-1"], "0 to 1000000"),
+            (["serve", "--count-crossings", "1000001"], "0 to 1000000"),
+            (["serve", "--count-crossings", "1.5"], "--count-crossings"),
+            (["serve", "--count-crossings", "nan"], "--count-crossings"),
+            (["serve", "--count-crossings", ""], "--count-crossings"),
+            (["serve", "--count-crossings"], "--count-crossings has no value"),
             (["simulate", "--set", "fabric.shear=1e9"], "0 to 1e+06"),
             (["simulate", "--set", "fabric.shear=nan"], "fabric.shear"),
             (["simulate", "--set", "cloth.rows=2.5"], "cloth.rows"),
@@ -179,6 +185,10 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(weft["stages"][stage]["work"], 0)
             self.assertGreater(seed["stages"][stage]["work"], 0)
         self.assertEqual(seed["stages"]["stretch"]["work"], 0)  # its springs are no forces
+        hard = json.loads(run("simulate", "--scene", "hard-noise", "--ticks", "2", "--json",
+                              "--set", "model=seed").stdout)
+        self.assertEqual(hard["solver"], "relaxation")
+        self.assertGreater(hard["stages"]["self_contact"]["work"], 0)  # its own, as the scene asks for one
         refused = run("simulate", "--set", "model=sed")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("weft or seed", refused.stderr)

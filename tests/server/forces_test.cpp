@@ -87,6 +87,64 @@ TEST_CASE("frames tell forces only to those who ask, and nothing is measured bef
   CHECK(t.room->world().reactions() == nullptr);
 }
 
+/// A room whose cloth lies on the floor, by itself, and sleeps if the scene lets it.
+struct LyingRoom : TestRoom {
+  explicit LyingRoom(const char* sleep_after)
+      : TestRoom(false, {{"environment.drag", "10"}, {"sleep.after", sleep_after}}) {
+    join(1);
+    say(1, R"({"op":"release","all":true})");
+    say(1, R"({"op":"move","collider":"ball","position":[5,0,0],"speed":20})");
+    tick(900);
+  }
+
+  /// As after a viewer's `view`.
+  proto::Frame ask_for_forces() {
+    output.viewers_want_forces = true;
+    room->take({1, ++number, Noted{true}});
+    clock.now += 0.1;
+    room->finish_turn();
+    REQUIRE(output.frames_with_forces.size() >= 1);
+    return decoded(output.frames_with_forces.back());
+  }
+  std::size_t asked_contacts() {
+    return say(1, R"({"op":"query","id":70,"what":"contacts"})")["data"].size();
+  }
+};
+
+TEST_CASE("who asks a paused room for forces gets the contacts that a query tells, at once") {
+  LyingRoom t("0");
+  t.say(1, R"({"op":"pause"})");
+  const std::string before = proto::hash_text(t.room->world().hash());
+  const proto::Frame frame = t.ask_for_forces();
+  CHECK(proto::hash_text(t.room->world().hash()) == before);
+  CHECK(frame.header.tick == t.room->world().tick());
+  CHECK(frame.contacts.size() > 4);
+  CHECK(frame.contacts.size() == t.asked_contacts());
+  CHECK(frame.reactions.size() == 2);  // of the objects
+  // Another state has other contacts, and nobody has to step for them.
+  t.say(1, R"({"op":"reset"})");
+  t.clock.now += 0.1;
+  t.room->finish_turn();
+  const proto::Frame at_start = decoded(t.output.frames_with_forces.back());
+  CHECK(at_start.header.tick == 0);
+  CHECK(at_start.contacts.empty());
+  CHECK(at_start.reactions.size() == 4);  // of the pins, too
+}
+
+TEST_CASE("who asks a sleeping room for forces gets the contacts that a query tells, at once") {
+  LyingRoom t("0.5");
+  REQUIRE(t.room->world().sleep().all_asleep());
+  const proto::Frame frame = t.ask_for_forces();
+  CHECK(frame.contacts.size() > 4);
+  CHECK(frame.contacts.size() == t.asked_contacts());
+  // And who joins them later, as well.
+  t.tick(10);
+  t.join(2);
+  t.tick(10);
+  CHECK(decoded(t.output.frames_with_forces.back()).contacts.size() == frame.contacts.size());
+  CHECK(t.room->world().report().rested);
+}
+
 TEST_CASE("a viewer that asks for forces gets the frames that have them, the others do not") {
   FakeClock clock;
   const Clock now = clock.clock();

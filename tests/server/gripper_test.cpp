@@ -47,7 +47,7 @@ TEST_CASE("a gripper closes, lifts and opens by command, and tells what it carri
   CHECK(t.gripper()["opening"].get<double>() == Approx(0.05));
 }
 
-TEST_CASE("an unknown gripper and a moved jaw are refused, and nothing changes") {
+TEST_CASE("an unknown gripper and a moved or released jaw are refused, and nothing changes") {
   GripperRoom t;
   const std::uint64_t before = t.room->world().hash();
   const json unknown = t.say(1, R"({"op":"gripper","id":1,"name":"hand","opening":0})");
@@ -57,7 +57,16 @@ TEST_CASE("an unknown gripper and a moved jaw are refused, and nothing changes")
   const json jaw = t.say(1, R"({"op":"move","id":2,"collider":"gripper.left","position":[0,1,0]})");
   CHECK(jaw["code"] == "out_of_range");
   CHECK(jaw["field"] == "collider");
+  for (const char* name : {"gripper.left", "gripper.right"}) {
+    const json released =
+        t.say(1, json{{"op", "move"}, {"id", 3}, {"collider", name}, {"release", true}}.dump());
+    CHECK(released["code"] == "out_of_range");
+    CHECK(released["field"] == "collider");
+    CHECK(released["value"] == name);
+    CHECK_THAT(released["hint"].get<std::string>(), Catch::Contains("gripper"));
+  }
   CHECK(t.room->world().hash() == before);
+  CHECK(t.room->log().entries().empty());
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 import type { Roster, State } from '../../proto/js/messages.js';
+import { crossings_text, guarantee_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
@@ -29,6 +30,7 @@ export class Panels {
     if (phase === 'open') return;
     this.ticks = [];
     for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
+    for (const id of ['guarantee', 'crossings']) element(id).hidden = true;
     element('viewers').replaceChildren();
   }
 
@@ -40,9 +42,22 @@ export class Panels {
     const asleep = state.sleeping.cloths.length;
     element('asleep').closest('div')!.hidden = asleep === 0;
     set_text('asleep', String(asleep));
+    this.guarantee(state);
     if (!state.paused) return;
     this.ticks = [];
     set_text('tick-rate', '0');
+  }
+
+  private guarantee({ guarantee, crossings }: State): void {
+    const line = element('guarantee');
+    line.hidden = false;
+    line.dataset.state = guarantee.state;
+    set_text('guarantee-text', guarantee_text(guarantee));
+    const counted = element('crossings');
+    counted.hidden = crossings === null;
+    if (!crossings) return;
+    counted.dataset.crossed = String(crossings.count > 0);
+    set_text('crossings', crossings_text(crossings));
   }
 
   /** What is less than the scene asks for is shown as long as it is. */

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/world/world.h"
-#include "core/world/world_crossings.h"
+#include "core/world/crossing_counter.h"
 #include "tests/support/random.h"
 #include "tests/support/sheets.h"
 
@@ -76,8 +76,8 @@ struct DragFigures {
   int crossed_ticks = 0, first_tick = -1, ticks = 0, blow_ups = 0;
   double deepest = 0, strain = 0, lost = 0;
 
-  void look(const World<float>& world, Bvh<double>& tree) {
-    const std::size_t found = count_crossings(world, tree).total();
+  void look(const World<float>& world, CrossingCounter<float>& counter) {
+    const std::size_t found = counter.count(world).total();
     crossings += found;
     if (found > 0 && first_tick < 0) first_tick = static_cast<int>(world.tick());
     crossed_ticks += found > 0 ? 1 : 0;
@@ -97,11 +97,11 @@ inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, 
   World<float> world(def);
   for (Vec3f& v : world.state().v) v += random.vector(0.05).cast<float>();
   world.accept_state();
-  Bvh<double> tree;
+  CrossingCounter<float> counter;
   DragFigures figures;
   for (int tick = 0; tick < settle_ticks; ++tick) {
     world.step();
-    figures.look(world, tree);
+    figures.look(world, counter);
   }
   for (int drag = 0; drag < drags; ++drag) {
     std::vector<WanderingHand> hands;
@@ -112,7 +112,7 @@ inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, 
       for (WanderingHand& hand : hands) held = hand.move(tick, world, random) || held;
       idle += held ? 0 : 1;
       world.step();
-      figures.look(world, tree);
+      figures.look(world, counter);
     }
   }
   return figures;

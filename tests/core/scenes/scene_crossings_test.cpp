@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/scenes/scenes.h"
-#include "core/world/world_crossings.h"
+#include "core/world/crossing_counter.h"
 
 // In every built-in scene that promises it nothing crosses, at each tick. The hard cases have their
 // own verdicts (tests/stability); those of the seed promise nothing.
@@ -39,14 +39,14 @@ int check_scenes(int ticks) {
     ++looked_at;
     World<float> world(make_scene(scene.name, mesh_directory()));
     REQUIRE(world.guard() != nullptr);
-    Bvh<double> tree;
+    CrossingCounter<float> counter;
     std::size_t cloths = 0, objects = 0;
     std::uint64_t first = 0;
     double deepest = 0;
     for (int tick = 0; tick < ticks; ++tick) {
       world.step();
       if (world.report().time <= world.def().verdict.clear_after) continue;
-      const WorldCrossings found = count_crossings(world, tree);
+      const WorldCrossings found = counter.count(world);
       if (found.total() > 0 && first == 0) first = world.tick();
       cloths += found.cloths.proper + found.cloths.touching;
       objects += found.objects.proper + found.objects.touching;

@@ -83,6 +83,39 @@ TEST_CASE("every scene has a name, one sentence and unique names") {
   CHECK_THROWS_AS(make_scene("nothing"), DefinitionError);
 }
 
+TEST_CASE("the model of the seed can be chosen for every scene that has no gripper") {
+  const std::string meshes = mesh_directory();
+  int built = 0;
+  for (const SceneInfo& scene : scenes()) {
+    INFO(scene.name);
+    WorldDef def;
+    try {
+      def = make_scene(scene.name, meshes);
+    } catch (const DefinitionError&) {
+      REQUIRE(meshes.empty());  // its mesh is not there
+      continue;
+    }
+    const bool guarded = def.contact.seed.self == SelfContact::guard;
+    set_field(def, "model", "seed");
+    if (!def.grippers.empty()) {
+      CHECK_THROWS_AS(World<float>(def), DefinitionError);
+      continue;
+    }
+    const World<float> world(def);
+    CHECK(solver_of(def) == SolverKind::relaxation);
+    if (guarded) CHECK(def.contact.seed.self == SelfContact::triangles);
+    ++built;
+  }
+  CHECK(built > 20);
+}
+
+TEST_CASE("the guard that was asked for by name is still refused with the contact of the seed") {
+  WorldDef def;
+  set_field(def, "model", "seed");
+  set_field(def, "contact.self", "guard");
+  CHECK_THROWS_AS(validate(def), DefinitionError);
+}
+
 TEST_CASE("the tablecloth rests on the table, hangs over all sides, and enters nothing") {
   const WorldDef def = make_scene("table");
   World<float> world(def);

@@ -146,6 +146,7 @@ ACCEPTED = [
         turn_speed=2, id=9,
     ),
     accepted('{"op":"query","what":"grippers"}', op="query", what="grippers", format="json"),
+    accepted('{"op":"query","what":"crossings"}', op="query", what="crossings", format="json"),
     accepted('{"op":"query","what":"contacts"}', op="query", what="contacts", format="json"),
     accepted('{"op":"query","what":"reactions"}', op="query", what="reactions", format="json"),
     accepted('{"op":"query","what":"trees"}', op="query", what="trees", format="json"),

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/scenes/scenes.h"
+#include "core/world/crossing_counter.h"
 #include "tests/core/contact/drags.h"
 #include "tests/support/cloths.h"
 #include "tests/support/seeded_random.h"
@@ -76,7 +77,7 @@ struct Seen {
 template <class Real>
 Seen watch(World<Real>& world, int ticks) {
   Seen seen;
-  Bvh<double> tree;
+  CrossingCounter<Real> counter;
   const auto count = static_cast<double>(world.state().x.size());
   for (int tick = 0; tick < ticks; ++tick) {
     const Vec3Array<Real> before = world.state().x;
@@ -86,7 +87,7 @@ Seen watch(World<Real>& world, int ticks) {
       seen.path += way.norm() / count;
       seen.fall -= way[1] / count;
     }
-    seen.crossings += count_crossings(world, tree).total();
+    seen.crossings += counter.count(world).total();
     seen.deepest = std::max(seen.deepest, world.deepest_penetration());
   }
   seen.lost = lost_part(world);
