@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/world/world.h"
 #include "core/world/crossing_counter.h"
+#include "core/world/world.h"
 #include "tests/support/random.h"
 #include "tests/support/sheets.h"
 
