@@ -185,7 +185,7 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(weft["stages"][stage]["work"], 0)
             self.assertGreater(seed["stages"][stage]["work"], 0)
         self.assertEqual(seed["stages"]["stretch"]["work"], 0)  # its springs are no forces
-        hard = json.loads(run("simulate", "--scene", "hard-noise", "--ticks", "2", "--json",
+        hard = json.loads(run("simulate", "--scene", "hard-start-through", "--ticks", "2", "--json",
                               "--set", "model=seed").stdout)
         self.assertEqual(hard["solver"], "relaxation")
         self.assertGreater(hard["stages"]["self_contact"]["work"], 0)  # its own, as the scene asks for one
