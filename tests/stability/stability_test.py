@@ -17,12 +17,18 @@ class Stability(unittest.TestCase):
         self.assertEqual(list(TOLD), stability.cases())
         self.assertGreaterEqual(len(TOLD), 24)
 
+    def test_the_section_on_other_solvers_has_each_case(self):
+        section = stability.without_solvers(README)[1]
+        told = re.findall(r"^\| (hard-[\w-]+) \|", section, re.MULTILINE)
+        self.assertEqual(told, [name for name in stability.cases() if name not in stability.UNTRIED])
+
     def test_each_case_runs_and_tells_its_verdict(self):
         ticks = stability.TICKS if os.environ.get("WEFT_FULL") else SHORT_TICKS
         for name, told in TOLD.items():
             with self.subTest(case=name):
                 result = stability.run(name, ticks)
                 verdict = result["verdict"]
+                self.assertIn(f"verdicts are those of the solver `{result['solver']}`", README)
                 self.assertEqual(verdict["ticks"], ticks)
                 self.assertEqual(verdict["passed"], not verdict["failures"])
                 self.assertNotIn("a position is not finite", verdict["failures"])
