@@ -7,11 +7,17 @@
 
 namespace weft {
 
+/// Drape coefficients that are published for a kind of fabric [%].
+struct DrapeBand {
+  double low = 0, high = 0;  ///< both 0: none is known
+};
+
 /// A fabric by name.
 struct FabricPreset {
   const char* name;
   const char* description;
   FabricDef fabric;
+  DrapeBand drape;  ///< of a disc of 30 cm on one of 18 cm (BS 5058)
 };
 
 /// cotton, silk, wool, denim, leather, nylon. Sources of the values stand beside them.
@@ -34,6 +40,9 @@ double bending_rigidity(double areal_density, double bending_length);
 /// @param warp,weft      bending lengths of strips cut along warp and weft [m], 0 to
 /// kLongestBendingLength
 FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft);
+
+/// The published band of the preset that has exactly these values; both 0 for all others.
+DrapeBand published_drape(const FabricDef& fabric);
 
 /// The preset that has exactly these values; "default" for those of a FabricDef as it is made;
 /// "custom" for all others.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/cantilever.h"
 #include "core/diagnostics/drape.h"
 
@@ -33,10 +34,16 @@ std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<R
   }
   if (pinned == 0) return {};
   const DrapeMeasurement m = measure_drape(model, part, state.x, (centre / pinned).eval());
-  return {{"drape_coefficient_percent", m.coefficient},
-          {"folds", static_cast<double>(m.folds)},
-          {"droop_m", m.droop},
-          {"largest_speed_m_s", largest_speed(part, state)}};
+  std::vector<NamedNumber> all = {{"drape_coefficient_percent", m.coefficient},
+                                  {"folds", static_cast<double>(m.folds)},
+                                  {"droop_m", m.droop},
+                                  {"largest_speed_m_s", largest_speed(part, state)}};
+  const DrapeBand published = published_drape(part.fabric);
+  if (published.high > 0) {
+    all.push_back({"published_low_percent", published.low});
+    all.push_back({"published_high_percent", published.high});
+  }
+  return all;
 }
 
 template <class Real>

@@ -22,9 +22,10 @@ struct NamedNumber {
 };
 
 /// What the test reads off the first part of the model as it is now: for the drape coefficient,
-/// folds and droop; for the cantilever droop, angle, bending length and rigidity; for both the
-/// largest speed, so that one sees whether it rests. Empty for no test, and where the first part
-/// does not fit the test: nothing pinned, or for the cantilever no grid or nothing that hangs over.
+/// folds and droop, and the published band of the coefficient if the fabric is a preset with one;
+/// for the cantilever droop, angle, bending length and rigidity; for both the largest speed, so
+/// that one sees whether it rests. Empty for no test, and where the first part does not fit the
+/// test: nothing pinned, or for the cantilever no grid or nothing that hangs over.
 /// @param gravity  its size [m/s^2], which the rigidity is in proportion to
 template <class Real>
 std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,

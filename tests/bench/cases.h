@@ -55,8 +55,13 @@ struct Setting {
   int substeps = 1, sweeps = 1;
 };
 
-/// All settings, those of one solver together. Quick: every second one.
-std::vector<Setting> settings(bool quick);
+/// All settings, those of one solver together, each a different one. Quick: every second one.
+/// @param fewest  substeps a tick that the bending asks of XPBD and of the seed's relaxation: a
+///                world takes as many where it is asked for fewer, so settings start there
+std::vector<Setting> settings(bool quick, int fewest = 1);
+
+/// Substeps that bending asks of XPBD and of the seed's relaxation [a tick].
+int fewest_relaxing_substeps(const WorldDef& def);
 
 /// Applies a setting.
 /// @param stable_substeps  that verlet takes by itself

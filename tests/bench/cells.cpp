@@ -22,12 +22,26 @@ struct Run {
 };
 
 /// Cost of a whole run, from its second tick on [CPU s].
-double expected_seconds(const WorldDef& def, int ticks) {
+/// @param substeps  of its first tick
+double expected_seconds(const WorldDef& def, int ticks, int& substeps) {
   World<float> world(def);
-  world.step();
+  substeps = world.step().substeps;
   const double start = cpu_seconds();
   world.step();
   return (cpu_seconds() - start) * ticks;
+}
+
+/// Why a run that came to its end counts as failed; empty if it does not. Farther off than the
+/// cloth has moved in positions or in its mean shape, or by more energy than the fall from its own
+/// length brings, it tells nothing of the cloth any more.
+std::string why_failed(const ErrorVector& error) {
+  const std::pair<const char*, double> figures[] = {
+      {"positions", error.position}, {"mean shape", error.mean_shape}, {"energy", error.energy}};
+  for (const auto& [what, value] : figures) {
+    if (!std::isfinite(value)) return std::string(what) + " off by no finite number";
+    if (value > 1) return what + text(" off by %.0f %%", 100 * value, 0);
+  }
+  return {};
 }
 
 /// Follows one run to its end.
@@ -58,10 +72,8 @@ void run_once(const CaseResult& result, Run& run) {
   run.cell.error =
       compare(reference.model(), result.def.cloths[0], result.def.environment.gravity, path,
               result.reference.path, result.reference.first, result.reference.last);
-  if (!std::isfinite(run.cell.error.position)) {
-    run.cell.outcome = Outcome::failed;
-    run.cell.reason = "its error is not finite";
-  }
+  run.cell.reason = why_failed(run.cell.error);
+  if (!run.cell.reason.empty()) run.cell.outcome = Outcome::failed;
 }
 
 void time_again(Run& run) {
@@ -81,7 +93,7 @@ void plan(const CaseResult& result, const Effort& effort, Run& run) {
     run.cell.reason = result.reference.missing;
     return;
   }
-  const double seconds = expected_seconds(run.def, scene.ticks);
+  const double seconds = expected_seconds(run.def, scene.ticks, run.cell.substeps);
   const double budget = run_budget(scene, result.n) * effort.budget_factor;
   if (seconds > budget) {
     run.cell.reason = text("one run would take %.1f CPU s, more than %.1f", seconds, budget);
@@ -110,7 +122,7 @@ CaseResult run_case(const BenchScene& scene, const BenchFabric& fabric, int n,
   World<float> probe(result.def);
   const int stable = probe.step().substeps;
   std::vector<Run> runs;
-  for (const Setting& setting : settings(effort.quick)) {
+  for (const Setting& setting : settings(effort.quick, fewest_relaxing_substeps(result.def))) {
     Run run;
     run.cell.setting = setting;
     run.def = with_setting(result.def, setting, stable);
@@ -124,7 +136,8 @@ CaseResult run_case(const BenchScene& scene, const BenchFabric& fabric, int n,
     }
   }
   for (Run& run : runs) {
-    if (run.cell.outcome == Outcome::ran) {
+    const bool told = run.cell.cpu_per_second > 0;  // by a run that blew up
+    if (!run.seconds.empty() && !told) {
       run.cell.timed_runs = static_cast<int>(run.seconds.size());
       run.cell.cpu_per_second = median(run.seconds) / (run.timed_ticks * probe.tick_seconds());
     }

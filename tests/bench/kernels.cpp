@@ -68,12 +68,29 @@ KernelFigure figure(const char* name, const Timed& timed, double bar) {
   return {name, "ns", timed.nanoseconds(), bar, static_cast<int>(timed.seconds.size())};
 }
 
-/// What the solver takes while neither air nor hands act.
-KernelFigure memory(const char* name, const Timed& timed) {
-  const World<float>& world = timed.world;
+/// What the solver takes, as the world is.
+KernelFigure memory(const char* name, const World<float>& world) {
   return {name, "B",
           static_cast<double>(world.solver_bytes()) / static_cast<double>(world.state().x.size()),
           100, 1};
+}
+
+WorldDef in_wind(WorldDef def) {
+  def.environment.air_density = 1.225;
+  def.environment.wind = Vec3d(6, 0, 0.8);
+  return def;
+}
+
+/// A sling is shot, which takes room for its push.
+KernelFigure memory_with_shot(const char* name, World<float> world) {
+  GrabDef sling;
+  sling.mode = GrabMode::sling;
+  sling.target = Vec3d(0.5, 1, 0.5);
+  const GrabId id = world.grab(sling);
+  world.step();
+  world.fire(id);
+  world.step();
+  return memory(name, world);
 }
 
 WorldDef relaxing(const WorldDef& def, int substeps, int sweeps, double compliance) {
@@ -118,8 +135,12 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
       figure("XPBD on a grid of 64 x 64, 16 substeps of 8 sweeps, a particle and sweep",
              xpbd_sweeps, 8),
       figure("the seed's relaxation on 64 x 64, 50 sweeps, a particle and sweep", seed, 0),
-      memory("memory of verlet on a grid of 128 x 128, a particle", grid),
-      memory("memory of verlet on a triangle mesh, a particle", mesh)};
+      memory("memory of verlet on a grid of 128 x 128, a particle", grid.world),
+      memory("memory of verlet on a grid of 128 x 128 in wind, a particle",
+             World<float>(in_wind(swing(128)))),
+      memory_with_shot("memory of verlet on a grid of 128 x 128 after a sling's shot, a particle",
+                       World<float>(swing(128))),
+      memory("memory of verlet on a triangle mesh, a particle", mesh.world)};
   for (const BenchFabric& fabric : bench_fabrics())
     figures.push_back(largest_in_real_time(fabric, quick ? 1 : 5));
   return figures;

@@ -69,6 +69,10 @@ int measure(const Options& options) {
     std::cerr << "bench: parts of the built-in scenes" << std::endl;
     tables.write_parts(measure_parts(quick, options.meshes));
   }
+  if (wanted(options.parts, "real-time")) {
+    std::cerr << "bench: what runs in real time" << std::endl;
+    tables.write_real_time(measure_real_time(quick, options.effort.timed_runs, options.meshes));
+  }
   if (wanted(options.parts, "threads")) {
     std::cerr << "bench: threads" << std::endl;
     tables.write_threads(measure_threads(quick, options.meshes));
@@ -94,11 +98,14 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "directory for the tables");
   bool list = false;
   app.add_flag("--list-settings", list, "print all settings of the accuracy, one a line");
+  int fewest = 1;
+  app.add_option("--fewest", fewest, "with --list-settings: substeps a tick that bending asks for")
+      ->check(CLI::Range(1, 100000));
   app.add_option("--commit", options.commit, "written into each row");
   app.add_option("--meshes", options.meshes, "directory of installed meshes");
-  app.add_option(
-      "--parts", options.parts,
-      "kernels, parts, threads, shaking, contact-cases, contact, accuracy; default: all");
+  app.add_option("--parts", options.parts,
+                 "kernels, parts, real-time, threads, shaking, contact-cases, contact, accuracy; "
+                 "default: all");
   app.add_option("--scenes", options.scenes, "of the accuracy; default: all");
   app.add_option("--fabrics", options.fabrics, "soft, stiff, cotton; default: all");
   app.add_option("--sizes", options.sizes, "particles a side, ascending");
@@ -116,7 +123,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (list) {
-      for (const Setting& s : settings(options.effort.quick))
+      for (const Setting& s : settings(options.effort.quick, fewest))
         std::cout << s.solver << ' ' << s.name << '\n';
       return 0;
     }

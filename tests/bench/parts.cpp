@@ -68,43 +68,6 @@ bool left_out(const std::string& name, bool quick) {
   return name.rfind("hard-", 0) == 0 || (quick && name.rfind("seed-", 0) == 0);
 }
 
-/// Share of the elastic forces and the integration, all that another solver could do cheaper.
-double share_of_solver(const WorldDef& def, int ticks) {
-  World<float> world(def, {nullptr, cpu_seconds});
-  double own = 0, all = 0;
-  for (int k = 0; k < ticks; ++k) {
-    const Profile& profile = world.step().profile;
-    for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-      const double seconds = profile.stages[stage].seconds;
-      all += seconds;
-      const auto s = static_cast<Stage>(stage);
-      if (s == Stage::stretch || s == Stage::bending || s == Stage::integration ||
-          s == Stage::relaxation)
-        own += seconds;
-    }
-  }
-  return own / all;
-}
-
-double slowest_second(const WorldDef& def, int seconds) {
-  World<float> world(def);
-  double slowest = 0;
-  for (int k = 0; k < seconds; ++k) {
-    const double start = cpu_seconds();
-    for (int tick = 0; tick < def.tick_rate; ++tick) world.step();
-    slowest = std::max(slowest, cpu_seconds() - start);
-  }
-  return slowest;
-}
-
-/// Median of several, but of one alone where that is far from what matters.
-double median_slowest_second(const WorldDef& def, int seconds, int runs) {
-  std::vector<double> all = {slowest_second(def, seconds)};
-  while (all.front() > 0.7 && static_cast<int>(all.size()) < runs)
-    all.push_back(slowest_second(def, seconds));
-  return median(all);
-}
-
 /// CPU seconds of a scene's second tick.
 double cost_of_tick(const WorldDef& def) {
   World<float> world(def);
@@ -127,13 +90,9 @@ std::vector<PartFigure> measure_parts(bool quick, const std::string& mesh_direct
     std::vector<Variant> all = variants(def);
     const double tick = cost_of_tick(def), budget = quick ? 0.05 : 0.15;
     const int ticks = std::clamp(static_cast<int>(budget / tick), 6, 60);
-    const bool own = info.name.rfind("seed-", 0) != 0;
-    const int seconds = quick || !own ? 1 : 4;
     for (int k = 0; k < runs; ++k) {
       for (Variant& variant : all) run(variant, ticks);
     }
-    const double slowest = median_slowest_second(def, seconds, runs),
-                 share = share_of_solver(def, ticks);
     for (const Variant& variant : all) {
       PartFigure f;
       f.scene = info.name;
@@ -141,9 +100,6 @@ std::vector<PartFigure> measure_parts(bool quick, const std::string& mesh_direct
       f.off = variant.off;
       f.ticks = ticks;
       f.cpu_per_second = median(variant.seconds) * def.tick_rate / ticks;
-      f.slowest_second = slowest;
-      f.seconds_looked_at = seconds;
-      f.share_of_solver = share;
       f.moved = rms_distance(variant.end, all.front().end);
       f.same_bits = variant.hash == all.front().hash;
       f.runs = runs;

@@ -10,12 +10,9 @@ struct PartFigure {
   std::string scene, solver;
   std::string off;  ///< "nothing", "wind", "bending", "contact", ...
   int ticks = 0;
-  double cpu_per_second = 0;   ///< CPU seconds a simulated second; median of the runs
-  double slowest_second = 0;   ///< of the scene as it is: CPU seconds of its dearest second
-  int seconds_looked_at = 0;   ///< of the scene's beginning, among which that one is
-  double share_of_solver = 0;  ///< of elastic forces and integration in its CPU time
-  double moved = 0;            ///< rms distance of the particles from the scene as it is [m]
-  bool same_bits = false;      ///< the state's hash is that of the scene as it is
+  double cpu_per_second = 0;  ///< CPU seconds a simulated second; median of the runs
+  double moved = 0;           ///< rms distance of the particles from the scene as it is [m]
+  bool same_bits = false;     ///< the state's hash is that of the scene as it is
   int runs = 0;
 };
 

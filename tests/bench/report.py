@@ -1,18 +1,19 @@
 """Makes the report of what weft_bench has measured: plots, REPORT.md and the README's table."""
 
 import argparse
-import subprocess
+import csv
+import shutil
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 import contact_tables  # noqa: E402
+import plots  # noqa: E402
+import real_time_tables  # noqa: E402
 import tables  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- report: begin -->", "<!-- report: end -->"
-COLOURS = {"verlet": "#1b6ca8", "xpbd": "#c4541b", "relaxation": "#5b8a3a"}
-MARKS = {"verlet": 7, "xpbd": 5, "relaxation": 9}
+CASES = ("accuracy", "references", "spatial")  # tables whose rows belong to cases
 SCENES = {"swing": "Swing from the horizontal", "static-rest": "Static rest",
           "cantilever": "Cantilever", "hanging-strip": "Hanging strip", "flag": "Flag in wind",
           "drape": "Drape on a sphere"}
@@ -23,79 +24,7 @@ ABOUT = {
     "hanging-strip": "1 m × 12 cm, upright, let go when not stretched yet: the way is the stretch "
                      "alone, so a solver with rigid springs is 100 % wrong.",
     "flag": "1 m × 1 m, held by one edge, in a wind of 6 m/s.",
-    "drape": "1 m × 1 m, falls on a sphere of 0.3 m radius, with friction."}
-
-
-def data_block(name, cells):
-    """A gnuplot data block of runs, dearest last; failed ones apart."""
-    lines = [f"${name} << EOD"]
-    for cell in sorted(cells, key=lambda c: c["cpu_per_second"]):
-        lines.append(f"{cell['cpu_per_second']} {max(100 * min(cell['position'], 3), 1e-5)}")
-    return lines + ["EOD"]
-
-
-def panel(index, cells, scene, fabric, n):
-    """One diagram: error against CPU time, a line for each solver."""
-    blocks, curves = [], []
-    for solver in tables.SOLVERS:
-        mine = tables.of_case(cells, scene, fabric, n, solver)
-        ran = [cell for cell in mine if cell["outcome"] == "ran"]
-        failed = [cell for cell in mine if cell["outcome"] == "failed"]
-        style = f"lc rgb '{COLOURS[solver]}' lw 1.3"
-        if ran:
-            blocks += data_block(f"ran{index}{solver}", ran)
-            curves.append(f"$ran{index}{solver} with points pt {MARKS[solver]} ps 0.45 {style} notitle")
-            front = [c for c in ran if not any(
-                o["cpu_per_second"] < c["cpu_per_second"] and o["position"] <= c["position"] for o in ran)]
-            blocks += data_block(f"front{index}{solver}", front)
-            curves.append(f"$front{index}{solver} with lines {style} notitle")
-        if failed:
-            blocks += data_block(f"failed{index}{solver}", [{**c, "position": 3} for c in failed])
-            curves.append(f"$failed{index}{solver} with points pt 2 ps 0.9 lw 2 "
-                          f"lc rgb '{COLOURS[solver]}' notitle")
-    lines = blocks + [f"set title '{fabric}, {n} × {n}' offset 0,-0.7"]
-    if curves:
-        return lines + ["plot " + ", ".join(curves)]
-    case = tables.of_case(cells, scene, fabric, n)
-    reason = tables.why_not(case) if case else "this run was cut before it, or not asked for it"
-    words, wrapped = reason.split(), [""]
-    for word in words:
-        if len(wrapped[-1]) + len(word) > 34:
-            wrapped.append("")
-        wrapped[-1] = (wrapped[-1] + " " + word).strip()
-    text = "\\n".join(["not run:"] + wrapped)
-    return lines + [f'set label 1 "{text}" at graph 0.5,0.45 center font ",9"',
-                    "plot [0.001:10][1e-4:300] NaN notitle", "unset label 1"]
-
-
-def plot_scene(cells, scene, path):
-    sizes = tables.unique(cell["n"] for cell in cells if cell["scene"] == scene)
-    fabrics = [f for f in tables.FABRICS if any(
-        c["fabric"] == f for c in cells if c["scene"] == scene)]
-    mine = [c for c in cells if c["scene"] == scene and c["outcome"] != "not run"]
-    least = min([c["position"] for c in mine if c["position"] > 0], default=1e-4)
-    width, height = 300 * len(fabrics) + 20, 205 * len(sizes) + 60
-    lines = [
-        f"set terminal svg size {width},{height} enhanced font 'sans,10' background rgb 'white'",
-        f"set output '{path}'", "set encoding utf8", "set logscale xy",
-        "set format x '%g'", "set format y '%g'", "set grid lc rgb '#dddddd'", "set tics scale 0.5 nomirror",
-        "set mxtics 1", "set mytics 1",
-        f"set yrange [{100 * max(least / 2, 1e-7)}:500]",
-        "set xlabel 'CPU s a simulated s' offset 0,0.6", "set ylabel 'position error [%]' offset 1.5,0",
-        f"set multiplot layout {len(sizes)},{len(fabrics)} margins {64 / width},{1 - 14 / width},"
-        f"{52 / height},{1 - 48 / height} spacing {60 / width},{64 / height}"]
-    for k, solver in enumerate(tables.SOLVERS):
-        lines.append(f"set label {10 + k} '● {tables.NAMES[solver]}' at screen {(20 + 75 * k) / width},"
-                     f"{1 - 14 / height} tc rgb '{COLOURS[solver]}' font ',11'")
-    lines.append(f"set label 20 '×: failed' at screen {250 / width},"
-                 f"{1 - 14 / height} tc rgb '#444444'")
-    lines += ["set arrow 1 from graph 0,first 1 to graph 1,first 1 nohead lc rgb '#999999' dt 2"]
-    for index, (n, fabric) in enumerate((n, f) for n in sizes for f in fabrics):
-        lines += panel(index, cells, scene, fabric, n)
-        if index == 0:
-            lines += [f"unset label {k}" for k in (10, 11, 12, 20)]
-    lines.append("unset multiplot")
-    subprocess.run(["gnuplot"], input="\n".join(lines) + "\n", text=True, check=True)
+    "drape": "1 m × 1 m, lies on a sphere of 0.3 m radius and falls about it, with friction."}
 
 
 def report_text(data):
@@ -103,16 +32,20 @@ def report_text(data):
     machine = {row["key"]: row["value"] for row in tables.read(data, "machine")}
     references, spatial = tables.read(data, "references"), tables.read(data, "spatial")
     parts, kernels = tables.read(data, "parts"), tables.read(data, "kernels")
-    threads = tables.read(data, "threads")
+    threads, real_time = tables.read(data, "threads"), tables.read(data, "real_time")
+    shaking = tables.read(data, "shaking")
     out = ["# Speed against error", "",
-           "Written by `./dev report`; not by hand. All times are CPU time of one thread, medians of "
-           f"{max((c['timed_runs'] for c in cells), default=0)} interleaved runs, and tell what one "
-           "simulated second costs. They were taken on the machine below; its load, with the "
-           "measuring itself, is told.", "",
+           "Written by `./dev report`; not by hand. Times are CPU time of one thread where nothing else is "
+           "said, and tell what one simulated second costs. They are medians of "
+           f"{max((c['timed_runs'] for c in cells), default=0)} interleaved runs, all cases of a table in turn, but for these: "
+           "a run that failed is timed once; of the largest N in real time each N on the way to it is timed "
+           "five times in a row; of the cases of \"Is an implicit solver called for?\" those far from real time "
+           "are run once, and those with twice the substeps; figures with one run beside them, such as counts, "
+           "memory and distances, are no times. The machine and its load, with the measuring itself:", "",
            tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
            "The tables as CSV, with every setting and the commit: " + ", ".join(
                f"[{name}](data/{name}.csv)" for name in
-               ("accuracy", "references", "spatial", "kernels", "parts", "threads", "contact", "contact_cases",
+               ("accuracy", "references", "spatial", "kernels", "parts", "real_time", "threads", "contact", "contact_cases",
                 "shaking", "machine")) + ".",
            "", "## What an error costs", "",
            "The cheapest setting of any solver whose positions stay within the error all the way of "
@@ -137,11 +70,13 @@ def report_text(data):
            "L2 way of the reference, the worst sample. Strain: L2 over all springs, over that of the "
            "reference. Energy: over m g L. Momentum: over m √(g L). Mean shape: as position, of the mean "
            "over the second half of the whole horizon, which is what can be compared where a "
-           "perturbation grows. Penetration: the deepest at a sample. A run whose positions end more "
-           "than 100 % off counts as failed. verlet ×1 is the product; ×2 has twice the "
-           "stable substeps; XPBD and the seed's relaxation are given as substeps × sweeps; relaxation "
-           "has rigid springs. Where verlet has no dashpots it is as XPBD is, and takes fewer substeps. "
-           "\"Best of\" counts the settings that were run."]
+           "perturbation grows. Penetration: the deepest at a sample, 0 where there is no object. A run whose "
+           "positions, mean shape or energy are off by more than 100 % counts as failed, as one that blew up. "
+           "verlet ×1 is the product; ×2 has twice the stable substeps; XPBD and the seed's relaxation are told "
+           "as substeps × sweeps, by the substeps that a tick took: where bending or air needs more than were "
+           "asked for, it takes these (the most of any tick), and settings that ran as another one are left "
+           "out. The seed's relaxation has rigid springs. Where verlet has no dashpots it is as XPBD is, and takes fewer substeps. "
+           "\"Best of\" counts the different settings that were run."]
     for scene in tables.unique(cell["scene"] for cell in cells):
         out += ["", f"## {SCENES[scene]}", "", ABOUT[scene], "",
                 f"![Error against CPU time: {SCENES[scene]}](plots/{scene}.svg)", "",
@@ -149,24 +84,33 @@ def report_text(data):
                 "The cheapest setting within 1 % in position, or the best one where none is:", "",
                 tables.error_vectors(cells, scene)]
     out += ["", "## Kernels", "", tables.taken(kernels), "", tables.kernels(kernels), "",
+            "The bytes of a particle are those of a scene without air and hands where nothing else is said: wind "
+            "takes three numbers more for each particle, and the first shot of a sling as many; they are kept "
+            "from then on.", "",
             "## What runs in real time", "",
             "The largest square of particles whose swing, with verlet as scenes run it, needs at most "
             "half of one core.", "", tables.real_time_sizes(kernels), "",
             "## Is an implicit solver called for?", "",
-            "It is built as soon as verlet cannot hold a built-in scene, or cotton at 128², in real time: on "
-            "one thread, or by the clock on the two that a server has here. Each of Weft's own scenes, but no "
-            "hard cases: all it costs with contact and air, and the share of springs, bending and "
-            "integration, which is what another solver could save.", "", tables.need_of_implicit(parts, cells, threads), "",
+            "It is wanted as soon as verlet cannot hold a built-in scene, or cotton of 128 × 128 particles, in "
+            "real time. All cases are compared for the same time and on one thread, hard cases too; what two "
+            "threads take is beside it. Springs are springs, bending and integration, all that another "
+            "solver could do cheaper; contact is all looking for contacts, certifying and solving them. \"With "
+            "free springs\" is what the second would cost if these cost nothing. Contact is solved in "
+            "substeps too: \"with free substeps\" is what would be left if nothing that is done each substep "
+            "cost anything, from what the case costs with twice as many.", "",
+            real_time_tables.need_of_implicit(real_time), "",
             "## What each part of the model costs", "",
             "Each built-in scene as it is and with one part switched off, over its first second or a "
             "part of it (the hard cases are left out); how "
-            "far the particles end from where they were (rms).", "", tables.parts(parts), "",
+            "far the particles end from where they were (rms).", "", tables.taken(parts), "", tables.parts(parts), "",
             "## Threads", "",
             "One thread against two, by wall time and by CPU time of the whole process. What runs in "
             "chunks is the search for contacts with objects and for pairs of cloth with cloth, the regions of "
             "many particles at once, where a cloth touches itself at some hundred places the sweeps over "
             "these, in slabs of space, and springs, bending, kick and drift of grids from 64² on, in bands of "
-            "rows. Air, meshes and the sweeps over contacts with objects are on one thread. Threads meet some "
+            "rows. These bands are not given wide halos, with which each could do several substeps alone: "
+            "threads meet twice each substep. "
+            f"{tables.bands(threads)} Air, meshes and the sweeps over contacts with objects are on one thread. Threads meet some "
             "hundred times a tick for a few microseconds of work, and who waits looks out for the next time "
             "instead of sleeping, which is CPU time too. On a machine that does nothing else the time falls by "
             "half of the share at best; where another process takes the other core, it may rise by a tenth or "
@@ -189,40 +133,84 @@ def report_text(data):
             "`./dev report --contact` takes this section and the one before anew.", "",
             contact_tables.cases(tables.read(data, "contact_cases")), "",
             "## Hard shaking", "",
-            "Cloths of 1 m × 1 m that hang by one edge. With drag 5/s, 5 s after the insult: rms "
-            "distance from the solver's own rest, over 1 m; at most 1 % is wanted. Without drag: what "
-            "the energy rose above that after the insult, over that start; at most 1 % is wanted.", "",
-            tables.shaking(tables.read(data, "shaking")), "",
+            "Cloths of 1 m × 1 m that hang by one edge, in vacuum and without self-contact: every free particle is "
+            "given a velocity of 20 m/s, its size, in a random direction; all free particles are put into a ball of "
+            "1 mm; a pin is moved by 3 m for a tenth of a second and back. With drag 5/s, 5 s after the insult: "
+            "rms distance from the solver's own rest, over 1 m; at most 1 % is wanted. Without drag, in 5 s "
+            "after the insult and while the pin is away: what the energy rose above that of the start and the "
+            "work of the insult, over these two less the energy of the rest; at most 1 % is wanted. The worst "
+            "of all seeds. The rigidity of bending is chosen: B = 1e-5 m² times the stiffness of the structural "
+            "springs, for which a flat sheet is the only rest. With a smaller one, as the test cloths of the "
+            "other scenes have, a cloth that may pass through itself keeps tucks, which are equilibria too; "
+            "their figures stand beside. Substeps are those that a tick takes.", "",
+            tables.shaking(shaking), "",
+            "## Cells with fewer settings", "",
+            f"Wanted are {tables.WANTED_SETTINGS} different settings of each solver in each cell.", "",
+            tables.few_settings(cells), "",
             "## Runs that failed", "", tables.without_figure(cells, "failed"), "",
             "## Cells that were not run", "", tables.without_figure(cells, "not run"), ""]
     return "\n".join(out)
 
 
-def readme_block(data):
-    return "\n".join([BEGIN, tables.cost_of_accuracy(tables.read(data, "accuracy")), END])
+def readme_blocks(data):
+    """The parts of the README that tell measured figures, by the names of their marks."""
+    return {"cost of accuracy": tables.cost_of_accuracy(tables.read(data, "accuracy")),
+            "implicit": real_time_tables.summary(tables.read(data, "real_time"))}
 
 
-def with_block(readme, data):
-    """The README with its table from the given data."""
-    before, rest = readme.split(BEGIN)
-    after = rest.split(END)[1]
-    return before + readme_block(data) + after
+def with_blocks(readme, data):
+    """The README with those parts from the given data."""
+    for name, text in readme_blocks(data).items():
+        begin, end = f"<!-- report: {name} -->", "<!-- report: end -->"
+        before, rest = readme.split(begin)
+        readme = f"{before}{begin}\n{text}\n{end}{rest.split(end, 1)[1]}"
+    return readme
+
+
+def case_of(row):
+    return row["scene"], row["fabric"], row["n"]
+
+
+def take_in(measured, data):
+    """Puts the tables of a run that was asked for a part alone among those of the whole report: cases that
+    were measured take the places of theirs, every other table that of the old one. What the whole
+    report says of the machine stays."""
+    for new in sorted(measured.glob("*.csv")):
+        old = data / new.name
+        if new.stem == "machine":
+            continue
+        if new.stem not in CASES or not old.exists():
+            shutil.copy(new, old)
+            continue
+        with open(old, encoding="utf-8", newline="") as file:
+            kept = list(csv.DictReader(file))
+        with open(new, encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file)
+            rows, columns = list(reader), reader.fieldnames
+        replaced = {case_of(row) for row in rows}
+        with open(old, "w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, columns, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows([row for row in kept if case_of(row) not in replaced] + rows)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=Path, help="holds data/; gets plots/ and REPORT.md")
-    parser.add_argument("--readme", type=Path, help="its table is written anew")
+    parser.add_argument("--readme", type=Path, help="its tables are written anew")
+    parser.add_argument("--measured", type=Path, help="tables of a part, to take into data/ first")
     options = parser.parse_args()
-    data, plots = options.directory / "data", options.directory / "plots"
-    plots.mkdir(exist_ok=True)
+    data, pictures = options.directory / "data", options.directory / "plots"
+    if options.measured:
+        take_in(options.measured, data)
+    pictures.mkdir(exist_ok=True)
     cells = tables.read(data, "accuracy")
     for scene in tables.unique(cell["scene"] for cell in cells):
-        plot_scene(cells, scene, plots / f"{scene}.svg")
+        plots.plot_scene(cells, scene, pictures / f"{scene}.svg")
     (options.directory / "REPORT.md").write_text(report_text(data), encoding="utf-8")
     if options.readme:
         text = options.readme.read_text(encoding="utf-8")
-        options.readme.write_text(with_block(text, data), encoding="utf-8")
+        options.readme.write_text(with_blocks(text, data), encoding="utf-8")
 
 
 if __name__ == "__main__":

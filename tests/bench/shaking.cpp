@@ -1,6 +1,6 @@
 #include "tests/bench/shaking.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "core/world/world.h"
 #include "tests/bench/cases.h"
@@ -11,16 +11,13 @@ namespace weft::bench {
 namespace {
 
 constexpr int kTicks = 300;
+constexpr double kAllowed = 0.01;
 
-/// The rigidity is such that the rest is unique, as in tests/laws/shaking.h: with one a hundred
-/// times smaller a cloth that may pass through itself keeps tucks, and they are equilibria.
-WorldDef hung(int n, const FabricDef& fabric, double drag) {
+/// @param rigidity  of bending, along warp and weft [N m]
+WorldDef hung(int n, FabricDef fabric, double rigidity) {
+  fabric.bending_warp = fabric.bending_weft = rigidity;
   WorldDef def = bench_scenes().front().make(n, fabric);
-  FabricDef& stiffened = def.cloths[0].fabric;
-  stiffened.bending_warp = stiffened.bending_weft =
-      1e-5 * (stiffened.stretch_warp - stiffened.shear);
   def.cloths[0].v = -Vec3d::UnitY();
-  def.environment.drag = drag;
   return def;
 }
 
@@ -31,20 +28,44 @@ int run(World<float>& world, int ticks) {
   return rescues;
 }
 
-/// Hurts a world after a second and lets it run; returns the ticks that were taken back.
-/// @param least    energy of the rest [J]
-/// @param highest  what the energy rose above that after the insult, over what the insult brought
-int hurt(World<float>& world, test::Insult kind, int ticks, double least, double& highest) {
-  int rescues = run(world, 60) + test::insult(world, kind);
-  const double start = world.report().energies.total();
-  highest = 0;
-  for (int k = 0; k < ticks; ++k) {
+/// What the energy rose above that of the start and the insult's work, over what was brought.
+/// @param least  energy of the rest [J]
+double gained(World<float>& world, test::Insult kind, unsigned seed, double least, int& rescues) {
+  rescues += run(world, 60);
+  const test::Hurt hurt = test::insult(world, kind, seed);
+  rescues += hurt.rescues;
+  const double brought = hurt.before + hurt.work - least;
+  double highest = std::max(hurt.excess, test::energy_of(world) - least - brought);
+  for (int k = 0; k < kTicks; ++k) {
     rescues += run(world, 1);
-    const double gained = world.report().energies.total() - start;
-    if (!(gained <= highest)) highest = gained;
+    const double above = test::energy_of(world) - least - brought;
+    if (!(above <= highest)) highest = above;
   }
-  highest /= start - least;
-  return rescues;
+  return std::max(highest, 0.0) / brought;
+}
+
+/// One solver, cloth and insult, with all its seeds.
+ShakingFigure shake(WorldDef def, test::Insult insult, const World<float>& rest) {
+  ShakingFigure figure;
+  figure.insult = name_of(insult);
+  figure.substeps = rest.report().substeps;
+  figure.seeds = static_cast<int>(test::seeds_of(insult));
+  const double least = test::energy_of(rest);
+  for (unsigned seed = 20; seed < 20 + test::seeds_of(insult); ++seed) {
+    World<float> damped(def);
+    figure.rescues += run(damped, 60) + test::insult(damped, insult, seed).rescues;
+    figure.rescues += run(damped, kTicks);
+    const double off = rms_distance(snapshot(damped.state()), snapshot(rest.state()));
+    figure.from_rest = std::max(figure.from_rest, off);
+    figure.back += off <= kAllowed ? 1 : 0;
+    WorldDef free = def;
+    free.environment.drag = 0;
+    World<float> undamped(free);
+    const double more = gained(undamped, insult, seed, least, figure.rescues);
+    figure.gained_energy = std::max(figure.gained_energy, more);
+    figure.bounded += more <= kAllowed ? 1 : 0;
+  }
+  return figure;
 }
 
 }  // namespace
@@ -58,22 +79,23 @@ std::vector<ShakingFigure> measure_shaking(bool quick) {
   for (const int n : sizes) {
     for (std::size_t f = 0; f < 2; ++f) {
       const BenchFabric& fabric = bench_fabrics()[f];
-      for (const Setting& setting : solvers) {
-        const auto def = [&](double drag) {
-          return with_setting(hung(n, fabric.fabric, drag), setting, 1);
-        };
-        World<float> rest(def(5));
-        run(rest, kTicks + 60);
-        const double least = rest.report().energies.total();
-        for (const test::Insult insult : test::kInsults) {
-          ShakingFigure figure{
-              setting.solver, setting.name, fabric.name, name_of(insult), n, 0, 0, 0};
-          double unused = 0;
-          World<float> damped(def(5)), free(def(0));
-          figure.rescues += hurt(damped, insult, kTicks, least, unused);
-          figure.from_rest = rms_distance(snapshot(damped.state()), snapshot(rest.state()));
-          figure.rescues += hurt(free, insult, kTicks / 5, least, figure.gained_energy);
-          figures.push_back(figure);
+      const double structural = fabric.fabric.stretch_warp - fabric.fabric.shear;
+      std::vector<double> rigidities = {1e-5 * structural};
+      if (n == sizes.front()) rigidities.push_back(fabric.fabric.bending_warp);
+      for (const double rigidity : rigidities) {
+        for (const Setting& setting : solvers) {
+          const WorldDef def = with_setting(hung(n, fabric.fabric, rigidity), setting, 1);
+          World<float> rest(def);
+          run(rest, kTicks + 60);
+          for (const test::Insult insult : test::kInsults) {
+            ShakingFigure figure = shake(def, insult, rest);
+            figure.solver = setting.solver;
+            figure.sweeps = setting.sweeps;
+            figure.fabric = fabric.name;
+            figure.rigidity = rigidity;
+            figure.n = n;
+            figures.push_back(figure);
+          }
         }
       }
     }

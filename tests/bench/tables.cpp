@@ -15,6 +15,14 @@ const char* outcome_name(Outcome outcome) {
   return kNames[static_cast<int>(outcome)];
 }
 
+std::string compiler_name() {
+#ifdef __clang__
+  return std::string("clang++ ") + __clang_version__;
+#else
+  return std::string("g++ ") + __VERSION__;
+#endif
+}
+
 /// First value of a key of /proc/cpuinfo.
 std::string cpu_info(const std::string& key) {
   std::ifstream file("/proc/cpuinfo");
@@ -102,7 +110,7 @@ Tables::Accuracy& Tables::accuracy() {
 void Tables::write_machine(const std::string& load_at_start, double cpu_seconds) {
   Csv csv(directory_ + "/machine.csv", {"key", "value"});
   csv.row("commit", commit_);
-  csv.row("compiler", std::string("g++ or clang++ ") + __VERSION__);
+  csv.row("compiler", compiler_name());
 #ifdef NDEBUG
   csv.row("build", "optimised, without assertions");
 #else
@@ -154,12 +162,21 @@ void Tables::write_kernels(const std::vector<KernelFigure>& figures) {
 }
 
 void Tables::write_parts(const std::vector<PartFigure>& figures) {
-  Csv csv(directory_ + "/parts.csv",
-          {"scene", "solver", "off", "ticks", "cpu_per_second", "slowest_second",
-           "seconds_looked_at", "share_of_solver", "moved_m", "same_bits", "runs", "commit"});
+  Csv csv(directory_ + "/parts.csv", {"scene", "solver", "off", "ticks", "cpu_per_second",
+                                      "moved_m", "same_bits", "runs", "vectors", "load", "commit"});
   for (const PartFigure& f : figures)
-    csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.slowest_second,
-            f.seconds_looked_at, f.share_of_solver, f.moved, f.same_bits ? "yes" : "no", f.runs,
+    csv.row(f.scene, f.solver, f.off, f.ticks, f.cpu_per_second, f.moved,
+            f.same_bits ? "yes" : "no", f.runs, std::string(simd_level()), load_average(), commit_);
+}
+
+void Tables::write_real_time(const std::vector<RealTimeFigure>& figures) {
+  Csv csv(
+      directory_ + "/real_time.csv",
+      {"case", "kind", "seconds_looked_at", "dearest_second", "springs", "air", "contact", "other",
+       "substeps", "twice_the_substeps", "wall_two_threads", "runs", "vectors", "load", "commit"});
+  for (const RealTimeFigure& f : figures)
+    csv.row(f.name, f.kind, f.seconds_looked_at, f.dearest, f.springs, f.air, f.contact, f.other,
+            f.substeps, f.twice, f.wall_two, f.runs, std::string(simd_level()), load_average(),
             commit_);
 }
 
@@ -173,11 +190,14 @@ void Tables::write_threads(const std::vector<ThreadFigure>& figures) {
 }
 
 void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {
-  Csv csv(directory_ + "/shaking.csv", {"solver", "setting", "fabric", "n", "insult", "from_rest",
-                                        "gained_energy", "rescues", "commit"});
+  Csv csv(
+      directory_ + "/shaking.csv",
+      {"solver", "substeps", "sweeps", "fabric", "rigidity_n_m", "n", "insult", "seeds",
+       "from_rest", "back", "gained_energy", "bounded", "rescues", "vectors", "load", "commit"});
   for (const ShakingFigure& f : figures)
-    csv.row(f.solver, f.setting, f.fabric, f.n, f.insult, f.from_rest, f.gained_energy, f.rescues,
-            commit_);
+    csv.row(f.solver, f.substeps, f.sweeps, f.fabric, f.rigidity, f.n, f.insult, f.seeds,
+            f.from_rest, f.back, f.gained_energy, f.bounded, f.rescues, std::string(simd_level()),
+            load_average(), commit_);
 }
 
 void Tables::write_contact(const std::vector<ContactSpeed>& figures) {

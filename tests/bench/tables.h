@@ -10,6 +10,7 @@
 #include "tests/bench/contact_speed.h"
 #include "tests/bench/kernels.h"
 #include "tests/bench/parts.h"
+#include "tests/bench/real_time.h"
 #include "tests/bench/shaking.h"
 #include "tests/bench/threads.h"
 
@@ -55,6 +56,7 @@ class Tables {
   void add_spatial(const CaseResult& coarse, const CaseResult& fine);
   void write_kernels(const std::vector<KernelFigure>& figures);
   void write_parts(const std::vector<PartFigure>& figures);
+  void write_real_time(const std::vector<RealTimeFigure>& figures);
   void write_threads(const std::vector<ThreadFigure>& figures);
   void write_shaking(const std::vector<ShakingFigure>& figures);
   void write_contact(const std::vector<ContactSpeed>& figures);

@@ -252,6 +252,23 @@ class DevScript(unittest.TestCase):
         lines = (self.machine / "calls").read_text().splitlines()
         self.assertTrue(any(f"--out {folder}/data --parts contact-cases contact" in line for line in lines))
 
+    def test_a_part_of_the_report_is_measured_apart_and_taken_in(self):
+        folder = self.tree / "tests" / "bench"
+        folder.mkdir(parents=True)
+        (folder / "report.py").write_text(
+            "import os, sys\n"
+            "open(os.environ['MACHINE'] + '/calls', 'a').write('report ' + ' '.join(sys.argv[1:]) + '\\n')\n")
+        executable(self.tree / "build" / "weft_bench", RECORD)
+        status, _, error = self.dev("report", "--only", "--parts", "accuracy", "--sizes", "32")
+        self.assertEqual(status, 0, error)
+        part = f"{self.tree}/build/report/part"
+        lines = (self.machine / "calls").read_text().splitlines()
+        self.assertTrue(any(f"--out {part} --parts accuracy --sizes 32" in line for line in lines))
+        self.assertIn(f"report --readme {self.tree}/README.md --measured {part} {folder}", lines)
+        status, _, error = self.dev("report", "--only")
+        self.assertNotEqual(status, 0)
+        self.assertIn("options of bench", error)
+
     def test_unknown_words_are_refused_with_what_is_allowed(self):
         for words, allowed in (("deploy",), "usage"), (("build", "--fast"), "--sanitize"), \
                 (("test", "--fast"), "--full"), (("setup", "x"), "--test"), \

@@ -108,7 +108,7 @@ class Readme(unittest.TestCase):
         sys.path.insert(0, str(ROOT / "tests/bench"))
         import report
         data = ROOT / "tests/bench/data"
-        self.assertEqual(report.with_block(README, data), README)
+        self.assertEqual(report.with_blocks(README, data), README)
         page = (ROOT / "tests/bench/REPORT.md").read_text(encoding="utf-8")
         self.assertEqual(report.report_text(data), page)
 

@@ -63,6 +63,29 @@ TEMPLATE_TEST_CASE("free fall in vacuum is g t^2 / 2", "", float, double) {
     CHECK(static_cast<double>(v[1]) == Approx(-9.81).margin(10 * tolerance));
 }
 
+TEST_CASE(
+    "under XPBD and the seed's relaxation free fall is g t^2 / 2, first order in the substep") {
+  const double compliance = GENERATE(1.0, 0.0);
+  const auto fallen = [&](int substeps) {
+    WorldDef def = test::empty_world(test::flat_cloth(6, 7));
+    def.environment.gravity = Vec3d(0, -9.81, 0);
+    def.cloths[0].fabric.damping_ratio = 0;
+    def.solver.kind = SolverKind::relaxation;
+    def.relaxation.compliance = compliance;
+    def.relaxation.substeps = substeps;
+    def.relaxation.sweeps = 2;
+    def.relaxation.damping = 0;
+    World<double> world(def);
+    const double start = test::centre_of_mass(world)[1];
+    test::advance(world, 1.0);
+    return start - test::centre_of_mass(world)[1];
+  };
+  // n steps of length h = t / n fall g t^2 / 2 (1 + 1 / n): the velocity is raised before the
+  // drift.
+  for (const int substeps : {1, 10})
+    CHECK(fallen(substeps) == Approx(4.905 * (1 + 1 / (60.0 * substeps))).margin(1e-9));
+}
+
 TEST_CASE("with linear drag c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order in dt") {
   // Reference: drag.linear.c2_t1 of the expected values: v = 4.241180435724415, x
   // = 2.784409782137793.

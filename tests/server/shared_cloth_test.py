@@ -268,7 +268,9 @@ class DrapeTest(SocketTest):
         a = await self.viewer()
         measured = (await a.ask("query", what="measurements"))["data"]
         self.assertEqual(set(measured),
-                         {"drape_coefficient_percent", "folds", "droop_m", "largest_speed_m_s"})
+                         {"drape_coefficient_percent", "folds", "droop_m", "largest_speed_m_s",
+                          "published_low_percent", "published_high_percent"})
+        self.assertEqual((measured["published_low_percent"], measured["published_high_percent"]), (60, 76))
         self.assertAlmostEqual(measured["drape_coefficient_percent"], 100, delta=1)
         self.assertEqual((measured["folds"], measured["largest_speed_m_s"]), (0, 0))
         await a.ask("advance", n=6)

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+
+#include "core/diagnostics/energies.h"
 #include "core/world/world.h"
 #include "tests/support/random.h"
 
@@ -7,12 +10,15 @@ namespace weft::test {
 
 /// What hard shaking does to a cloth of one square metre that hangs from y = 0.
 enum class Insult {
-  noise,    ///< every free particle gets a random velocity of 20 m/s
-  crush,    ///< all free particles are put into a ball of 1 mm
+  noise,  ///< every free particle is given 20 m/s, the size of its velocity, in a random direction
+  crush,  ///< all free particles are put into a ball of 1 mm
   teleport  ///< the first corner is moved by 3 m for a tenth of a second, then back
 };
 
 inline constexpr Insult kInsults[] = {Insult::noise, Insult::crush, Insult::teleport};
+
+/// Of the insults that throw dice, so many are tried.
+inline constexpr unsigned kInsultSeeds = 8;
 
 inline const char* name_of(Insult kind) {
   return kind == Insult::noise   ? "noise of 20 m/s"
@@ -20,14 +26,32 @@ inline const char* name_of(Insult kind) {
                                  : "pin 3 m away and back";
 }
 
-/// Does it to the world and declares the state good.
-/// @returns ticks that were taken back meanwhile
+/// How many different ways there are to do it.
+inline unsigned seeds_of(Insult kind) {
+  return kind == Insult::teleport ? 1 : kInsultSeeds;
+}
+
+/// What an insult did.
+struct Hurt {
+  int rescues = 0;    ///< ticks that were taken back meanwhile
+  double before = 0;  ///< energy before it [J]
+  double work = 0;    ///< done on the cloth by throwing it or moving its particles and its pin [J]
+  /// The most that the energy was, after any tick meanwhile, above that before and the work done so
+  /// far [J].
+  double excess = 0;
+};
+
 template <class Real>
-int insult(World<Real>& world, Insult kind) {
-  Random random(20);
-  ClothState<Real>& state = world.state();
-  int rescues = 0;
-  for (std::size_t i = 0; i < state.x.size() && kind != Insult::teleport; ++i) {
+double energy_of(const World<Real>& world) {
+  return read_energies<Real>(world.model(), world.state(),
+                             world.environment().gravity.template cast<Real>())
+      .energies.total();
+}
+
+/// Throws the free particles or puts them into the ball.
+template <class Real>
+void hurt_particles(ClothState<Real>& state, Insult kind, Random& random) {
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
     if (state.inverse_mass[i] == 0) continue;
     if (kind == Insult::noise) {
       Vec3d v = random.vector(1);
@@ -37,15 +61,34 @@ int insult(World<Real>& world, Insult kind) {
       state.x[i] = (Vec3d(0.5, -0.5, 0) + random.vector(5e-4)).template cast<Real>();
     }
   }
-  if (kind == Insult::teleport) {
-    const auto first = state.x.front();
-    state.x.front()[2] += Real(3);
+}
+
+/// Does it to the world and declares the state good. A pin that stands still does no work, so all
+/// of it is done at once where particles are moved or thrown.
+/// @param seed  of the random directions and places
+template <class Real>
+Hurt insult(World<Real>& world, Insult kind, unsigned seed = 20) {
+  Hurt hurt;
+  hurt.before = energy_of(world);
+  const auto work_of = [&](auto&& change) {
+    const double start = energy_of(world);
+    change(world.state());
     world.accept_state();
-    for (int tick = 0; tick < 6; ++tick) rescues += world.step().divergence ? 1 : 0;
-    state.x.front() = first;
+    hurt.work += energy_of(world) - start;
+  };
+  if (kind != Insult::teleport) {
+    Random random(seed);
+    work_of([&](ClothState<Real>& state) { hurt_particles(state, kind, random); });
+    return hurt;
   }
-  world.accept_state();
-  return rescues;
+  const auto first = world.state().x.front();
+  work_of([](ClothState<Real>& state) { state.x.front()[2] += Real(3); });
+  for (int tick = 0; tick < 6; ++tick) {
+    hurt.rescues += world.step().divergence ? 1 : 0;
+    hurt.excess = std::max(hurt.excess, energy_of(world) - hurt.before - hurt.work);
+  }
+  work_of([&](ClothState<Real>& state) { state.x.front() = first; });
+  return hurt;
 }
 
 }  // namespace weft::test

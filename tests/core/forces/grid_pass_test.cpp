@@ -3,13 +3,16 @@
 #include <algorithm>
 
 #include <catch2/catch.hpp>
-#include <hwy/targets.h>
 
 #include "core/cloth/cloth_model.h"
 #include "core/forces/force_pass.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
+<<<<<<< HEAD
 #include "tests/support/seeded_random.h"
+=======
+#include "tests/support/targets.h"
+>>>>>>> four
 #include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
@@ -18,12 +21,6 @@ using test::Random;
 using test::SeededRandom;
 
 namespace {
-
-/// Lets the program use these instruction sets alone; 0 for all that there are.
-void use_targets(std::int64_t targets) {
-  hwy::SetSupportedTargetsForTest(targets);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 /// Runs chunks one after the other, the last one first.
 class Backwards : public Executor {
@@ -75,14 +72,8 @@ Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
 
 template <class Real>
 void check_all_targets(const ClothDef& def) {
-  use_targets(0);
-  const std::int64_t all = hwy::SupportedTargets();
   const Moved<Real> best = moved<Real>(def);
-  int tried = 0;
-  for (std::int64_t target = 1; target > 0 && target <= all; target <<= 1) {
-    if (!(all & target)) continue;
-    use_targets(target);
-    INFO(hwy::TargetName(target));
+  test::for_each_target([&] {
     const Moved<Real> other = moved<Real>(def);
     CHECK(other.x == best.x);
     CHECK(other.v == best.v);
@@ -90,10 +81,7 @@ void check_all_targets(const ClothDef& def) {
     CHECK(other.energy.stretch == best.energy.stretch);
     CHECK(other.energy.bending == best.energy.bending);
     CHECK(other.energy.largest_strain == best.energy.largest_strain);
-    ++tried;
-  }
-  use_targets(0);
-  CHECK(tried > 1);
+  });
 }
 
 }  // namespace
