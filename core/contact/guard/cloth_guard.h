@@ -219,6 +219,8 @@ class ClothGuard {
                     AnchorPart<Real>& part) const;
 
   // guard_critical.cpp
+  bool common_way_is_short() const;
+  void halt(ClothState<Real>& state);
   bool stays_calm(const ClothState<Real>& state, Real dt) const;
   bool has_leeway(const ClothState<Real>& state, Real dt) const;
   void note_ends(const ClothState<Real>& state, Real dt);
@@ -228,7 +230,7 @@ class ClothGuard {
   bool is_critical(GuardedPair<Real>& pair);
   bool holds(const Critical& c) const;
   void fix(Critical& c);
-  void truncate(ClothState<Real>& state, Real dt, bool halt);
+  void truncate(ClothState<Real>& state, Real dt, bool stay);
   void count_motion();
 
   // guard_rows.cpp

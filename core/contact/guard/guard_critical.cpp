@@ -12,8 +12,9 @@ namespace {
 /// Rounds of looking for an axis for each pair before all that are left stop at planes.
 constexpr int kRounds = 12;
 
-/// Times that pairs are collected anew in one step for particles that were stopped off their path.
-constexpr int kRetries = 2;
+/// Times that pairs are collected anew in one step for particles that were stopped off their path,
+/// before such ones stay where they are; and before all do.
+constexpr int kRetries = 2, kMostRetries = 16;
 
 /// Beyond this part of all particles being off their paths all pairs are collected anew.
 constexpr std::size_t kManyStrays = 6;
@@ -69,8 +70,8 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   find_strays(state, dt);
   bool collected = collected_ && elapsed_ <= horizon_;
   for (int attempt = 0;; ++attempt) {
-    collected =
-        collected && strays_.size() <= awake_count_ / kManyStrays && pairs_.size() <= most_pairs_;
+    collected = collected && strays_.size() <= awake_count_ / kManyStrays &&
+                pairs_.size() <= most_pairs_ && (strays_.empty() || common_way_is_short());
     if (!collected)
       collect(state, dt, profile);
     else if (!strays_.empty())
@@ -87,10 +88,37 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     truncate(state, dt, attempt >= kRetries);
     leeway_ = 0;
     if (strays_.empty()) break;
+    if (attempt < kMostRetries) continue;
+    halt(state);
+    break;
   }
   note_ends(state, dt);
   if (active_.empty()) note_paths();
   count_motion();
+}
+
+/// Whether new paths of strays keep to what all leave theirs by in common: a path begins with that
+/// of the step before, and has only half its reach for what it is more by now.
+template <class Real>
+bool ClothGuard<Real>::common_way_is_short() const {
+  const Quad<Real> more = off_path_now_ - off_path_before_;
+  return dot(more, more) <= reach_ * reach_ / 4;
+}
+
+/// Nobody moves: that is always allowed, whatever pairs are known. New ones are looked for in the
+/// next step.
+template <class Real>
+void ClothGuard<Real>::halt(ClothState<Real>& state) {
+  ++counts_.halts;
+  for (std::size_t i = 0; i < step_.size(); ++i) {
+    if (is_active_[i]) lost_ += static_cast<double>(length(step_[i]));
+    step_[i] = {};
+    state.x[i] = to_vector(legal_[i]);
+    state.v[i].setZero();
+  }
+  strays_.clear();
+  dirty_.clear();
+  collected_ = false;
 }
 
 /// Whether, while there are no pairs, all stay in the balls around their paths in the coming step.
@@ -270,11 +298,11 @@ void ClothGuard<Real>::fix(Critical& c) {
   }
 }
 
-/// Applies what was not allowed to the state.
-/// @param halt  particles stopped off their predicted path stay where they are
-///              and else are listed as strays, which ask for pairs around a new path
+/// Applies what was not allowed to the state. Particles stopped off their predicted path are listed
+/// as strays, which ask for pairs around a new one; what the others may then is seen anew.
+/// @param stay  they stay where they are, so that none is stopped a second time
 template <class Real>
-void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
+void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool stay) {
   strays_.clear();
   ++wave_;
   const auto visit = [&](Index k) {
@@ -289,8 +317,8 @@ void ClothGuard<Real>::truncate(ClothState<Real>& state, Real dt, bool halt) {
     fraction_[i] = 1;
     const Quad<Real> off = legal_[i] + allowed - on_path(i, elapsed_) - off_path_now_;
     const bool off_path = !(dot(off, off) <= reach_ * reach_);
-    if (off_path && !halt) strays_.push_back(k);
-    step_[i] = off_path && halt ? Quad<Real>() : allowed;
+    if (off_path) strays_.push_back(k);
+    step_[i] = off_path && stay ? Quad<Real>() : allowed;
     state.x[i] = to_vector(legal_[i]);
     state.v[i] = to_vector(step_[i]) / dt;
   };
@@ -315,6 +343,8 @@ void ClothGuard<Real>::count_motion() {
 
 #define WEFT_INSTANTIATE(Real)                                                          \
   template void ClothGuard<Real>::certify(ClothState<Real>&, Real, Profile&);           \
+  template bool ClothGuard<Real>::common_way_is_short() const;                          \
+  template void ClothGuard<Real>::halt(ClothState<Real>&);                              \
   template bool ClothGuard<Real>::stays_calm(const ClothState<Real>&, Real) const;      \
   template bool ClothGuard<Real>::has_leeway(const ClothState<Real>&, Real) const;      \
   template void ClothGuard<Real>::note_ends(const ClothState<Real>&, Real);             \

@@ -10,13 +10,14 @@
 #include "tests/support/cloths.h"
 <<<<<<< HEAD
 #include "tests/support/seeded_random.h"
-    =======
+    == == ==
+    =
 #include "tests/support/targets.h"
-    >>>>>>> four
+        >>>>>>> four
 #include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
-    using namespace weft;
+        using namespace weft;
 using test::Random;
 using test::SeededRandom;
 
