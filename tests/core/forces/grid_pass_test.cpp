@@ -8,16 +8,12 @@
 #include "core/forces/force_pass.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
-<<<<<<< HEAD
 #include "tests/support/seeded_random.h"
-    == == ==
-    =
 #include "tests/support/targets.h"
-        >>>>>>> four
 #include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
-        using namespace weft;
+using namespace weft;
 using test::Random;
 using test::SeededRandom;
 
