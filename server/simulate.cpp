@@ -50,6 +50,7 @@ struct Measurement {
   std::size_t object_crossings = 0;          ///< of cloths with objects, over all checks
   int crossed_ticks = 0, first_crossed = 0;  ///< the first one's number; 0: none
   std::size_t late_crossings = 0;            ///< after the time in which the scene may have some
+  std::size_t broken_promises = 0;           ///< those of them that its contact rules out
   Verdict<float> verdict;                    // of a hard case
 };
 
@@ -88,8 +89,9 @@ void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Mea
   m.object_crossings += found.objects.proper + found.objects.touching;
   ++m.crossed_ticks;
   if (m.first_crossed == 0) m.first_crossed = static_cast<int>(world.tick());
-  if (world.report().time > world.def().verdict.clear_after)
-    m.late_crossings += broken_promises(world, found);
+  if (world.report().time <= world.def().verdict.clear_after) return;
+  m.late_crossings += found.total();
+  m.broken_promises += broken_promises(world, found);
 }
 
 Measurement run(World<float>& world, const SimulateOptions& options) {
@@ -238,8 +240,10 @@ int warn_of_crossings(const Measurement& m) {
                "weft: %zu crossings of cloth with cloth and %zu with objects in %d of %d ticks, "
                "from tick %d on%s\n",
                m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
-               m.late_crossings > 0 ? "" : ", none after the time that the scene has for them");
-  return m.late_crossings > 0 ? kCrossed : 0;
+               m.broken_promises > 0  ? ""
+               : m.late_crossings > 0 ? ", of which its contact promises nothing"
+                                      : ", none after the time that the scene has for them");
+  return m.broken_promises > 0 ? kCrossed : 0;
 }
 
 /// Tells what is wrong before minutes are spent.
