@@ -73,11 +73,8 @@ WorldDef flag(int n, const FabricDef& fabric) {
 
 WorldDef drape(int n, const FabricDef& fabric) {
   WorldDef def = quiet_world(n, n, fabric);
-  // Touches within two ticks: a stiff cloth is compared for a few ticks only, and would fall
-  // freely. At rest on the sphere a micrometre would decide who is carried.
-  const double radius = 0.3, fall = 5e-3;
-  def.cloths[0].origin = Vec3d(-0.5, 2 * radius + fabric.thickness + fall, -0.5);
-  def.colliders = {{"sphere", SphereDef{Vec3d(0, radius, 0), radius}}};
+  def.cloths[0].origin = Vec3d(-0.5, 0.62, -0.5);
+  def.colliders = {{"sphere", SphereDef{Vec3d(0, 0.3, 0), 0.3}}};
   def.environment.drag = 0.5;
   return def;
 }
