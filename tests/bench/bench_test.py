@@ -139,6 +139,12 @@ class Bench(unittest.TestCase):
         self.assertIn("penetration", tables.error_vectors(cells, "drape"))
         self.assertIn("| 0 mm |", tables.error_vectors(self.swing["accuracy"], "swing"))
 
+    def test_a_drape_is_compared_while_it_touches_the_sphere(self):
+        # The fall takes sqrt(2 h / g) = 0.032 s.
+        for row in tables.read(Path(__file__).parent / "data", "references"):
+            if row["scene"] == "drape" and not row["missing"]:
+                self.assertGreaterEqual(row["compared_from_s"], 0.049)
+
     def test_what_is_above_the_budget_is_not_run_and_says_why(self):
         cells = measure("--scenes", "swing", "--sizes", "16", "--budget", "0")["accuracy"]
         self.assertGreater(len(cells), 6)

@@ -24,7 +24,7 @@ ABOUT = {
     "hanging-strip": "1 m × 12 cm, upright, let go when not stretched yet: the way is the stretch "
                      "alone, so a solver with rigid springs is 100 % wrong.",
     "flag": "1 m × 1 m, held by one edge, in a wind of 6 m/s.",
-    "drape": "1 m × 1 m, lies on a sphere of 0.3 m radius and falls about it, with friction."}
+    "drape": "1 m × 1 m, falls 5 mm on a sphere of 0.3 m radius, with friction."}
 
 
 def report_text(data):
