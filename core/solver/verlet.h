@@ -21,6 +21,7 @@ enum class SolverKind {
   automatic,   ///< the one of the world's model: verlet for weft, relaxation for the seed
   verlet,      ///< springs as forces, leapfrog
   relaxation,  ///< springs as constraints, swept over (relaxation.h)
+  implicit,    ///< springs as forces at the substep's end, BDF2 (implicit/implicit.h)
 };
 
 /// The choice of a solver, and the settings of `verlet`.
@@ -34,7 +35,7 @@ struct SolverDef {
 /// Describes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_solver(Def& s, Visitor&& visit) {
-  visit(choice("kind", "automatic|verlet|relaxation", "automatic: by the model"), s.kind);
+  visit(choice("kind", "automatic|verlet|relaxation|implicit", "automatic: by the model"), s.kind);
   visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps a tick of verlet"},
         s.min_substeps);
   visit(FieldInfo{"damping_sweeps", 1, 10, "", "fixed-point sweeps on the dashpots"},

@@ -24,13 +24,15 @@ enum class Stage : std::uint8_t {
   diagnostics,   ///< work: checks made
   relaxation,    ///< work: springs relaxed, over all sweeps (solver relaxation)
   self_contact,  ///< work: pairs of the cloth with itself answered, over all passes (model seed)
+  linear_systems,  ///< work: iterations of conjugate gradients (solver implicit)
 };
-inline constexpr std::size_t kStageCount = 15;
+inline constexpr std::size_t kStageCount = 16;
 
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
     "attachments", "fans",        "air",         "stretch",      "bending",
     "integration", "broad_phase", "pairs",       "narrow_phase", "regions",
-    "contact",     "friction",    "diagnostics", "relaxation",   "self_contact"};
+    "contact",     "friction",    "diagnostics", "relaxation",   "self_contact",
+    "linear_systems"};
 
 class StageTimer;
 

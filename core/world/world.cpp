@@ -50,9 +50,13 @@ WorldDef validated(WorldDef def) {
 std::string describe(const Divergence& d) {
   const std::string what = d.cause == DivergenceCause::not_finite
                                ? "a value that is not finite"
+                           : d.cause == DivergenceCause::unsolved
+                               ? "a linear system that was not solved"
                                : "unexplained energy of " + number_text(d.value) + " J";
   const std::string done = d.remedy == DivergenceRemedy::more_substeps
                                ? "repeated with more substeps"
+                           : d.remedy == DivergenceRemedy::more_damping
+                               ? "repeated by backward Euler"
                                : "went back to the last good state and stopped the cloth";
   return "tick " + std::to_string(d.tick) + ": " + what + " at particle " +
          std::to_string(d.particle) + " with " + std::to_string(d.substeps) + " substeps; " + done;
@@ -158,8 +162,10 @@ template <class Real>
 void World<Real>::prepare_solver() {
   if (solver_of(def_) == SolverKind::verlet)
     verlet_.prepare(model_, def_.solver, runtime_.executor);
-  else
+  else if (solver_of(def_) == SolverKind::relaxation)
     relaxation_.prepare(model_);
+  else
+    implicit_.prepare(model_);
   if (guard_ && solver_of(def_) == SolverKind::verlet) verlet_.make_room_for_paths();
   verlet_.elastic.reset();
   make_room();
@@ -184,6 +190,10 @@ std::size_t World<Real>::solver_bytes() const {
 
 template <class Real>
 int World<Real>::choose_substeps() const {
+  if (solver_of(def_) == SolverKind::implicit) {
+    const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
+    return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
+  }
   const int fewest = solver_of(def_) == SolverKind::relaxation ? def_.relaxation.substeps
                                                                : def_.solver.min_substeps;
   long count = 0;
@@ -256,7 +266,9 @@ void World<Real>::blow_wind() {
 
 template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
+  const bool implicit = solver_of(def_) == SolverKind::implicit;
   for (int attempt = 0;; ++attempt) {
+    implicit_.damped = attempt > 0;
     const AdvanceResult result = advance(substeps);
     const StageTimer timer(report_.profile, Stage::diagnostics, 1);
     const std::optional<Divergence> divergence = examine(result, substeps);
@@ -272,11 +284,15 @@ void World<Real>::advance_or_recover(int substeps) {
     }
     report_.divergence = divergence;
     restore_last_good();
-    if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
+    if (attempt == kMostRetries + (implicit ? 1 : 0) || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
       accept_state();
       return;
+    }
+    if (attempt == 0 && implicit) {
+      report_.divergence->remedy = DivergenceRemedy::more_damping;
+      continue;
     }
     report_.divergence->remedy = DivergenceRemedy::more_substeps;
     substeps *= 2;
@@ -304,6 +320,9 @@ AdvanceResult World<Real>::advance(int substeps) {
       solver_of(def_) == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
                            state_, verlet_, report_.profile)
+      : solver_of(def_) == SolverKind::implicit
+          ? advance_implicit(model_, surroundings_, def_.implicit, dt, substeps, grabs_,
+                             collision(), state_, implicit_, report_.profile)
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
                                collision(), state_, relaxation_, report_.profile);
   result.work += contact_.work() + pin_drive_.work();
@@ -319,9 +338,13 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, int 
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
   // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
-  if (finite && (solver_of(def_) == SolverKind::relaxation || !account_.is_runaway(result)))
+  const bool solved = solver_of(def_) != SolverKind::implicit || !implicit_.unsolved;
+  if (finite && solved &&
+      (solver_of(def_) == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
-  d.cause = finite ? DivergenceCause::energy_runaway : DivergenceCause::not_finite;
+  d.cause = !finite   ? DivergenceCause::not_finite
+            : !solved ? DivergenceCause::unsolved
+                      : DivergenceCause::energy_runaway;
   d.value = finite ? account_.unexplained(result) : result.after.total();
   Real fastest = -1;
   for (std::size_t i = 0; i < state_.x.size(); ++i) {

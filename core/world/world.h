@@ -11,6 +11,7 @@
 #include "core/contact/colliders/collider_state.h"
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
+#include "core/solver/implicit/implicit.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
@@ -27,11 +28,13 @@ namespace weft {
 enum class DivergenceCause : std::uint8_t {
   not_finite,      ///< a position, velocity or energy is NaN or infinite
   energy_runaway,  ///< more energy than there was and than hands and air did work
+  unsolved,        ///< a linear system of the solver implicit has no solution that was found
 };
 
 /// What was done about it.
 enum class DivergenceRemedy : std::uint8_t {
   more_substeps,  ///< the tick was done again from the last good state with more substeps
+  more_damping,   ///< done again from there by backward Euler (solver implicit)
   stopped_cloth,  ///< the last good state is back, with all velocities zero
 };
 
@@ -266,6 +269,7 @@ class World {
   std::optional<ClothGuard<Real>> guard_;          ///< if it was chosen
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
+  ImplicitWorkspace<Real> implicit_;
   EnergyAccount account_;
   Sleep<Real> sleep_;
   std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for

@@ -59,7 +59,14 @@ bool has_guard(const WorldDef& def) {
 }
 
 const char* solver_name(const WorldDef& def) {
-  return solver_of(def) == SolverKind::relaxation ? "relaxation" : "verlet";
+  switch (solver_of(def)) {
+    case SolverKind::relaxation:
+      return "relaxation";
+    case SolverKind::implicit:
+      return "implicit";
+    default:
+      return "verlet";
+  }
 }
 
 void validate(const EnvironmentDef& def) {

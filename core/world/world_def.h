@@ -9,6 +9,7 @@
 #include "core/contact/colliders/collider.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/diagnostics/measurements.h"
+#include "core/solver/implicit/implicit.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/budget.h"
@@ -49,6 +50,7 @@ struct WorldDef {
   EnvironmentDef environment;
   SolverDef solver;
   RelaxationDef relaxation;
+  ImplicitDef implicit;
   CollisionDef contact;
   BudgetDef budget;
   SleepDef sleep;
@@ -80,6 +82,7 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
                     def.contact.model);
   visit_fields_of_seed_contact(def.contact.seed, below("contact."));
   visit_fields_of_relaxation(def.relaxation, below("relaxation."));
+  visit_fields_of_implicit(def.implicit, below("implicit."));
   visit_fields_of_budget(def.budget, below("budget."));
   visit_fields_of_sleep(def.sleep, below("sleep."));
   visit_fields_of_verdict(def.verdict, below("verdict."));
@@ -98,7 +101,7 @@ void visit_fields(Def& def, Visitor&& visit) {
   }
 }
 
-/// The solver that the definition asks for: verlet or relaxation.
+/// The solver that the definition asks for, not `automatic`.
 SolverKind solver_of(const WorldDef& def);
 
 /// The contact that the definition asks for: weft or seed.

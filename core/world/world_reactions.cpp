@@ -33,7 +33,7 @@ void World<Real>::take_reactions() {
     for (const ContactPoint& contact : contacts_of(*guard_, state_.x))
       found.contacts.push_back(contact);
   }
-  if (solver_of(def_) == SolverKind::verlet) {
+  if (solver_of(def_) != SolverKind::relaxation) {
     Vec3Array<Real> pulled;
     if (!idle(grabs_)) {
       pulled.assign(model_.mass.size(), Vec3<Real>::Zero());

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "core/solver/implicit/spring_grid.h"
+
+namespace weft {
+
+inline constexpr int kMostLinearIterations = 200;
+
+/// What became of a linear system.
+struct LinearSolution {
+  int iterations = 0;
+  double start = 0;     ///< sqrt(r^T z) at the start
+  bool solved = false;  ///< false: not positive definite, not finite, or not done in time
+};
+
+/// Vectors of a system, all of the same size.
+template <class Real>
+struct LinearVectors {
+  Real *residual;  ///< the right side when it begins
+  Real *solution;  ///< out
+  Real *direction, *product, *preconditioned;
+  std::size_t count;
+};
+
+/// Preconditioned conjugate gradients from zero until sqrt(r^T z) has fallen to `tolerance` of its
+/// start or to `enough`.
+/// @param apply         y = A p
+/// @param precondition  z = about A^-1 r, symmetric and positive definite
+template <class Real, class Apply, class Precondition>
+LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, double enough,
+                            Apply&& apply, Precondition&& precondition) {
+  LinearSolution result;
+  for (std::size_t n = 0; n < v.count; ++n) v.solution[n] = 0;
+  precondition(v.residual, v.preconditioned);
+  double rz = dot(v.residual, v.preconditioned, v.count);
+  if (!std::isfinite(rz) || rz < 0) return result;
+  result.start = std::sqrt(rz);
+  const double limit = std::max(tolerance * result.start, enough);
+  for (std::size_t n = 0; n < v.count; ++n) v.direction[n] = v.preconditioned[n];
+  for (; result.iterations < kMostLinearIterations; ++result.iterations) {
+    if (std::sqrt(rz) <= limit) {
+      result.solved = true;
+      return result;
+    }
+    apply(v.direction, v.product);
+    const double curvature = dot(v.direction, v.product, v.count);
+    if (!(curvature > 0) || !std::isfinite(curvature)) return result;
+    const auto length = static_cast<Real>(rz / curvature);
+    add_scaled(length, v.direction, v.solution, v.count);
+    add_scaled(-length, v.product, v.residual, v.count);
+    precondition(v.residual, v.preconditioned);
+    const double next = dot(v.residual, v.preconditioned, v.count);
+    if (!std::isfinite(next) || next < 0) return result;
+    scale_and_add(static_cast<Real>(next / rz), v.preconditioned, v.direction, v.count);
+    rz = next;
+  }
+  return result;
+}
+
+}  // namespace weft

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/solver/implicit/grid_system.h"
+#include "core/solver/implicit/linear_terms.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// The linear systems of any other cloth, spring by spring and hinge by hinge; the inverse of the
+/// diagonal blocks stands for that of the matrix. A hinge's matrix is k g g^T with g the gradient
+/// of its angle (Gauss-Newton: what the angle's own curvature adds may be indefinite).
+template <class Real>
+class ElementSystem {
+ public:
+  ElementSystem(const ClothModel<Real>& model, const ClothPart<Real>& part);
+
+  std::size_t size() const { return size_; }
+  std::array<std::size_t, 3> places(Index particle) const {
+    const auto at = 3 * static_cast<std::size_t>(particle);
+    return {at, at + 1, at + 2};
+  }
+
+  void set_pinned(const std::vector<Real>& inverse_mass);
+  void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& at,
+                 Vec3Array<Real>& force);
+  void load(const Vec3Array<Real>& from, Real* to) const;
+  void add(const Real* from, Vec3Array<Real>& to) const;
+  void apply(const Real* p, Real* y) const;
+  void precondition(const Real* r, Real* z) const;
+
+ private:
+  /// Energy stiffness/2 |sum_k weight_k x_k|^2.
+  struct Stencil {
+    Index x[4] = {0, 0, 0, 0};
+    Real weight[4] = {0, 0, 0, 0};
+    int count = 0;
+    Real stiffness = 0;
+  };
+  struct HingeTerm {
+    Index x[4];
+    std::array<Vec3<Real>, 4> gradient;
+    Real stiffness;
+  };
+
+  IndexRange particles_, springs_, hinges_;
+  std::size_t size_ = 0;  ///< a multiple of kGridMargin
+  std::vector<std::array<Index, 2>> ends_;
+  std::vector<SymmetricBlock<Real>> blocks_;
+  std::vector<Stencil> stencils_;
+  std::vector<HingeTerm> hinge_terms_;
+  std::vector<SymmetricBlock<Real>> own_, diagonal_, inverse_;
+  std::vector<Real> free_;
+};
+
+}  // namespace weft

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/solver/implicit/linear_terms.h"
+#include "core/solver/implicit/multigrid.h"
+#include "core/types.h"
+
+namespace weft {
+
+/// Where a Newton step is taken, for all particles of the model.
+template <class Real>
+struct NewtonPoint {
+  const Vec3Array<Real>& x;  ///< [m]
+  const Vec3Array<Real>& v;  ///< [m/s]
+  Real rate;                 ///< by which velocities change with positions [1/s]
+  /// Of each particle what of the matrix is its own: inertia, drag and air [N/m].
+  const std::vector<SymmetricBlock<Real>>& own;
+};
+
+/// The linear systems of a cloth that is a whole grid with regular springs and bends by the
+/// quadratic form or not at all: vector code, multigrid.
+template <class Real>
+class GridSystem {
+ public:
+  static bool fits(const ClothModel<Real>& model, const ClothPart<Real>& part);
+
+  GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part);
+
+  /// Numbers in a vector. Between them stand zeros.
+  std::size_t size() const { return grid().layout.size(); }
+  /// Where the components of a particle stand, counted from the part's first.
+  std::array<std::size_t, 3> places(Index particle) const;
+
+  /// Takes who is pinned.
+  void set_pinned(const std::vector<Real>& inverse_mass);
+
+  /// Adds the forces of springs and bending to `force`, and keeps the matrix.
+  void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& at,
+                 Vec3Array<Real>& force);
+
+  void load(const Vec3Array<Real>& from, Real* to) const;
+  void add(const Real* from, Vec3Array<Real>& to) const;
+
+  void apply(const Real* p, Real* y) const { multiply(grid(), p, y); }
+  void precondition(const Real* r, Real* z) { multigrid_.precondition(r, z); }
+
+ private:
+  const SpringGrid<Real>& grid() const { return multigrid_.finest(); }
+
+  Multigrid<Real> multigrid_;
+  IndexRange particles_, springs_;
+  std::vector<GridSpring> kinds_;   ///< of each spring
+  std::vector<std::size_t> cells_;  ///< of each spring, the place of its first cell
+  GridVector<Real> x_, bent_;       ///< positions and the force of bending
+};
+
+}  // namespace weft

@@ -1,0 +1,198 @@
+#include "core/solver/implicit/spring_grid.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/solver/implicit/spring_grid.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/solver/implicit/spring_grid-inl.h"
+
+#if HWY_ONCE
+#include <cmath>
+
+namespace weft {
+
+HWY_EXPORT(multiply_f32);
+HWY_EXPORT(multiply_f64);
+HWY_EXPORT(bend_f32);
+HWY_EXPORT(bend_f64);
+HWY_EXPORT(smooth_f32);
+HWY_EXPORT(smooth_f64);
+HWY_EXPORT(dot_f32);
+HWY_EXPORT(dot_f64);
+HWY_EXPORT(combine_f32);
+HWY_EXPORT(combine_f64);
+
+void multiply(const SpringGrid<float>& grid, const float* p, float* y) {
+  HWY_DYNAMIC_DISPATCH(multiply_f32)(grid, p, y);
+}
+void multiply(const SpringGrid<double>& grid, const double* p, double* y) {
+  HWY_DYNAMIC_DISPATCH(multiply_f64)(grid, p, y);
+}
+void multiply_bending(const SpringGrid<float>& grid, const float* p, float* y) {
+  HWY_DYNAMIC_DISPATCH(bend_f32)(grid, p, y);
+}
+void multiply_bending(const SpringGrid<double>& grid, const double* p, double* y) {
+  HWY_DYNAMIC_DISPATCH(bend_f64)(grid, p, y);
+}
+void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z) {
+  HWY_DYNAMIC_DISPATCH(smooth_f32)(grid, omega, r, nullptr, z);
+}
+void smooth_from_zero(const SpringGrid<double>& grid, double omega, const double* r, double* z) {
+  HWY_DYNAMIC_DISPATCH(smooth_f64)(grid, omega, r, nullptr, z);
+}
+void smooth(const SpringGrid<float>& grid, float omega, const float* r, const float* y, float* z) {
+  HWY_DYNAMIC_DISPATCH(smooth_f32)(grid, omega, r, y, z);
+}
+void smooth(const SpringGrid<double>& grid, double omega, const double* r, const double* y,
+            double* z) {
+  HWY_DYNAMIC_DISPATCH(smooth_f64)(grid, omega, r, y, z);
+}
+double dot(const float* a, const float* b, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(dot_f32)(a, b, count);
+}
+double dot(const double* a, const double* b, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(dot_f64)(a, b, count);
+}
+void add_scaled(float s, const float* a, float* y, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(combine_f32)(false, s, a, y, count);
+}
+void add_scaled(double s, const double* a, double* y, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(combine_f64)(false, s, a, y, count);
+}
+void scale_and_add(float s, const float* a, float* y, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(combine_f32)(true, s, a, y, count);
+}
+void scale_and_add(double s, const double* a, double* y, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(combine_f64)(true, s, a, y, count);
+}
+
+GridLayout::GridLayout(int row_count, int column_count) : rows(row_count), columns(column_count) {
+  const std::ptrdiff_t whole = (column_count + 2 + kGridMargin - 1) / kGridMargin * kGridMargin;
+  stride = whole + kGridMargin;
+  origin = 2 * stride + kGridMargin;
+  plane = (rows + 4) * stride + 2 * kGridMargin;
+}
+
+template <class Real>
+void SpringGrid<Real>::prepare(const GridLayout& shape) {
+  layout = shape;
+  const auto size = static_cast<std::size_t>(layout.plane);
+  for (auto& blocks : springs) {
+    for (AlignedVector<Real>& numbers : blocks) numbers.assign(size, Real(0));
+  }
+  for (AlignedVector<Real>& numbers : own) numbers.assign(size, Real(0));
+  for (AlignedVector<Real>& numbers : inverse) numbers.assign(size, Real(0));
+  free.assign(size, Real(0));
+  for (int r = 0; r < layout.rows; ++r) {
+    for (int c = 0; c < layout.columns; ++c) free[static_cast<std::size_t>(layout.at(r, c))] = 1;
+  }
+  bending = {};
+}
+
+namespace {
+
+/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
+/// the particle itself, of the one before and of the one behind, and how many cells meet there.
+template <class Real>
+std::array<Real, 4> bending_line(int k, int count) {
+  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
+  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
+  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
+          static_cast<Real>(-2 * (here + behind)), static_cast<Real>((k > 0) + (k + 1 < count))};
+}
+
+}  // namespace
+
+template <class Real>
+void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form) {
+  bending = form;
+  const auto size = static_cast<std::size_t>(layout.stride + 3 * kGridMargin);
+  for (AlignedVector<Real>* table : {&bend, &bend_left, &bend_right, &cells})
+    table->assign(size, Real(0));
+  for (int c = 0; c < layout.columns; ++c) {
+    const std::array<Real, 4> line = bending_line<Real>(c, layout.columns);
+    const auto k = static_cast<std::size_t>(kGridMargin + c);
+    bend[k] = line[0];
+    bend_left[k] = line[1];
+    bend_right[k] = line[2];
+    cells[k] = line[3];
+  }
+  row_bend.clear();
+  for (int r = 0; r < layout.rows; ++r) row_bend.push_back(bending_line<Real>(r, layout.rows));
+}
+
+template <class Real>
+std::array<Real, 6> inverse_of(const std::array<Real, 6>& a) {
+  const Real cxx = a[3] * a[5] - a[4] * a[4], cxy = a[2] * a[4] - a[1] * a[5];
+  const Real cxz = a[1] * a[4] - a[2] * a[3];
+  const Real determinant = a[0] * cxx + a[1] * cxy + a[2] * cxz;
+  if (!(determinant > 0)) return {};
+  const Real s = 1 / determinant;
+  return {cxx * s,
+          cxy * s,
+          cxz * s,
+          (a[0] * a[5] - a[2] * a[2]) * s,
+          (a[1] * a[2] - a[0] * a[4]) * s,
+          (a[0] * a[3] - a[1] * a[1]) * s};
+}
+
+namespace {
+
+/// Half the absolute sum of a particle's row of the bending matrix.
+template <class Real>
+Real bending_bound(const SpringGrid<Real>& g, int r, int c) {
+  if (!g.bends()) return 0;
+  const auto line = [](Real w, Real before, Real behind, int k, int count) {
+    return w + std::abs(before) + std::abs(behind) + Real(k > 1) + Real(k + 2 < count);
+  };
+  const auto table = static_cast<std::size_t>(kGridMargin + c);
+  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
+  const Real u = line(g.bend[table], g.bend_left[table], g.bend_right[table], c, g.layout.columns);
+  const Real v = line(row[0], row[1], row[2], r, g.layout.rows);
+  return Real(0.5) * (g.bending.along_u * Real(0.5) * row[3] * u +
+                      g.bending.along_v * Real(0.5) * g.cells[table] * v +
+                      g.bending.twist * 4 * row[3] * g.cells[table]);
+}
+
+}  // namespace
+
+template <class Real>
+void invert_diagonal(SpringGrid<Real>& g) {
+  const std::ptrdiff_t s = g.layout.stride;
+  const std::ptrdiff_t before[3] = {1, s, s + 1};
+  for (int r = 0; r < g.layout.rows; ++r) {
+    for (int c = 0; c < g.layout.columns; ++c) {
+      const std::ptrdiff_t at = g.layout.at(r, c);
+      const auto k = static_cast<std::size_t>(at);
+      std::array<Real, 6> sum{};
+      for (std::size_t e = 0; e < 6; ++e) {
+        sum[e] = g.own[e][k];
+        for (std::size_t kind = 0; kind < 3; ++kind)
+          sum[e] += g.springs[kind][e][k] +
+                    g.springs[kind][e][static_cast<std::size_t>(at - before[kind])];
+        sum[e] += g.springs[kRising][e][k - 1] +
+                  g.springs[kRising][e][static_cast<std::size_t>(at - s)];
+      }
+      const Real bound = bending_bound(g, r, c);
+      sum[0] += bound;
+      sum[3] += bound;
+      sum[5] += bound;
+      const std::array<Real, 6> inverse =
+          g.free[k] > 0 ? inverse_of(sum) : std::array<Real, 6>{};
+      for (std::size_t e = 0; e < 6; ++e) g.inverse[e][k] = inverse[e];
+    }
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                          \
+  template struct SpringGrid<Real>;                                     \
+  template std::array<Real, 6> inverse_of(const std::array<Real, 6>&); \
+  template void invert_diagonal(SpringGrid<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
+#endif

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/math/aligned_vector.h"
+
+namespace weft {
+
+/// Zeros that stand around each row of a level, at least the widest vector, in numbers.
+inline constexpr std::ptrdiff_t kGridMargin = 16;
+
+/// A vector of a level: three planes of numbers, each laid out as the level is.
+template <class Real>
+using GridVector = AlignedVector<Real>;
+
+/// Where the numbers of a level stand: particle (r, c) of a plane is at origin + r * stride + c.
+/// Two rows of zeros above and below, and at least kGridMargin + 2 of them behind each row.
+struct GridLayout {
+  int rows = 0, columns = 0;
+  std::ptrdiff_t stride = 0, plane = 0, origin = 0;
+
+  GridLayout() = default;
+  GridLayout(int row_count, int column_count);
+  std::size_t size() const { return 3 * static_cast<std::size_t>(plane); }
+  std::ptrdiff_t at(int r, int c) const { return origin + r * stride + c; }
+};
+
+/// The four kinds of springs of a grid. By the cell (r, c) they begin at: along to (r, c + 1), down
+/// to (r + 1, c), falling to (r + 1, c + 1), and rising, which joins (r, c + 1) with (r + 1, c).
+enum GridSpring { kAlong, kDown, kFalling, kRising };
+
+/// The symmetric positive semidefinite matrix of one level of a grid: to each particle its own
+/// symmetric 3 x 3 block, to each spring one that acts on the difference of its ends. Blocks are
+/// planes of numbers xx xy xz yy yz zz.
+template <class Real>
+struct SpringGrid {
+  GridLayout layout;
+  std::array<std::array<AlignedVector<Real>, 6>, 4> springs;  ///< by GridSpring [N/m]
+  std::array<AlignedVector<Real>, 6> own;                     ///< [N/m]
+  std::array<AlignedVector<Real>, 6> inverse;  ///< of the diagonal blocks; 0 where pinned [m/N]
+  AlignedVector<Real> free;                    ///< 1, or 0 if pinned and around the grid
+
+  // Bending of the finest level, as a constant matrix (QuadraticBending); 0 elsewhere.
+  QuadraticBending<Real> bending;
+  // Of each column its own weight in the matrix of second differences along the row, those of the
+  // particles before and behind (two away it is 1), and how many cells meet there, 1 or 2; from
+  // kGridMargin on, zeros around. Of each row the same four.
+  AlignedVector<Real> bend, bend_left, bend_right, cells;
+  std::vector<std::array<Real, 4>> row_bend;
+
+  bool bends() const { return bending.along_u != 0 || bending.along_v != 0 || bending.twist != 0; }
+
+  /// Sizes all arrays, with zeros; everybody is free and nothing bends.
+  void prepare(const GridLayout& shape);
+
+  /// Sets the bending of the finest level.
+  void set_bending(const QuadraticBending<Real>& form);
+};
+
+/// y = A p. Pinned particles get 0.
+void multiply(const SpringGrid<float>& grid, const float* p, float* y);
+void multiply(const SpringGrid<double>& grid, const double* p, double* y);
+
+/// y = what bending alone gives, of pinned particles too. Only on the finest level.
+void multiply_bending(const SpringGrid<float>& grid, const float* p, float* y);
+void multiply_bending(const SpringGrid<double>& grid, const double* p, double* y);
+
+/// z = omega D^-1 r with D the diagonal blocks.
+void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z);
+void smooth_from_zero(const SpringGrid<double>& grid, double omega, const double* r, double* z);
+
+/// z += omega D^-1 (r - y), where y = A z.
+void smooth(const SpringGrid<float>& grid, float omega, const float* r, const float* y, float* z);
+void smooth(const SpringGrid<double>& grid, double omega, const double* r, const double* y,
+            double* z);
+
+/// Sum of a[k] b[k], in an order that is the same for all instruction sets.
+/// @param count  a multiple of kGridMargin
+double dot(const float* a, const float* b, std::size_t count);
+double dot(const double* a, const double* b, std::size_t count);
+
+/// y += s a.
+void add_scaled(float s, const float* a, float* y, std::size_t count);
+void add_scaled(double s, const double* a, double* y, std::size_t count);
+
+/// y = a + s y.
+void scale_and_add(float s, const float* a, float* y, std::size_t count);
+void scale_and_add(double s, const double* a, double* y, std::size_t count);
+
+/// The inverses of the diagonal blocks: each particle's own, those of its springs, and half the sum
+/// of the absolute values of its row of the bending matrix, so that no eigenvalue of D^-1 A is
+/// above 2 (for springs and rows alike 2 D - A is a sum of squares).
+template <class Real>
+void invert_diagonal(SpringGrid<Real>& grid);
+
+/// Inverse of a symmetric matrix given and returned as xx xy xz yy yz zz; zeros if it is singular.
+template <class Real>
+std::array<Real, 6> inverse_of(const std::array<Real, 6>& a);
+
+}  // namespace weft
