@@ -221,6 +221,7 @@ inline const char* meaning_of_group(const std::string& path) {
   if (path == "contact.") return "what keeps the cloths off objects and themselves";
   if (path == "verdict.") return "what a hard case must keep to";
   if (path == "relaxation.") return "settings of the solver relaxation";
+  if (path == "implicit.") return "settings of the solver implicit";
   return "see the fields";
 }
 

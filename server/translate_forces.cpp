@@ -41,7 +41,7 @@ std::vector<proto::ContactInfo> contacts_of(const ServedWorld& world, const Reac
 
 proto::ReactionInfo reactions_of(const ServedWorld& world, const Reactions& reactions) {
   proto::ReactionInfo info;
-  if (solver_of(world.def()) == SolverKind::verlet) {
+  if (solver_of(world.def()) != SolverKind::relaxation) {
     info.pins.emplace();
     for (const PinReaction& pin : reactions.pins)
       info.pins->push_back({pin.pin, to_wire(pin.force)});

@@ -57,6 +57,7 @@ struct AdvanceResult {
   Energies before, after;
   double work = 0;            ///< done by hands and air over the tick [J]
   double largest_strain = 0;  ///< at the end
+  int damped_substeps = 0;    ///< that `implicit` had to go again by backward Euler
 };
 
 /// Arrays that live from tick to tick so that nothing allocates during a step.

@@ -11,6 +11,8 @@ namespace weft {
 namespace {
 
 /// How often a tick that diverged is tried again, each time with twice the substeps.
+/// Up to so many substeps of verlet a tick, violent ticks of implicit are gone by it.
+constexpr int kMostForViolence = 2000;
 constexpr int kMostRetries = 2;
 
 template <class Real>
@@ -55,8 +57,6 @@ std::string describe(const Divergence& d) {
                                : "unexplained energy of " + number_text(d.value) + " J";
   const std::string done = d.remedy == DivergenceRemedy::more_substeps
                                ? "repeated with more substeps"
-                           : d.remedy == DivergenceRemedy::more_damping
-                               ? "repeated by backward Euler"
                                : "went back to the last good state and stopped the cloth";
   return "tick " + std::to_string(d.tick) + ": " + what + " at particle " +
          std::to_string(d.particle) + " with " + std::to_string(d.substeps) + " substeps; " + done;
@@ -72,7 +72,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   state_ = initial_state(model_);
   for (const ClothPart<Real>& part : model_.parts)
     thickest_ = std::max(thickest_, part.fabric.thickness);
-  if (choose_substeps() > kMostSubsteps)
+  if (choose_substeps(solver_of(def_)) > kMostSubsteps)
     throw DefinitionError("fabric", "too stiff for this mesh and tick",
                           "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
                           "lower the stiffness or the resolution, or raise tick_rate");
@@ -143,7 +143,7 @@ const TickReport& World<Real>::step() {
   PinDrive<Real>::plan(tick_seconds(), state_, pins_);
   rouse_sleepers();
   if (rests()) return rest();
-  const int substeps = choose_substeps();
+  const int substeps = choose_substeps(solver_of(def_));
   blow_wind();
   advance_or_recover(substeps);
   finish_motion(def_.colliders, tick_seconds(), colliders_);
@@ -160,13 +160,13 @@ const TickReport& World<Real>::step() {
 
 template <class Real>
 void World<Real>::prepare_solver() {
-  if (solver_of(def_) == SolverKind::verlet)
-    verlet_.prepare(model_, def_.solver, runtime_.executor);
-  else if (solver_of(def_) == SolverKind::relaxation)
+  const SolverKind kind = solver_of(def_);
+  if (kind == SolverKind::relaxation)
     relaxation_.prepare(model_);
-  else
-    implicit_.prepare(model_);
-  if (guard_ && solver_of(def_) == SolverKind::verlet) verlet_.make_room_for_paths();
+  else  // implicit has violent ticks gone by verlet
+    verlet_.prepare(model_, def_.solver, runtime_.executor);
+  if (kind == SolverKind::implicit) implicit_.prepare(model_);
+  if (guard_ && kind != SolverKind::relaxation) verlet_.make_room_for_paths();
   verlet_.elastic.reset();
   make_room();
 }
@@ -176,7 +176,8 @@ template <class Real>
 void World<Real>::make_room() {
   const bool air = has_air(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
-  if (solver_of(def_) == SolverKind::verlet) verlet_.make_room(model_, air, !grabs_.shots.empty());
+  if (solver_of(def_) != SolverKind::relaxation)
+    verlet_.make_room(model_, air, !grabs_.shots.empty());
 }
 
 template <class Real>
@@ -189,17 +190,17 @@ std::size_t World<Real>::solver_bytes() const {
 }
 
 template <class Real>
-int World<Real>::choose_substeps() const {
-  if (solver_of(def_) == SolverKind::implicit) {
+int World<Real>::choose_substeps(SolverKind kind) const {
+  if (kind == SolverKind::implicit) {
     const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
     return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
   }
-  const int fewest = solver_of(def_) == SolverKind::relaxation ? def_.relaxation.substeps
-                                                               : def_.solver.min_substeps;
+  const int fewest = kind == SolverKind::relaxation ? def_.relaxation.substeps
+                                                    : def_.solver.min_substeps;
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
-    count = std::max(count, substeps_for(stability_bound(part), tick_seconds(), fewest));
-  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(count, fewest));
+    count = std::max(count, substeps_for(stability_bound(part, kind), tick_seconds(), fewest));
+  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(kind, count, fewest));
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 
@@ -207,7 +208,7 @@ int World<Real>::choose_substeps() const {
 /// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
 /// springs.
 template <class Real>
-long World<Real>::substeps_for_hands(long cloth_alone, int fewest) const {
+long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const {
   const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts) {
@@ -219,7 +220,7 @@ long World<Real>::substeps_for_hands(long cloth_alone, int fewest) const {
       count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
     }
     if (hands.omega2 == 0) continue;
-    StabilityBound together = stability_bound(part);
+    StabilityBound together = stability_bound(part, kind);
     together.omega2 += hands.omega2;
     together.damping_rate += hands.damping_rate;
     count =
@@ -229,9 +230,9 @@ long World<Real>::substeps_for_hands(long cloth_alone, int fewest) const {
 }
 
 template <class Real>
-StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part) const {
+StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind) const {
   StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
-  if (solver_of(def_) == SolverKind::verlet) {  // there the springs are forces too
+  if (kind == SolverKind::verlet) {  // there the springs are forces too
     bound.omega2 += part.bounds.membrane_omega2;
     bound.damping_rate += part.bounds.membrane_damping_rate;
   }
@@ -266,16 +267,29 @@ void World<Real>::blow_wind() {
 
 template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
-  const bool implicit = solver_of(def_) == SolverKind::implicit;
+  SolverKind kind = solver_of(def_);
+  int without_loss = 0;
+  if (kind == SolverKind::implicit) {
+    without_loss = choose_substeps(SolverKind::verlet);
+    implicit_.refuses_violence = without_loss <= kMostForViolence;
+  }
   for (int attempt = 0;; ++attempt) {
-    implicit_.damped = attempt > 0;
-    const AdvanceResult result = advance(substeps);
+    const AdvanceResult result = advance(kind, substeps);
+    if (kind == SolverKind::implicit && implicit_.violent) {
+      restore_last_good();
+      kind = SolverKind::verlet;
+      substeps = without_loss;
+      --attempt;
+      continue;
+    }
     const StageTimer timer(report_.profile, Stage::diagnostics, 1);
-    const std::optional<Divergence> divergence = examine(result, substeps);
+    const std::optional<Divergence> divergence = examine(result, kind, substeps);
     report_.substeps = substeps;
     report_.energies = result.after;
     report_.work = result.work;
     report_.largest_strain = result.largest_strain;
+    report_.damped_substeps = result.damped_substeps;
+    report_.violent = kind != solver_of(def_);
     if (!divergence) {
       account_.accept(result);
       last_good_.x = state_.x;
@@ -284,15 +298,11 @@ void World<Real>::advance_or_recover(int substeps) {
     }
     report_.divergence = divergence;
     restore_last_good();
-    if (attempt == kMostRetries + (implicit ? 1 : 0) || substeps > kMostSubsteps / 2) {
+    if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
       accept_state();
       return;
-    }
-    if (attempt == 0 && implicit) {
-      report_.divergence->remedy = DivergenceRemedy::more_damping;
-      continue;
     }
     report_.divergence->remedy = DivergenceRemedy::more_substeps;
     substeps *= 2;
@@ -310,17 +320,17 @@ Collision<Real> World<Real>::collision() {
 
 /// One tick of the chosen solver.
 template <class Real>
-AdvanceResult World<Real>::advance(int substeps) {
+AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   const double dt = tick_seconds() / substeps;
   contact_.begin_tick(tick_seconds(), &colliders_);
   if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
   if (guard_) guard_->begin_tick();
   AdvanceResult result =
-      solver_of(def_) == SolverKind::verlet
+      kind == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
                            state_, verlet_, report_.profile)
-      : solver_of(def_) == SolverKind::implicit
+      : kind == SolverKind::implicit
           ? advance_implicit(model_, surroundings_, def_.implicit, dt, substeps, grabs_,
                              collision(), state_, implicit_, report_.profile)
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
@@ -331,16 +341,17 @@ AdvanceResult World<Real>::advance(int substeps) {
 }
 
 template <class Real>
-std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, int substeps) const {
+std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, SolverKind kind,
+                                            int substeps) const {
   Divergence d;
   d.tick = tick_ + 1;
   d.substeps = substeps;
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
   // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
-  const bool solved = solver_of(def_) != SolverKind::implicit || !implicit_.unsolved;
+  const bool solved = kind != SolverKind::implicit || !implicit_.unsolved;
   if (finite && solved &&
-      (solver_of(def_) == SolverKind::relaxation || !account_.is_runaway(result)))
+      (kind == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
   d.cause = !finite   ? DivergenceCause::not_finite
             : !solved ? DivergenceCause::unsolved

@@ -34,7 +34,6 @@ enum class DivergenceCause : std::uint8_t {
 /// What was done about it.
 enum class DivergenceRemedy : std::uint8_t {
   more_substeps,  ///< the tick was done again from the last good state with more substeps
-  more_damping,   ///< done again from there by backward Euler (solver implicit)
   stopped_cloth,  ///< the last good state is back, with all velocities zero
 };
 
@@ -59,6 +58,8 @@ struct TickReport {
   double work = 0;     ///< by hands, air, objects and pins that move [J]
   double brought = 0;  ///< energy that the scene's insults brought right before [J]
   double largest_strain = 0;
+  int damped_substeps = 0;     ///< that the solver implicit had to go again by backward Euler
+  bool violent = false;        ///< gone by verlet, as the solver implicit would have lost too much
   bool rested = false;  ///< all slept and nothing moved: nothing was computed, no work counted
   std::optional<Divergence> divergence;
   Profile profile;
@@ -233,16 +234,17 @@ class World {
   bool rests() const;
   const TickReport& rest();
   void put_to_sleep();
-  int choose_substeps() const;
-  long substeps_for_hands(long cloth_alone, int fewest) const;
+  int choose_substeps(SolverKind kind) const;
+  long substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const;
   void prepare_solver();
   void make_room();
-  StabilityBound stability_bound(const ClothPart<Real>& part) const;
+  StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind) const;
   void blow_wind();
   void advance_or_recover(int substeps);
-  AdvanceResult advance(int substeps);
+  AdvanceResult advance(SolverKind kind, int substeps);
   Collision<Real> collision();
-  std::optional<Divergence> examine(const AdvanceResult& result, int substeps) const;
+  std::optional<Divergence> examine(const AdvanceResult& result, SolverKind kind,
+                                    int substeps) const;
   void restore_last_good();
   void report_present_state();
 

@@ -25,10 +25,11 @@ struct ShakenSolver {
   int sweeps = 1;
 };
 
-/// verlet, XPBD and the seed's relaxation.
+/// verlet, XPBD, the seed's relaxation, and BDF2.
 inline constexpr ShakenSolver kShakenSolvers[] = {{"verlet"},
                                                   {"XPBD", SolverKind::relaxation, 1, 32, 1},
-                                                  {"seed", SolverKind::relaxation, 0, 1, 2}};
+                                                  {"seed", SolverKind::relaxation, 0, 1, 2},
+                                                  {"implicit", SolverKind::implicit}};
 
 /// So many of the eight noises may leave a tuck, with which the cloth is still within 2 % of its
 /// rest: verlet keeps one after one of them, soft, 33 by 33 (1.02 %). The report tells each figure.

@@ -3,282 +3,129 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/forces/air.h"
-#include "core/solver/implicit/conjugate_gradients.h"
+#include "core/solver/implicit/implicit_step.h"
 
 namespace weft {
 namespace {
 
-/// Later linear systems of a substep need not be solved better than this part of the first one's
-/// tolerance.
-constexpr double kEnough = 0.1;
-
-/// One substep's constant inputs together with what it changes.
-template <class Real>
-struct Step {
-  const ClothModel<Real>& model;
-  const Surroundings<Real>& surroundings;
-  const ImplicitDef& solver;
-  Real dt;
-  Grabs<Real>& grabs;
-  ClothState<Real>& state;
-  ImplicitWorkspace<Real>& work;
-  Profile& profile;
-
-  bool movable(std::size_t i) const { return state.inverse_mass[i] > 0; }
-};
-
-/// How the velocity at the end and its change follow from the way of a particle:
-/// v' = rate way - offset, M (rate v' - before) = forces.
-template <class Real>
-struct Scheme {
-  Real rate;
-  Vec3<Real> offset, before;
-
-  Scheme(const Step<Real>& step, std::size_t i) {
-    const ImplicitWorkspace<Real>& work = step.work;
-    const Vec3<Real>& v = step.state.v[i];
-    if (work.history[i]) {
-      const Real half = 1 / (2 * step.dt);
-      rate = 3 * half;
-      offset = work.last_way[i] * half;
-      before = (v * 4 - work.last_v[i]) * half;
-    } else {
-      rate = 1 / step.dt;
-      offset = Vec3<Real>::Zero();
-      before = v * rate;
-    }
-  }
-};
+/// Energy out of nothing that is put down to rounding, as a part of the kinetic and elastic one.
+constexpr double kRounding = 1e-4;
+/// Part of the energy that was lost that may come back, kept each tick: for a moment the scheme has
+/// what a wave brings back in the next.
+constexpr double kKeptCredit = 0.9;
+/// Into how many pieces a substep is cut at the most.
+constexpr int kMostPieces = 64;
+/// Part of the kinetic and elastic energy that a violent substep takes.
+constexpr double kViolentLoss = 0.2;
+/// Speed of all particles whose energy a violently shaken cloth has at least [m/s].
+constexpr double kViolentSpeed = 1;
 
 /// Who was moved by others since the tick before starts anew.
 template <class Real>
 void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<Real>& work) {
-  const bool same_step = work.last_dt == dt && !work.damped;
+  const bool same_step = work.last_dt == dt;
+  bool all_same = same_step;
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const bool same = state.x[i] == work.end_x[i] && state.v[i] == work.end_v[i];
     if (!same_step || !same || !(state.inverse_mass[i] > 0)) work.history[i] = 0;
+    all_same = all_same && same;
   }
+  work.credit = all_same ? work.credit * kKeptCredit : 0;
   work.last_dt = dt;
 }
 
-/// Where the present ways lead, and how fast.
+struct Energy {
+  double total = 0, mechanical = 0;  ///< with and without gravity [J]
+};
+
 template <class Real>
-void place(Step<Real>& step) {
-  ImplicitWorkspace<Real>& work = step.work;
-  for (std::size_t i = 0; i < work.x.size(); ++i) {
-    work.x[i] = step.state.x[i] + work.way[i];
-    if (!step.movable(i)) {
-      work.v[i] = Vec3<Real>::Zero();
-      continue;
-    }
-    const Scheme<Real> scheme(step, i);
-    work.v[i] = work.way[i] * scheme.rate - scheme.offset;
+Energy energy_at(const Step<Real>& step, const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
+  const StageTimer timer(step.profile, Stage::diagnostics, 1);
+  const ElasticEnergy elastic = elastic_energy(step.model, x);
+  double kinetic = 0, gravity = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto mass = static_cast<double>(step.model.mass[i]);
+    kinetic += 0.5 * mass * static_cast<double>(v[i].squaredNorm());
+    gravity -= mass * static_cast<double>(step.surroundings.gravity.dot(x[i]));
   }
+  const double mechanical = kinetic + elastic.stretch + elastic.bending;
+  return {mechanical + gravity, mechanical};
 }
 
-/// Gravity, drag and inertia, and what of the matrix goes with them.
+/// What drag took over the present ways [J].
 template <class Real>
-void add_own(Step<Real>& step) {
+double drag_work(const Step<Real>& step) {
+  double sum = 0;
+  for (std::size_t i = 0; i < step.work.way.size(); ++i)
+    sum += static_cast<double>(step.model.mass[i] * step.work.v[i].dot(step.work.way[i]));
+  return step.surroundings.drag * sum;
+}
+
+/// Whether no energy came from nowhere in a substep, and if so what of what was lost is left.
+bool explained(const Energy& before, const Energy& after, double work, double& credit) {
+  const double excess = after.total - before.total - work - credit;
+  const double rounding = kRounding * (before.mechanical + std::abs(work) + 1e-9);
+  if (!(excess <= rounding)) return false;
+  credit = std::max(0.0, -excess);
+  return true;
+}
+
+/// Whether the substep took much of the energy of a cloth that is torn or shaken violently.
+template <class Real>
+bool is_violent(const Step<Real>& step, const Energy& before, const Energy& after, double work) {
+  const double lost = before.total + work - after.total - drag_work(step);
+  return lost > kViolentLoss * before.mechanical && before.mechanical > step.work.violent_energy;
+}
+
+/// The ways of a substep in pieces by backward Euler, `work.way`, `x` and `v` at its end.
+/// @returns whether all linear systems were solved
+template <class Real>
+bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double& brought) {
   ImplicitWorkspace<Real>& work = step.work;
-  const auto drag = static_cast<Real>(step.surroundings.drag);
-  for (std::size_t i = 0; i < work.x.size(); ++i) {
-    const Real mass = step.model.mass[i];
-    const Scheme<Real> scheme(step, i);
-    work.force[i] = (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) +
-                     scheme.before) * mass;
-    const Real own = mass * scheme.rate * (scheme.rate + drag);
-    work.own[i] = {own, 0, 0, own, 0, own};
-  }
-}
-
-/// Air on all triangles. The matrix counts for each corner as if the others went with it.
-template <class Real>
-void add_air(Step<Real>& step) {
-  const Surroundings<Real>& around = step.surroundings;
-  if (!around.air) return;
-  ImplicitWorkspace<Real>& work = step.work;
-  std::fill(work.air.begin(), work.air.end(), Vec3<Real>::Zero());
-  constexpr Real kThird = Real(1) / 3;
-  const Real rate = Real(1.5) / step.dt;
-  for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
-    if (step.state.is_asleep(p)) continue;
-    const ClothPart<Real>& part = step.model.parts[p];
-    const StageTimer timer(step.profile, Stage::air,
-                           static_cast<std::size_t>(part.triangles.count));
-    const auto pressure =
-        static_cast<Real>(0.5 * around.air_density * part.fabric.air_normal);
-    const auto skin = static_cast<Real>(part.fabric.air_tangential);
-    for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
-      const Triangle& triangle = step.model.triangles[static_cast<std::size_t>(t)];
-      const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
-                 c = static_cast<std::size_t>(triangle[2]);
-      const Vec3<Real> normal = (work.x[b] - work.x[a]).cross(work.x[c] - work.x[a]);
-      const Real doubled = normal.norm();
-      if (!(doubled > 0)) continue;
-      const Vec3<Real> u = ((around.wind[a] - work.v[a]) + (around.wind[b] - work.v[b]) +
-                            (around.wind[c] - work.v[c])) * kThird;
-      const Vec3<Real> third = air_force(normal, u, pressure, skin) * kThird;
-      const Real share = Real(0.5) * doubled * kThird * rate;
-      const Vec3<Real> unit = normal / doubled;
-      const Real across = 2 * pressure * std::abs(u.dot(unit));
-      const SymmetricBlock<Real> block =
-          along_and_across<Real>(skin * share, (across - skin) * share, unit);
-      for (const std::size_t i : {a, b, c}) {
-        work.air[i] += third;
-        for (std::size_t e = 0; e < 6; ++e) work.own[i][e] += block[e];
-      }
-    }
-  }
-}
-
-/// What each live hand pulls with at the end of the substep, and its part of the matrix.
-/// @param progress  how much of the tick has passed then, 0 to 1
-template <class Real>
-void add_hands(Step<Real>& step, Real progress) {
-  ImplicitWorkspace<Real>& work = step.work;
-  const StageTimer timer(step.profile, Stage::attachments, work.hand_count);
-  for (std::size_t h = 0; h < work.hand_count; ++h) {
-    HandTerm<Real>& hand = work.hands[h];
-    Grab<Real>& grab = step.grabs.list[hand.grab];
-    const auto stiffness = static_cast<Real>(grab.def.stiffness);
-    const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
-    Vec3<Real> velocity = Vec3<Real>::Zero();
-    for (std::size_t n = 0; n < grab.particles.size(); ++n)
-      velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
-    // Nobody is made faster than kFastestHeld.
-    const Vec3<Real> start = held_point(grab, step.state.x);
-    Vec3<Real> way = target - start;
-    const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = way.norm();
-    if (length > longest) way *= longest / length;
-    const Vec3<Real> pull =
-        (start + way - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
-    const Real size = pull.norm(), most = static_cast<Real>(grab.def.max_force);
-    const Real part = size > most ? most / size : Real(1);
-    grab.force = pull * part;
-    hand.stiffness = part * (stiffness + grab.damping * Real(1.5) / step.dt);
-    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
-      grab.impulse[n] = grab.force * (grab.weights[n] * step.dt);
-      work.force[static_cast<std::size_t>(grab.particles[n])] += grab.force * grab.weights[n];
-    }
-  }
-}
-
-/// y += what the hands add to the matrix, times p.
-template <class Real>
-void apply_hands(const ImplicitWorkspace<Real>& work, std::size_t part, const Real* p, Real* y) {
-  for (std::size_t h = 0; h < work.hand_count; ++h) {
-    const HandTerm<Real>& hand = work.hands[h];
-    if (hand.part != part) continue;
-    for (std::size_t d = 0; d < 3; ++d) {
-      Real sum = 0;
-      for (std::size_t n = 0; n < hand.places.size(); ++n)
-        sum += hand.weights[n] * p[hand.places[n][d]];
-      sum *= hand.stiffness;
-      for (std::size_t n = 0; n < hand.places.size(); ++n)
-        y[hand.places[n][d]] += hand.weights[n] * sum;
-    }
-  }
-}
-
-/// Notes where the hands hold. Allocates only where there are more or larger ones than ever before.
-template <class Real>
-void take_hands(Step<Real>& step) {
-  ImplicitWorkspace<Real>& work = step.work;
-  work.hand_count = 0;
-  for (std::size_t g = 0; g < step.grabs.list.size(); ++g) {
-    Grab<Real>& grab = step.grabs.list[g];
-    if (grab.def.mode != GrabMode::live) continue;
-    if (work.hands.size() == work.hand_count) work.hands.emplace_back();
-    HandTerm<Real>& hand = work.hands[work.hand_count++];
-    hand.grab = g;
-    hand.part = 0;
-    hand.places.clear();
-    hand.weights.clear();
-    while (!step.model.parts[hand.part].particles.contains(grab.particles.front())) ++hand.part;
-    const Index first = step.model.parts[hand.part].particles.first;
-    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
-      const Index i = grab.particles[n];
-      hand.places.push_back(std::visit([&](const auto& s) { return s.places(i - first); },
-                                       work.systems[hand.part]));
-      hand.weights.push_back(step.movable(static_cast<std::size_t>(i)) ? grab.weights[n] : Real(0));
-    }
-  }
-}
-
-/// Forces and matrix at the present ways.
-template <class Real>
-void linearise(Step<Real>& step, Real progress) {
-  ImplicitWorkspace<Real>& work = step.work;
-  place(step);
-  add_own(step);
-  add_air(step);
-  if (step.surroundings.air)
-    for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.air[i];
-  add_shot_forces(step.grabs, work.force);
-  add_hands(step, progress);
-  const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.own};
-  for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
-    if (step.state.is_asleep(p)) continue;
-    const ClothPart<Real>& part = step.model.parts[p];
-    const StageTimer timer(step.profile, Stage::stretch,
-                           static_cast<std::size_t>(part.springs.count));
-    step.profile[Stage::bending].work +=
-        quadratic_stencil_count(part) + static_cast<std::size_t>(part.hinges.count);
-    std::visit([&](auto& system) { system.linearise(step.model, point, work.force); },
-               work.systems[p]);
-  }
-  for (std::size_t i = 0; i < work.force.size(); ++i)
-    if (!step.movable(i)) work.force[i].setZero();
-}
-
-/// A Newton step of a part. @returns whether it was found
-template <class Real>
-bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start) {
-  ImplicitWorkspace<Real>& work = step.work;
-  return std::visit(
-      [&](auto& system) {
-        const StageTimer timer(step.profile, Stage::linear_systems, 0);
-        if (work.systems.size() > 1) {  // others left theirs where this one has its zeros
-          for (GridVector<Real>* vector : {&work.residual, &work.product, &work.preconditioned})
-            std::fill(vector->begin(), vector->end(), Real(0));
-        }
-        system.load(work.force, work.residual.data());
-        const LinearVectors<Real> vectors{work.residual.data(),  work.step.data(),
-                                          work.direction.data(), work.product.data(),
-                                          work.preconditioned.data(), system.size()};
-        const double enough = first ? 0 : kEnough * step.solver.tolerance * start;
-        const LinearSolution found = solve_linear(
-            vectors, step.solver.tolerance, enough,
-            [&](const Real* q, Real* y) {
-              system.apply(q, y);
-              apply_hands(work, p, q, y);
-            },
-            [&](const Real* r, Real* z) { system.precondition(r, z); });
-        step.profile[Stage::linear_systems].work += static_cast<std::size_t>(found.iterations);
-        if (first) start = found.start;
-        system.add(work.step.data(), work.way);
-        return found.solved;
-      },
-      work.systems[p]);
-}
-
-/// The ways of a substep. @returns whether all its linear systems were solved
-template <class Real>
-bool find_ways(Step<Real>& step, Real progress) {
-  ImplicitWorkspace<Real>& work = step.work;
-  for (std::size_t i = 0; i < work.way.size(); ++i)
-    work.way[i] = step.movable(i) ? (step.state.v[i] * step.dt).eval() : Vec3<Real>::Zero().eval();
+  ClothState<Real>& state = step.state;
+  work.start_x = state.x;
+  work.start_v = state.v;
+  const Real whole = step.dt;
+  step.dt = whole / static_cast<Real>(pieces);
+  step.damped = true;
   bool solved = true;
-  for (int k = 0; k < step.solver.iterations; ++k) {
-    linearise(step, progress);
-    for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
-      if (!step.state.is_asleep(p))
-        solved = take_newton_step(step, p, k == 0, work.starts[p]) && solved;
-    }
+  brought = 0;
+  for (int k = 1; k <= pieces; ++k) {
+    const Real passed = static_cast<Real>(k) / static_cast<Real>(pieces);
+    solved = find_ways(step, begin + (end - begin) * passed) && solved;
+    brought += outer_work(step);
+    state.x = work.x;
+    state.v = work.v;
   }
-  place(step);
+  for (std::size_t i = 0; i < state.x.size(); ++i) work.way[i] = work.x[i] - work.start_x[i];
+  state.x = work.start_x;
+  state.v = work.start_v;
+  step.dt = whole;
   return solved;
+}
+
+/// The ways of a substep that brings no energy from nowhere.
+/// @param brought  gets the work of air, shots and hands [J]
+/// @returns        false if there are none, or if the substep is violent and that is asked for
+template <class Real>
+bool find_sound_ways(Step<Real>& step, Real begin, Real end, const Energy& before,
+                     double& brought) {
+  ImplicitWorkspace<Real>& work = step.work;
+  step.damped = false;
+  bool solved = find_ways(step, end);
+  brought = outer_work(step);
+  for (int pieces = 1;; pieces *= 2) {
+    const Energy after = energy_at(step, work.x, work.v);
+    const bool sound = solved && explained(before, after, brought, work.credit);
+    if (work.refuses_violence &&
+        (!sound || is_violent(step, before, after, brought))) {
+      work.violent = true;
+      return false;
+    }
+    if (sound) return true;
+    if (pieces > kMostPieces) return solved;
+    solved = find_ways_in_pieces(step, begin, end, pieces, brought);
+  }
 }
 
 /// Goes the ways as far as contact lets. Who was not hindered has the scheme's velocity at the end;
@@ -292,7 +139,7 @@ void move(Step<Real>& step, const Collision<Real>& collision) {
     std::copy(work.v.begin(), work.v.end(), state.v.begin());
     std::copy(work.x.begin(), work.x.end(), state.x.begin());
     std::copy(work.way.begin(), work.way.end(), work.last_way.begin());
-    for (std::size_t i = 0; i < state.x.size(); ++i) work.history[i] = !work.damped;
+    for (std::size_t i = 0; i < state.x.size(); ++i) work.history[i] = !step.damped;
     return;
   }
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.way[i] / step.dt;
@@ -301,28 +148,11 @@ void move(Step<Real>& step, const Collision<Real>& collision) {
   collision.after_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const bool free = state.v[i] == (work.way[i] / step.dt).eval();
-    work.history[i] = free && !work.damped && step.movable(i);
+    work.history[i] = free && !step.damped && step.movable(i);
     if (!free) continue;
     state.v[i] = work.v[i];
     work.last_way[i] = work.way[i];
   }
-}
-
-/// Work of air and shots over the last ways [J].
-template <class Real>
-double external_work(const Step<Real>& step) {
-  double work = 0;
-  if (step.surroundings.air) {
-    for (std::size_t i = 0; i < step.work.way.size(); ++i)
-      work += static_cast<double>(step.work.air[i].dot(step.work.way[i]));
-  }
-  for (const Shot<Real>& shot : step.grabs.shots) {
-    for (std::size_t n = 0; n < shot.particles.size(); ++n)
-      work += static_cast<double>(
-          shot.force.dot(step.work.way[static_cast<std::size_t>(shot.particles[n])]) *
-          shot.weights[n]);
-  }
-  return work;
 }
 
 template <class Real>
@@ -345,14 +175,17 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
     longest = std::max(longest, std::visit([](const auto& s) { return s.size(); }, systems.back()));
   }
   for (Vec3Array<Real>* array :
-       {&way, &x, &v, &force, &air, &last_way, &last_v, &end_x, &end_v})
+       {&way, &x, &v, &force, &air, &last_way, &last_v, &end_x, &end_v, &start_x, &start_v})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   history.assign(model.mass.size(), 0);
   own.assign(model.mass.size(), {});
   starts.assign(model.parts.size(), 0);
   for (GridVector<Real>* vector : {&residual, &step, &direction, &product, &preconditioned})
     vector->assign(longest, Real(0));
-  last_dt = 0;
+  last_dt = credit = 0;
+  double mass = 0;
+  for (const Real m : model.mass) mass += static_cast<double>(m);
+  violent_energy = mass * kViolentSpeed * kViolentSpeed / 2;
 }
 
 template <class Real>
@@ -368,14 +201,20 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   take_hands(step);
   for (typename ImplicitWorkspace<Real>::System& system : work.systems)
     std::visit([&](auto& s) { s.set_pinned(state.inverse_mass); }, system);
-  work.unsolved = false;
+  work.unsolved = work.violent = false;
   see_velocities(state.v, grabs);
+  Energy before;
   for (int s = 0; s < substeps; ++s) {
-    const Real progress = static_cast<Real>(s + 1) / static_cast<Real>(substeps);
-    work.unsolved = !find_ways(step, progress) || work.unsolved;
-    result.work += external_work(step);
+    const Real count = static_cast<Real>(substeps), begin = static_cast<Real>(s) / count;
+    if (s == 0 || !collision.empty()) before = energy_at(step, state.x, state.v);
+    double brought = 0;
+    const Real end = static_cast<Real>(s + 1) / count;
+    if (!find_sound_ways(step, begin, end, before, brought)) work.unsolved = true;
+    if (work.violent) return result;
+    result.damped_substeps += step.damped ? 1 : 0;
+    result.work += brought;
     move(step, collision);
-    result.work += work_of_hands(state.v, grabs);
+    if (collision.empty()) before = energy_at(step, state.x, state.v);
   }
   work.end_x = state.x;
   work.end_v = state.v;

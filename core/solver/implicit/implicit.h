@@ -21,7 +21,7 @@ struct ImplicitDef {
   int substeps = 1;        ///< a tick; where the cloth can meet anything, at least
                            ///< kFewestInContact
   int iterations = 2;      ///< of Newton's method a substep; one is 2 to 30 % off on stiff cloth
-  double tolerance = 0.01;  ///< of each linear system, as a part of what it begins with
+  double tolerance = 0.02;  ///< of each linear system, as a part of what it begins with
 };
 
 /// Substeps a tick at the least where there is contact, which acts between them: what holds the
@@ -56,6 +56,7 @@ struct ImplicitWorkspace {
   Vec3Array<Real> force, air;               ///< [N]
   Vec3Array<Real> last_way, last_v;         ///< of the substep before
   Vec3Array<Real> end_x, end_v;             ///< at the end of the tick before
+  Vec3Array<Real> start_x, start_v;         ///< of a substep that is gone in pieces
   std::vector<char> history;                ///< of each particle: whether that substep counts
   std::vector<SymmetricBlock<Real>> own;    ///< see NewtonPoint
   std::vector<HandTerm<Real>> hands;        ///< the first hand_count of them
@@ -63,8 +64,11 @@ struct ImplicitWorkspace {
   std::vector<double> starts;               ///< of each part's first linear system of a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
   double last_dt = 0;   ///< [s]; 0: no history
-  bool damped = false;    ///< backward Euler in all substeps of the coming tick: the rescue
+  double credit = 0;    ///< energy that was lost not long ago, and may come back [J]
   bool unsolved = false;  ///< a linear system of the last tick found no solution
+  bool refuses_violence = false;  ///< the coming tick ends at once where it is violent
+  bool violent = false;           ///< the last tick ended so
+  double violent_energy = 0;      ///< below which nothing is [J]
 
   void prepare(const ClothModel<Real>& model);
 };
@@ -77,6 +81,13 @@ struct ImplicitWorkspace {
 /// dashpots, bending, air, drag and hands are all taken at the substep's end, so no stiffness
 /// bounds the substep. The matrix is kept positive definite: the forces are exact, their
 /// derivatives are not all (linear_terms.h). Contact corrects the mean velocities of a substep.
+///
+/// A substep that ends with more energy than there was and than hands and air brought, or whose
+/// linear systems are not solved, is gone again by backward Euler in 1, 2, 4 ... pieces, which
+/// AdvanceResult::damped_substeps tells. Such a substep is violent, and so is one that loses a
+/// fifth of the energy of a cloth that is fast or stretched all over: in one long step the waves in
+/// it are lost, and it comes to rest in tucks that they would have shaken out. Where
+/// `refuses_violence` is set, the tick ends there for somebody else to go it.
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1

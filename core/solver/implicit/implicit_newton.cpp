@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/forces/air.h"
+#include "core/solver/implicit/conjugate_gradients.h"
+#include "core/solver/implicit/implicit_step.h"
+
+namespace weft {
+namespace {
+
+/// Later linear systems of a substep need not be solved better than this part of the first one's
+/// tolerance.
+constexpr double kEnough = 0.1;
+
+/// Where the present ways lead, and how fast.
+template <class Real>
+void place(Step<Real>& step) {
+  ImplicitWorkspace<Real>& work = step.work;
+  for (std::size_t i = 0; i < work.x.size(); ++i) {
+    work.x[i] = step.state.x[i] + work.way[i];
+    if (!step.movable(i)) {
+      work.v[i] = Vec3<Real>::Zero();
+      continue;
+    }
+    const Scheme<Real> scheme(step, i);
+    work.v[i] = work.way[i] * scheme.rate - scheme.offset;
+  }
+}
+
+/// Gravity, drag and inertia, and what of the matrix goes with them.
+template <class Real>
+void add_own(Step<Real>& step) {
+  ImplicitWorkspace<Real>& work = step.work;
+  const auto drag = static_cast<Real>(step.surroundings.drag);
+  for (std::size_t i = 0; i < work.x.size(); ++i) {
+    const Real mass = step.model.mass[i];
+    const Scheme<Real> scheme(step, i);
+    work.force[i] = (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) +
+                     scheme.before) * mass;
+    const Real own = mass * scheme.rate * (scheme.rate + drag);
+    work.own[i] = {own, 0, 0, own, 0, own};
+  }
+}
+
+/// Air on all triangles. The matrix counts for each corner as if the others went with it.
+template <class Real>
+void add_air(Step<Real>& step) {
+  const Surroundings<Real>& around = step.surroundings;
+  if (!around.air) return;
+  ImplicitWorkspace<Real>& work = step.work;
+  std::fill(work.air.begin(), work.air.end(), Vec3<Real>::Zero());
+  constexpr Real kThird = Real(1) / 3;
+  const Real rate = Real(1.5) / step.dt;
+  for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
+    if (step.state.is_asleep(p)) continue;
+    const ClothPart<Real>& part = step.model.parts[p];
+    const StageTimer timer(step.profile, Stage::air,
+                           static_cast<std::size_t>(part.triangles.count));
+    const auto pressure =
+        static_cast<Real>(0.5 * around.air_density * part.fabric.air_normal);
+    const auto skin = static_cast<Real>(part.fabric.air_tangential);
+    for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
+      const Triangle& triangle = step.model.triangles[static_cast<std::size_t>(t)];
+      const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
+                 c = static_cast<std::size_t>(triangle[2]);
+      const Vec3<Real> normal = (work.x[b] - work.x[a]).cross(work.x[c] - work.x[a]);
+      const Real doubled = normal.norm();
+      if (!(doubled > 0)) continue;
+      const Vec3<Real> u = ((around.wind[a] - work.v[a]) + (around.wind[b] - work.v[b]) +
+                            (around.wind[c] - work.v[c])) * kThird;
+      const Vec3<Real> third = air_force(normal, u, pressure, skin) * kThird;
+      const Real share = Real(0.5) * doubled * kThird * rate;
+      const Vec3<Real> unit = normal / doubled;
+      const Real across = 2 * pressure * std::abs(u.dot(unit));
+      const SymmetricBlock<Real> block =
+          along_and_across<Real>(skin * share, (across - skin) * share, unit);
+      for (const std::size_t i : {a, b, c}) {
+        work.air[i] += third;
+        for (std::size_t e = 0; e < 6; ++e) work.own[i][e] += block[e];
+      }
+    }
+  }
+}
+
+/// What each live hand pulls with at the end of the substep, and its part of the matrix.
+/// @param progress  how much of the tick has passed then, 0 to 1
+template <class Real>
+void add_hands(Step<Real>& step, Real progress) {
+  ImplicitWorkspace<Real>& work = step.work;
+  const StageTimer timer(step.profile, Stage::attachments, work.hand_count);
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    HandTerm<Real>& hand = work.hands[h];
+    Grab<Real>& grab = step.grabs.list[hand.grab];
+    const auto stiffness = static_cast<Real>(grab.def.stiffness);
+    const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
+    Vec3<Real> velocity = Vec3<Real>::Zero();
+    for (std::size_t n = 0; n < grab.particles.size(); ++n)
+      velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
+    // Nobody is made faster than kFastestHeld.
+    const Vec3<Real> start = held_point(grab, step.state.x);
+    Vec3<Real> way = target - start;
+    const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = way.norm();
+    if (length > longest) way *= longest / length;
+    const Vec3<Real> pull =
+        (start + way - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
+    const Real size = pull.norm(), most = static_cast<Real>(grab.def.max_force);
+    const Real part = size > most ? most / size : Real(1);
+    grab.force = pull * part;
+    hand.stiffness = part * (stiffness + grab.damping * Real(1.5) / step.dt);
+    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+      grab.impulse[n] = grab.force * (grab.weights[n] * step.dt);
+      work.force[static_cast<std::size_t>(grab.particles[n])] += grab.force * grab.weights[n];
+    }
+  }
+}
+
+/// y += what the hands add to the matrix, times p.
+template <class Real>
+void apply_hands(const ImplicitWorkspace<Real>& work, std::size_t part, const Real* p, Real* y) {
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    const HandTerm<Real>& hand = work.hands[h];
+    if (hand.part != part) continue;
+    for (std::size_t d = 0; d < 3; ++d) {
+      Real sum = 0;
+      for (std::size_t n = 0; n < hand.places.size(); ++n)
+        sum += hand.weights[n] * p[hand.places[n][d]];
+      sum *= hand.stiffness;
+      for (std::size_t n = 0; n < hand.places.size(); ++n)
+        y[hand.places[n][d]] += hand.weights[n] * sum;
+    }
+  }
+}
+
+/// Forces and matrix at the present ways.
+template <class Real>
+void linearise(Step<Real>& step, Real progress) {
+  ImplicitWorkspace<Real>& work = step.work;
+  place(step);
+  add_own(step);
+  add_air(step);
+  if (step.surroundings.air)
+    for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.air[i];
+  add_shot_forces(step.grabs, work.force);
+  add_hands(step, progress);
+  const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.own};
+  for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
+    if (step.state.is_asleep(p)) continue;
+    const ClothPart<Real>& part = step.model.parts[p];
+    const StageTimer timer(step.profile, Stage::stretch,
+                           static_cast<std::size_t>(part.springs.count));
+    step.profile[Stage::bending].work +=
+        quadratic_stencil_count(part) + static_cast<std::size_t>(part.hinges.count);
+    std::visit([&](auto& system) { system.linearise(step.model, point, work.force); },
+               work.systems[p]);
+  }
+  for (std::size_t i = 0; i < work.force.size(); ++i)
+    if (!step.movable(i)) work.force[i].setZero();
+}
+
+/// A Newton step of a part. @returns whether it was found
+template <class Real>
+bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start) {
+  ImplicitWorkspace<Real>& work = step.work;
+  return std::visit(
+      [&](auto& system) {
+        const StageTimer timer(step.profile, Stage::linear_systems, 0);
+        if (work.systems.size() > 1) {  // others left theirs where this one has its zeros
+          for (GridVector<Real>* vector : {&work.residual, &work.product, &work.preconditioned})
+            std::fill(vector->begin(), vector->end(), Real(0));
+        }
+        system.load(work.force, work.residual.data());
+        const LinearVectors<Real> vectors{work.residual.data(),  work.step.data(),
+                                          work.direction.data(), work.product.data(),
+                                          work.preconditioned.data(), system.size()};
+        const double enough = first ? 0 : kEnough * step.solver.tolerance * start;
+        const LinearSolution found = solve_linear(
+            vectors, step.solver.tolerance, enough,
+            [&](const Real* q, Real* y) {
+              system.apply(q, y);
+              apply_hands(work, p, q, y);
+            },
+            [&](const Real* r, Real* z) { system.precondition(r, z); });
+        step.profile[Stage::linear_systems].work += static_cast<std::size_t>(found.iterations);
+        if (first) start = found.start;
+        system.add(work.step.data(), work.way);
+        return found.solved;
+      },
+      work.systems[p]);
+}
+
+}  // namespace
+
+template <class Real>
+void take_hands(Step<Real>& step) {
+  ImplicitWorkspace<Real>& work = step.work;
+  work.hand_count = 0;
+  for (std::size_t g = 0; g < step.grabs.list.size(); ++g) {
+    Grab<Real>& grab = step.grabs.list[g];
+    if (grab.def.mode != GrabMode::live) continue;
+    if (work.hands.size() == work.hand_count) work.hands.emplace_back();
+    HandTerm<Real>& hand = work.hands[work.hand_count++];
+    hand.grab = g;
+    hand.part = 0;
+    hand.places.clear();
+    hand.weights.clear();
+    while (!step.model.parts[hand.part].particles.contains(grab.particles.front())) ++hand.part;
+    const Index first = step.model.parts[hand.part].particles.first;
+    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+      const Index i = grab.particles[n];
+      hand.places.push_back(std::visit([&](const auto& s) { return s.places(i - first); },
+                                       work.systems[hand.part]));
+      hand.weights.push_back(step.movable(static_cast<std::size_t>(i)) ? grab.weights[n] : Real(0));
+    }
+  }
+}
+
+template <class Real>
+bool find_ways(Step<Real>& step, Real progress) {
+  ImplicitWorkspace<Real>& work = step.work;
+  for (std::size_t i = 0; i < work.way.size(); ++i)
+    work.way[i] = step.movable(i) ? (step.state.v[i] * step.dt).eval() : Vec3<Real>::Zero().eval();
+  bool solved = true;
+  for (int k = 0; k < step.solver.iterations; ++k) {
+    linearise(step, progress);
+    for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
+      if (!step.state.is_asleep(p))
+        solved = take_newton_step(step, p, k == 0, work.starts[p]) && solved;
+    }
+  }
+  place(step);
+  return solved;
+}
+
+template <class Real>
+double outer_work(const Step<Real>& step) {
+  const ImplicitWorkspace<Real>& work = step.work;
+  double sum = 0;
+  if (step.surroundings.air) {
+    for (std::size_t i = 0; i < work.way.size(); ++i)
+      sum += static_cast<double>(work.air[i].dot(work.way[i]));
+  }
+  const auto add = [&](const auto& held, const Vec3<Real>& force) {
+    for (std::size_t n = 0; n < held.particles.size(); ++n)
+      sum += static_cast<double>(force.dot(work.way[static_cast<std::size_t>(held.particles[n])]) *
+                                 held.weights[n]);
+  };
+  for (const Shot<Real>& shot : step.grabs.shots) add(shot, shot.force);
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    const Grab<Real>& grab = step.grabs.list[work.hands[h].grab];
+    add(grab, grab.force);
+  }
+  return sum;
+}
+
+#define WEFT_INSTANTIATE(Real)                     \
+  template void take_hands(Step<Real>&);           \
+  template bool find_ways(Step<Real>&, Real);      \
+  template double outer_work(const Step<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
