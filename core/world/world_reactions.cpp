@@ -52,6 +52,7 @@ World<Real> World<Real>::copy() const {
   other.verlet_ = {};
   other.relaxation_ = {};
   other.prepare_solver();
+  other.implicit_ = implicit_;  // it has no pointers, and knows the substep before
   return other;
 }
 

@@ -135,7 +135,7 @@ TEST_CASE("to ask for forces changes nothing, and the coming forces are those th
   def.pins = {{Corner::top_left, 0.1}};
   def.colliders = {{"ground", PlaneDef{}}, {"ball", SphereDef{Vec3d(0, 0, 0), 0.04}}};
   def.contact.seed.self = GENERATE(SelfContact::none, SelfContact::guard);
-  def.solver.kind = GENERATE(SolverKind::verlet, SolverKind::relaxation);
+  def.solver.kind = GENERATE(SolverKind::verlet, SolverKind::relaxation, SolverKind::implicit);
   World<float> asked(def), left(def);
   left.measure_forces(true);
   asked.grab({30, {0.2, 0.3, 0.5}, 0.05, 100, 50, Vec3d(0, 0.3, 0)});

@@ -44,8 +44,13 @@ WorldDef mesh_scene() {
 WorldDef scene_of(const std::string& name) {
   if (name == "mesh") return mesh_scene();
   const bool xpbd = name == "XPBD", seed = name == "seed's relaxation";
-  if (!xpbd && !seed) return make_scene(name);
+  const bool implicit = name == "implicit";
+  if (!xpbd && !seed && !implicit) return make_scene(name);
   WorldDef def = make_scene("curtain");
+  if (implicit) {
+    def.solver.kind = SolverKind::implicit;
+    return def;
+  }
   def.solver.kind = SolverKind::relaxation;
   def.relaxation.substeps = xpbd ? 16 : 1;
   def.relaxation.sweeps = xpbd ? 2 : 10;
@@ -77,6 +82,7 @@ TEST_CASE("each scene has the same hash with one and two threads, and the golden
       {"mesh", 0x21bb83a175b72f7a},
       {"XPBD", 0x5ad6b9292091024b},
       {"seed's relaxation", 0x070cc9cefff5b537},
+      {"implicit", 0x0},
       {"seed-fig9-default", 0xeca50d5bbf216230},
       {"seed-fig12-triangle-pairs", 0x744c39c14093783f},
   }));
@@ -103,8 +109,8 @@ TEST_CASE("scenes full of contact leave the same hash with every instruction set
   for_each_target([&] { CHECK(hash_after(scene, ticks, nullptr) == world.hash()); });
 }
 
-TEST_CASE("meshes, XPBD and the seed leave the same hash with every instruction set") {
-  const std::string scene = GENERATE("mesh", "XPBD", "seed's relaxation", "seed-fig9-default");
+TEST_CASE("meshes, XPBD, the seed and implicit leave the same hash with every instruction set") {
+  const std::string scene = GENERATE("mesh", "XPBD", "seed's relaxation", "seed-fig9-default", "implicit");
   INFO(scene);
   const std::uint64_t hash = hash_after(scene, 10, nullptr);
   for_each_target([&] { CHECK(hash_after(scene, 10, nullptr) == hash); });

@@ -29,9 +29,10 @@ struct Setting {
 };
 
 /// Provot's sweeps over rigid springs, and XPBD with the fabric's compliance in small substeps.
-const std::array<Setting, 3> kSettings = {{{"verlet", SolverKind::verlet},
+const std::array<Setting, 4> kSettings = {{{"verlet", SolverKind::verlet},
                                            {"Provot", SolverKind::relaxation, {}, 0.3},
-                                           {"XPBD", SolverKind::relaxation, {4, 8, 0.002, 1}}}};
+                                           {"XPBD", SolverKind::relaxation, {4, 8, 0.002, 1}},
+                                           {"implicit", SolverKind::implicit}}};
 
 /// A small scene, and how far its cloth must come down in the mean so that it was not frozen [m].
 struct Miniature {

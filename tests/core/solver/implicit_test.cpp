@@ -1,0 +1,31 @@
+#include "core/solver/implicit/implicit.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/scenes/scenes.h"
+#include "core/world/world.h"
+#include "tests/support/allocations.h"
+
+// What the solver implicit promises besides its accuracy, which tests/laws/implicit_test.cpp tests.
+
+using namespace weft;
+using namespace weft::test;
+
+TEST_CASE("with implicit a tick allocates nothing, and a world that is reset repeats its bits") {
+  WorldDef def = make_scene("curtain");
+  def.solver.kind = SolverKind::implicit;
+  World<float> world(def);
+  world.grab({50, {0.2, 0.3, 0.5}, 0.1, 100, 20, Vec3d(0, 1.5, 0)});
+  for (int tick = 0; tick < 30; ++tick) world.step();
+  const std::size_t before = count_allocations();
+  for (int tick = 0; tick < 10; ++tick) world.step();
+  CHECK(count_allocations() == before);
+  const auto run = [&world] {
+    world.reset();
+    for (int tick = 0; tick < 40; ++tick) world.step();
+    return world.hash();
+  };
+  const std::uint64_t once = run();
+  CHECK(run() == once);
+}
+

@@ -1,0 +1,191 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/insults.h"
+#include "tests/support/worlds.h"
+
+// BDF2 with Newton's method and conjugate gradients against closed forms, against verlet, and
+// against itself with other substeps.
+
+using namespace weft;
+using namespace weft::test;
+
+namespace {
+
+WorldDef implicit_world(const ClothDef& cloth, int substeps) {
+  WorldDef def = empty_world(cloth);
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.solver.kind = SolverKind::implicit;
+  def.implicit.substeps = substeps;
+  return def;
+}
+
+/// A level square metre that is let go, held by one edge.
+WorldDef swing(int rows, int columns) {
+  ClothDef cloth = flat_cloth(rows, columns);
+  cloth.fabric.areal_density = 0.2;
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 400;
+  cloth.fabric.shear = 40;
+  cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-4;
+  WorldDef def = empty_world(cloth);
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.drag = 1;
+  def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}};
+  return def;
+}
+
+template <class Real>
+Vec3Array<double> places_after(const WorldDef& def, double seconds) {
+  World<Real> world(def);
+  advance(world, seconds);
+  Vec3Array<double> x;
+  for (const Vec3<Real>& at : world.state().x) x.push_back(at.template cast<double>());
+  return x;
+}
+
+double mean_distance(const Vec3Array<double>& a, const Vec3Array<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+}  // namespace
+
+TEST_CASE("with implicit free fall is g t^2 / 2 and what the first substep adds for ever") {
+  // Backward Euler falls g h^2 in the first substep, half of it too much; BDF2 is exact for a
+  // parabola and carries an error e on as (4 e - e_before) / 3, to 3/2 of the first one.
+  const int substeps = GENERATE(1, 4);
+  World<double> world(implicit_world(flat_cloth(6, 7), substeps));
+  const double start = centre_of_mass(world)[1], h = 1 / (60.0 * substeps);
+  advance(world, 1.0);
+  CHECK(start - centre_of_mass(world)[1] == Approx(4.905 + 0.75 * 9.81 * h * h).margin(1e-9));
+  for (const Vec3d& v : world.state().v) CHECK(v[1] == Approx(-9.81).margin(1e-9));
+}
+
+TEST_CASE("with implicit and drag c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order") {
+  // Reference: drag.linear.c2_t1 of the expected values: x = 2.784409782137793.
+  const auto error_with = [](int substeps) {
+    WorldDef def = implicit_world(flat_cloth(3, 3), substeps);
+    def.environment.drag = 2;
+    World<double> world(def);
+    const double start = centre_of_mass(world)[1];
+    advance(world, 1.0);
+    return start - centre_of_mass(world)[1] - 2.784409782137793;
+  };
+  CHECK(error_with(10) / error_with(20) == Approx(4).epsilon(0.05));
+  CHECK(std::abs(error_with(20)) < 1e-5);
+}
+
+TEST_CASE("with implicit a falling plate in still air is within 1 % of vt tanh(g t / vt)") {
+  // vt = 1.5819453278821503 m/s and x(0.5 s) = 0.614665957991099 m, as in motion_test.cpp.
+  ClothDef plate = flat_cloth(8, 8);
+  plate.fabric.bending_warp = plate.fabric.bending_weft = 1;
+  WorldDef def = implicit_world(plate, 4);
+  def.environment.air_density = 1.225;
+  def.environment.still_air = true;
+  World<double> world(def);
+  const double start = centre_of_mass(world)[1];
+  advance(world, 0.5);
+  CHECK(start - centre_of_mass(world)[1] == Approx(0.614665957991099).epsilon(0.01));
+  advance(world, 2.5);
+  CHECK(world.state().v[20][1] == Approx(-1.5819453278821503).epsilon(0.01));
+}
+
+TEST_CASE("with implicit the error of a swing falls with the square of the substep") {
+  WorldDef def = swing(10, 13);
+  def.solver.min_substeps = 400;
+  const Vec3Array<double> reference = places_after<double>(def, 0.8);
+  def.solver.kind = SolverKind::implicit;
+  def.implicit.iterations = 4;
+  def.implicit.tolerance = 1e-4;
+  const auto error_with = [&](int substeps) {
+    def.implicit.substeps = substeps;
+    return mean_distance(places_after<double>(def, 0.8), reference);
+  };
+  const double coarse = error_with(8), fine = error_with(16);
+  CHECK(coarse / fine == Approx(4).epsilon(0.25));
+  def.implicit = {};
+  CHECK(error_with(1) < 0.01);  // of a metre, as it is set by itself
+}
+
+TEST_CASE("with implicit cloth rests where it rests with verlet, whatever its shape") {
+  ClothDef cloth = swing(12, 9).cloths[0];
+  const int kind = GENERATE(0, 1, 2);
+  if (kind == 1) cloth.bending_model = BendingModel::hinges;  // spring by spring
+  if (kind == 2) cloth.skip_stiffness = 5;
+  WorldDef def = empty_world(cloth);
+  def.environment.gravity = Vec3d(0.5, -9.81, 0.2);
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}, {77, 0, {}}};
+  World<double> expected(def);
+  settle(expected, 6, 6);
+  def.solver.kind = SolverKind::implicit;
+  World<double> world(def);
+  CHECK(settle(world, 6, 6) < 1e-4);
+  for (std::size_t i = 0; i < world.state().x.size(); ++i)
+    CHECK((world.state().x[i] - expected.state().x[i]).norm() < 1e-4);
+}
+
+TEST_CASE("with implicit a hand of stiffness k carries a cloth of weight W by W / k below it") {
+  World<double> world(implicit_world(flat_cloth(9, 9, 0.4, 0.4), 1));
+  GrabDef grab;
+  grab.triangle = 60;
+  grab.radius = 0.1;
+  grab.target = Vec3d(0, 1, 0);
+  world.grab(grab);
+  settle(world, 5, 6);
+  double mass = 0;
+  for (const double m : world.model().mass) mass += m;
+  const Grab<double>& hand = world.grabs().list[0];
+  CHECK(hand.force[1] == Approx(mass * 9.81).epsilon(1e-3));
+  CHECK(1 - held_point(hand, world.state().x)[1] ==
+        Approx(mass * 9.81 / hand.def.stiffness).epsilon(1e-3));
+}
+
+TEST_CASE("a hand's target may jump by metres: with implicit nothing gets faster than 30 m/s") {
+  World<float> world(implicit_world(flat_cloth(17, 17), 1));
+  world.pin({Corner::top_left, 0.1});
+  GrabDef grab;
+  grab.triangle = 300;
+  grab.stiffness = 1e5;
+  grab.max_force = 1e6;
+  const GrabId id = world.grab(grab);
+  for (int tick = 0; tick < 120; ++tick) {
+    world.move_grab(id, Vec3d(tick % 20 < 10 ? 3 : -3, 0, 0));
+    REQUIRE_FALSE(world.step().divergence);
+    const Grab<float>& hand = world.grabs().list[0];
+    Vec3<float> v = Vec3<float>::Zero();
+    for (std::size_t n = 0; n < hand.particles.size(); ++n)
+      v += world.state().v[static_cast<std::size_t>(hand.particles[n])] * hand.weights[n];
+    REQUIRE(v.norm() < 45);  // BDF2's velocity at the end may be half as much again as the mean
+  }
+}
+
+TEST_CASE("implicit leaves violent ticks to verlet, and no others") {
+  WorldDef def = swing(17, 17);
+  def.solver.kind = SolverKind::implicit;
+  World<float> world(def);
+  for (int tick = 0; tick < 60; ++tick) REQUIRE_FALSE(world.step().violent);
+  insult(world, Insult::noise, 20);
+  CHECK(world.step().violent);
+  int calm = 0;
+  for (int tick = 0; tick < 300; ++tick) calm += world.step().violent ? 0 : 1;
+  CHECK(calm > 150);
+  CHECK_FALSE(world.report().violent);
+}
+
+TEST_CASE("with implicit no spring bounds the substep: a cloth a thousand times stiffer hangs") {
+  WorldDef def = swing(17, 17);
+  FabricDef& fabric = def.cloths[0].fabric;
+  fabric.stretch_warp = fabric.stretch_weft = 4e5;
+  fabric.shear = 4e4;
+  def.solver.kind = SolverKind::implicit;
+  World<double> world(def);
+  for (int tick = 0; tick < 120; ++tick) {
+    const TickReport& report = world.step();
+    REQUIRE_FALSE(report.divergence);
+    REQUIRE(report.substeps == 1);
+    REQUIRE_FALSE(report.violent);
+  }
+  CHECK(world.report().largest_strain < 0.002);
+}
