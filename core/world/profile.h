@@ -9,30 +9,29 @@ namespace weft {
 /// The stages of a step, in the order in which a substep meets them; then those that only the
 /// seed's parts have.
 enum class Stage : std::uint8_t {
-  attachments,   ///< work: hand forces evaluated
-  fans,          ///< work: fans' jets evaluated at a particle (their time is part of air)
-  air,           ///< work: triangles evaluated
-  stretch,       ///< work: springs evaluated
-  bending,       ///< work: hinges evaluated
-  integration,   ///< work: particles kicked and moved
-  broad_phase,   ///< work: candidate pairs collected
-  pairs,         ///< work: features of near patches of cloths tested against each other
-  narrow_phase,  ///< work: closest points computed
-  regions,       ///< work: particles of cloths anchored
-  contact,       ///< work: contact rows solved
-  friction,      ///< work: friction evaluations (their time is part of contact)
-  diagnostics,   ///< work: checks made
-  relaxation,    ///< work: springs relaxed, over all sweeps (solver relaxation)
-  self_contact,  ///< work: pairs of the cloth with itself answered, over all passes (model seed)
+  attachments,     ///< work: hand forces evaluated
+  fans,            ///< work: fans' jets evaluated at a particle (their time is part of air)
+  air,             ///< work: triangles evaluated
+  stretch,         ///< work: springs evaluated
+  bending,         ///< work: hinges evaluated
+  integration,     ///< work: particles kicked and moved
+  broad_phase,     ///< work: candidate pairs collected
+  pairs,           ///< work: features of near patches of cloths tested against each other
+  narrow_phase,    ///< work: closest points computed
+  regions,         ///< work: particles of cloths anchored
+  contact,         ///< work: contact rows solved
+  friction,        ///< work: friction evaluations (their time is part of contact)
+  diagnostics,     ///< work: checks made
+  relaxation,      ///< work: springs relaxed, over all sweeps (solver relaxation)
+  self_contact,    ///< work: pairs of the cloth with itself answered, over all passes (model seed)
   linear_systems,  ///< work: iterations of conjugate gradients (solver implicit)
 };
 inline constexpr std::size_t kStageCount = 16;
 
 inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "attachments", "fans",        "air",         "stretch",      "bending",
-    "integration", "broad_phase", "pairs",       "narrow_phase", "regions",
-    "contact",     "friction",    "diagnostics", "relaxation",   "self_contact",
-    "linear_systems"};
+    "attachments", "fans",       "air",          "stretch",       "bending", "integration",
+    "broad_phase", "pairs",      "narrow_phase", "regions",       "contact", "friction",
+    "diagnostics", "relaxation", "self_contact", "linear_systems"};
 
 class StageTimer;
 

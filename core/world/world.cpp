@@ -50,8 +50,7 @@ WorldDef validated(WorldDef def) {
 }  // namespace
 
 std::string describe(const Divergence& d) {
-  const std::string what = d.cause == DivergenceCause::not_finite
-                               ? "a value that is not finite"
+  const std::string what = d.cause == DivergenceCause::not_finite ? "a value that is not finite"
                            : d.cause == DivergenceCause::unsolved
                                ? "a linear system that was not solved"
                                : "unexplained energy of " + number_text(d.value) + " J";
@@ -195,8 +194,8 @@ int World<Real>::choose_substeps(SolverKind kind) const {
     const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
     return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
   }
-  const int fewest = kind == SolverKind::relaxation ? def_.relaxation.substeps
-                                                    : def_.solver.min_substeps;
+  const int fewest =
+      kind == SolverKind::relaxation ? def_.relaxation.substeps : def_.solver.min_substeps;
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
     count = std::max(count, substeps_for(stability_bound(part, kind), tick_seconds(), fewest));
@@ -342,7 +341,7 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
 
 template <class Real>
 std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, SolverKind kind,
-                                            int substeps) const {
+                                               int substeps) const {
   Divergence d;
   d.tick = tick_ + 1;
   d.substeps = substeps;
@@ -350,8 +349,7 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
                       std::isfinite(result.work);
   // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
   const bool solved = kind != SolverKind::implicit || !implicit_.unsolved;
-  if (finite && solved &&
-      (kind == SolverKind::relaxation || !account_.is_runaway(result)))
+  if (finite && solved && (kind == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
   d.cause = !finite   ? DivergenceCause::not_finite
             : !solved ? DivergenceCause::unsolved

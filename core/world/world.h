@@ -58,9 +58,9 @@ struct TickReport {
   double work = 0;     ///< by hands, air, objects and pins that move [J]
   double brought = 0;  ///< energy that the scene's insults brought right before [J]
   double largest_strain = 0;
-  int damped_substeps = 0;     ///< that the solver implicit had to go again by backward Euler
-  bool violent = false;        ///< gone by verlet, as the solver implicit would have lost too much
-  bool rested = false;  ///< all slept and nothing moved: nothing was computed, no work counted
+  int damped_substeps = 0;  ///< that the solver implicit had to go again by backward Euler
+  bool violent = false;     ///< gone by verlet, as the solver implicit would have lost too much
+  bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
   std::optional<Divergence> divergence;
   Profile profile;
 };

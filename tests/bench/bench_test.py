@@ -58,13 +58,13 @@ class Bench(unittest.TestCase):
                 mine = [name for kind, name in names if kind == solver]
                 self.assertGreaterEqual(len(mine), tables.WANTED_SETTINGS)
                 self.assertEqual(len(mine), len(set(mine)))
-                if solver != "verlet":
+                if solver in ("xpbd", "relaxation"):
                     self.assertGreaterEqual(min(int(name.split("x")[0]) for name in mine), fewest)
 
     def test_names_of_settings_tell_what_ran(self):
         # Bending asks for more substeps here than most settings name where it asks for none.
         cells = measure("--scenes", "cantilever", "--sizes", "32", "--budget", "100")["accuracy"]
-        relaxing = [cell for cell in cells if cell["solver"] != "verlet" and cell["outcome"] != "not run"]
+        relaxing = [cell for cell in cells if cell["solver"] in ("xpbd", "relaxation") and cell["outcome"] != "not run"]
         self.assertGreater(min(cell["substeps"] for cell in relaxing), 16)
         for cell in relaxing:
             self.assertEqual(cell["setting"], f"{cell['substeps']}x{cell['sweeps']}")

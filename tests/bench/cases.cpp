@@ -171,6 +171,16 @@ std::vector<Setting> settings_of_relaxation(int fewest) {
   return all;
 }
 
+/// Substeps of BDF2 with two Newton iterations each, and of one with three. Where there is contact
+/// those below kFewestInContact run with so many.
+std::vector<Setting> settings_of_implicit() {
+  std::vector<Setting> all;
+  for (const int substeps : {1, 2, 3, 4, 6, 8, 12, 16})
+    all.push_back(relaxing("implicit", substeps, 2));
+  all.push_back(relaxing("implicit", 1, 3));
+  return all;
+}
+
 }  // namespace
 
 std::vector<Setting> settings(bool quick, int fewest) {
@@ -180,6 +190,7 @@ std::vector<Setting> settings(bool quick, int fewest) {
   for (const auto& [name, factor] : factors) all.push_back({"verlet", name, factor, 1, 1, 1});
   all.push_back({"verlet", "x1 without dashpots", 1, 0, 1, 1});
   all.push_back({"verlet", "x1 two damping sweeps", 1, 2, 1, 1});
+  for (const Setting& setting : settings_of_implicit()) all.push_back(setting);
   for (const Setting& setting : settings_of_xpbd(fewest)) all.push_back(setting);
   for (const Setting& setting : settings_of_relaxation(fewest)) all.push_back(setting);
   if (!quick) return all;
@@ -205,6 +216,12 @@ WorldDef with_setting(WorldDef def, const Setting& setting, int stable_substeps)
     def.solver.kind = SolverKind::verlet;
     def.solver.min_substeps = static_cast<int>(std::ceil(setting.factor * stable_substeps));
     def.solver.damping_sweeps = std::max(1, setting.damping_sweeps);
+    return def;
+  }
+  if (setting.solver == "implicit") {
+    def.solver.kind = SolverKind::implicit;
+    def.implicit.substeps = setting.substeps;
+    def.implicit.iterations = setting.sweeps;
     return def;
   }
   def = without_dashpots(def);

@@ -4,8 +4,8 @@ import subprocess
 
 import tables
 
-COLOURS = {"verlet": "#1b6ca8", "xpbd": "#c4541b", "relaxation": "#5b8a3a"}
-MARKS = {"verlet": 7, "xpbd": 5, "relaxation": 9}
+COLOURS = {"verlet": "#1b6ca8", "xpbd": "#c4541b", "relaxation": "#5b8a3a", "implicit": "#7a3e9d"}
+MARKS = {"verlet": 7, "xpbd": 5, "relaxation": 9, "implicit": 13}
 HIGHEST = 3  # failed runs that are farther off, or that left no error, are drawn there
 
 

@@ -1,4 +1,4 @@
-"""What verlet holds in real time, and what an implicit solver could gain where it does not."""
+"""What verlet holds in real time, and what the solver implicit could gain where it does not."""
 
 from tables import markdown, percent, seconds, taken
 
@@ -50,12 +50,12 @@ def summary(rows):
     """The verdict as the README tells it."""
     slow = [row for row in rows if not held(row)]
     if not rows:
-        return "There is no implicit solver; what verlet holds in real time was not measured."
+        return "What verlet holds in real time was not measured."
     if not slow:
-        return (f"There is no implicit solver: by the report `verlet` holds each of {len(rows)} cases in real "
+        return (f"By the report `verlet` holds each of {len(rows)} cases in real "
                 "time on one thread, hard cases and cotton of 128 × 128 particles among them.")
     two = [row for row in slow if 0 < row["wall_two_threads"] <= 1]
-    text = (f"There is no implicit solver, and on one thread `verlet` does not hold {listed(slow)} in real "
+    text = (f"On one thread `verlet` does not hold {listed(slow)} in real "
             f"time: {len(slow)} of {len(rows)} cases. ")
     if two:
         text += f"Two threads hold {listed(two)}. "
@@ -74,7 +74,7 @@ def verdict(rows):
     slow = [row for row in rows if not held(row)]
     if not slow:
         return (f"**No**, by these figures: on one thread verlet holds each of {len(rows)} cases in real time, "
-                "so no implicit solver is built.")
+                "so none calls for the solver implicit.")
     text = (f"Verlet does **not** hold {len(slow)} of {len(rows)} cases in real time on one thread: "
             + "; ".join(map(told, slow)) + ". ")
     gain = [row for row in slow if with_free_springs(row) <= 1]

@@ -39,7 +39,7 @@ def report_text(data):
            "said, and tell what one simulated second costs. They are medians of "
            f"{max((c['timed_runs'] for c in cells), default=0)} interleaved runs, all cases of a table in turn, but for these: "
            "a run that failed is timed once; of the largest N in real time each N on the way to it is timed "
-           "five times in a row; of the cases of \"Is an implicit solver called for?\" those far from real time "
+           "five times in a row; of the cases of \"Is the solver implicit called for?\" those far from real time "
            "are run once, and those with twice the substeps; figures with one run beside them, such as counts, "
            "memory and distances, are no times. The machine and its load, with the measuring itself:", "",
            tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
@@ -90,7 +90,7 @@ def report_text(data):
             "## What runs in real time", "",
             "The largest square of particles whose swing, with verlet as scenes run it, needs at most "
             "half of one core.", "", tables.real_time_sizes(kernels), "",
-            "## Is an implicit solver called for?", "",
+            "## Is the solver implicit called for?", "",
             "It is wanted as soon as verlet cannot hold a built-in scene, or cotton of 128 × 128 particles, in "
             "real time. All cases are compared for the same time and on one thread, hard cases too; what two "
             "threads take is beside it. Springs are springs, bending and integration, all that another "

@@ -9,8 +9,8 @@ FABRICS = ["soft", "stiff", "cotton"]
 SCENES = ["swing", "static-rest", "cantilever", "hanging-strip", "flag", "drape"]
 SIZES = [32, 64, 128, 256]
 BOUNDS = [(0.1, "10 %"), (0.01, "1 %"), (0.001, "0.1 %")]
-SOLVERS = ["verlet", "xpbd", "relaxation"]
-NAMES = {"verlet": "verlet", "xpbd": "XPBD", "relaxation": "seed"}
+SOLVERS = ["verlet", "implicit", "xpbd", "relaxation"]
+NAMES = {"verlet": "verlet", "xpbd": "XPBD", "relaxation": "seed", "implicit": "implicit"}
 WANTED_SETTINGS = 6
 ERRORS = ["position", "strain", "energy", "momentum", "mean_shape"]
 

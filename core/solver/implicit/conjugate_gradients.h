@@ -19,8 +19,8 @@ struct LinearSolution {
 /// Vectors of a system, all of the same size.
 template <class Real>
 struct LinearVectors {
-  Real *residual;  ///< the right side when it begins
-  Real *solution;  ///< out
+  Real* residual;  ///< the right side when it begins
+  Real* solution;  ///< out
   Real *direction, *product, *preconditioned;
   std::size_t count;
 };

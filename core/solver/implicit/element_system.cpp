@@ -38,17 +38,17 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
     ends_.push_back({spring.i - particles_.first, spring.j - particles_.first});
   }
   blocks_.assign(ends_.size(), {});
-  visit_bending_stencils(part, [&](Real stiffness, const Index* corners, const double* weights,
-                                   int corner_count) {
-    if (!(stiffness > 0)) return;
-    Stencil& stencil = stencils_.emplace_back();
-    stencil.stiffness = stiffness;
-    stencil.count = corner_count;
-    for (int n = 0; n < corner_count; ++n) {
-      stencil.x[n] = corners[n] - particles_.first;
-      stencil.weight[n] = static_cast<Real>(weights[n]);
-    }
-  });
+  visit_bending_stencils(
+      part, [&](Real stiffness, const Index* corners, const double* weights, int corner_count) {
+        if (!(stiffness > 0)) return;
+        Stencil& stencil = stencils_.emplace_back();
+        stencil.stiffness = stiffness;
+        stencil.count = corner_count;
+        for (int n = 0; n < corner_count; ++n) {
+          stencil.x[n] = corners[n] - particles_.first;
+          stencil.weight[n] = static_cast<Real>(weights[n]);
+        }
+      });
   hinge_terms_.resize(static_cast<std::size_t>(hinges_.count));
   for (std::size_t n = 0; n < hinge_terms_.size(); ++n) {
     const Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(hinges_.first) + n];
@@ -94,8 +94,7 @@ void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonP
     const auto x = [&](int k) -> const Vec3<Real>& {
       return point.x[static_cast<std::size_t>(hinge.x[k])];
     };
-    const HingeAngle<Real> angle =
-        hinge_angle(x(0), x(1), x(2), x(3), hinge.smallest_normal2);
+    const HingeAngle<Real> angle = hinge_angle(x(0), x(1), x(2), x(3), hinge.smallest_normal2);
     Real turning = 0;
     for (std::size_t k = 0; k < 4; ++k)
       turning += angle.gradient[k].dot(point.v[static_cast<std::size_t>(hinge.x[k])]);

@@ -19,6 +19,9 @@ constexpr int kMostPieces = 64;
 constexpr double kViolentLoss = 0.1;
 /// Speed of all particles whose energy a violently shaken cloth has at least [m/s].
 constexpr double kViolentSpeed = 1;
+/// And how far a spring of it is stretched or crushed. Waves in a stiff cloth that snaps taut may
+/// have as much energy, and may go.
+constexpr double kViolentStrain = 0.1;
 
 /// Who was moved by others since the tick before starts anew.
 template <class Real>
@@ -88,10 +91,13 @@ double air_turnover(const Step<Real>& step) {
 /// Whether the substep took much of the energy of a cloth that is torn or shaken violently. What
 /// the air's own work is off by does not count.
 template <class Real>
-bool is_violent(const Step<Real>& step, const Energies& before, const Energies& after, double work) {
-  if (!(mechanical(before) > step.work.violent_energy)) return false;
-  const double lost = before.total() + work - after.total() - drag_work(step);
-  return lost > kViolentLoss * mechanical(before) + air_turnover(step);
+bool is_violent(const Step<Real>& step, const EnergyReading& before, const EnergyReading& after,
+                double work) {
+  const double had = mechanical(before.energies);
+  if (!(had > step.work.violent_energy)) return false;
+  if (!(std::max(before.largest_strain, after.largest_strain) > kViolentStrain)) return false;
+  const double lost = before.energies.total() + work - after.energies.total() - drag_work(step);
+  return lost > kViolentLoss * had + air_turnover(step);
 }
 
 /// The ways of a substep in pieces by backward Euler, `work.way`, `x` and `v` at its end.
@@ -126,7 +132,7 @@ bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, dou
 /// @param brought  gets the work of air, shots and hands [J]
 /// @returns        false if there are none, or if the substep is violent and that is asked for
 template <class Real>
-bool find_sound_ways(Step<Real>& step, Real begin, Real end, const Energies& before,
+bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading& before,
                      EnergyReading& after, double& brought) {
   ImplicitWorkspace<Real>& work = step.work;
   step.damped = false;
@@ -134,9 +140,8 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const Energies& bef
   brought = outer_work(step);
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
-    const bool sound = solved && explained(before, after.energies, brought, work.credit);
-    if (work.refuses_violence &&
-        (!sound || is_violent(step, before, after.energies, brought))) {
+    const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
+    if (work.refuses_violence && (!sound || is_violent(step, before, after, brought))) {
       work.violent = true;
       return false;
     }
@@ -218,7 +223,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
     const Real count = static_cast<Real>(substeps), begin = static_cast<Real>(s) / count;
-    const Energies before = reading.energies;
+    const EnergyReading before = reading;
     double brought = 0;
     const Real end = static_cast<Real>(s + 1) / count;
     if (!find_sound_ways(step, begin, end, before, reading, brought)) work.unsolved = true;

@@ -18,9 +18,9 @@ namespace weft {
 
 /// Settings of the solver `implicit`.
 struct ImplicitDef {
-  int substeps = 1;        ///< a tick; where the cloth can meet anything, at least
-                           ///< kFewestInContact
-  int iterations = 2;      ///< of Newton's method a substep; one is 2 to 30 % off on stiff cloth
+  int substeps = 1;         ///< a tick; where the cloth can meet anything, at least
+                            ///< kFewestInContact
+  int iterations = 2;       ///< of Newton's method a substep; one is 2 to 30 % off on stiff cloth
   double tolerance = 0.02;  ///< of each linear system, as a part of what it begins with
 };
 
@@ -39,9 +39,9 @@ void visit_fields_of_implicit(Def& s, Visitor&& visit) {
 /// What a live hand adds to the linear system: stiffness (sum w x) w.
 template <class Real>
 struct HandTerm {
-  std::size_t grab = 0;  ///< its number in the list
-  std::size_t part = 0;  ///< of the model, that it holds
-  Real stiffness = 0;    ///< [N/m]
+  std::size_t grab = 0;                            ///< its number in the list
+  std::size_t part = 0;                            ///< of the model, that it holds
+  Real stiffness = 0;                              ///< [N/m]
   std::vector<std::array<std::size_t, 3>> places;  ///< of the held particles in a vector
   std::vector<Real> weights;                       ///< 0 of pinned ones
 };
@@ -51,21 +51,21 @@ template <class Real>
 struct ImplicitWorkspace {
   using System = std::variant<GridSystem<Real>, ElementSystem<Real>>;
 
-  std::vector<System> systems;              ///< of each part
-  Vec3Array<Real> way, x, v;                ///< of the substep, and where and how fast it ends
-  Vec3Array<Real> force, air;               ///< [N]
-  Vec3Array<Real> last_way, last_v;         ///< of the substep before
-  Vec3Array<Real> end_x, end_v;             ///< at the end of the tick before
-  Vec3Array<Real> start_x, start_v;         ///< of a substep that is gone in pieces
-  std::vector<char> history;                ///< of each particle: whether that substep counts
-  std::vector<SymmetricBlock<Real>> own;    ///< see NewtonPoint
-  std::vector<HandTerm<Real>> hands;        ///< the first hand_count of them
+  std::vector<System> systems;            ///< of each part
+  Vec3Array<Real> way, x, v;              ///< of the substep, and where and how fast it ends
+  Vec3Array<Real> force, air;             ///< [N]
+  Vec3Array<Real> last_way, last_v;       ///< of the substep before
+  Vec3Array<Real> end_x, end_v;           ///< at the end of the tick before
+  Vec3Array<Real> start_x, start_v;       ///< of a substep that is gone in pieces
+  std::vector<char> history;              ///< of each particle: whether that substep counts
+  std::vector<SymmetricBlock<Real>> own;  ///< see NewtonPoint
+  std::vector<HandTerm<Real>> hands;      ///< the first hand_count of them
   std::size_t hand_count = 0;
-  std::vector<double> starts;               ///< of each part's first linear system of a substep
+  std::vector<double> starts;  ///< of each part's first linear system of a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
-  double last_dt = 0;   ///< [s]; 0: no history
-  double credit = 0;    ///< energy that was lost not long ago, and may come back [J]
-  bool unsolved = false;  ///< a linear system of the last tick found no solution
+  double last_dt = 0;             ///< [s]; 0: no history
+  double credit = 0;              ///< energy that was lost not long ago, and may come back [J]
+  bool unsolved = false;          ///< a linear system of the last tick found no solution
   bool refuses_violence = false;  ///< the coming tick ends at once where it is violent
   bool violent = false;           ///< the last tick ended so
   double violent_energy = 0;      ///< below which nothing is [J]
@@ -85,8 +85,8 @@ struct ImplicitWorkspace {
 /// A substep that ends with more energy than there was and than hands and air brought, or whose
 /// linear systems are not solved, is gone again by backward Euler in 1, 2, 4 ... pieces, which
 /// AdvanceResult::damped_substeps tells. Such a substep is violent, and so is one that loses a
-/// fifth of the energy of a cloth that is fast or stretched all over: in one long step the waves in
-/// it are lost, and it comes to rest in tucks that they would have shaken out. Where
+/// tenth of the energy of a cloth that is fast and stretched far: in one long step the waves in it
+/// are lost, and it comes to rest in tucks that they would have shaken out. Where
 /// `refuses_violence` is set, the tick ends there for somebody else to go it.
 ///
 /// @param dt        substep [s]

@@ -35,8 +35,8 @@ void add_own(Step<Real>& step) {
   for (std::size_t i = 0; i < work.x.size(); ++i) {
     const Real mass = step.model.mass[i];
     const Scheme<Real> scheme(step, i);
-    work.force[i] = (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) +
-                     scheme.before) * mass;
+    work.force[i] =
+        (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) + scheme.before) * mass;
     const Real own = mass * scheme.rate * (scheme.rate + drag);
     work.own[i] = {own, 0, 0, own, 0, own};
   }
@@ -56,18 +56,19 @@ void add_air(Step<Real>& step) {
     const ClothPart<Real>& part = step.model.parts[p];
     const StageTimer timer(step.profile, Stage::air,
                            static_cast<std::size_t>(part.triangles.count));
-    const auto pressure =
-        static_cast<Real>(0.5 * around.air_density * part.fabric.air_normal);
+    const auto pressure = static_cast<Real>(0.5 * around.air_density * part.fabric.air_normal);
     const auto skin = static_cast<Real>(part.fabric.air_tangential);
     for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
       const Triangle& triangle = step.model.triangles[static_cast<std::size_t>(t)];
-      const auto a = static_cast<std::size_t>(triangle[0]), b = static_cast<std::size_t>(triangle[1]),
+      const auto a = static_cast<std::size_t>(triangle[0]),
+                 b = static_cast<std::size_t>(triangle[1]),
                  c = static_cast<std::size_t>(triangle[2]);
       const Vec3<Real> normal = (work.x[b] - work.x[a]).cross(work.x[c] - work.x[a]);
       const Real doubled = normal.norm();
       if (!(doubled > 0)) continue;
       const Vec3<Real> u = ((around.wind[a] - work.v[a]) + (around.wind[b] - work.v[b]) +
-                            (around.wind[c] - work.v[c])) * kThird;
+                            (around.wind[c] - work.v[c])) *
+                           kThird;
       const Vec3<Real> third = air_force(normal, u, pressure, skin) * kThird;
       const Real share = Real(0.5) * doubled * kThird * rate;
       const Vec3<Real> unit = normal / doubled;
@@ -169,8 +170,8 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
             std::fill(vector->begin(), vector->end(), Real(0));
         }
         system.load(work.force, work.residual.data());
-        const LinearVectors<Real> vectors{work.residual.data(),  work.step.data(),
-                                          work.direction.data(), work.product.data(),
+        const LinearVectors<Real> vectors{work.residual.data(),       work.step.data(),
+                                          work.direction.data(),      work.product.data(),
                                           work.preconditioned.data(), system.size()};
         const double enough = first ? 0 : kEnough * step.solver.tolerance * start;
         const LinearSolution found = solve_linear(
@@ -207,8 +208,8 @@ void take_hands(Step<Real>& step) {
     const Index first = step.model.parts[hand.part].particles.first;
     for (std::size_t n = 0; n < grab.particles.size(); ++n) {
       const Index i = grab.particles[n];
-      hand.places.push_back(std::visit([&](const auto& s) { return s.places(i - first); },
-                                       work.systems[hand.part]));
+      hand.places.push_back(
+          std::visit([&](const auto& s) { return s.places(i - first); }, work.systems[hand.part]));
       hand.weights.push_back(step.movable(static_cast<std::size_t>(i)) ? grab.weights[n] : Real(0));
     }
   }
@@ -252,9 +253,9 @@ double outer_work(const Step<Real>& step) {
   return sum;
 }
 
-#define WEFT_INSTANTIATE(Real)                     \
-  template void take_hands(Step<Real>&);           \
-  template bool find_ways(Step<Real>&, Real);      \
+#define WEFT_INSTANTIATE(Real)                \
+  template void take_hands(Step<Real>&);      \
+  template bool find_ways(Step<Real>&, Real); \
   template double outer_work(const Step<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

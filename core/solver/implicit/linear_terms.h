@@ -18,8 +18,7 @@ using SymmetricBlock = std::array<Real, 6>;
 template <class Real>
 SymmetricBlock<Real> along_and_across(Real a, Real b, const Vec3<Real>& u) {
   const Vec3<Real> s = u * b;
-  return {a + s[0] * u[0], s[0] * u[1],     s[0] * u[2],
-          a + s[1] * u[1], s[1] * u[2], a + s[2] * u[2]};
+  return {a + s[0] * u[0], s[0] * u[1], s[0] * u[2], a + s[1] * u[1], s[1] * u[2], a + s[2] * u[2]};
 }
 
 template <class Real>

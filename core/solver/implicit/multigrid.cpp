@@ -106,8 +106,8 @@ void Multigrid<Real>::coarsen_springs(const Level& fine, SpringGrid<Real>& coars
       for (std::size_t c = 0; c < columns.kept.size(); ++c) {
         const int fr = rows.kept[r], fc = columns.kept[c];
         const int down = length(rows, r), along = length(columns, c);
-        const auto at = static_cast<std::size_t>(
-            coarse.layout.at(static_cast<int>(r), static_cast<int>(c)));
+        const auto at =
+            static_cast<std::size_t>(coarse.layout.at(static_cast<int>(r), static_cast<int>(c)));
         Real sums[4] = {};
         for (int n = 0; n < along; ++n)
           sums[kAlong] += about(rows, r, [&](int line) { return block(kAlong, line, fc + n); });
@@ -164,9 +164,9 @@ void Multigrid<Real>::add_prolonged(const Level& fine, const GridLayout& coarse,
     const std::ptrdiff_t row = layout.at(r, 0);
     for (int c = 0; c < layout.columns; ++c) {
       const auto n = static_cast<std::size_t>(c);
-      to[row + c] += free[row + c] *
-                     (columns.share[n] * line_[static_cast<std::size_t>(columns.first[n])] +
-                      columns.other[n] * line_[static_cast<std::size_t>(columns.second[n])]);
+      to[row + c] +=
+          free[row + c] * (columns.share[n] * line_[static_cast<std::size_t>(columns.first[n])] +
+                           columns.other[n] * line_[static_cast<std::size_t>(columns.second[n])]);
     }
   }
 }
@@ -187,8 +187,7 @@ void Multigrid<Real>::cycle(std::size_t number, const Real* r, Real* z) {
   const auto planes = static_cast<std::size_t>(level.grid.layout.plane);
   const auto coarse_planes = static_cast<std::size_t>(coarse.grid.layout.plane);
   multiply(level.grid, z, level.product.data());
-  for (std::size_t n = 0; n < level.product.size(); ++n)
-    level.product[n] = r[n] - level.product[n];
+  for (std::size_t n = 0; n < level.product.size(); ++n) level.product[n] = r[n] - level.product[n];
   for (std::size_t d = 0; d < 3; ++d)
     restrict_plane(level, coarse.grid.layout, level.product.data() + d * planes,
                    coarse.residual.data() + d * coarse_planes, line_);

@@ -38,9 +38,9 @@ class Multigrid {
   };
   struct Level {
     SpringGrid<Real> grid;
-    Lines rows, columns;               ///< to the next coarser level
-    GridVector<Real> residual, sum;    ///< of this level
-    GridVector<Real> product;          ///< A times sum
+    Lines rows, columns;             ///< to the next coarser level
+    GridVector<Real> residual, sum;  ///< of this level
+    GridVector<Real> product;        ///< A times sum
   };
 
   static Lines lines(int count);
@@ -51,8 +51,8 @@ class Multigrid {
   void add_prolonged(const Level& fine, const GridLayout& coarse, const Real* from, Real* to);
 
   std::vector<Level> levels_;
-  std::vector<Real> line_;         ///< of the finest level's columns
-  AlignedVector<Real> weighted_;   ///< own blocks, with pinned particles heavy
+  std::vector<Real> line_;        ///< of the finest level's columns
+  AlignedVector<Real> weighted_;  ///< own blocks, with pinned particles heavy
 };
 
 }  // namespace weft

@@ -72,9 +72,9 @@ HWY_INLINE Triple<V> add_bending(D d, const SpringGrid<Real>& g, const PlaneVect
     l = fused(d, p(d, k + step), behind, l);
     return fused(d, here, w, l);
   };
-  const Triple<V> u = line(hn::LoadU(d, g.bend.data() + table),
-                           hn::LoadU(d, g.bend_left.data() + table),
-                           hn::LoadU(d, g.bend_right.data() + table), 1);
+  const Triple<V> u =
+      line(hn::LoadU(d, g.bend.data() + table), hn::LoadU(d, g.bend_left.data() + table),
+           hn::LoadU(d, g.bend_right.data() + table), 1);
   const Triple<V> v = line(hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2]), s);
   const Triple<V> twist = across(k) * hn::Set(d, row[3]) - across(k - s) - across(k + s);
   const V half = hn::Set(d, Real(0.5));
@@ -122,8 +122,7 @@ HWY_INLINE void bend_grid(const SpringGrid<Real>& g, const Real* vector, Real* p
   const PlaneVector<Real> p(g.layout, vector);
   const V zero = hn::Zero(d);
   for (int r = 0; r < g.layout.rows; ++r) {
-    for (std::ptrdiff_t c = 0; c < g.layout.columns;
-         c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
+    for (std::ptrdiff_t c = 0; c < g.layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
       store_planes(d, add_bending(d, g, p, r, c, Triple<V>{zero, zero, zero}), g.layout.plane,
                    product + g.layout.at(r, 0) + c);
   }

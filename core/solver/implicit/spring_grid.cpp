@@ -172,22 +172,21 @@ void invert_diagonal(SpringGrid<Real>& g) {
         for (std::size_t kind = 0; kind < 3; ++kind)
           sum[e] += g.springs[kind][e][k] +
                     g.springs[kind][e][static_cast<std::size_t>(at - before[kind])];
-        sum[e] += g.springs[kRising][e][k - 1] +
-                  g.springs[kRising][e][static_cast<std::size_t>(at - s)];
+        sum[e] +=
+            g.springs[kRising][e][k - 1] + g.springs[kRising][e][static_cast<std::size_t>(at - s)];
       }
       const Real bound = bending_bound(g, r, c);
       sum[0] += bound;
       sum[3] += bound;
       sum[5] += bound;
-      const std::array<Real, 6> inverse =
-          g.free[k] > 0 ? inverse_of(sum) : std::array<Real, 6>{};
+      const std::array<Real, 6> inverse = g.free[k] > 0 ? inverse_of(sum) : std::array<Real, 6>{};
       for (std::size_t e = 0; e < 6; ++e) g.inverse[e][k] = inverse[e];
     }
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                          \
-  template struct SpringGrid<Real>;                                     \
+#define WEFT_INSTANTIATE(Real)                                         \
+  template struct SpringGrid<Real>;                                    \
   template std::array<Real, 6> inverse_of(const std::array<Real, 6>&); \
   template void invert_diagonal(SpringGrid<Real>&);
 WEFT_INSTANTIATE(float)

@@ -28,4 +28,3 @@ TEST_CASE("with implicit a tick allocates nothing, and a world that is reset rep
   const std::uint64_t once = run();
   CHECK(run() == once);
 }
-
