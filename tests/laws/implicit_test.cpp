@@ -189,5 +189,6 @@ TEST_CASE("with implicit no spring bounds the substep: a cloth a thousand times 
     violent += report.violent ? 1 : 0;
   }
   CHECK(violent <= 6);  // where it snaps taut
-  CHECK(world.report().largest_strain < 0.002);
+  // Its weight stretches it by 5e-6; two Newton iterations leave more while it swings.
+  CHECK(world.report().largest_strain < 0.005);
 }

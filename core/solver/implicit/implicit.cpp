@@ -88,16 +88,17 @@ double air_turnover(const Step<Real>& step) {
   return sum;
 }
 
-/// Whether the substep took much of the energy of a cloth that is torn or shaken violently. What
-/// the air's own work is off by does not count.
+/// Whether the substep brought energy to a cloth that is torn or shaken violently, or took much of
+/// what it has. What the air's own work is off by does not count.
+/// @param sound  it brought none
 template <class Real>
 bool is_violent(const Step<Real>& step, const EnergyReading& before, const EnergyReading& after,
-                double work) {
+                double work, bool sound) {
   const double had = mechanical(before.energies);
   if (!(had > step.work.violent_energy)) return false;
   if (!(std::max(before.largest_strain, after.largest_strain) > kViolentStrain)) return false;
   const double lost = before.energies.total() + work - after.energies.total() - drag_work(step);
-  return lost > kViolentLoss * had + air_turnover(step);
+  return !sound || lost > kViolentLoss * had + air_turnover(step);
 }
 
 /// The ways of a substep in pieces by backward Euler, `work.way`, `x` and `v` at its end.
@@ -141,7 +142,7 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
     const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
-    if (work.refuses_violence && (!sound || is_violent(step, before, after, brought))) {
+    if (work.refuses_violence && is_violent(step, before, after, brought, sound)) {
       work.violent = true;
       return false;
     }

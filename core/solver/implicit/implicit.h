@@ -84,7 +84,7 @@ struct ImplicitWorkspace {
 ///
 /// A substep that ends with more energy than there was and than hands and air brought, or whose
 /// linear systems are not solved, is gone again by backward Euler in 1, 2, 4 ... pieces, which
-/// AdvanceResult::damped_substeps tells. Such a substep is violent, and so is one that loses a
+/// AdvanceResult::damped_substeps tells. A substep is violent that brings or loses a
 /// tenth of the energy of a cloth that is fast and stretched far: in one long step the waves in it
 /// are lost, and it comes to rest in tucks that they would have shaken out. Where
 /// `refuses_violence` is set, the tick ends there for somebody else to go it.

@@ -300,7 +300,7 @@ TEST_CASE("relaxation is chosen by name or by the model, and a wrong word is ans
   } catch (const DefinitionError& error) {
     CHECK(error.field == "solver.kind");
     CHECK(error.value == "euler");
-    CHECK(error.limit == "automatic, verlet or relaxation");
+    CHECK(error.limit == "automatic, verlet, relaxation or implicit");
   }
   for (const FieldListing& field : list_fields(def)) {
     if (field.key == "solver.kind") CHECK(field.value == "relaxation");
