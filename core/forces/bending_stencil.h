@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/cloth/cloth_model.h"
 
 namespace weft {
@@ -27,6 +29,17 @@ inline double share_bend_u(const GridCells& g, int r, int c) {
 inline double share_bend_v(const GridCells& g, int r, int c) {
   return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
                 (g.has_cell(r - 1, c) && g.has_cell(r, c)));
+}
+
+/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
+/// the particle itself, of the one before and of the one behind (two away it is 1), and how many
+/// cells meet there, 1 or 2.
+template <class Real>
+std::array<Real, 4> bending_line(int k, int count) {
+  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
+  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
+  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
+          static_cast<Real>(-2 * (here + behind)), static_cast<Real>((k > 0) + (k + 1 < count))};
 }
 
 /// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of the quadratic

@@ -3,18 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/forces/bending_stencil.h"
+
 namespace weft {
 namespace {
-
-/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
-/// the particle itself, of the one before and of the one behind. Two away it is 1.
-template <class Real>
-std::array<Real, 3> bending_line(int k, int count) {
-  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
-  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
-  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
-          static_cast<Real>(-2 * (here + behind))};
-}
 
 template <class Real>
 Real cells_at(int k, int count) {
@@ -63,11 +55,11 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   const auto origin = [](Array& table) { return table.data() + kSweepMargin; };
   for (int c = 0; c < view_.columns; ++c) {
     const std::ptrdiff_t k = place(0, c);
-    const std::array<Real, 3> line = bending_line<Real>(c, view_.columns);
+    const std::array<Real, 4> line = bending_line<Real>(c, view_.columns);
     origin(bend_)[k] = line[0];
     origin(bend_left_)[k] = line[1];
     origin(bend_right_)[k] = line[2];
-    origin(cells_)[k] = cells_at<Real>(c, view_.columns);
+    origin(cells_)[k] = line[3];
     origin(border_)[k] = Real(0.5) * origin(cells_)[k];
     origin(softer_)[k] = Real(1) / origin(border_)[k];
   }
@@ -78,8 +70,7 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   view_.bend_right = origin(bend_right_);
   view_.cells = origin(cells_);
   for (int r = 0; r < view_.rows; ++r) {
-    const std::array<Real, 3> line = bending_line<Real>(r, view_.rows);
-    view_.row_bend.push_back({line[0], line[1], line[2], cells_at<Real>(r, view_.rows)});
+    view_.row_bend.push_back(bending_line<Real>(r, view_.rows));
   }
   view_.length[0] = springs_.rest_warp;
   view_.length[1] = springs_.rest_weft;

@@ -11,6 +11,8 @@
 #if HWY_ONCE
 #include <cmath>
 
+#include "core/forces/bending_stencil.h"
+
 namespace weft {
 
 HWY_EXPORT(multiply_f32);
@@ -90,20 +92,6 @@ void SpringGrid<Real>::prepare(const GridLayout& shape) {
   }
   bending = {};
 }
-
-namespace {
-
-/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
-/// the particle itself, of the one before and of the one behind, and how many cells meet there.
-template <class Real>
-std::array<Real, 4> bending_line(int k, int count) {
-  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
-  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
-  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
-          static_cast<Real>(-2 * (here + behind)), static_cast<Real>((k > 0) + (k + 1 < count))};
-}
-
-}  // namespace
 
 template <class Real>
 void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form) {
