@@ -14,29 +14,10 @@ bool GridSystem<Real>::fits(const ClothModel<Real>& model, const ClothPart<Real>
 
 template <class Real>
 GridSystem<Real>::GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
-    : particles_(part.particles), springs_(part.springs) {
+    : springs_(GridLayout(part.rows, part.columns), model, part), particles_(part.particles) {
   multigrid_.prepare(GridLayout(part.rows, part.columns));
-  SpringGrid<Real>& grid = multigrid_.finest();
-  grid.set_bending(part.quadratic_bending);
-  for (GridVector<Real>* vector : {&x_, &bent_}) vector->assign(size(), Real(0));
-  for (Index k = springs_.first; k < springs_.end(); ++k) {
-    const Spring<Real>& spring = model.springs[static_cast<std::size_t>(k)];
-    const Index i = spring.i - particles_.first, j = spring.j - particles_.first;
-    const Index first = i < j ? i : j, second = i < j ? j : i;
-    const Index r = first / part.columns, step = second - first;
-    Index c = first % part.columns;
-    GridSpring kind = kFalling;
-    if (second / part.columns == r) {
-      kind = kAlong;
-    } else if (step == part.columns) {
-      kind = kDown;
-    } else if (step < part.columns) {
-      kind = kRising;
-      --c;
-    }
-    kinds_.push_back(kind);
-    cells_.push_back(static_cast<std::size_t>(grid.layout.at(r, c)));
-  }
+  multigrid_.finest().set_bending(part.quadratic_bending);
+  for (GridVector<Real>* vector : {&x_, &v_, &force_}) vector->assign(size(), Real(0));
 }
 
 template <class Real>
@@ -55,27 +36,20 @@ void GridSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
 }
 
 template <class Real>
-void GridSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& at,
+void GridSystem<Real>::linearise(const ClothModel<Real>&, const NewtonPoint<Real>& at,
                                  Vec3Array<Real>& force) {
   SpringGrid<Real>& grid = multigrid_.finest();
-  for (std::size_t n = 0; n < kinds_.size(); ++n) {
-    const Spring<Real>& spring = model.springs[static_cast<std::size_t>(springs_.first) + n];
-    const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
-    const SpringTerm<Real> term(spring, at.x[j] - at.x[i], at.v[j] - at.v[i], at.rate);
-    force[i] += term.force;
-    force[j] -= term.force;
-    for (std::size_t e = 0; e < 6; ++e) grid.springs[kinds_[n]][e][cells_[n]] = term.block[e];
-  }
-  for (Index k = 0; k < particles_.count; ++k) {
-    const std::size_t place = places(k)[0];
-    const auto i = static_cast<std::size_t>(particles_.first + k);
-    for (std::size_t e = 0; e < 6; ++e) grid.own[e][place] = at.own[i][e];
-  }
-  if (grid.bends()) {
-    load(at.x, x_.data());
-    multiply_bending(grid, x_.data(), bent_.data());
-    for (Real& number : bent_) number = -number;
-    add(bent_.data(), force);
+  load(at.x, x_.data());
+  load(at.v, v_.data());
+  weft::linearise(springs_, at.rate, x_.data(), v_.data(), grid, force_.data());
+  add(force_.data(), force);
+  auto i = static_cast<std::size_t>(particles_.first);
+  for (int r = 0; r < grid.layout.rows; ++r) {
+    const std::ptrdiff_t row = grid.layout.at(r, 0);
+    for (int c = 0; c < grid.layout.columns; ++c, ++i) {
+      for (std::size_t e = 0; e < 6; ++e)
+        grid.own[e][static_cast<std::size_t>(row + c)] = at.own[i][e];
+    }
   }
   multigrid_.coarsen();
 }

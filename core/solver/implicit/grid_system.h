@@ -5,6 +5,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/solver/implicit/linear_terms.h"
 #include "core/solver/implicit/multigrid.h"
+#include "core/solver/implicit/spring_planes.h"
 #include "core/types.h"
 
 namespace weft {
@@ -37,8 +38,7 @@ class GridSystem {
   void set_pinned(const std::vector<Real>& inverse_mass);
 
   /// Adds the forces of springs and bending to `force`, and keeps the matrix.
-  void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& at,
-                 Vec3Array<Real>& force);
+  void linearise(const ClothModel<Real>&, const NewtonPoint<Real>& at, Vec3Array<Real>& force);
 
   void load(const Vec3Array<Real>& from, Real* to) const;
   void add(const Real* from, Vec3Array<Real>& to) const;
@@ -50,10 +50,9 @@ class GridSystem {
   const SpringGrid<Real>& grid() const { return multigrid_.finest(); }
 
   Multigrid<Real> multigrid_;
-  IndexRange particles_, springs_;
-  std::vector<GridSpring> kinds_;   ///< of each spring
-  std::vector<std::size_t> cells_;  ///< of each spring, the place of its first cell
-  GridVector<Real> x_, bent_;       ///< positions and the force of bending
+  SpringPlanes<Real> springs_;
+  IndexRange particles_;
+  GridVector<Real> x_, v_, force_;  ///< of `linearise`
 };
 
 }  // namespace weft

@@ -10,79 +10,12 @@
 
 #include <hwy/highway.h>
 
-#include "core/math/lanes-inl.h"
-#include "core/solver/implicit/spring_grid.h"
+#include "core/solver/implicit/grid_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// The three planes of a vector, or the six of symmetric blocks, at one place.
-template <class Real>
-struct PlaneVector {
-  const Real *x, *y, *z;
-  PlaneVector(const GridLayout& layout, const Real* p)
-      : x(p), y(p + layout.plane), z(p + 2 * layout.plane) {}
-  template <class D>
-  HWY_INLINE Triple<hn::Vec<D>> operator()(D d, std::ptrdiff_t k) const {
-    return {hn::LoadU(d, x + k), hn::LoadU(d, y + k), hn::LoadU(d, z + k)};
-  }
-};
-
-template <class Real>
-struct PlaneBlocks {
-  const Real *xx, *xy, *xz, *yy, *yz, *zz;
-  explicit PlaneBlocks(const std::array<AlignedVector<Real>, 6>& b)
-      : xx(b[0].data()), xy(b[1].data()), xz(b[2].data()), yy(b[3].data()), yz(b[4].data()),
-        zz(b[5].data()) {}
-  /// sum + block at k times u
-  template <class D, class V = hn::Vec<D>>
-  HWY_INLINE Triple<V> times(D d, std::ptrdiff_t k, const Triple<V>& u,
-                             const Triple<V>& sum) const {
-    const V b = hn::LoadU(d, xy + k), c = hn::LoadU(d, xz + k), e = hn::LoadU(d, yz + k);
-    return {fused_dot(d, {hn::LoadU(d, xx + k), b, c}, u, sum.x),
-            fused_dot(d, {b, hn::LoadU(d, yy + k), e}, u, sum.y),
-            fused_dot(d, {c, e, hn::LoadU(d, zz + k)}, u, sum.z)};
-  }
-};
-
-template <class D, class Real, class V>
-HWY_INLINE void store_planes(D d, const Triple<V>& a, std::ptrdiff_t plane, Real* at) {
-  hn::StoreU(a.x, d, at);
-  hn::StoreU(a.y, d, at + plane);
-  hn::StoreU(a.z, d, at + 2 * plane);
-}
-
-/// What bending adds to a row of the product.
-template <class D, class Real, class V = hn::Vec<D>>
-HWY_INLINE Triple<V> add_bending(D d, const SpringGrid<Real>& g, const PlaneVector<Real>& p, int r,
-                                 std::ptrdiff_t c, const Triple<V>& sum) {
-  const std::ptrdiff_t s = g.layout.stride, k = g.layout.at(r, 0) + c, table = kGridMargin + c;
-  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
-  const V cells = hn::LoadU(d, g.cells.data() + table);
-  const auto across = [&](std::ptrdiff_t at) HWY_ATTR {  // cells p_c - p_(c-1) - p_(c+1)
-    const Triple<V> here = p(d, at), left = p(d, at - 1), right = p(d, at + 1);
-    return here * cells - left - right;
-  };
-  const Triple<V> here = p(d, k);
-  const auto line = [&](V w, V before, V behind, std::ptrdiff_t step) HWY_ATTR {
-    Triple<V> l = p(d, k - 2 * step) + p(d, k + 2 * step);
-    l = fused(d, p(d, k - step), before, l);
-    l = fused(d, p(d, k + step), behind, l);
-    return fused(d, here, w, l);
-  };
-  const Triple<V> u =
-      line(hn::LoadU(d, g.bend.data() + table), hn::LoadU(d, g.bend_left.data() + table),
-           hn::LoadU(d, g.bend_right.data() + table), 1);
-  const Triple<V> v = line(hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2]), s);
-  const Triple<V> twist = across(k) * hn::Set(d, row[3]) - across(k - s) - across(k + s);
-  const V half = hn::Set(d, Real(0.5));
-  const V along_u = hn::Set(d, g.bending.along_u * Real(0.5) * row[3]);
-  const V along_v = hn::Mul(hn::Set(d, g.bending.along_v), hn::Mul(half, cells));
-  return fused(d, u, along_u,
-               fused(d, v, along_v, fused(d, twist, hn::Set(d, g.bending.twist), sum)));
-}
 
 template <class Real>
 HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Real* product) {
@@ -109,22 +42,8 @@ HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Rea
       sum = rising.times(d, k - 1, here - p(d, k + s - 1), sum);
       sum = rising.times(d, k - s, here - p(d, k - s + 1), sum);
       if (bends) sum = add_bending(d, g, p, r, c, sum);
-      const V free = hn::LoadU(d, g.free.data() + k);
-      store_planes(d, sum * free, layout.plane, product + k);
+      store_planes(d, only(is_free(d, g, k), sum), layout.plane, product + k);
     }
-  }
-}
-
-template <class Real>
-HWY_INLINE void bend_grid(const SpringGrid<Real>& g, const Real* vector, Real* product) {
-  const hn::ScalableTag<Real> d;
-  using V = hn::Vec<decltype(d)>;
-  const PlaneVector<Real> p(g.layout, vector);
-  const V zero = hn::Zero(d);
-  for (int r = 0; r < g.layout.rows; ++r) {
-    for (std::ptrdiff_t c = 0; c < g.layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
-      store_planes(d, add_bending(d, g, p, r, c, Triple<V>{zero, zero, zero}), g.layout.plane,
-                   product + g.layout.at(r, 0) + c);
   }
 }
 
@@ -179,17 +98,55 @@ HWY_INLINE void combine(bool scale_y, Real s, const Real* a, Real* y, std::size_
   }
 }
 
+/// Inverses of diagonal blocks, see `invert_diagonal`.
+template <class Real>
+HWY_INLINE void invert_grid(SpringGrid<Real>& g) {
+  const hn::ScalableTag<Real> d;
+  using V = hn::Vec<decltype(d)>;
+  const GridLayout& layout = g.layout;
+  const std::ptrdiff_t s = layout.stride;
+  constexpr std::size_t kDiagonal[] = {0, 3, 5};
+  const std::ptrdiff_t first[4] = {0, 0, 0, -1}, second[4] = {-1, -s, -s - 1, -s};
+  for (int r = 0; r < layout.rows; ++r) {
+    for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+      const std::ptrdiff_t k = layout.at(r, 0) + c;
+      V a[6];
+      for (std::size_t e = 0; e < 6; ++e) {
+        a[e] = hn::LoadU(d, g.own[e].data() + k);
+        for (std::size_t kind = 0; kind < 4; ++kind) {
+          const Real* const block = g.springs[kind][e].data() + k;
+          a[e] = hn::Add(
+              a[e], hn::Add(hn::LoadU(d, block + first[kind]), hn::LoadU(d, block + second[kind])));
+        }
+      }
+      if (g.bends()) {
+        const V bound = hn::LoadU(d, g.bending_bound.data() + k);
+        for (const std::size_t e : kDiagonal) a[e] = hn::Add(a[e], bound);
+      }
+      const V xx = fused_minus(d, a[4], a[4], hn::Mul(a[3], a[5]));
+      const V xy = fused_minus(d, a[1], a[5], hn::Mul(a[2], a[4]));
+      const V xz = fused_minus(d, a[2], a[3], hn::Mul(a[1], a[4]));
+      const V determinant = fused_dot(d, Triple<V>{a[0], a[1], a[2]}, Triple<V>{xx, xy, xz});
+      const auto regular = hn::And(is_free(d, g, k), hn::Gt(determinant, hn::Zero(d)));
+      const V scale = hn::Div(hn::Set(d, Real(1)), determinant);
+      const V adjugate[6] = {xx,
+                             xy,
+                             xz,
+                             fused_minus(d, a[2], a[2], hn::Mul(a[0], a[5])),
+                             fused_minus(d, a[0], a[4], hn::Mul(a[1], a[2])),
+                             fused_minus(d, a[1], a[1], hn::Mul(a[0], a[3]))};
+      for (std::size_t e = 0; e < 6; ++e)
+        hn::StoreU(hn::IfThenElseZero(regular, hn::Mul(adjugate[e], scale)), d,
+                   g.inverse[e].data() + k);
+    }
+  }
+}
+
 HWY_ATTR void multiply_f32(const SpringGrid<float>& g, const float* p, float* y) {
   multiply_grid(g, p, y);
 }
 HWY_ATTR void multiply_f64(const SpringGrid<double>& g, const double* p, double* y) {
   multiply_grid(g, p, y);
-}
-HWY_ATTR void bend_f32(const SpringGrid<float>& g, const float* p, float* y) {
-  bend_grid(g, p, y);
-}
-HWY_ATTR void bend_f64(const SpringGrid<double>& g, const double* p, double* y) {
-  bend_grid(g, p, y);
 }
 HWY_ATTR void smooth_f32(const SpringGrid<float>& g, float w, const float* r, const float* y,
                          float* z) {
@@ -210,6 +167,12 @@ HWY_ATTR void combine_f32(bool scale_y, float s, const float* a, float* y, std::
 }
 HWY_ATTR void combine_f64(bool scale_y, double s, const double* a, double* y, std::size_t count) {
   combine(scale_y, s, a, y, count);
+}
+HWY_ATTR void invert_f32(SpringGrid<float>& g) {
+  invert_grid(g);
+}
+HWY_ATTR void invert_f64(SpringGrid<double>& g) {
+  invert_grid(g);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -17,26 +17,20 @@ namespace weft {
 
 HWY_EXPORT(multiply_f32);
 HWY_EXPORT(multiply_f64);
-HWY_EXPORT(bend_f32);
-HWY_EXPORT(bend_f64);
 HWY_EXPORT(smooth_f32);
 HWY_EXPORT(smooth_f64);
 HWY_EXPORT(dot_f32);
 HWY_EXPORT(dot_f64);
 HWY_EXPORT(combine_f32);
 HWY_EXPORT(combine_f64);
+HWY_EXPORT(invert_f32);
+HWY_EXPORT(invert_f64);
 
 void multiply(const SpringGrid<float>& grid, const float* p, float* y) {
   HWY_DYNAMIC_DISPATCH(multiply_f32)(grid, p, y);
 }
 void multiply(const SpringGrid<double>& grid, const double* p, double* y) {
   HWY_DYNAMIC_DISPATCH(multiply_f64)(grid, p, y);
-}
-void multiply_bending(const SpringGrid<float>& grid, const float* p, float* y) {
-  HWY_DYNAMIC_DISPATCH(bend_f32)(grid, p, y);
-}
-void multiply_bending(const SpringGrid<double>& grid, const double* p, double* y) {
-  HWY_DYNAMIC_DISPATCH(bend_f64)(grid, p, y);
 }
 void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z) {
   HWY_DYNAMIC_DISPATCH(smooth_f32)(grid, omega, r, nullptr, z);
@@ -70,6 +64,13 @@ void scale_and_add(double s, const double* a, double* y, std::size_t count) {
   HWY_DYNAMIC_DISPATCH(combine_f64)(true, s, a, y, count);
 }
 
+void invert_diagonal(SpringGrid<float>& grid) {
+  HWY_DYNAMIC_DISPATCH(invert_f32)(grid);
+}
+void invert_diagonal(SpringGrid<double>& grid) {
+  HWY_DYNAMIC_DISPATCH(invert_f64)(grid);
+}
+
 GridLayout::GridLayout(int row_count, int column_count) : rows(row_count), columns(column_count) {
   const std::ptrdiff_t whole = (column_count + 2 + kGridMargin - 1) / kGridMargin * kGridMargin;
   stride = whole + kGridMargin;
@@ -93,6 +94,25 @@ void SpringGrid<Real>::prepare(const GridLayout& shape) {
   bending = {};
 }
 
+namespace {
+
+/// Half the absolute sum of a particle's row of the bending matrix.
+template <class Real>
+Real row_bound(const SpringGrid<Real>& g, int r, int c) {
+  const auto line = [](Real w, Real before, Real behind, int k, int count) {
+    return w + std::abs(before) + std::abs(behind) + Real(k > 1) + Real(k + 2 < count);
+  };
+  const auto table = static_cast<std::size_t>(kGridMargin + c);
+  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
+  const Real u = line(g.bend[table], g.bend_left[table], g.bend_right[table], c, g.layout.columns);
+  const Real v = line(row[0], row[1], row[2], r, g.layout.rows);
+  return Real(0.5) * (g.bending.along_u * Real(0.5) * row[3] * u +
+                      g.bending.along_v * Real(0.5) * g.cells[table] * v +
+                      g.bending.twist * 4 * row[3] * g.cells[table]);
+}
+
+}  // namespace
+
 template <class Real>
 void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form) {
   bending = form;
@@ -109,6 +129,11 @@ void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form) {
   }
   row_bend.clear();
   for (int r = 0; r < layout.rows; ++r) row_bend.push_back(bending_line<Real>(r, layout.rows));
+  bending_bound.assign(static_cast<std::size_t>(layout.plane), Real(0));
+  for (int r = 0; r < layout.rows; ++r) {
+    for (int c = 0; c < layout.columns; ++c)
+      bending_bound[static_cast<std::size_t>(layout.at(r, c))] = row_bound(*this, r, c);
+  }
 }
 
 template <class Real>
@@ -126,57 +151,9 @@ std::array<Real, 6> inverse_of(const std::array<Real, 6>& a) {
           (a[0] * a[3] - a[1] * a[1]) * s};
 }
 
-namespace {
-
-/// Half the absolute sum of a particle's row of the bending matrix.
-template <class Real>
-Real bending_bound(const SpringGrid<Real>& g, int r, int c) {
-  if (!g.bends()) return 0;
-  const auto line = [](Real w, Real before, Real behind, int k, int count) {
-    return w + std::abs(before) + std::abs(behind) + Real(k > 1) + Real(k + 2 < count);
-  };
-  const auto table = static_cast<std::size_t>(kGridMargin + c);
-  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
-  const Real u = line(g.bend[table], g.bend_left[table], g.bend_right[table], c, g.layout.columns);
-  const Real v = line(row[0], row[1], row[2], r, g.layout.rows);
-  return Real(0.5) * (g.bending.along_u * Real(0.5) * row[3] * u +
-                      g.bending.along_v * Real(0.5) * g.cells[table] * v +
-                      g.bending.twist * 4 * row[3] * g.cells[table]);
-}
-
-}  // namespace
-
-template <class Real>
-void invert_diagonal(SpringGrid<Real>& g) {
-  const std::ptrdiff_t s = g.layout.stride;
-  const std::ptrdiff_t before[3] = {1, s, s + 1};
-  for (int r = 0; r < g.layout.rows; ++r) {
-    for (int c = 0; c < g.layout.columns; ++c) {
-      const std::ptrdiff_t at = g.layout.at(r, c);
-      const auto k = static_cast<std::size_t>(at);
-      std::array<Real, 6> sum{};
-      for (std::size_t e = 0; e < 6; ++e) {
-        sum[e] = g.own[e][k];
-        for (std::size_t kind = 0; kind < 3; ++kind)
-          sum[e] += g.springs[kind][e][k] +
-                    g.springs[kind][e][static_cast<std::size_t>(at - before[kind])];
-        sum[e] +=
-            g.springs[kRising][e][k - 1] + g.springs[kRising][e][static_cast<std::size_t>(at - s)];
-      }
-      const Real bound = bending_bound(g, r, c);
-      sum[0] += bound;
-      sum[3] += bound;
-      sum[5] += bound;
-      const std::array<Real, 6> inverse = g.free[k] > 0 ? inverse_of(sum) : std::array<Real, 6>{};
-      for (std::size_t e = 0; e < 6; ++e) g.inverse[e][k] = inverse[e];
-    }
-  }
-}
-
-#define WEFT_INSTANTIATE(Real)                                         \
-  template struct SpringGrid<Real>;                                    \
-  template std::array<Real, 6> inverse_of(const std::array<Real, 6>&); \
-  template void invert_diagonal(SpringGrid<Real>&);
+#define WEFT_INSTANTIATE(Real)      \
+  template struct SpringGrid<Real>; \
+  template std::array<Real, 6> inverse_of(const std::array<Real, 6>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -50,6 +50,7 @@ struct SpringGrid {
   // kGridMargin on, zeros around. Of each row the same four.
   AlignedVector<Real> bend, bend_left, bend_right, cells;
   std::vector<std::array<Real, 4>> row_bend;
+  AlignedVector<Real> bending_bound;  ///< see `invert_diagonal`
 
   bool bends() const { return bending.along_u != 0 || bending.along_v != 0 || bending.twist != 0; }
 
@@ -63,10 +64,6 @@ struct SpringGrid {
 /// y = A p. Pinned particles get 0.
 void multiply(const SpringGrid<float>& grid, const float* p, float* y);
 void multiply(const SpringGrid<double>& grid, const double* p, double* y);
-
-/// y = what bending alone gives, of pinned particles too. Only on the finest level.
-void multiply_bending(const SpringGrid<float>& grid, const float* p, float* y);
-void multiply_bending(const SpringGrid<double>& grid, const double* p, double* y);
 
 /// z = omega D^-1 r with D the diagonal blocks.
 void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z);
@@ -93,8 +90,8 @@ void scale_and_add(double s, const double* a, double* y, std::size_t count);
 /// The inverses of the diagonal blocks: each particle's own, those of its springs, and half the sum
 /// of the absolute values of its row of the bending matrix, so that no eigenvalue of D^-1 A is
 /// above 2 (for springs and rows alike 2 D - A is a sum of squares).
-template <class Real>
-void invert_diagonal(SpringGrid<Real>& grid);
+void invert_diagonal(SpringGrid<float>& grid);
+void invert_diagonal(SpringGrid<double>& grid);
 
 /// Inverse of a symmetric matrix given and returned as xx xy xz yy yz zz; zeros if it is singular.
 template <class Real>

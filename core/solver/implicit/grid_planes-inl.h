@@ -1,0 +1,104 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_GRID_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_GRID_PLANES_INL_H
+#undef WEFT_GRID_PLANES_INL_H
+#else
+#define WEFT_GRID_PLANES_INL_H
+#endif
+
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "core/math/lanes-inl.h"
+#include "core/solver/implicit/spring_grid.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The three planes of a vector, or the six of symmetric blocks, at one place.
+template <class Real>
+struct PlaneVector {
+  const Real *x, *y, *z;
+  PlaneVector(const GridLayout& layout, const Real* p)
+      : x(p), y(p + layout.plane), z(p + 2 * layout.plane) {}
+  template <class D>
+  HWY_INLINE Triple<hn::Vec<D>> operator()(D d, std::ptrdiff_t k) const {
+    return {hn::LoadU(d, x + k), hn::LoadU(d, y + k), hn::LoadU(d, z + k)};
+  }
+};
+
+template <class Real>
+struct PlaneBlocks {
+  const Real *xx, *xy, *xz, *yy, *yz, *zz;
+  explicit PlaneBlocks(const std::array<AlignedVector<Real>, 6>& b)
+      : xx(b[0].data()), xy(b[1].data()), xz(b[2].data()), yy(b[3].data()), yz(b[4].data()),
+        zz(b[5].data()) {}
+  /// sum + block at k times u
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE Triple<V> times(D d, std::ptrdiff_t k, const Triple<V>& u,
+                             const Triple<V>& sum) const {
+    const V b = hn::LoadU(d, xy + k), c = hn::LoadU(d, xz + k), e = hn::LoadU(d, yz + k);
+    return {fused_dot(d, {hn::LoadU(d, xx + k), b, c}, u, sum.x),
+            fused_dot(d, {b, hn::LoadU(d, yy + k), e}, u, sum.y),
+            fused_dot(d, {c, e, hn::LoadU(d, zz + k)}, u, sum.z)};
+  }
+};
+
+template <class D, class Real, class V>
+HWY_INLINE void store_planes(D d, const Triple<V>& a, std::ptrdiff_t plane, Real* at) {
+  hn::StoreU(a.x, d, at);
+  hn::StoreU(a.y, d, at + plane);
+  hn::StoreU(a.z, d, at + 2 * plane);
+}
+
+/// Lanes from k on that are particles and not pinned.
+template <class D, class Real>
+HWY_INLINE hn::Mask<D> is_free(D d, const SpringGrid<Real>& g, std::ptrdiff_t k) {
+  return hn::Gt(hn::LoadU(d, g.free.data() + k), hn::Zero(d));
+}
+
+/// What stands in the other lanes goes, even if it is no number.
+template <class M, class V>
+HWY_INLINE Triple<V> only(M mask, const Triple<V>& a) {
+  return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
+          hn::IfThenElseZero(mask, a.z)};
+}
+
+/// What bending adds to a row of the product.
+template <class D, class Real, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> add_bending(D d, const SpringGrid<Real>& g, const PlaneVector<Real>& p, int r,
+                                 std::ptrdiff_t c, const Triple<V>& sum) {
+  const std::ptrdiff_t s = g.layout.stride, k = g.layout.at(r, 0) + c, table = kGridMargin + c;
+  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
+  const V cells = hn::LoadU(d, g.cells.data() + table);
+  const auto across = [&](std::ptrdiff_t at) HWY_ATTR {  // cells p_c - p_(c-1) - p_(c+1)
+    const Triple<V> here = p(d, at), left = p(d, at - 1), right = p(d, at + 1);
+    return here * cells - left - right;
+  };
+  const Triple<V> here = p(d, k);
+  const auto line = [&](V w, V before, V behind, std::ptrdiff_t step) HWY_ATTR {
+    Triple<V> l = p(d, k - 2 * step) + p(d, k + 2 * step);
+    l = fused(d, p(d, k - step), before, l);
+    l = fused(d, p(d, k + step), behind, l);
+    return fused(d, here, w, l);
+  };
+  const Triple<V> u =
+      line(hn::LoadU(d, g.bend.data() + table), hn::LoadU(d, g.bend_left.data() + table),
+           hn::LoadU(d, g.bend_right.data() + table), 1);
+  const Triple<V> v = line(hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2]), s);
+  const Triple<V> twist = across(k) * hn::Set(d, row[3]) - across(k - s) - across(k + s);
+  const V half = hn::Set(d, Real(0.5));
+  const V along_u = hn::Set(d, g.bending.along_u * Real(0.5) * row[3]);
+  const V along_v = hn::Mul(hn::Set(d, g.bending.along_v), hn::Mul(half, cells));
+  return fused(d, u, along_u,
+               fused(d, v, along_v, fused(d, twist, hn::Set(d, g.bending.twist), sum)));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif

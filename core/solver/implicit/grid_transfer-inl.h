@@ -1,0 +1,204 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_GRID_TRANSFER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_GRID_TRANSFER_INL_H
+#undef WEFT_GRID_TRANSFER_INL_H
+#else
+#define WEFT_GRID_TRANSFER_INL_H
+#endif
+
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "core/math/lanes-inl.h"
+#include "core/solver/implicit/grid_transfer.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A fine row and its share.
+template <class Real>
+struct Share {
+  const Real* row;
+  Real weight;
+};
+
+/// line = a + weighted b + weighted c, and zeros behind it. @returns where it begins
+template <class Real>
+HWY_INLINE Real* add_up_rows(const Real* a, Share<Real> b, Share<Real> c, int columns,
+                             AlignedVector<Real>& line) {
+  const hn::ScalableTag<Real> d;
+  Real* const to = line.data() + kGridMargin;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto wb = hn::Set(d, b.weight), wc = hn::Set(d, c.weight);
+  std::ptrdiff_t k = 0;
+  for (; k < columns; k += lanes)
+    hn::StoreU(fused(d, hn::LoadU(d, c.row + k), wc,
+                     fused(d, hn::LoadU(d, b.row + k), wb, hn::LoadU(d, a + k))),
+               d, to + k);
+  // Coarse vectors end up to two fine ones behind the last column.
+  for (const std::ptrdiff_t end = columns + 2 * lanes; k < end; k += lanes)
+    hn::StoreU(hn::Zero(d), d, to + k);
+  return to;
+}
+
+/// Coarse row `r` of a level whose fine rows begin at `rows`, `stride` apart: what is on its line
+/// with half of what is on the fine lines beside it.
+template <class Real>
+HWY_INLINE Real* add_up_about(const Real* rows, std::ptrdiff_t stride, const GridLayout& fine,
+                              int r, AlignedVector<Real>& line) {
+  const int at = r * 2 < fine.rows ? r * 2 : fine.rows - 1;
+  // The fine row before is one that goes, and so is the one behind.
+  const bool before = r > 0 && at == r * 2, behind = at + 2 < fine.rows;
+  const Real* const here = rows + at * stride;
+  return add_up_rows<Real>(here, {before ? here - stride : here, before ? Real(0.5) : Real(0)},
+                           {behind ? here + stride : here, behind ? Real(0.5) : Real(0)},
+                           fine.columns, line);
+}
+
+/// to(c) = line(2c) + half of line(2c - 1) and of line(2c + 1); the last of an even number of
+/// columns stands for itself.
+template <class Real>
+HWY_INLINE void gather_about(Real* line, int columns, int coarse_columns, Real* to) {
+  const hn::ScalableTag<Real> d;
+  const bool short_last = columns % 2 == 0;
+  const Real last = line[columns - 1];
+  if (short_last) line[columns - 1] = 0;
+  const auto half = hn::Set(d, Real(0.5));
+  for (std::ptrdiff_t c = 0; c < coarse_columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    hn::Vec<decltype(d)> here, behind, unused, before;
+    hn::LoadInterleaved2(d, line + 2 * c, here, behind);
+    hn::LoadInterleaved2(d, line + 2 * c - 2, unused, before);
+    hn::StoreU(fused(d, hn::Add(before, behind), half, here), d, to + c);
+  }
+  if (short_last) to[coarse_columns - 1] = last;
+}
+
+template <class Real>
+HWY_INLINE void restrict_rows(const GridLayout& fine, const GridLayout& coarse, const Real* from,
+                              Real* to, TransferLines<Real>& lines) {
+  for (int r = 0; r < coarse.rows; ++r)
+    gather_about(add_up_about(from + fine.origin, fine.stride, fine, r, lines.fine), fine.columns,
+                 coarse.columns, to + coarse.at(r, 0));
+}
+
+/// wide(2c) = line(c), wide(2c + 1) = their mean; the last of an even number of columns stands for
+/// itself.
+template <class Real>
+HWY_INLINE void interpolate(const Real* line, int columns, int coarse_columns, Real* wide) {
+  const hn::ScalableTag<Real> d;
+  const auto half = hn::Set(d, Real(0.5));
+  for (std::ptrdiff_t c = 0; c < coarse_columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const auto here = hn::LoadU(d, line + c), behind = hn::LoadU(d, line + c + 1);
+    hn::StoreInterleaved2(here, hn::Mul(hn::Add(here, behind), half), d, wide + 2 * c);
+  }
+  if (columns % 2 == 0) wide[columns - 1] = line[coarse_columns - 1];
+}
+
+template <class Real>
+HWY_INLINE void prolong_rows(const GridLayout& fine, const GridLayout& coarse, const Real* free,
+                             const Real* from, Real* to, TransferLines<Real>& lines) {
+  const hn::ScalableTag<Real> d;
+  Real* const wide = lines.fine.data() + kGridMargin;
+  for (int r = 0; r < fine.rows; ++r) {
+    const bool kept = r % 2 == 0 || r + 1 == fine.rows;
+    const Real *first = from + coarse.at(kept ? (r + 1) / 2 : r / 2, 0), *line = first;
+    if (!kept) {
+      Real* const mean = lines.coarse.data() + kGridMargin;
+      const auto half = hn::Set(d, Real(0.5));
+      for (std::ptrdiff_t c = 0; c < coarse.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
+        hn::StoreU(
+            hn::Mul(hn::Add(hn::LoadU(d, first + c), hn::LoadU(d, first + coarse.stride + c)),
+                    half),
+            d, mean + c);
+      line = mean;
+    }
+    interpolate(line, fine.columns, coarse.columns, wide);
+    const std::ptrdiff_t row = fine.at(r, 0);
+    for (std::ptrdiff_t c = 0; c < fine.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+      const auto is_free = hn::Gt(hn::LoadU(d, free + row + c), hn::Zero(d));
+      const auto now = hn::LoadU(d, to + row + c);
+      hn::StoreU(hn::Add(now, hn::IfThenElseZero(is_free, hn::LoadU(d, wide + c))), d,
+                 to + row + c);
+    }
+  }
+}
+
+/// to(c) = (line(2c) + line(2c + 1)) / 4; of a last short cell, line(2c) whole.
+template <class Real>
+HWY_INLINE void gather_pairs(const Real* line, int columns, int coarse_columns, Real short_share,
+                             Real share, Real* to) {
+  const hn::ScalableTag<Real> d;
+  const auto part = hn::Set(d, share);
+  for (std::ptrdiff_t c = 0; c < coarse_columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    hn::Vec<decltype(d)> here, behind;
+    hn::LoadInterleaved2(d, line + 2 * c, here, behind);
+    hn::StoreU(hn::Mul(hn::Add(here, behind), part), d, to + c);
+  }
+  if (columns % 2 == 0) to[coarse_columns - 2] = line[columns - 2] * short_share;
+}
+
+template <class Real>
+HWY_INLINE void coarsen_grid(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
+                             TransferLines<Real>& lines) {
+  const GridLayout &f = fine.layout, &g = coarse.layout;
+  constexpr Real kQuarter = Real(0.25);
+  for (std::size_t e = 0; e < 6; ++e) {
+    const auto begin = [&](std::size_t kind) { return fine.springs[kind][e].data() + f.origin; };
+    for (int r = 0; r < g.rows; ++r) {
+      const auto to = [&](std::size_t kind)
+                          HWY_ATTR { return coarse.springs[kind][e].data() + g.at(r, 0); };
+      gather_pairs(add_up_about(begin(kAlong), f.stride, f, r, lines.fine), f.columns, g.columns,
+                   Real(1), kQuarter, to(kAlong));
+      if (r + 1 == g.rows) break;  // no cells below the last row
+      const bool is_short = r * 2 + 2 == f.rows;
+      const std::ptrdiff_t row = 2 * r * f.stride;
+      const auto both = [&](std::size_t kind) HWY_ATTR {
+        const Real* const first = begin(kind) + row;
+        const Share<Real> second{is_short ? first : first + f.stride, is_short ? Real(0) : Real(1)};
+        return add_up_rows<Real>(first, second, {first, 0}, f.columns, lines.fine);
+      };
+      Real* const down = both(kDown);
+      gather_about(down, f.columns, g.columns, to(kDown));
+      if (!is_short) {
+        for (int c = 0; c < g.columns; ++c) to(kDown)[c] *= kQuarter;
+      }
+      for (const std::size_t kind : {kFalling, kRising})
+        gather_pairs(both(kind), f.columns, g.columns, is_short ? Real(1) : kQuarter, kQuarter,
+                     to(kind));
+    }
+  }
+}
+
+HWY_ATTR void restrict_f32(const GridLayout& fine, const GridLayout& coarse, const float* from,
+                           float* to, TransferLines<float>& lines) {
+  restrict_rows(fine, coarse, from, to, lines);
+}
+HWY_ATTR void prolong_f32(const GridLayout& fine, const GridLayout& coarse, const float* free,
+                          const float* from, float* to, TransferLines<float>& lines) {
+  prolong_rows(fine, coarse, free, from, to, lines);
+}
+HWY_ATTR void coarsen_f32(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
+                          TransferLines<float>& lines) {
+  coarsen_grid(fine, coarse, lines);
+}
+HWY_ATTR void restrict_f64(const GridLayout& fine, const GridLayout& coarse, const double* from,
+                           double* to, TransferLines<double>& lines) {
+  restrict_rows(fine, coarse, from, to, lines);
+}
+HWY_ATTR void prolong_f64(const GridLayout& fine, const GridLayout& coarse, const double* free,
+                          const double* from, double* to, TransferLines<double>& lines) {
+  prolong_rows(fine, coarse, free, from, to, lines);
+}
+HWY_ATTR void coarsen_f64(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
+                          TransferLines<double>& lines) {
+  coarsen_grid(fine, coarse, lines);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "core/math/aligned_vector.h"
+#include "core/solver/implicit/spring_grid.h"
+
+namespace weft {
+
+/// From one level of a grid to the next coarser one and back. Of both directions every second line
+/// of particles stays, and the last one: where the number of lines is even, the last coarse cell is
+/// as short as a fine one.
+
+/// How many of `count` lines stay.
+inline int coarse_count(int count) {
+  return count / 2 + 1;
+}
+
+/// Two rows of numbers with a margin before and behind, for the functions below.
+template <class Real>
+struct TransferLines {
+  AlignedVector<Real> fine, coarse;
+
+  /// @param finest  no level is wider
+  void prepare(const GridLayout& finest);
+};
+
+/// `to` = sum over the fine particles about each coarse one of bilinear weight times `from`. One
+/// plane of numbers, zero around the grid.
+void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const float* from, float* to,
+                    TransferLines<float>& lines);
+void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const double* from,
+                    double* to, TransferLines<double>& lines);
+
+/// `to` += bilinear interpolation of `from`, where it is free. One plane of numbers.
+/// @param free  of the fine level
+void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const float* free,
+                   const float* from, float* to, TransferLines<float>& lines);
+void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const double* free,
+                   const double* from, double* to, TransferLines<double>& lines);
+
+/// Each coarse spring is the sum of the parallel fine ones about it, by their bilinear weight
+/// across it and by the squared part of its length that they cover: what is compressed in wrinkles
+/// does not make the coarse cloth soft (NUMERICS.md b).
+void coarsen_springs(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
+                     TransferLines<float>& lines);
+void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
+                     TransferLines<double>& lines);
+
+}  // namespace weft

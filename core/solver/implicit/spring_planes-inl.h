@@ -1,0 +1,135 @@
+// Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
+#if defined(WEFT_SPRING_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef WEFT_SPRING_PLANES_INL_H
+#undef WEFT_SPRING_PLANES_INL_H
+#else
+#define WEFT_SPRING_PLANES_INL_H
+#endif
+
+#include "core/forces/spring.h"
+#include "core/solver/implicit/grid_planes-inl.h"
+#include "core/solver/implicit/spring_planes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Where the forces of a row of springs stand: by kind and component a line, with a margin before.
+template <class Real>
+class ForceRow {
+ public:
+  ForceRow(SpringPlanes<Real>& springs, const GridLayout& layout, int row)
+      : line_(layout.stride),
+        at_(springs.forces.data() + (row % 2 == 0 ? 0 : 12 * line_) + kGridMargin) {}
+  Real* of(std::size_t kind) const { return at_ + static_cast<std::ptrdiff_t>(3 * kind) * line_; }
+  template <class D>
+  HWY_INLINE Triple<hn::Vec<D>> load(D d, std::size_t kind, std::ptrdiff_t c) const {
+    const Real* const at = of(kind) + c;
+    return {hn::LoadU(d, at), hn::LoadU(d, at + line_), hn::LoadU(d, at + 2 * line_)};
+  }
+  template <class D>
+  HWY_INLINE void store(D d, std::size_t kind, std::ptrdiff_t c,
+                        const Triple<hn::Vec<D>>& force) const {
+    store_planes(d, force, line_, of(kind) + c);
+  }
+
+ private:
+  std::ptrdiff_t line_;
+  Real* at_;
+};
+
+/// One vector of SpringTerm: force on the first ends, and the blocks.
+template <class D, class Real, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> spring_term(D d, const SpringPlanes<Real>& springs, std::size_t kind,
+                                 std::ptrdiff_t at, Real rate, const Triple<V>& way,
+                                 const Triple<V>& dv, SpringGrid<Real>& grid) {
+  const V k = hn::LoadU(d, springs.stiffness[kind].data() + at);
+  const V c = hn::LoadU(d, springs.damping[kind].data() + at);
+  const V length = hn::LoadU(d, springs.rest_length[kind].data() + at);
+  const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
+  const V inverse = inverse_root(
+      d, hn::Add(fused_dot(d, way, way), hn::Set(d, static_cast<Real>(kSmallestSquaredLength))));
+  const V elastic = hn::Mul(k, fused_minus(d, length, inverse, one));
+  const V closing = hn::Mul(hn::Mul(fused_dot(d, way, dv), inverse), inverse);
+  const V across = hn::Max(zero, elastic);
+  const V along = hn::Sub(fused(d, c, hn::Set(d, rate), k), across);
+  const Triple<V> u = way * inverse, s = u * along;
+  const auto keep = [&](std::size_t e, V number)
+                        HWY_ATTR { hn::StoreU(number, d, grid.springs[kind][e].data() + at); };
+  keep(0, fused(d, s.x, u.x, across));
+  keep(1, hn::Mul(s.x, u.y));
+  keep(2, hn::Mul(s.x, u.z));
+  keep(3, fused(d, s.y, u.y, across));
+  keep(4, hn::Mul(s.y, u.z));
+  keep(5, fused(d, s.z, u.z, across));
+  return way * fused(d, c, closing, elastic);
+}
+
+/// Springs that begin in a row of cells: their blocks, and their forces for `add_up_row`.
+template <class Real>
+HWY_INLINE void linearise_row(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
+                              int r, SpringGrid<Real>& grid) {
+  const hn::ScalableTag<Real> d;
+  const GridLayout& layout = grid.layout;
+  const PlaneVector<Real> place(layout, x), speed(layout, v);
+  const ForceRow<Real> forces(springs, layout, r);
+  const std::ptrdiff_t s = layout.stride;
+  const std::ptrdiff_t ends[4][2] = {{0, 1}, {0, s}, {0, s + 1}, {1, s}};  // by GridSpring
+  for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    const std::ptrdiff_t k = layout.at(r, 0) + c;
+    for (std::size_t kind = 0; kind < 4; ++kind) {
+      const std::ptrdiff_t i = k + ends[kind][0], j = k + ends[kind][1];
+      forces.store(d, kind, c,
+                   spring_term(d, springs, kind, k, rate, place(d, j) - place(d, i),
+                               speed(d, j) - speed(d, i), grid));
+    }
+  }
+}
+
+/// What the springs of this row of cells and of the one before, and bending, do to a row of
+/// particles: summed in one order, however wide the vectors are.
+template <class Real>
+HWY_INLINE void add_up_row(SpringPlanes<Real>& springs, const SpringGrid<Real>& grid, const Real* x,
+                           int r, Real* force) {
+  const hn::ScalableTag<Real> d;
+  using V = hn::Vec<decltype(d)>;
+  const GridLayout& layout = grid.layout;
+  const PlaneVector<Real> place(layout, x);
+  const ForceRow<Real> here(springs, layout, r), above(springs, layout, r + 1);
+  const bool bends = grid.bends();
+  const V zero = hn::Zero(d);
+  for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
+    Triple<V> sum = here.load(d, kAlong, c) - here.load(d, kAlong, c - 1);
+    sum = sum + here.load(d, kDown, c) - above.load(d, kDown, c);
+    sum = sum + here.load(d, kFalling, c) - above.load(d, kFalling, c - 1);
+    sum = sum + here.load(d, kRising, c - 1) - above.load(d, kRising, c);
+    if (bends) sum = sum - add_bending(d, grid, place, r, c, Triple<V>{zero, zero, zero});
+    store_planes(d, sum, layout.plane, force + layout.at(r, 0) + c);
+  }
+}
+
+template <class Real>
+HWY_INLINE void linearise_grid(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
+                               SpringGrid<Real>& grid, Real* force) {
+  for (Real& number : springs.forces) number = 0;
+  for (int r = 0; r < grid.layout.rows; ++r) {
+    linearise_row(springs, rate, x, v, r, grid);
+    add_up_row(springs, grid, x, r, force);
+  }
+}
+
+HWY_ATTR void linearise_f32(SpringPlanes<float>& springs, float rate, const float* x,
+                            const float* v, SpringGrid<float>& grid, float* force) {
+  linearise_grid(springs, rate, x, v, grid, force);
+}
+HWY_ATTR void linearise_f64(SpringPlanes<double>& springs, double rate, const double* x,
+                            const double* v, SpringGrid<double>& grid, double* force) {
+  linearise_grid(springs, rate, x, v, grid, force);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#endif

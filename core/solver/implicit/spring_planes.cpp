@@ -1,0 +1,61 @@
+#include "core/solver/implicit/spring_planes.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/solver/implicit/spring_planes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/solver/implicit/spring_planes-inl.h"
+
+#if HWY_ONCE
+namespace weft {
+
+HWY_EXPORT(linearise_f32);
+HWY_EXPORT(linearise_f64);
+
+void linearise(SpringPlanes<float>& springs, float rate, const float* x, const float* v,
+               SpringGrid<float>& grid, float* force) {
+  HWY_DYNAMIC_DISPATCH(linearise_f32)(springs, rate, x, v, grid, force);
+}
+void linearise(SpringPlanes<double>& springs, double rate, const double* x, const double* v,
+               SpringGrid<double>& grid, double* force) {
+  HWY_DYNAMIC_DISPATCH(linearise_f64)(springs, rate, x, v, grid, force);
+}
+
+template <class Real>
+SpringPlanes<Real>::SpringPlanes(const GridLayout& layout, const ClothModel<Real>& model,
+                                 const ClothPart<Real>& part) {
+  for (auto* planes : {&stiffness, &damping, &rest_length}) {
+    for (AlignedVector<Real>& plane : *planes)
+      plane.assign(static_cast<std::size_t>(layout.plane), Real(0));
+  }
+  // Rows of vectors end up to a vector behind the last column.
+  forces.assign(static_cast<std::size_t>(24 * layout.stride + kGridMargin), Real(0));
+  for (Index n = part.springs.first; n < part.springs.end(); ++n) {
+    const Spring<Real>& spring = model.springs[static_cast<std::size_t>(n)];
+    const Index i = spring.i - part.particles.first, j = spring.j - part.particles.first;
+    const Index first = i < j ? i : j, second = i < j ? j : i;
+    const Index r = first / part.columns, step = second - first;
+    Index c = first % part.columns;
+    GridSpring kind = kFalling;
+    if (second / part.columns == r) {
+      kind = kAlong;
+    } else if (step == part.columns) {
+      kind = kDown;
+    } else if (step < part.columns) {
+      kind = kRising;
+      --c;
+    }
+    const auto cell = static_cast<std::size_t>(layout.at(r, c));
+    stiffness[kind][cell] = spring.stiffness;
+    damping[kind][cell] = spring.damping;
+    rest_length[kind][cell] = spring.rest_length;
+  }
+}
+
+template struct SpringPlanes<float>;
+template struct SpringPlanes<double>;
+
+}  // namespace weft
+#endif
