@@ -147,8 +147,13 @@ void GridPass<Real>::load_velocities(const Vec3Array<Real>& v) {
 }
 
 template <class Real>
-void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
+void GridPass<Real>::load_positions(const Vec3Array<Real>& x) {
   grid_take_apart(view_, x.data()->data(), view_.motion, view_.pitch());
+}
+
+template <class Real>
+void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
+  load_positions(x);
   load_velocities(v);
 }
 

@@ -40,6 +40,7 @@ class GridPass {
 
   /// Takes positions and velocities of the whole model for the calls below.
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v);
+  void load_positions(const Vec3Array<Real>& x);
   void load_inverse_mass(const std::vector<Real>& inverse_mass);
   void load_wind(const Vec3Array<Real>& wind);
   void load_external(const Vec3Array<Real>& force);

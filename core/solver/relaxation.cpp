@@ -265,7 +265,8 @@ double external_work(const Tick<Real>& tick) {
 template <class Real>
 EnergyReading timed_energies(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
-  return read_energies(tick.model, tick.state, tick.surroundings.gravity);
+  return read_energies(tick.model, tick.state, tick.surroundings.gravity,
+                       tick.work.energy.elastic_energy(tick.model, tick.state.x));
 }
 
 }  // namespace
@@ -275,6 +276,7 @@ void RelaxationWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   for (Vec3Array<Real>* array : {&force, &external, &wanted})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   multiplier.assign(model.springs.size(), Real(0));
+  energy.prepare(model);
   grids.assign(model.parts.size(), {});
   for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
 }

@@ -5,6 +5,7 @@
 #include "core/cloth/cloth_state.h"
 #include "core/contact/collision.h"
 #include "core/definition.h"
+#include "core/forces/energy_pass.h"
 #include "core/solver/grid_relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
@@ -39,6 +40,7 @@ struct RelaxationWorkspace {
   Vec3Array<Real> wanted;                   ///< positions before contact, or the way there [m]
   std::vector<Real> multiplier;             ///< of each spring, over the substep [N s^2]
   std::vector<GridRelaxation<Real>> grids;  ///< for each part the row-wise form of XPBD
+  EnergyPass<Real> energy;
 
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);

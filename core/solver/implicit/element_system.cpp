@@ -66,7 +66,13 @@ template <class Real>
 void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& point,
                                     Vec3Array<Real>& force) {
   const auto first = static_cast<std::size_t>(particles_.first);
-  for (std::size_t i = 0; i < own_.size(); ++i) diagonal_[i] = own_[i] = point.own[first + i];
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    const Real inertia = point.inertia[first + i];
+    own_[i] = point.air ? (*point.air)[first + i] : SymmetricBlock<Real>{};
+    for (const std::size_t e : {std::size_t{0}, std::size_t{3}, std::size_t{5}})
+      own_[i][e] += inertia;
+    diagonal_[i] = own_[i];
+  }
   for (std::size_t n = 0; n < ends_.size(); ++n) {
     const Spring<Real>& spring = model.springs[static_cast<std::size_t>(springs_.first) + n];
     const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);

@@ -45,6 +45,34 @@ struct PlaneBlocks {
             fused_dot(d, {b, hn::LoadU(d, yy + k), e}, u, sum.y),
             fused_dot(d, {c, e, hn::LoadU(d, zz + k)}, u, sum.z)};
   }
+  /// Number e of the blocks from k on.
+  template <class D>
+  HWY_INLINE hn::Vec<D> number(D d, std::size_t e, std::ptrdiff_t k) const {
+    const Real* const numbers[6] = {xx, xy, xz, yy, yz, zz};
+    return hn::LoadU(d, numbers[e] + k);
+  }
+};
+
+/// The same of blocks a I + s s^T.
+template <class Real>
+struct FactoredBlocks {
+  const Real *x, *y, *z, *a;
+  explicit FactoredBlocks(const std::array<AlignedVector<Real>, 6>& b)
+      : x(b[0].data()), y(b[1].data()), z(b[2].data()), a(b[3].data()) {}
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE Triple<V> times(D d, std::ptrdiff_t k, const Triple<V>& u,
+                             const Triple<V>& sum) const {
+    const Triple<V> s{hn::LoadU(d, x + k), hn::LoadU(d, y + k), hn::LoadU(d, z + k)};
+    return fused(d, s, fused_dot(d, s, u), fused(d, u, hn::LoadU(d, a + k), sum));
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<D> number(D d, std::size_t e, std::ptrdiff_t k) const {
+    const Real* const first[6] = {x, x, x, y, y, z};
+    const Real* const second[6] = {x, y, z, y, z, z};
+    const auto i = hn::LoadU(d, first[e] + k), j = hn::LoadU(d, second[e] + k);
+    if (e == 0 || e == 3 || e == 5) return fused(d, i, j, hn::LoadU(d, a + k));
+    return hn::Mul(i, j);
+  }
 };
 
 template <class D, class Real, class V>

@@ -43,12 +43,13 @@ void GridSystem<Real>::linearise(const ClothModel<Real>&, const NewtonPoint<Real
   load(at.v, v_.data());
   weft::linearise(springs_, at.rate, x_.data(), v_.data(), grid, force_.data());
   add(force_.data(), force);
+  grid.has_air = at.air != nullptr;
   auto i = static_cast<std::size_t>(particles_.first);
   for (int r = 0; r < grid.layout.rows; ++r) {
-    const std::ptrdiff_t row = grid.layout.at(r, 0);
-    for (int c = 0; c < grid.layout.columns; ++c, ++i) {
-      for (std::size_t e = 0; e < 6; ++e)
-        grid.own[e][static_cast<std::size_t>(row + c)] = at.own[i][e];
+    auto k = static_cast<std::size_t>(grid.layout.at(r, 0));
+    for (int c = 0; c < grid.layout.columns; ++c, ++i, ++k) {
+      grid.inertia[k] = at.inertia[i];
+      for (std::size_t e = 0; grid.has_air && e < 6; ++e) grid.air[e][k] = (*at.air)[i][e];
     }
   }
   multigrid_.coarsen();

@@ -16,8 +16,10 @@ struct NewtonPoint {
   const Vec3Array<Real>& x;  ///< [m]
   const Vec3Array<Real>& v;  ///< [m/s]
   Real rate;                 ///< by which velocities change with positions [1/s]
-  /// Of each particle what of the matrix is its own: inertia, drag and air [N/m].
-  const std::vector<SymmetricBlock<Real>>& own;
+  /// Of each particle what inertia and drag add to the matrix, times the unit matrix [N/m].
+  const std::vector<Real>& inertia;
+  /// And what the air adds; null where there is none [N/m].
+  const std::vector<SymmetricBlock<Real>>* air;
 };
 
 /// The linear systems of a cloth that is a whole grid with regular springs and bends by the

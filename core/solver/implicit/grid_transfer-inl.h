@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/math/lanes-inl.h"
+#include "core/solver/implicit/grid_planes-inl.h"
 #include "core/solver/implicit/grid_transfer.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,44 +19,46 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A fine row and its share.
+/// A fine row, and its share.
 template <class Real>
 struct Share {
-  const Real* row;
+  std::ptrdiff_t row;
   Real weight;
 };
 
-/// line = a + weighted b + weighted c, and zeros behind it. @returns where it begins
-template <class Real>
-HWY_INLINE Real* add_up_rows(const Real* a, Share<Real> b, Share<Real> c, int columns,
-                             AlignedVector<Real>& line) {
+/// line = row a + weighted b + weighted c, and zeros behind it.
+/// @param at  vector of numbers at a place of the fine level
+/// @returns   where the line begins
+template <class Real, class Numbers>
+HWY_INLINE Real* add_up_rows(const Numbers& at, std::ptrdiff_t a, Share<Real> b, Share<Real> c,
+                             int columns, AlignedVector<Real>& line) {
   const hn::ScalableTag<Real> d;
   Real* const to = line.data() + kGridMargin;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const auto wb = hn::Set(d, b.weight), wc = hn::Set(d, c.weight);
   std::ptrdiff_t k = 0;
-  for (; k < columns; k += lanes)
-    hn::StoreU(fused(d, hn::LoadU(d, c.row + k), wc,
-                     fused(d, hn::LoadU(d, b.row + k), wb, hn::LoadU(d, a + k))),
-               d, to + k);
+  for (; k < columns; k += lanes) {
+    auto sum = at(d, a + k);
+    if (b.weight > 0) sum = fused(d, at(d, b.row + k), wb, sum);
+    if (c.weight > 0) sum = fused(d, at(d, c.row + k), wc, sum);
+    hn::StoreU(sum, d, to + k);
+  }
   // Coarse vectors end up to two fine ones behind the last column.
   for (const std::ptrdiff_t end = columns + 2 * lanes; k < end; k += lanes)
     hn::StoreU(hn::Zero(d), d, to + k);
   return to;
 }
 
-/// Coarse row `r` of a level whose fine rows begin at `rows`, `stride` apart: what is on its line
-/// with half of what is on the fine lines beside it.
-template <class Real>
-HWY_INLINE Real* add_up_about(const Real* rows, std::ptrdiff_t stride, const GridLayout& fine,
-                              int r, AlignedVector<Real>& line) {
-  const int at = r * 2 < fine.rows ? r * 2 : fine.rows - 1;
+/// Coarse row `r`: what is on its line with half of what is on the fine lines beside it.
+template <class Real, class Numbers>
+HWY_INLINE Real* add_up_about(const Numbers& at, const GridLayout& fine, int r,
+                              AlignedVector<Real>& line) {
+  const int here = r * 2 < fine.rows ? r * 2 : fine.rows - 1;
   // The fine row before is one that goes, and so is the one behind.
-  const bool before = r > 0 && at == r * 2, behind = at + 2 < fine.rows;
-  const Real* const here = rows + at * stride;
-  return add_up_rows<Real>(here, {before ? here - stride : here, before ? Real(0.5) : Real(0)},
-                           {behind ? here + stride : here, behind ? Real(0.5) : Real(0)},
-                           fine.columns, line);
+  const bool before = r > 0 && here == r * 2, behind = here + 2 < fine.rows;
+  const std::ptrdiff_t row = fine.at(here, 0);
+  return add_up_rows<Real>(at, row, {row - fine.stride, before ? Real(0.5) : Real(0)},
+                           {row + fine.stride, behind ? Real(0.5) : Real(0)}, fine.columns, line);
 }
 
 /// to(c) = line(2c) + half of line(2c - 1) and of line(2c + 1); the last of an even number of
@@ -79,9 +82,10 @@ HWY_INLINE void gather_about(Real* line, int columns, int coarse_columns, Real* 
 template <class Real>
 HWY_INLINE void restrict_rows(const GridLayout& fine, const GridLayout& coarse, const Real* from,
                               Real* to, TransferLines<Real>& lines) {
+  const auto at = [from](auto d, std::ptrdiff_t k) HWY_ATTR { return hn::LoadU(d, from + k); };
   for (int r = 0; r < coarse.rows; ++r)
-    gather_about(add_up_about(from + fine.origin, fine.stride, fine, r, lines.fine), fine.columns,
-                 coarse.columns, to + coarse.at(r, 0));
+    gather_about(add_up_about(at, fine, r, lines.fine), fine.columns, coarse.columns,
+                 to + coarse.at(r, 0));
 }
 
 /// wide(2c) = line(c), wide(2c + 1) = their mean; the last of an even number of columns stands for
@@ -140,34 +144,44 @@ HWY_INLINE void gather_pairs(const Real* line, int columns, int coarse_columns, 
   if (columns % 2 == 0) to[coarse_columns - 2] = line[columns - 2] * short_share;
 }
 
+/// Coarse row `r` of number `e` of all blocks.
+template <template <class> class Blocks, class Real>
+HWY_INLINE void coarsen_row(const SpringGrid<Real>& fine, int r, std::size_t e,
+                            SpringGrid<Real>& coarse, AlignedVector<Real>& line) {
+  const GridLayout &f = fine.layout, &g = coarse.layout;
+  constexpr Real kQuarter = Real(0.25);
+  const auto numbers = [&](std::size_t kind) HWY_ATTR {
+    return [blocks = Blocks<Real>(fine.springs[kind]), e](auto d, std::ptrdiff_t k)
+               HWY_ATTR { return blocks.number(d, e, k); };
+  };
+  const auto to = [&](std::size_t kind)
+                      HWY_ATTR { return coarse.springs[kind][e].data() + g.at(r, 0); };
+  gather_pairs(add_up_about(numbers(kAlong), f, r, line), f.columns, g.columns, Real(1), kQuarter,
+               to(kAlong));
+  if (r + 1 == g.rows) return;  // no cells below the last row
+  const bool is_short = r * 2 + 2 == f.rows;
+  const std::ptrdiff_t row = f.at(2 * r, 0);
+  const auto both = [&](std::size_t kind) HWY_ATTR {
+    return add_up_rows<Real>(numbers(kind), row, {row + f.stride, is_short ? Real(0) : Real(1)},
+                             {row, 0}, f.columns, line);
+  };
+  Real* const down = to(kDown);
+  gather_about(both(kDown), f.columns, g.columns, down);
+  if (!is_short) {
+    for (int c = 0; c < g.columns; ++c) down[c] *= kQuarter;
+  }
+  for (const GridSpring kind : {kFalling, kRising})
+    gather_pairs(both(kind), f.columns, g.columns, is_short ? Real(1) : kQuarter, kQuarter,
+                 to(kind));
+}
+
 template <class Real>
 HWY_INLINE void coarsen_grid(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
                              TransferLines<Real>& lines) {
-  const GridLayout &f = fine.layout, &g = coarse.layout;
-  constexpr Real kQuarter = Real(0.25);
-  for (std::size_t e = 0; e < 6; ++e) {
-    const auto begin = [&](std::size_t kind) { return fine.springs[kind][e].data() + f.origin; };
-    for (int r = 0; r < g.rows; ++r) {
-      const auto to = [&](std::size_t kind)
-                          HWY_ATTR { return coarse.springs[kind][e].data() + g.at(r, 0); };
-      gather_pairs(add_up_about(begin(kAlong), f.stride, f, r, lines.fine), f.columns, g.columns,
-                   Real(1), kQuarter, to(kAlong));
-      if (r + 1 == g.rows) break;  // no cells below the last row
-      const bool is_short = r * 2 + 2 == f.rows;
-      const std::ptrdiff_t row = 2 * r * f.stride;
-      const auto both = [&](std::size_t kind) HWY_ATTR {
-        const Real* const first = begin(kind) + row;
-        const Share<Real> second{is_short ? first : first + f.stride, is_short ? Real(0) : Real(1)};
-        return add_up_rows<Real>(first, second, {first, 0}, f.columns, lines.fine);
-      };
-      Real* const down = both(kDown);
-      gather_about(down, f.columns, g.columns, to(kDown));
-      if (!is_short) {
-        for (int c = 0; c < g.columns; ++c) to(kDown)[c] *= kQuarter;
-      }
-      for (const std::size_t kind : {kFalling, kRising})
-        gather_pairs(both(kind), f.columns, g.columns, is_short ? Real(1) : kQuarter, kQuarter,
-                     to(kind));
+  for (int r = 0; r < coarse.layout.rows; ++r) {
+    for (std::size_t e = 0; e < 6; ++e) {
+      fine.factored ? coarsen_row<FactoredBlocks>(fine, r, e, coarse, lines.fine)
+                    : coarsen_row<PlaneBlocks>(fine, r, e, coarse, lines.fine);
     }
   }
 }

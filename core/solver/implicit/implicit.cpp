@@ -46,7 +46,7 @@ template <class Real>
 EnergyReading energies_at(const Step<Real>& step, const Vec3Array<Real>& x,
                           const Vec3Array<Real>& v) {
   const StageTimer timer(step.profile, Stage::diagnostics, 1);
-  const ElasticEnergy elastic = elastic_energy(step.model, x);
+  const ElasticEnergy elastic = step.work.energy.elastic_energy(step.model, x);
   EnergyReading reading;
   reading.largest_strain = elastic.largest_strain;
   Energies& e = reading.energies;
@@ -184,6 +184,7 @@ void move(Step<Real>& step, const Collision<Real>& collision) {
 template <class Real>
 void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   systems.clear();
+  energy.prepare(model);
   std::size_t longest = 0;
   for (const ClothPart<Real>& part : model.parts) {
     if (GridSystem<Real>::fits(model, part))
@@ -196,7 +197,8 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
        {&way, &x, &v, &force, &air, &last_way, &last_v, &end_x, &end_v, &start_x, &start_v})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   history.assign(model.mass.size(), 0);
-  own.assign(model.mass.size(), {});
+  inertia.assign(model.mass.size(), Real(0));
+  air_blocks.assign(model.mass.size(), {});
   starts.assign(model.parts.size(), 0);
   for (GridVector<Real>* vector : {&residual, &step, &direction, &product, &preconditioned})
     vector->assign(longest, Real(0));

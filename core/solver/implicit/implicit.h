@@ -8,6 +8,7 @@
 #include "core/cloth/cloth_state.h"
 #include "core/contact/collision.h"
 #include "core/definition.h"
+#include "core/forces/energy_pass.h"
 #include "core/solver/implicit/element_system.h"
 #include "core/solver/implicit/grid_system.h"
 #include "core/solver/substep_rule.h"
@@ -51,15 +52,17 @@ template <class Real>
 struct ImplicitWorkspace {
   using System = std::variant<GridSystem<Real>, ElementSystem<Real>>;
 
-  std::vector<System> systems;            ///< of each part
-  Vec3Array<Real> way, x, v;              ///< of the substep, and where and how fast it ends
-  Vec3Array<Real> force, air;             ///< [N]
-  Vec3Array<Real> last_way, last_v;       ///< of the substep before
-  Vec3Array<Real> end_x, end_v;           ///< at the end of the tick before
-  Vec3Array<Real> start_x, start_v;       ///< of a substep that is gone in pieces
-  std::vector<char> history;              ///< of each particle: whether that substep counts
-  std::vector<SymmetricBlock<Real>> own;  ///< see NewtonPoint
-  std::vector<HandTerm<Real>> hands;      ///< the first hand_count of them
+  std::vector<System> systems;  ///< of each part
+  EnergyPass<Real> energy;
+  Vec3Array<Real> way, x, v;                     ///< of the substep, and where and how fast it ends
+  Vec3Array<Real> force, air;                    ///< [N]
+  Vec3Array<Real> last_way, last_v;              ///< of the substep before
+  Vec3Array<Real> end_x, end_v;                  ///< at the end of the tick before
+  Vec3Array<Real> start_x, start_v;              ///< of a substep that is gone in pieces
+  std::vector<char> history;                     ///< of each particle: whether that substep counts
+  std::vector<Real> inertia;                     ///< see NewtonPoint
+  std::vector<SymmetricBlock<Real>> air_blocks;  ///< see NewtonPoint
+  std::vector<HandTerm<Real>> hands;             ///< the first hand_count of them
   std::size_t hand_count = 0;
   std::vector<double> starts;  ///< of each part's first linear system of a substep
   GridVector<Real> residual, step, direction, product, preconditioned;

@@ -37,8 +37,7 @@ void add_own(Step<Real>& step) {
     const Scheme<Real> scheme(step, i);
     work.force[i] =
         (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) + scheme.before) * mass;
-    const Real own = mass * scheme.rate * (scheme.rate + drag);
-    work.own[i] = {own, 0, 0, own, 0, own};
+    work.inertia[i] = mass * scheme.rate * (scheme.rate + drag);
   }
 }
 
@@ -49,6 +48,7 @@ void add_air(Step<Real>& step) {
   if (!around.air) return;
   ImplicitWorkspace<Real>& work = step.work;
   std::fill(work.air.begin(), work.air.end(), Vec3<Real>::Zero());
+  std::fill(work.air_blocks.begin(), work.air_blocks.end(), SymmetricBlock<Real>{});
   constexpr Real kThird = Real(1) / 3;
   const Real rate = Real(1.5) / step.dt;
   for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
@@ -77,7 +77,7 @@ void add_air(Step<Real>& step) {
           along_and_across<Real>(skin * share, (across - skin) * share, unit);
       for (const std::size_t i : {a, b, c}) {
         work.air[i] += third;
-        for (std::size_t e = 0; e < 6; ++e) work.own[i][e] += block[e];
+        for (std::size_t e = 0; e < 6; ++e) work.air_blocks[i][e] += block[e];
       }
     }
   }
@@ -143,7 +143,8 @@ void linearise(Step<Real>& step, Real progress) {
     for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.air[i];
   add_shot_forces(step.grabs, work.force);
   add_hands(step, progress);
-  const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.own};
+  const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.inertia,
+                                step.surroundings.air ? &work.air_blocks : nullptr};
   for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
     if (step.state.is_asleep(p)) continue;
     const ClothPart<Real>& part = step.model.parts[p];

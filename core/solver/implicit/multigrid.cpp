@@ -22,7 +22,7 @@ void Multigrid<Real>::prepare(const GridLayout& finest) {
   GridLayout layout = finest;
   while (true) {
     Level& level = levels_.emplace_back();
-    level.grid.prepare(layout);
+    level.grid.prepare(layout, levels_.size() == 1);
     for (GridVector<Real>* vector : {&level.residual, &level.sum, &level.product})
       vector->assign(layout.size(), Real(0));
     if (layout.rows <= kCoarsest && layout.columns <= kCoarsest) break;
@@ -35,18 +35,21 @@ void Multigrid<Real>::prepare(const GridLayout& finest) {
 template <class Real>
 void Multigrid<Real>::coarsen() {
   for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
-    const Level& fine = levels_[k];
+    const SpringGrid<Real>& fine = levels_[k].grid;
     SpringGrid<Real>& coarse = levels_[k + 1].grid;
-    coarsen_springs(fine.grid, coarse, lines_);
-    for (std::size_t e = 0; e < 6; ++e) {
-      const Real* own = fine.grid.own[e].data();
+    coarsen_springs(fine, coarse, lines_);
+    const auto restrict = [&](const AlignedVector<Real>& from, AlignedVector<Real>& to) {
+      const Real* numbers = from.data();
       if (k == 0) {
         for (std::size_t n = 0; n < weighted_.size(); ++n)
-          weighted_[n] = own[n] * (fine.grid.free[n] > 0 ? Real(1) : Real(kPinnedWeight));
-        own = weighted_.data();
+          weighted_[n] = from[n] * (fine.free[n] > 0 ? Real(1) : Real(kPinnedWeight));
+        numbers = weighted_.data();
       }
-      restrict_plane(fine.grid.layout, coarse.layout, own, coarse.own[e].data(), lines_);
-    }
+      restrict_plane(fine.layout, coarse.layout, numbers, to.data(), lines_);
+    };
+    restrict(fine.inertia, coarse.inertia);
+    coarse.has_air = fine.has_air;
+    for (std::size_t e = 0; fine.has_air && e < 6; ++e) restrict(fine.air[e], coarse.air[e]);
   }
   for (Level& level : levels_) invert_diagonal(level.grid);
 }

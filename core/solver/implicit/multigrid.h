@@ -39,7 +39,7 @@ class Multigrid {
 
   std::vector<Level> levels_;
   TransferLines<Real> lines_;
-  AlignedVector<Real> weighted_;  ///< own blocks, with pinned particles heavy
+  AlignedVector<Real> weighted_;  ///< a plane, with pinned particles heavy
 };
 
 }  // namespace weft

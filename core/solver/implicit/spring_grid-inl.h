@@ -17,22 +17,24 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class Real>
+/// @tparam Blocks  of the springs, by how they are kept
+template <template <class> class Blocks, class Real>
 HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Real* product) {
   const hn::ScalableTag<Real> d;
   using V = hn::Vec<decltype(d)>;
   const GridLayout& layout = g.layout;
   const std::ptrdiff_t s = layout.stride;
   const PlaneVector<Real> p(layout, vector);
-  const PlaneBlocks<Real> own(g.own), along(g.springs[kAlong]), down(g.springs[kDown]),
-      falling(g.springs[kFalling]), rising(g.springs[kRising]);
+  const Blocks<Real> along(g.springs[kAlong]), down(g.springs[kDown]), falling(g.springs[kFalling]),
+      rising(g.springs[kRising]);
+  const PlaneBlocks<Real> air(g.air);
   const bool bends = g.bends();
   for (int r = 0; r < layout.rows; ++r) {
     for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
       const std::ptrdiff_t k = layout.at(r, 0) + c;
       const Triple<V> here = p(d, k);
-      const V zero = hn::Zero(d);
-      Triple<V> sum = own.times(d, k, here, {zero, zero, zero});
+      Triple<V> sum = here * hn::LoadU(d, g.inertia.data() + k);
+      if (g.has_air) sum = air.times(d, k, here, sum);
       sum = along.times(d, k, here - p(d, k + 1), sum);
       sum = along.times(d, k - 1, here - p(d, k - 1), sum);
       sum = down.times(d, k, here - p(d, k + s), sum);
@@ -99,26 +101,28 @@ HWY_INLINE void combine(bool scale_y, Real s, const Real* a, Real* y, std::size_
 }
 
 /// Inverses of diagonal blocks, see `invert_diagonal`.
-template <class Real>
+template <template <class> class Blocks, class Real>
 HWY_INLINE void invert_grid(SpringGrid<Real>& g) {
   const hn::ScalableTag<Real> d;
   using V = hn::Vec<decltype(d)>;
   const GridLayout& layout = g.layout;
   const std::ptrdiff_t s = layout.stride;
   constexpr std::size_t kDiagonal[] = {0, 3, 5};
+  const Blocks<Real> springs[4] = {Blocks<Real>(g.springs[0]), Blocks<Real>(g.springs[1]),
+                                   Blocks<Real>(g.springs[2]), Blocks<Real>(g.springs[3])};
   const std::ptrdiff_t first[4] = {0, 0, 0, -1}, second[4] = {-1, -s, -s - 1, -s};
   for (int r = 0; r < layout.rows; ++r) {
     for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
       const std::ptrdiff_t k = layout.at(r, 0) + c;
       V a[6];
       for (std::size_t e = 0; e < 6; ++e) {
-        a[e] = hn::LoadU(d, g.own[e].data() + k);
-        for (std::size_t kind = 0; kind < 4; ++kind) {
-          const Real* const block = g.springs[kind][e].data() + k;
-          a[e] = hn::Add(
-              a[e], hn::Add(hn::LoadU(d, block + first[kind]), hn::LoadU(d, block + second[kind])));
-        }
+        a[e] = g.has_air ? hn::LoadU(d, g.air[e].data() + k) : hn::Zero(d);
+        for (std::size_t kind = 0; kind < 4; ++kind)
+          a[e] = hn::Add(a[e], hn::Add(springs[kind].number(d, e, k + first[kind]),
+                                       springs[kind].number(d, e, k + second[kind])));
       }
+      const V inertia = hn::LoadU(d, g.inertia.data() + k);
+      for (const std::size_t e : kDiagonal) a[e] = hn::Add(a[e], inertia);
       if (g.bends()) {
         const V bound = hn::LoadU(d, g.bending_bound.data() + k);
         for (const std::size_t e : kDiagonal) a[e] = hn::Add(a[e], bound);
@@ -143,10 +147,10 @@ HWY_INLINE void invert_grid(SpringGrid<Real>& g) {
 }
 
 HWY_ATTR void multiply_f32(const SpringGrid<float>& g, const float* p, float* y) {
-  multiply_grid(g, p, y);
+  g.factored ? multiply_grid<FactoredBlocks>(g, p, y) : multiply_grid<PlaneBlocks>(g, p, y);
 }
 HWY_ATTR void multiply_f64(const SpringGrid<double>& g, const double* p, double* y) {
-  multiply_grid(g, p, y);
+  g.factored ? multiply_grid<FactoredBlocks>(g, p, y) : multiply_grid<PlaneBlocks>(g, p, y);
 }
 HWY_ATTR void smooth_f32(const SpringGrid<float>& g, float w, const float* r, const float* y,
                          float* z) {
@@ -169,10 +173,10 @@ HWY_ATTR void combine_f64(bool scale_y, double s, const double* a, double* y, st
   combine(scale_y, s, a, y, count);
 }
 HWY_ATTR void invert_f32(SpringGrid<float>& g) {
-  invert_grid(g);
+  g.factored ? invert_grid<FactoredBlocks>(g) : invert_grid<PlaneBlocks>(g);
 }
 HWY_ATTR void invert_f64(SpringGrid<double>& g) {
-  invert_grid(g);
+  g.factored ? invert_grid<FactoredBlocks>(g) : invert_grid<PlaneBlocks>(g);
 }
 
 }  // namespace HWY_NAMESPACE

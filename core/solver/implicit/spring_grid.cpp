@@ -79,14 +79,17 @@ GridLayout::GridLayout(int row_count, int column_count) : rows(row_count), colum
 }
 
 template <class Real>
-void SpringGrid<Real>::prepare(const GridLayout& shape) {
+void SpringGrid<Real>::prepare(const GridLayout& shape, bool is_factored) {
   layout = shape;
+  factored = is_factored;
   const auto size = static_cast<std::size_t>(layout.plane);
   for (auto& blocks : springs) {
-    for (AlignedVector<Real>& numbers : blocks) numbers.assign(size, Real(0));
+    for (std::size_t e = 0; e < (factored ? 4 : 6); ++e) blocks[e].assign(size, Real(0));
   }
-  for (AlignedVector<Real>& numbers : own) numbers.assign(size, Real(0));
-  for (AlignedVector<Real>& numbers : inverse) numbers.assign(size, Real(0));
+  for (auto* blocks : {&air, &inverse}) {
+    for (AlignedVector<Real>& numbers : *blocks) numbers.assign(size, Real(0));
+  }
+  inertia.assign(size, Real(0));
   free.assign(size, Real(0));
   for (int r = 0; r < layout.rows; ++r) {
     for (int c = 0; c < layout.columns; ++c) free[static_cast<std::size_t>(layout.at(r, c))] = 1;

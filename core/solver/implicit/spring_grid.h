@@ -38,8 +38,13 @@ enum GridSpring { kAlong, kDown, kFalling, kRising };
 template <class Real>
 struct SpringGrid {
   GridLayout layout;
-  std::array<std::array<AlignedVector<Real>, 6>, 4> springs;  ///< by GridSpring [N/m]
-  std::array<AlignedVector<Real>, 6> own;                     ///< [N/m]
+  /// By GridSpring [N/m]. On the finest level a block is a I + s s^T, and kept as s and a: the
+  /// product is bound by what has to be fetched from memory.
+  std::array<std::array<AlignedVector<Real>, 6>, 4> springs;
+  bool factored = false;                       ///< springs are kept so
+  AlignedVector<Real> inertia;                 ///< of each particle, times the unit matrix [N/m]
+  std::array<AlignedVector<Real>, 6> air;      ///< of each particle, if there is any [N/m]
+  bool has_air = false;                        ///< air counts
   std::array<AlignedVector<Real>, 6> inverse;  ///< of the diagonal blocks; 0 where pinned [m/N]
   AlignedVector<Real> free;                    ///< 1, or 0 if pinned and around the grid
 
@@ -55,7 +60,7 @@ struct SpringGrid {
   bool bends() const { return bending.along_u != 0 || bending.along_v != 0 || bending.twist != 0; }
 
   /// Sizes all arrays, with zeros; everybody is free and nothing bends.
-  void prepare(const GridLayout& shape);
+  void prepare(const GridLayout& shape, bool is_factored);
 
   /// Sets the bending of the finest level.
   void set_bending(const QuadraticBending<Real>& form);

@@ -54,15 +54,12 @@ HWY_INLINE Triple<V> spring_term(D d, const SpringPlanes<Real>& springs, std::si
   const V closing = hn::Mul(hn::Mul(fused_dot(d, way, dv), inverse), inverse);
   const V across = hn::Max(zero, elastic);
   const V along = hn::Sub(fused(d, c, hn::Set(d, rate), k), across);
-  const Triple<V> u = way * inverse, s = u * along;
-  const auto keep = [&](std::size_t e, V number)
-                        HWY_ATTR { hn::StoreU(number, d, grid.springs[kind][e].data() + at); };
-  keep(0, fused(d, s.x, u.x, across));
-  keep(1, hn::Mul(s.x, u.y));
-  keep(2, hn::Mul(s.x, u.z));
-  keep(3, fused(d, s.y, u.y, across));
-  keep(4, hn::Mul(s.y, u.z));
-  keep(5, fused(d, s.z, u.z, across));
+  const Triple<V> factor = way * hn::Mul(inverse, hn::Sqrt(along));
+  auto& block = grid.springs[kind];
+  hn::StoreU(factor.x, d, block[0].data() + at);
+  hn::StoreU(factor.y, d, block[1].data() + at);
+  hn::StoreU(factor.z, d, block[2].data() + at);
+  hn::StoreU(across, d, block[3].data() + at);
   return way * fused(d, c, closing, elastic);
 }
 

@@ -22,7 +22,7 @@ struct SpringPlanes {
 };
 
 /// Forces of springs, dashpots and bending on all particles, and the blocks of the springs
-/// (SpringTerm).
+/// (SpringTerm), factored.
 /// @param rate   by which velocities change with positions [1/s]
 /// @param x, v   of the grid's layout [m], [m/s]
 /// @param force  gets them, of pinned particles too [N]

@@ -21,7 +21,8 @@ struct Shaken {
   ClothModel<double> model;
   Vec3Array<double> x, v;
   std::vector<double> inverse_mass;
-  std::vector<SymmetricBlock<double>> own;
+  std::vector<double> inertia;
+  std::vector<SymmetricBlock<double>> air;
 
   Shaken(int rows, int columns, Random& random, int pinned, double noise = 0.02) {
     ClothDef cloth = flat_cloth(rows, columns, 0.1 * (columns - 1), 0.12 * (rows - 1));
@@ -39,13 +40,14 @@ struct Shaken {
         v[i][d] = random.uniform(-1, 1);
       }
       inverse_mass.push_back(1 / model.mass[i]);
-      const double inertia = model.mass[i] * 8000;
-      own.push_back({inertia, 0, 0, inertia, 0, inertia});
+      inertia.push_back(model.mass[i] * 8000);
+      const auto some = [&] { return random.uniform(0.5, 1); };
+      air.push_back({2 + some(), some(), -some(), 1 + some(), some() / 2, 3 + some()});
     }
     for (int k = 0; k < pinned; ++k)
       inverse_mass[static_cast<std::size_t>(random.index(rows * columns))] = 0;
   }
-  NewtonPoint<double> point() const { return {x, v, 90, own}; }
+  NewtonPoint<double> point() const { return {x, v, 90, inertia, air.empty() ? nullptr : &air}; }
   std::size_t numbers() const { return 3 * x.size(); }
 
   template <class System>
@@ -128,7 +130,8 @@ TEST_CASE("in tension the matrix is the derivative of the forces") {
   for (Vec3d& v : cloth.v) v.setZero();
   ElementSystem<double> system(cloth.model, cloth.model.parts[0]);
   system.set_pinned(cloth.inverse_mass);
-  for (auto& own : cloth.own) own = {};
+  cloth.inertia.assign(cloth.x.size(), 0);
+  cloth.air.clear();
   for (Spring<double>& spring : cloth.model.springs) spring.damping = 0;
   Vec3Array<double> unused(cloth.x.size(), Vec3d::Zero());
   system.linearise(cloth.model, cloth.point(), unused);
@@ -217,12 +220,12 @@ TEST_CASE("the V-cycle's iterations hardly grow with the grid, those of block Ja
     cloth.model = build_cloth<double>(def);
     cloth.x = cloth.model.rest_positions;
     cloth.v.assign(cloth.x.size(), Vec3d::Zero());
-    cloth.own.clear();
+    cloth.inertia.clear();
+    cloth.air.clear();
     cloth.inverse_mass.clear();
     for (std::size_t i = 0; i < cloth.x.size(); ++i) {
       cloth.x[i][1] += random.uniform(-0.02, 0.02) / n;
-      const double inertia = cloth.model.mass[i] * 3600;
-      cloth.own.push_back({inertia, 0, 0, inertia, 0, inertia});
+      cloth.inertia.push_back(cloth.model.mass[i] * 3600);
       cloth.inverse_mass.push_back(1 / cloth.model.mass[i]);
     }
     const auto run = [&](auto&& system) {
