@@ -9,6 +9,7 @@ namespace weft::server {
 
 /// One JSON object read as strictly as a message of the wire (no key twice, at most 8 levels,
 /// finite numbers, UTF-8), or why it is none.
+// NOLINTNEXTLINE(bugprone-exception-escape): the library's own move, which its types call safe
 struct StrictJson {
   nlohmann::json root;
   bool good = false;

@@ -134,13 +134,13 @@ WorldDef SceneLibrary::from_client(std::string_view json) const {
 
 std::vector<SceneInfo> SceneLibrary::list() const {
   std::vector<SceneInfo> all = scenes();
-  for (const auto& [name, def] : scenes_) {
+  for (const auto& own : scenes_) {
     const auto same = std::find_if(all.begin(), all.end(),
-                                   [&](const SceneInfo& scene) { return scene.name == name; });
+                                   [&](const SceneInfo& scene) { return scene.name == own.first; });
     if (same != all.end())
-      same->description = def.description;
+      same->description = own.second.description;
     else
-      all.push_back({name, def.description, {}});
+      all.push_back({own.first, own.second.description, {}});
   }
   return all;
 }

@@ -104,8 +104,8 @@ class Reader {
   template <class Describe>
   void object(const char* name, const char*, Describe&& describe) {
     const Json* node = find(name);
-    static const Json kEmpty = Json::object();
-    Reader inner(node ? *node : kEmpty, at(name), meshes_);
+    static const Json empty = Json::object();
+    Reader inner(node ? *node : empty, at(name), meshes_);
     describe(inner);
     inner.finish();
   }

@@ -18,7 +18,7 @@ struct Curve {
 /// The elastica integrated from its free tip, where the moment is zero, to the clamp. With the
 /// distance q = 1 - s from the tip, theta'' = -gamma q cos theta; midpoint rule.
 Curve shoot(double gamma, double tip_angle) {
-  constexpr double h = 1.0 / kSteps;
+  const double h = 1.0 / kSteps;
   double angle = tip_angle, slope = 0;
   Curve curve;
   for (int k = 0; k < kSteps; ++k) {

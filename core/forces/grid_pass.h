@@ -98,8 +98,8 @@ class GridPass {
   int band_count() const;
   std::ptrdiff_t first_row(int band) const;
   GridView<Real> view_of(Band& band) const;
-  void begin_band(int band);
-  void advance_band(int band, const GridStep<Real>& step);
+  void begin_band(int number);
+  void advance_band(int number, const GridStep<Real>& step);
   Real* allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const;
   void load_velocities(const Vec3Array<Real>& v);
   void lay_out(const ClothPart<Real>& part);

@@ -159,7 +159,7 @@ HWY_INLINE void internal_forces(const GridView<Real>& g) {
 }
 
 /// Kick and drift of one component of a row, which nobody reads any more.
-template <bool kPulled, class Real>
+template <bool Pulled, class Real>
 HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int component,
                          const GridStep<Real>& step, const ForceLines<Real>& from, Real* power) {
   const GridTag<Real> d;
@@ -168,12 +168,12 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
   Real* const x = g.motion + r * g.pitch() + component * line;
   Real* const v = x + GridView<Real>::kVelocityLine * line;
   const Real* const inverse = x + (GridView<Real>::kInverseMassLine - component) * line;
-  const Real* const external = kPulled ? g.external + (3 * r + component) * line : nullptr;
+  const Real* const external = Pulled ? g.external + (3 * r + component) * line : nullptr;
   const V keep = hn::Set(d, step.keep), push = hn::Set(d, step.push), dt = hn::Set(d, step.dt);
   const V fall = hn::Set(d, step.push * step.gravity[component]);
   visit_forces(g, from, [&](std::ptrdiff_t c, V force) HWY_ATTR {
     V pull = force;
-    if constexpr (kPulled) {
+    if constexpr (Pulled) {
       pull = hn::LoadU(d, external + c);
       force = hn::Add(force, pull);
     }
@@ -183,7 +183,7 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
     const V speed = hn::IfThenZeroElse(held, fused(d, hn::LoadU(d, v + c), keep, change));
     hn::StoreU(speed, d, v + c);
     hn::StoreU(hn::Add(hn::LoadU(d, x + c), hn::Mul(speed, dt)), d, x + c);
-    if constexpr (kPulled) hn::StoreU(fused(d, pull, speed, hn::LoadU(d, power + c)), d, power + c);
+    if constexpr (Pulled) hn::StoreU(fused(d, pull, speed, hn::LoadU(d, power + c)), d, power + c);
   });
 }
 

@@ -14,7 +14,8 @@ namespace {
 /// A prism that stands on y = 0, with a sharp ridge along z: half a metre high, 36 cm wide, 60 cm
 /// long.
 TriangleMesh make_gable() {
-  constexpr double kHeight = 0.5, w = 0.18, l = 0.3;
+  constexpr double kHeight = 0.5;
+  const double w = 0.18, l = 0.3;  // half width and half length
   return {{{0, kHeight, -l}, {0, kHeight, l}, {-w, 0, -l}, {-w, 0, l}, {w, 0, -l}, {w, 0, l}},
           {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 4, 5}, {2, 5, 3}, {0, 4, 2}, {1, 3, 5}}};
 }
@@ -26,7 +27,8 @@ TriangleMesh make_loop() {
   TriangleMesh mesh;
   for (int r = 0; r < kRows; ++r) {
     for (int c = 0; c < kColumns; ++c) {
-      const double s = kCell * (c - kColumns / 2), z = kCell * (r - kRows / 2) + kSkew * s;
+      const int column = c - kColumns / 2, row = r - kRows / 2;
+      const double s = kCell * column, z = kCell * row + kSkew * s;
       const double angle = std::clamp(s / kRadius, -kMost, kMost), straight = s - angle * kRadius;
       mesh.positions.push_back({kRadius * std::sin(angle) + straight * std::cos(angle),
                                 -kRadius * std::cos(angle) + straight * std::sin(angle), z});

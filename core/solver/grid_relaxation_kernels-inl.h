@@ -33,9 +33,9 @@ HWY_INLINE void store_at(D d, Real* const (&fields)[3], std::ptrdiff_t at,
 }
 
 /// Which multipliers a sweep reads and writes.
-template <bool kRead, bool kWrite>
+template <bool Read, bool Write>
 struct Multipliers {
-  static constexpr bool read = kRead, write = kWrite;
+  static constexpr bool kReads = Read, kWrites = Write;
 };
 
 /// Springs of one colour, `count` of them: spring n goes from particle i + n to particle j + n and
@@ -53,16 +53,16 @@ HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table
     const auto delta = (load_at(d, g.x, j + n) - load_at(d, g.x, i + n)) + (way_j - way_i);
     const auto l = hn::Sqrt(hn::Add(dot(delta, delta), smallest));
     auto excess = hn::Sub(l, length);
-    if constexpr (Use::read) {
+    if constexpr (Use::kReads) {
       const auto lambda = hn::LoadU(d, g.multiplier[table] + k + n);
       auto give = hn::Mul(softness, lambda);
       if (times != nullptr) give = hn::Mul(give, hn::LoadU(d, times + n));
       excess = hn::Sub(excess, give);
     }
     const auto push = hn::Mul(hn::LoadU(d, share + n), excess);
-    if constexpr (Use::write) {
+    if constexpr (Use::kWrites) {
       auto lambda = push;
-      if constexpr (Use::read) lambda = hn::Add(hn::LoadU(d, g.multiplier[table] + k + n), push);
+      if constexpr (Use::kReads) lambda = hn::Add(hn::LoadU(d, g.multiplier[table] + k + n), push);
       hn::StoreU(lambda, d, g.multiplier[table] + k + n);
     }
     const auto ratio = hn::Div(push, l);

@@ -78,8 +78,8 @@ struct VerletWorkspace {
   Executor* executor = nullptr;        ///< advances bands of large grids on its threads
 
   /// Sizes the arrays for a cloth on which neither air nor shots act.
-  /// @param executor  may be null
-  void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* executor);
+  /// @param threads  may be null
+  void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* threads);
 
   /// Sizes what air and shots need besides. To be called before a tick that has them.
   void make_room(const ClothModel<Real>& model, bool air, bool shots);

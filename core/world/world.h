@@ -228,7 +228,7 @@ class World {
   void masses_changed();
   void sleep_changed();
   void wake(Index particle);
-  void wake_held(PinId pin);
+  void wake_held(PinId id);
   void wake_all();
   void rouse_sleepers();
   bool rests() const;

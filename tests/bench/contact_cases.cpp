@@ -56,6 +56,7 @@ std::vector<double> medians(const std::vector<std::vector<double>>& runs) {
   std::vector<double> result;
   for (std::size_t tick = 0; tick < runs.front().size(); ++tick) {
     std::vector<double> same;
+    same.reserve(runs.size());
     for (const std::vector<double>& run : runs) same.push_back(run[tick]);
     result.push_back(median(same));
   }

@@ -90,9 +90,7 @@ int measure(const Options& options) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Options options;
   CLI::App app("Measures speed against error of Weft's solvers, in CPU time of one thread");
   app.add_option("--out", options.out, "directory for the tables");
@@ -121,14 +119,20 @@ int main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(methods));
   app.add_flag("--quick", options.effort.quick, "fewer settings, shorter runs");
   CLI11_PARSE(app, argc, argv);
+  if (list) {
+    for (const Setting& s : settings(options.effort.quick, fewest))
+      std::cout << s.solver << ' ' << s.name << '\n';
+    return 0;
+  }
+  if (options.out.empty()) throw std::runtime_error("--out is missing");
+  return measure(options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    if (list) {
-      for (const Setting& s : settings(options.effort.quick, fewest))
-        std::cout << s.solver << ' ' << s.name << '\n';
-      return 0;
-    }
-    if (options.out.empty()) throw std::runtime_error("--out is missing");
-    return measure(options);
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "weft_bench: " << error.what() << std::endl;
     return 1;

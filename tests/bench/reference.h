@@ -34,7 +34,7 @@ enum class ReferenceMethod {
 /// Refines a reference until that changes less than kSelfErrorWanted or the budget is spent, and
 /// follows a perturbed start beside it. Scenes with contact or air have World<double> with substeps
 /// doubled, whatever the method: they are not smooth.
-Reference make_reference(const BenchScene& scene, const WorldDef& def,
-                         ReferenceMethod method = ReferenceMethod::cheapest_that_fits);
+Reference make_reference(const BenchScene& scene, const WorldDef& scene_def,
+                         ReferenceMethod wanted = ReferenceMethod::cheapest_that_fits);
 
 }  // namespace weft::bench

@@ -45,7 +45,7 @@ double gained(World<float>& world, test::Insult kind, unsigned seed, double leas
 }
 
 /// One solver, cloth and insult, with all its seeds.
-ShakingFigure shake(WorldDef def, test::Insult insult, const World<float>& rest) {
+ShakingFigure shake(const WorldDef& def, test::Insult insult, const World<float>& rest) {
   ShakingFigure figure;
   figure.insult = name_of(insult);
   figure.substeps = rest.report().substeps;

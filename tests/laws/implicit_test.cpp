@@ -182,13 +182,16 @@ TEST_CASE("with implicit no spring bounds the substep: a cloth a thousand times 
   def.solver.kind = SolverKind::implicit;
   World<double> world(def);
   int violent = 0;
-  for (int tick = 0; tick < 120; ++tick) {
+  double largest = 0;
+  for (int tick = 0; tick < 240; ++tick) {
     const TickReport& report = world.step();
     REQUIRE_FALSE(report.divergence);
     REQUIRE((report.violent || report.substeps == 1));
     violent += report.violent ? 1 : 0;
+    largest = std::max(largest, report.largest_strain);
   }
   CHECK(violent <= 6);  // where it snaps taut
   // Its weight stretches it by 5e-6; two Newton iterations leave more while it swings.
-  CHECK(world.report().largest_strain < 0.005);
+  CHECK(largest < 0.02);
+  CHECK(world.report().largest_strain < 0.002);
 }

@@ -69,7 +69,7 @@ Vec3<Real> after_contact(const Vec3<Real>& v, const Vec3<Real>& n, Real friction
   const Real normal_speed = v.dot(n);
   const Vec3<Real> v_n = n * normal_speed, v_t = v - v_n;
   const Real slip = v_t.norm(), lost = friction * std::abs(normal_speed);
-  const Vec3<Real> back = v_n * -dissipation;
+  Vec3<Real> back = v_n * -dissipation;
   if (slip >= lost && slip > 0) return v_t * (Real(1) - lost / slip) + back;
   return back;
 }

@@ -47,7 +47,7 @@ bool is_within_edge(Real s) {
 /// Prepares a collider.
 /// @param reach  at which triangles shall be found [m]
 template <class Real>
-SeedShape<Real> make_seed_shape(const ShapeDef& shape, Real reach);
+SeedShape<Real> make_seed_shape(const ShapeDef& def, Real reach);
 
 /// Distance from a plane, sphere, capsule or box. The middle of a round shape counts as below its
 /// top.

@@ -24,7 +24,7 @@ class ElementSystem {
   }
 
   void set_pinned(const std::vector<Real>& inverse_mass);
-  void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& at,
+  void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& point,
                  Vec3Array<Real>& force);
   void load(const Vec3Array<Real>& from, Real* to) const;
   void add(const Real* from, Vec3Array<Real>& to) const;

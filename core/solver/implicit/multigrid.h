@@ -35,7 +35,7 @@ class Multigrid {
     GridVector<Real> product;        ///< A times sum
   };
 
-  void cycle(std::size_t level, const Real* r, Real* z);
+  void cycle(std::size_t number, const Real* r, Real* z);
 
   std::vector<Level> levels_;
   TransferLines<Real> lines_;

@@ -50,7 +50,7 @@ ClothDef sheet_cloth(int rows, int columns, double h) {
   return def;
 }
 
-std::string refused(ClothDef def) {
+std::string refused(const ClothDef& def) {
   try {
     build_cloth<double>(def);
   } catch (const DefinitionError& error) {

@@ -23,9 +23,11 @@ ClothDef ragged_mesh(int vertices, Random& random) {
   ClothDef def = test::flat_cloth(2, 2);
   ClothMesh mesh;
   const int columns = 9, rows = (vertices + columns - 1) / columns;
-  for (int i = 0; i < rows * columns; ++i)
-    mesh.mesh.positions.emplace_back(0.05 * (i % columns) + 0.01 * random.uniform(0, 1),
-                                     0.05 * (i / columns) + 0.01 * random.uniform(0, 1), 0);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c)
+      mesh.mesh.positions.emplace_back(0.05 * c + 0.01 * random.uniform(0, 1),
+                                       0.05 * r + 0.01 * random.uniform(0, 1), 0);
+  }
   for (int r = 0; r + 1 < rows; ++r) {
     for (int c = 0; c + 1 < columns; ++c) {
       const Index a = r * columns + c, b = a + 1, e = a + columns, f = e + 1;
@@ -46,8 +48,9 @@ ClothDef ragged_mesh(int vertices, Random& random) {
 ClothDef union_jack(int n) {
   ClothDef def = test::flat_cloth(2, 2);
   ClothMesh mesh;
-  for (int i = 0; i < n * n; ++i)
-    mesh.mesh.positions.emplace_back(0.02 * (i % n), 0.02 * (i / n), 0);
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < n; ++c) mesh.mesh.positions.emplace_back(0.02 * c, 0.02 * r, 0);
+  }
   for (int r = 0; r + 1 < n; ++r) {
     for (int c = 0; c + 1 < n; ++c) {
       const Index a = r * n + c, b = a + 1, e = a + n, f = e + 1;
