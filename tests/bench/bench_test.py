@@ -154,10 +154,10 @@ class Bench(unittest.TestCase):
         self.assertIn("CPU s, more than", tables.cost_of_accuracy(cells))
 
     def test_the_verdict_on_an_implicit_solver_follows_the_figures(self):
-        def case(name, dearest, springs, twice=0, wall=0):
+        def case(name, dearest, springs, twice=0, wall=0, implicit=0):
             return {"case": name, "kind": "scene", "seconds_looked_at": 4, "dearest_second": dearest,
                     "springs": springs, "air": 0, "contact": 1 - springs, "other": 0, "twice_the_substeps": twice,
-                    "wall_two_threads": wall, "runs": 5, "commit": "a"}
+                    "wall_two_threads": wall, "implicit": implicit, "runs": 5, "commit": "a"}
 
         def told(*rows):
             return real_time_tables.verdict(rows), real_time_tables.summary(rows)
@@ -177,6 +177,12 @@ class Bench(unittest.TestCase):
         self.assertIn("if substeps cost nothing at all, bunny would be held", verdict)
         self.assertIn("`verlet` does not hold bunny in real time: 1 of 2 cases.", summary)
         self.assertIn("none of them would be held", summary)
+        self.assertNotIn("`implicit`", summary)
+        # And what it takes in fact stands beside.
+        for text in told(case("bunny", 2.5, 0.1, implicit=1.2)):
+            self.assertIn("`implicit` holds none of them either.", text)
+        for text in told(case("bunny", 2.5, 0.1, implicit=1.2), case("drape", 1.3, 0.4, implicit=0.9)):
+            self.assertIn("`implicit` holds 1 of them: drape (0.9 CPU s a simulated second).", text)
         verdict, summary = told(case("a", 1.1, 0.5, 2, 0.9), case("b", 3, 0.1))
         self.assertIn("would bring b into real time", verdict)
         self.assertIn("Two threads hold a.", summary)
@@ -192,6 +198,7 @@ class Bench(unittest.TestCase):
         for row in rows:
             self.assertAlmostEqual(sum(row[key] for key in ("springs", "air", "contact", "other")), 1, delta=1e-3)
             self.assertGreater(row["twice_the_substeps"], 0)
+            self.assertGreater(row["implicit"], 0)
         self.assertIn(f"{len(rows)} cases", real_time_tables.need_of_implicit(rows))
 
     def test_a_part_that_is_measured_anew_takes_the_place_of_its_cases_alone(self):

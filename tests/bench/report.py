@@ -40,8 +40,8 @@ def report_text(data):
            f"{max((c['timed_runs'] for c in cells), default=0)} interleaved runs, all cases of a table in turn, but for these: "
            "a run that failed is timed once; of the largest N in real time each N on the way to it is timed "
            "five times in a row; of the cases of \"Is the solver implicit called for?\" those far from real time "
-           "are run once, and those with twice the substeps; figures with one run beside them, such as counts, "
-           "memory and distances, are no times. The machine and its load, with the measuring itself:", "",
+           "are run once, and those with twice the substeps or with implicit; figures with one run beside "
+           "them, such as counts, memory and distances, are no times. The machine and its load, with the measuring itself:", "",
            tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
            "The tables as CSV, with every setting and the commit: " + ", ".join(
                f"[{name}](data/{name}.csv)" for name in
@@ -97,7 +97,8 @@ def report_text(data):
             "solver could do cheaper; contact is all looking for contacts, certifying and solving them. \"With "
             "free springs\" is what the second would cost if these cost nothing. Contact is solved in "
             "substeps too: \"with free substeps\" is what would be left if nothing that is done each substep "
-            "cost anything, from what the case costs with twice as many.", "",
+            "cost anything, from what the case costs with twice as many. \"With implicit\" is what it costs with "
+            "that solver, in its own substeps, of which contact asks at least four a tick.", "",
             real_time_tables.need_of_implicit(real_time), "",
             "## What each part of the model costs", "",
             "Each built-in scene as it is and with one part switched off, over its first second or a "

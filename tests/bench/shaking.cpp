@@ -72,6 +72,7 @@ ShakingFigure shake(const WorldDef& def, test::Insult insult, const World<float>
 
 std::vector<ShakingFigure> measure_shaking(bool quick) {
   const std::vector<Setting> solvers = {{"verlet", "x1", 1, 1, 1, 1},
+                                        {"implicit", "1x2", 1, 1, 1, 2},
                                         {"xpbd", "32x1", 1, 1, 32, 1},
                                         {"relaxation", "1x2", 1, 1, 1, 2}};
   const std::vector<int> sizes = quick ? std::vector<int>{17} : std::vector<int>{33, 64};

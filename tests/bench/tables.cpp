@@ -170,14 +170,14 @@ void Tables::write_parts(const std::vector<PartFigure>& figures) {
 }
 
 void Tables::write_real_time(const std::vector<RealTimeFigure>& figures) {
-  Csv csv(
-      directory_ + "/real_time.csv",
-      {"case", "kind", "seconds_looked_at", "dearest_second", "springs", "air", "contact", "other",
-       "substeps", "twice_the_substeps", "wall_two_threads", "runs", "vectors", "load", "commit"});
+  Csv csv(directory_ + "/real_time.csv",
+          {"case", "kind", "seconds_looked_at", "dearest_second", "springs", "air", "contact",
+           "other", "substeps", "twice_the_substeps", "wall_two_threads", "implicit", "runs",
+           "vectors", "load", "commit"});
   for (const RealTimeFigure& f : figures)
     csv.row(f.name, f.kind, f.seconds_looked_at, f.dearest, f.springs, f.air, f.contact, f.other,
-            f.substeps, f.twice, f.wall_two, f.runs, std::string(simd_level()), load_average(),
-            commit_);
+            f.substeps, f.twice, f.wall_two, f.implicit, f.runs, std::string(simd_level()),
+            load_average(), commit_);
 }
 
 void Tables::write_threads(const std::vector<ThreadFigure>& figures) {

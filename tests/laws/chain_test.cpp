@@ -101,6 +101,7 @@ TEST_CASE("a row hung by its ends is the discrete catenary, to 1e-4 of its lengt
                                            {0.9, 10, 0.1916602718605384},
                                            {0.9, 20, 0.19094553844279769}}));
   WorldDef def = test::empty_world(strip(segments, 2, 0, 5e5));
+  def.solver.kind = GENERATE(SolverKind::verlet, SolverKind::implicit);
   def.environment.gravity = Vec3d(0, -kGravity, 0);
   World<double> world(def);
   lay_arc(world, distance, -1);
@@ -113,15 +114,17 @@ TEST_CASE("a row hung by its ends is the discrete catenary, to 1e-4 of its lengt
 }
 
 TEST_CASE("a hanging sheet swings in its first mode with T = 5.2293 sqrt(L/g), to 0.3 %") {
-  const bool xpbd = GENERATE(false, true);
-  CAPTURE(xpbd);
+  const SolverKind solver =
+      GENERATE(SolverKind::verlet, SolverKind::relaxation, SolverKind::implicit);
+  CAPTURE(solver);
   // pendulum.hanging_sheet_small_modes, 20 segments; continuous 5.22548.
   constexpr int kSegments = 20;
   WorldDef def = test::empty_world(strip(kSegments, 3, 0, 4000));
   def.environment.gravity = Vec3d(0, -kGravity, 0);
   def.cloths[0].u = -Vec3d::UnitY();
   def.tick_rate = 1000;
-  if (xpbd) use_xpbd(def, 20);
+  def.solver.kind = solver;
+  if (solver == SolverKind::relaxation) use_xpbd(def, 20);
   World<double> world(def);
   for (int r = 0; r < 3; ++r) world.pin({r * (kSegments + 1), 0});
   REQUIRE(test::settle(world, 20, 3) < 1e-6);
@@ -157,11 +160,14 @@ TEST_CASE("a strip pushed together at its ends buckles to the elastica's height,
   const auto [shortening, deflection] =
       GENERATE(table<double, double>({{0.05, 0.14011060601024403}, {0.2, 0.2663185880056361}}));
   const BendingModel bending = GENERATE(BendingModel::hinges, BendingModel::quadratic);
+  const SolverKind solver = GENERATE(SolverKind::verlet, SolverKind::implicit);
   constexpr int kSegments = 40;
   ClothDef cloth = strip(kSegments, 3, 0.02, 2e4);
   cloth.bending_model = bending;
   cloth.fabric.shear = 1000;  // without it the cells fold up sideways under the thrust
-  World<double> world(test::empty_world(cloth));
+  WorldDef def = test::empty_world(cloth);
+  def.solver.kind = solver;
+  World<double> world(def);
   lay_arc(world, 1 - shortening, 1);
   pin_ends(world, 1);
   REQUIRE(test::settle(world, 6, 12) < 1e-4);
