@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/forces/air.h"
+#include "core/forces/energy_pass.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/forces/hinge.h"
@@ -214,4 +215,25 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
   CHECK(by_rows.stretch == Approx(by_elements.stretch).epsilon(tolerance));
   CHECK(by_rows.bending == Approx(by_elements.bending).epsilon(tolerance));
   CHECK(by_rows.largest_strain == Approx(by_elements.largest_strain).epsilon(tolerance));
+}
+
+TEST_CASE("an energy pass tells what springs and stencils have, of rows and of hinges alike") {
+  ClothDef def = test::flat_cloth(7, 21, 2, 0.6);
+  def.fabric.bending_warp = 2e-3;
+  def.fabric.bending_weft = 1e-3;
+  def.bending_model = GENERATE(BendingModel::quadratic, BendingModel::hinges);
+  const ClothModel<double> model = build_cloth<double>(def);
+  EnergyPass<double> pass;
+  pass.prepare(model);
+  SeededRandom random(3);
+  Vec3Array<double> x = model.rest_positions;
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    for (Vec3d& at : x)
+      at += Vec3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) / 100;
+    const ElasticEnergy wanted = elastic_energy(model, x), told = pass.elastic_energy(model, x);
+    REQUIRE(wanted.bending > 0);
+    CHECK(told.stretch == Approx(wanted.stretch).epsilon(1e-12));
+    CHECK(told.bending == Approx(wanted.bending).epsilon(1e-12));
+    CHECK(told.largest_strain == Approx(wanted.largest_strain).epsilon(1e-12));
+  }
 }
