@@ -98,21 +98,30 @@ WorldDef relaxing(const WorldDef& def, int substeps, int sweeps, double complian
   return with_setting(def, setting, 1);
 }
 
+/// How the cost of a swing is found.
+struct Swing {
+  SolverKind solver;
+  int runs, ticks;  ///< `ticks` in each run
+};
+
 /// CPU seconds a simulated second of a swing.
-double swing_cost(int n, const FabricDef& fabric, int runs) {
-  Timed timed(swing_scene().make(n, fabric));
-  for (int k = 0; k < runs; ++k) timed.run(2);
+double swing_cost(int n, const FabricDef& fabric, const Swing& swing) {
+  WorldDef def = swing_scene().make(n, fabric);
+  def.solver.kind = swing.solver;
+  Timed timed(def);
+  for (int k = 0; k < swing.runs; ++k) timed.run(swing.ticks);
   return median(timed.seconds) / timed.world.tick_seconds();
 }
 
-KernelFigure largest_in_real_time(const BenchFabric& fabric, int runs) {
+KernelFigure largest_in_real_time(const BenchFabric& fabric, const Swing& swing) {
   int low = 16, high = 512;  // low holds, high does not
   while (high - low > std::max(1, low / 64)) {
     const int middle = (low + high) / 2;
-    (swing_cost(middle, fabric.fabric, runs) <= 0.5 ? low : high) = middle;
+    (swing_cost(middle, fabric.fabric, swing) <= 0.5 ? low : high) = middle;
   }
-  return {std::string("largest N in real time on half a core, ") + fabric.name, "particles a side",
-          static_cast<double>(low), 0, runs};
+  const char* solver = swing.solver == SolverKind::implicit ? ", implicit" : "";
+  return {std::string("largest N in real time on half a core, ") + fabric.name + solver,
+          "particles a side", static_cast<double>(low), 0, swing.runs};
 }
 
 }  // namespace
@@ -141,8 +150,11 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
       memory_with_shot("memory of verlet on a grid of 128 x 128 after a sling's shot, a particle",
                        World<float>(swing(128))),
       memory("memory of verlet on a triangle mesh, a particle", mesh.world)};
-  for (const BenchFabric& fabric : bench_fabrics())
-    figures.push_back(largest_in_real_time(fabric, quick ? 1 : 5));
+  // Each of verlet's ticks costs the same; those of implicit do not, so it swings for a second.
+  for (const BenchFabric& fabric : bench_fabrics()) {
+    figures.push_back(largest_in_real_time(fabric, {SolverKind::verlet, quick ? 1 : 5, 2}));
+    figures.push_back(largest_in_real_time(fabric, {SolverKind::implicit, 1, quick ? 4 : 60}));
+  }
   return figures;
 }
 
