@@ -99,28 +99,29 @@ HWY_INLINE Triple<V> only(M mask, const Triple<V>& a) {
 template <class D, class Real, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> add_bending(D d, const SpringGrid<Real>& g, const PlaneVector<Real>& p, int r,
                                  std::ptrdiff_t c, const Triple<V>& sum) {
-  const std::ptrdiff_t s = g.layout.stride, k = g.layout.at(r, 0) + c, table = kGridMargin + c;
-  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
-  const V cells = hn::LoadU(d, g.cells.data() + table);
-  const auto across = [&](std::ptrdiff_t at) HWY_ATTR {  // cells p_c - p_(c-1) - p_(c+1)
-    const Triple<V> here = p(d, at), left = p(d, at - 1), right = p(d, at + 1);
-    return here * cells - left - right;
+  const std::ptrdiff_t s = g.layout.stride, k = g.layout.at(r, 0) + c;
+  const BendingLine<Real>& row = g.row_bending[static_cast<std::size_t>(r)];
+  const auto column = [&](std::ptrdiff_t number) HWY_ATTR {
+    return hn::LoadU(d, g.column_bending.data() + number * g.bending_pitch() + kGridMargin + c);
   };
-  const Triple<V> here = p(d, k);
-  const auto line = [&](V w, V before, V behind, std::ptrdiff_t step) HWY_ATTR {
-    Triple<V> l = p(d, k - 2 * step) + p(d, k + 2 * step);
-    l = fused(d, p(d, k - step), before, l);
-    l = fused(d, p(d, k + step), behind, l);
-    return fused(d, here, w, l);
+  const auto here = [&](std::ptrdiff_t at) HWY_ATTR { return p(d, k + at); };
+  Triple<V> u = fused(d, here(-2), column(0), here(2) * column(4));
+  u = fused(d, here(-1), column(1), fused(d, here(1), column(3), u));
+  u = fused(d, here(0), column(2), u);
+  const auto weight = [&](std::size_t number) HWY_ATTR { return hn::Set(d, row.bend[number]); };
+  Triple<V> v = fused(d, here(-2 * s), weight(0), here(2 * s) * weight(4));
+  v = fused(d, here(-s), weight(1), fused(d, here(s), weight(3), v));
+  v = fused(d, here(0), weight(2), v);
+  const V before = column(5), self = column(6), behind = column(7);
+  const auto across = [&](std::ptrdiff_t at) HWY_ATTR {
+    return fused(d, here(at), self, fused(d, here(at - 1), before, here(at + 1) * behind));
   };
-  const Triple<V> u =
-      line(hn::LoadU(d, g.bend.data() + table), hn::LoadU(d, g.bend_left.data() + table),
-           hn::LoadU(d, g.bend_right.data() + table), 1);
-  const Triple<V> v = line(hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2]), s);
-  const Triple<V> twist = across(k) * hn::Set(d, row[3]) - across(k - s) - across(k + s);
+  const Triple<V> twist =
+      fused(d, across(0), hn::Set(d, row.slope[1]),
+            fused(d, across(-s), hn::Set(d, row.slope[0]), across(s) * hn::Set(d, row.slope[2])));
   const V half = hn::Set(d, Real(0.5));
-  const V along_u = hn::Set(d, g.bending.along_u * Real(0.5) * row[3]);
-  const V along_v = hn::Mul(hn::Set(d, g.bending.along_v), hn::Mul(half, cells));
+  const V along_u = hn::Set(d, g.bending.along_u * Real(0.5) * row.width);
+  const V along_v = hn::Mul(hn::Set(d, g.bending.along_v), hn::Mul(half, column(8)));
   return fused(d, u, along_u,
                fused(d, v, along_v, fused(d, twist, hn::Set(d, g.bending.twist), sum)));
 }

@@ -15,8 +15,7 @@ bool GridSystem<Real>::fits(const ClothModel<Real>& model, const ClothPart<Real>
 template <class Real>
 GridSystem<Real>::GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
     : springs_(GridLayout(part.rows, part.columns), model, part), particles_(part.particles) {
-  multigrid_.prepare(GridLayout(part.rows, part.columns));
-  multigrid_.finest().set_bending(part.quadratic_bending);
+  multigrid_.prepare(GridLayout(part.rows, part.columns), part.quadratic_bending);
   for (GridVector<Real>* vector : {&x_, &v_, &force_}) vector->assign(size(), Real(0));
 }
 

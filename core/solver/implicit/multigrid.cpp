@@ -1,6 +1,8 @@
 #include "core/solver/implicit/multigrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace weft {
 namespace {
@@ -13,20 +15,38 @@ constexpr int kCoarsestSweeps = 30;
 constexpr double kOmega = 0.857;
 /// How much heavier pinned particles are where the coarse levels see them.
 constexpr double kPinnedWeight = 1e5;
+/// Bending whose matrix is smaller than this part of the inertia is left to the finest level.
+constexpr double kSmallBending = 0.1;
+
+/// Where the lines are of which every second one and the last one stay.
+std::vector<int> every_second(const std::vector<int>& at) {
+  std::vector<int> kept;
+  for (std::size_t k = 0; k < at.size(); k += 2) kept.push_back(at[k]);
+  if (at.size() % 2 == 0) kept.push_back(at.back());
+  return kept;
+}
 
 }  // namespace
 
 template <class Real>
-void Multigrid<Real>::prepare(const GridLayout& finest) {
+void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<Real>& bending) {
   levels_.clear();
-  GridLayout layout = finest;
-  while (true) {
+  std::vector<int> rows(static_cast<std::size_t>(finest.rows)),
+      columns(static_cast<std::size_t>(finest.columns));
+  std::iota(rows.begin(), rows.end(), 0);
+  std::iota(columns.begin(), columns.end(), 0);
+  for (int unit = 1;; unit *= 2) {
+    const GridLayout layout(static_cast<int>(rows.size()), static_cast<int>(columns.size()));
     Level& level = levels_.emplace_back();
-    level.grid.prepare(layout, levels_.size() == 1);
+    level.grid.prepare(layout, unit == 1);
+    level.grid.set_bending(bending, rows, columns, unit);
+    level.strongest_bending =
+        *std::max_element(level.grid.bending_bound.begin(), level.grid.bending_bound.end());
     for (GridVector<Real>* vector : {&level.residual, &level.sum, &level.product})
       vector->assign(layout.size(), Real(0));
     if (layout.rows <= kCoarsest && layout.columns <= kCoarsest) break;
-    layout = GridLayout(coarse_count(layout.rows), coarse_count(layout.columns));
+    rows = every_second(rows);
+    columns = every_second(columns);
   }
   lines_.prepare(finest);
   weighted_.assign(static_cast<std::size_t>(finest.plane), Real(0));
@@ -34,6 +54,9 @@ void Multigrid<Real>::prepare(const GridLayout& finest) {
 
 template <class Real>
 void Multigrid<Real>::coarsen() {
+  double mean_inertia = 0;
+  for (const Real inertia : finest().inertia) mean_inertia += static_cast<double>(inertia);
+  mean_inertia /= finest().layout.rows * finest().layout.columns;
   for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
     const SpringGrid<Real>& fine = levels_[k].grid;
     SpringGrid<Real>& coarse = levels_[k + 1].grid;
@@ -48,6 +71,9 @@ void Multigrid<Real>::coarsen() {
       restrict_plane(fine.layout, coarse.layout, numbers, to.data(), lines_);
     };
     restrict(fine.inertia, coarse.inertia);
+    coarse.bending_counts =
+        static_cast<double>(levels_[k + 1].strongest_bending) >
+        kSmallBending * mean_inertia * std::pow(4.0, static_cast<double>(k + 1));
     coarse.has_air = fine.has_air;
     for (std::size_t e = 0; fine.has_air && e < 6; ++e) restrict(fine.air[e], coarse.air[e]);
   }

@@ -10,12 +10,12 @@ namespace weft {
 /// Approximate inverse of a grid's matrix, symmetric and positive definite: one V-cycle over levels
 /// of every second particle, with one damped block Jacobi sweep before and one after (NUMERICS.md
 /// b). Any number of rows and columns; how levels go together is told in grid_transfer.h. Bending
-/// stays on the finest level.
+/// counts on the levels on which it is not small against inertia.
 template <class Real>
 class Multigrid {
  public:
   /// Sizes all levels for a grid of at least 2 x 2 particles.
-  void prepare(const GridLayout& finest);
+  void prepare(const GridLayout& finest, const QuadraticBending<Real>& bending);
 
   /// The finest level, to be filled; its `inverse` and all coarser levels come from `coarsen`.
   SpringGrid<Real>& finest() { return levels_.front().grid; }
@@ -31,6 +31,7 @@ class Multigrid {
  private:
   struct Level {
     SpringGrid<Real> grid;
+    Real strongest_bending = 0;      ///< of its bending bounds [N/m]
     GridVector<Real> residual, sum;  ///< of this level
     GridVector<Real> product;        ///< A times sum
   };

@@ -11,8 +11,6 @@
 #if HWY_ONCE
 #include <cmath>
 
-#include "core/forces/bending_stencil.h"
-
 namespace weft {
 
 HWY_EXPORT(multiply_f32);
@@ -99,43 +97,53 @@ void SpringGrid<Real>::prepare(const GridLayout& shape, bool is_factored) {
 
 namespace {
 
+template <class Numbers>
+auto absolute_sum(const Numbers& numbers) {
+  auto sum = numbers[0] * 0;
+  for (const auto number : numbers) sum += std::abs(number);
+  return sum;
+}
+
 /// Half the absolute sum of a particle's row of the bending matrix.
 template <class Real>
-Real row_bound(const SpringGrid<Real>& g, int r, int c) {
-  const auto line = [](Real w, Real before, Real behind, int k, int count) {
-    return w + std::abs(before) + std::abs(behind) + Real(k > 1) + Real(k + 2 < count);
-  };
-  const auto table = static_cast<std::size_t>(kGridMargin + c);
-  const std::array<Real, 4>& row = g.row_bend[static_cast<std::size_t>(r)];
-  const Real u = line(g.bend[table], g.bend_left[table], g.bend_right[table], c, g.layout.columns);
-  const Real v = line(row[0], row[1], row[2], r, g.layout.rows);
-  return Real(0.5) * (g.bending.along_u * Real(0.5) * row[3] * u +
-                      g.bending.along_v * Real(0.5) * g.cells[table] * v +
-                      g.bending.twist * 4 * row[3] * g.cells[table]);
+Real row_bound(const QuadraticBending<Real>& form, const BendingLine<Real>& row,
+               const BendingLine<Real>& column) {
+  return Real(0.5) * (form.along_u * Real(0.5) * row.width * absolute_sum(column.bend) +
+                      form.along_v * Real(0.5) * column.width * absolute_sum(row.bend) +
+                      form.twist * absolute_sum(row.slope) * absolute_sum(column.slope));
 }
 
 }  // namespace
 
 template <class Real>
-void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form) {
+void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form,
+                                   const std::vector<int>& rows_at,
+                                   const std::vector<int>& columns_at, int unit) {
+  // A stencil over cells of twice the size has twice the width and an eighth of what it had for
+  // the same differences.
+  const Real size = Real(1) / static_cast<Real>(unit * unit);
   bending = form;
-  const auto size = static_cast<std::size_t>(layout.stride + 3 * kGridMargin);
-  for (AlignedVector<Real>* table : {&bend, &bend_left, &bend_right, &cells})
-    table->assign(size, Real(0));
-  for (int c = 0; c < layout.columns; ++c) {
-    const std::array<Real, 4> line = bending_line<Real>(c, layout.columns);
-    const auto k = static_cast<std::size_t>(kGridMargin + c);
-    bend[k] = line[0];
-    bend_left[k] = line[1];
-    bend_right[k] = line[2];
-    cells[k] = line[3];
-  }
-  row_bend.clear();
-  for (int r = 0; r < layout.rows; ++r) row_bend.push_back(bending_line<Real>(r, layout.rows));
+  bending.along_u *= size;
+  bending.along_v *= size;
+  bending.twist *= size;
+  bending_counts = form.along_u != 0 || form.along_v != 0 || form.twist != 0;
+  row_bending = bending_lines<Real>(rows_at, unit);
+  const std::vector<BendingLine<Real>> columns = bending_lines<Real>(columns_at, unit);
+  column_bending.assign(static_cast<std::size_t>(9 * bending_pitch()), Real(0));
   bending_bound.assign(static_cast<std::size_t>(layout.plane), Real(0));
-  for (int r = 0; r < layout.rows; ++r) {
-    for (int c = 0; c < layout.columns; ++c)
-      bending_bound[static_cast<std::size_t>(layout.at(r, c))] = row_bound(*this, r, c);
+  for (int c = 0; c < layout.columns; ++c) {
+    const BendingLine<Real>& column = columns[static_cast<std::size_t>(c)];
+    Real* at = column_bending.data() + kGridMargin + c;
+    const auto put = [&](Real number) {
+      *at = number;
+      at += bending_pitch();
+    };
+    for (const Real number : column.bend) put(number);
+    for (const Real number : column.slope) put(number);
+    put(column.width);
+    for (int r = 0; r < layout.rows; ++r)
+      bending_bound[static_cast<std::size_t>(layout.at(r, c))] =
+          row_bound(bending, row_bending[static_cast<std::size_t>(r)], column);
   }
 }
 

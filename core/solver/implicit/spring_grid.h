@@ -6,6 +6,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/math/aligned_vector.h"
+#include "core/solver/implicit/bending_line.h"
 
 namespace weft {
 
@@ -48,22 +49,26 @@ struct SpringGrid {
   std::array<AlignedVector<Real>, 6> inverse;  ///< of the diagonal blocks; 0 where pinned [m/N]
   AlignedVector<Real> free;                    ///< 1, or 0 if pinned and around the grid
 
-  // Bending of the finest level, as a constant matrix (QuadraticBending); 0 elsewhere.
+  // Bending, as a constant matrix (QuadraticBending).
   QuadraticBending<Real> bending;
-  // Of each column its own weight in the matrix of second differences along the row, those of the
-  // particles before and behind (two away it is 1), and how many cells meet there, 1 or 2; from
-  // kGridMargin on, zeros around. Of each row the same four.
-  AlignedVector<Real> bend, bend_left, bend_right, cells;
-  std::vector<std::array<Real, 4>> row_bend;
+  bool bending_counts = false;  ///< else it is left out
+  /// Of each column the nine numbers of its BendingLine, in lines `stride` + 3 kGridMargin apart;
+  /// each begins with a margin and has zeros around.
+  AlignedVector<Real> column_bending;
+  std::vector<BendingLine<Real>> row_bending;
   AlignedVector<Real> bending_bound;  ///< see `invert_diagonal`
 
-  bool bends() const { return bending.along_u != 0 || bending.along_v != 0 || bending.twist != 0; }
+  bool bends() const { return bending_counts; }
+  std::ptrdiff_t bending_pitch() const { return layout.stride + 3 * kGridMargin; }
 
   /// Sizes all arrays, with zeros; everybody is free and nothing bends.
   void prepare(const GridLayout& shape, bool is_factored);
 
-  /// Sets the bending of the finest level.
-  void set_bending(const QuadraticBending<Real>& form);
+  /// Sets the bending, which counts from then on.
+  /// @param form             of the finest level
+  /// @param rows_at, columns_at, unit  see bending_lines
+  void set_bending(const QuadraticBending<Real>& form, const std::vector<int>& rows_at,
+                   const std::vector<int>& columns_at, int unit);
 };
 
 /// y = A p. Pinned particles get 0.
