@@ -22,9 +22,11 @@ WorldDef mesh_scene() {
   constexpr int kSide = 25;
   ClothMesh mesh;
   Random random(5);
-  for (int i = 0; i < kSide * kSide; ++i)
-    mesh.mesh.positions.emplace_back(0.04 * (i % kSide) + 0.01 * random.uniform(0, 1),
-                                     0.6 + 0.01 * random.uniform(0, 1), 0.04 * (i / kSide));
+  for (int r = 0; r < kSide; ++r) {
+    for (int c = 0; c < kSide; ++c)
+      mesh.mesh.positions.emplace_back(0.04 * c + 0.01 * random.uniform(0, 1),
+                                       0.6 + 0.01 * random.uniform(0, 1), 0.04 * r);
+  }
   for (Index r = 0; r + 1 < kSide; ++r) {
     for (Index c = 0; c + 1 < kSide; ++c) {
       const Index a = r * kSide + c, b = a + 1, e = a + kSide, f = e + 1;
@@ -82,7 +84,7 @@ TEST_CASE("each scene has the same hash with one and two threads, and the golden
       {"mesh", 0x21bb83a175b72f7a},
       {"XPBD", 0x5ad6b9292091024b},
       {"seed's relaxation", 0x070cc9cefff5b537},
-      {"implicit", 0xe598ec7c0be9fa6d},
+      {"implicit", 0x2adf8d80aba1f556},
       {"seed-fig9-default", 0xeca50d5bbf216230},
       {"seed-fig12-triangle-pairs", 0x744c39c14093783f},
   }));
@@ -106,7 +108,9 @@ TEST_CASE("scenes full of contact leave the same hash with every instruction set
   std::uint64_t met = 0;
   for (int tick = 0; tick < ticks; ++tick) met += world.step().profile[Stage::contact].work;
   CHECK(met > 0);
-  for_each_target([&] { CHECK(hash_after(scene, ticks, nullptr) == world.hash()); });
+  for_each_target([&, &name = scene, count = ticks] {
+    CHECK(hash_after(name, count, nullptr) == world.hash());
+  });
 }
 
 TEST_CASE("meshes, XPBD, the seed and implicit leave the same hash with every instruction set") {
