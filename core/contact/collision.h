@@ -21,6 +21,12 @@ struct Collision {
 
   bool empty() const { return !weft && !seed && !guard && !pins; }
 
+  /// Whether anything touches now.
+  bool touches(const ClothState<Real>& state) const {
+    return (weft && weft->touches(state.x)) || (guard && guard->presses()) ||
+           (seed && seed->touches());
+  }
+
   /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);

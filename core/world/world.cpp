@@ -11,9 +11,11 @@ namespace weft {
 namespace {
 
 /// How often a tick that diverged is tried again, each time with twice the substeps.
-/// Up to so many substeps of verlet a tick, violent ticks of implicit are gone by it.
-constexpr int kMostForViolence = 2000;
 constexpr int kMostRetries = 2;
+
+/// With the solver implicit, verlet goes the ticks that are violent or in which anything touches,
+/// if it needs no more substeps than that (see advance_implicit).
+constexpr int kMostForVerlet = 2000;
 
 template <class Real>
 double total_mass(const ClothModel<Real>& model) {
@@ -21,9 +23,6 @@ double total_mass(const ClothModel<Real>& model) {
   for (const Real mass : model.mass) sum += static_cast<double>(mass);
   return sum;
 }
-
-/// Hands get at most so many times the substeps that the cloth needs, or so many a tick.
-constexpr long kMostForHands = 2, kEnoughForHands = 40;
 
 template <class Real>
 Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
@@ -123,6 +122,7 @@ void World<Real>::accept_state() {
   last_good_.v = state_.v;
   verlet_.elastic.reset();
   account_.clear();
+  touching_ = false;
   contact_.reset();
   contact_.place(colliders_);
   if (guard_) guard_->reset();
@@ -162,7 +162,7 @@ void World<Real>::prepare_solver() {
   const SolverKind kind = solver_of(def_);
   if (kind == SolverKind::relaxation)
     relaxation_.prepare(model_);
-  else  // implicit has violent ticks gone by verlet
+  else  // implicit has some ticks gone by verlet
     verlet_.prepare(model_, def_.solver, runtime_.executor);
   if (kind == SolverKind::implicit) implicit_.prepare(model_);
   if (guard_ && kind != SolverKind::relaxation) verlet_.make_room_for_paths();
@@ -189,69 +189,6 @@ std::size_t World<Real>::solver_bytes() const {
 }
 
 template <class Real>
-int World<Real>::choose_substeps(SolverKind kind) const {
-  if (kind == SolverKind::implicit) {
-    const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
-    return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
-  }
-  const int fewest =
-      kind == SolverKind::relaxation ? def_.relaxation.substeps : def_.solver.min_substeps;
-  long count = 0;
-  for (const ClothPart<Real>& part : model_.parts)
-    count = std::max(count, substeps_for(stability_bound(part, kind), tick_seconds(), fewest));
-  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(kind, count, fewest));
-  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
-}
-
-/// No hand needs more than the cloth to be stable, but what one presses against an object or into
-/// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
-/// springs.
-template <class Real>
-long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const {
-  const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
-  long count = 0;
-  for (const ClothPart<Real>& part : model_.parts) {
-    StabilityBound hands;
-    for (const Grab<Real>& grab : grabs_.list) {
-      if (!part.triangles.contains(grab.def.triangle)) continue;
-      hands.omega2 += grab.bound.omega2;
-      hands.damping_rate += grab.bound.damping_rate;
-      count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
-    }
-    if (hands.omega2 == 0) continue;
-    StabilityBound together = stability_bound(part, kind);
-    together.omega2 += hands.omega2;
-    together.damping_rate += hands.damping_rate;
-    count =
-        std::max(count, std::min(kEnoughForHands, substeps_for(together, tick_seconds(), fewest)));
-  }
-  return count;
-}
-
-template <class Real>
-StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind) const {
-  StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
-  if (kind == SolverKind::verlet) {  // there the springs are forces too
-    bound.omega2 += part.bounds.membrane_omega2;
-    bound.damping_rate += part.bounds.membrane_damping_rate;
-  }
-  if (!has_air(environment_)) return bound;
-  // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
-  double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
-  for (const FanDef& fan : environment_.fans) fastest += fan.speed;
-  double speed2 = 0;
-  for (Index i = part.particles.first; i < part.particles.end(); ++i)
-    speed2 =
-        std::max(speed2, static_cast<double>(state_.v[static_cast<std::size_t>(i)].squaredNorm()));
-  fastest += std::sqrt(speed2);
-  const FabricDef& fabric = part.fabric;
-  bound.damping_rate +=
-      (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
-      fabric.areal_density;
-  return bound;
-}
-
-template <class Real>
 void World<Real>::blow_wind() {
   surroundings_.gravity = environment_.gravity.template cast<Real>();
   surroundings_.drag = environment_.drag;
@@ -270,11 +207,16 @@ void World<Real>::advance_or_recover(int substeps) {
   int without_loss = 0;
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
-    implicit_.refuses_violence = without_loss <= kMostForViolence;
+    implicit_.violent = implicit_.touching = false;
+    implicit_.refuses = without_loss <= kMostForVerlet;
+    if (touching_ && implicit_.refuses) {
+      kind = SolverKind::verlet;
+      substeps = without_loss;
+    }
   }
   for (int attempt = 0;; ++attempt) {
     const AdvanceResult result = advance(kind, substeps);
-    if (kind == SolverKind::implicit && implicit_.violent) {
+    if (kind == SolverKind::implicit && (implicit_.violent || implicit_.touching)) {
       restore_last_good();
       kind = SolverKind::verlet;
       substeps = without_loss;
@@ -288,11 +230,13 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.work = result.work;
     report_.largest_strain = result.largest_strain;
     report_.damped_substeps = result.damped_substeps;
-    report_.violent = kind != solver_of(def_);
+    report_.violent = implicit_.violent;
+    report_.touching = kind != solver_of(def_) && !implicit_.violent;
     if (!divergence) {
       account_.accept(result);
       last_good_.x = state_.x;
       last_good_.v = state_.v;
+      touching_ = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
       return;
     }
     report_.divergence = divergence;

@@ -60,6 +60,7 @@ struct TickReport {
   double largest_strain = 0;
   int damped_substeps = 0;  ///< that the solver implicit had to go again by backward Euler
   bool violent = false;     ///< gone by verlet, as the solver implicit would have lost too much
+  bool touching = false;    ///< gone by verlet instead of implicit, as something touched
   bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
   std::optional<Divergence> divergence;
   Profile profile;
@@ -272,6 +273,7 @@ class World {
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   ImplicitWorkspace<Real> implicit_;
+  bool touching_ = false;  ///< with the solver implicit: something touched when the last tick ended
   EnergyAccount account_;
   Sleep<Real> sleep_;
   std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for

@@ -174,6 +174,34 @@ TEST_CASE("implicit leaves violent ticks to verlet, and no others") {
   CHECK_FALSE(world.report().violent);
 }
 
+TEST_CASE("implicit leaves ticks in which anything touches to verlet, and no others") {
+  const char* contact = GENERATE("weft", "seed");
+  INFO("contact " << contact);
+  WorldDef def = implicit_world(flat_cloth(17, 17), 1);
+  def.contact.model = contact == std::string("seed") ? ContactModel::seed : ContactModel::weft;
+  def.colliders = {{"ground", PlaneDef{Vec3d(0, -0.3, 0), Vec3d::UnitY()}}};
+  World<float> world(def);
+  const double ground = -0.3 + def.cloths[0].fabric.thickness;
+  const auto lowest = [&world] {
+    double y = 1e9;
+    for (const Vec3<float>& x : world.state().x) y = std::min(y, static_cast<double>(x.y()));
+    return y;
+  };
+  const double start = lowest();
+  REQUIRE(start > ground + 0.1);
+  int falling = 0;
+  for (; lowest() > ground + 0.08; ++falling) REQUIRE_FALSE(world.step().touching);
+  REQUIRE(falling > 5);
+  for (int tick = 0; tick < 20; ++tick) world.step();
+  for (int tick = 0; tick < 60; ++tick) {
+    REQUIRE(world.step().touching);
+    REQUIRE_FALSE(world.report().violent);
+  }
+  for (Vec3<float>& x : world.state().x) x.y() += 0.5F;
+  world.accept_state();
+  CHECK_FALSE(world.step().touching);
+}
+
 TEST_CASE("with implicit no spring bounds the substep: a cloth a thousand times stiffer hangs") {
   WorldDef def = swing(17, 17);
   FabricDef& fabric = def.cloths[0].fabric;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -112,6 +113,11 @@ class ClothGuard {
   }
   Real reach() const { return reach_; }
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
+  /// Whether any cloth pressed against itself or another in the last step.
+  bool presses() const {
+    return std::any_of(rows_.begin(), rows_.end(),
+                       [](const GuardRow<Real>& row) { return row.push > 0; });
+  }
   /// Time of the forces that the rows' impulses stand against [s].
   Real kicked() const { return kicked_; }
   /// Pairs about which nothing is promised: features that cross or touch since the start, and

@@ -184,6 +184,17 @@ std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) cons
   return log_.contacts(rows_, x, kTouching, static_cast<double>(tick_seconds_));
 }
 
+template <class Real>
+bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
+  return std::any_of(rows_.begin(), rows_.end(), [&x](const ContactRow<Real>& row) {
+    if (!row.responds) return false;
+    Real height = -row.offset;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+      height += row.normal.dot(x[static_cast<std::size_t>(row.particle[k])]) * row.weight[k];
+    return height <= row.thickness * static_cast<Real>(kTouching);
+  });
+}
+
 /// Signed distance of a point from the nearest object; of meshes, only closed ones have an inside.
 template <class Real>
 Real Contact<Real>::signed_distance(const Vec3<Real>& p) const {

@@ -64,8 +64,7 @@ class Contact {
   /// Work of moving objects on the cloth in this tick [J].
   double work() const { return work_; }
 
-  /// Says that masses changed (a pin) or that the cloth was put elsewhere: the planes are not
-  /// valid.
+  /// Says that planes are not valid: masses changed (a pin), or the cloth was put elsewhere.
   void invalidate_rows() { rows_built_ = false; }
 
   /// Says that which cloths sleep has changed: their particles meet nothing, and it is the caller's
@@ -104,7 +103,8 @@ class Contact {
   /// Distance of a row's point of the cloth from the row's object where both are now [m]; from its
   /// plane, if the object has no inside.
   Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const;
-
+  /// Whether any point of the cloth touches an object now.
+  bool touches(const Vec3Array<Real>& x) const;
   /// Cloths that are inside objects because they started there.
   const std::vector<BadStart<Real>>& bad_starts() const { return exits_; }
 

@@ -39,6 +39,7 @@ SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>
 template <class Real>
 void SeedContact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   tick_seconds_ = tick_seconds;
+  touches_ = false;
   colliders_ = colliders;
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     const ColliderState& state = (*colliders)[k];
@@ -152,6 +153,7 @@ void SeedContact<Real>::respond(ClothState<Real>& state) {
     if (frame.moves) v -= frame.velocity_at(state.x[i]);
     const bool coming = v.dot(near.normal) < 0;
     const bool contact = near.distance < thickness_[cloth] && (coming || near.distance < 0);
+    touches_ = touches_ || contact;
     if (contact && coming) {
       state.v[i] = seed::after_contact<Real>(v, near.normal, friction_[cloth], dissipation_[cloth]);
       if (frame.moves) state.v[i] += frame.velocity_at(state.x[i]);
@@ -205,6 +207,7 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
       if (frame.moves) v -= frame.velocity_at(state.x[i]);
       const bool coming = v.dot(normal) < 0;
       if (!coming && outside) return;
+      touches_ = true;
       if (coming) {
         const Vec3<Real> change =
             (seed::after_contact<Real>(v, normal, friction_[cloth], dissipation_[cloth]) - v) /

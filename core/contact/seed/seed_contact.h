@@ -96,6 +96,9 @@ class SeedContact {
   /// Objects, after the particles have moved by v dt: eqs. (7) to (10) and the correction.
   void collide(ClothState<Real>& state, Real dt, Profile& profile);
 
+  /// Whether anything has met since the tick began.
+  bool touches() const { return touches_; }
+
  private:
   /// What of the objects is nearest to a particle.
   struct Nearest {
@@ -119,7 +122,7 @@ class SeedContact {
   std::uint64_t find_particle_pairs(const Vec3Array<Real>& x);
   std::uint64_t find_triangle_pairs(const Vec3Array<Real>& x);
   std::uint64_t find_edge_pairs(const Vec3Array<Real>& x);
-  static void take_approach(const SelfPair& pair, ClothState<Real>& state);
+  void take_approach(const SelfPair& pair, ClothState<Real>& state);
 
   // seed_contact.cpp
   void move_colliders(Real dt);
@@ -130,6 +133,7 @@ class SeedContact {
   std::uint64_t collide_edges(ClothState<Real>& state);
 
   SeedContactDef def_;
+  bool touches_ = false;
   Real reach_ = 0;                            ///< at which objects are looked for [m]
   std::vector<Index> cloth_of_;               ///< of each particle
   std::vector<Real> thickness_;               ///< h of each cloth [m]

@@ -115,6 +115,7 @@ void SeedContact<Real>::take_approach(const SelfPair& pair, ClothState<Real>& st
     inverse_mass[k] = state.inverse_mass[i];
   }
   if (!(speed < 0)) return;
+  touches_ = true;
   const Real impulse = seed::weighted_impulse(-speed, pair.weight, inverse_mass);
   for (std::size_t k = 0; k < 4; ++k)
     state.v[static_cast<std::size_t>(pair.particle[k])] +=

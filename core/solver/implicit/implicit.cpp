@@ -142,7 +142,7 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
     const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
-    if (work.refuses_violence && is_violent(step, before, after, brought, sound)) {
+    if (work.refuses && is_violent(step, before, after, brought, sound)) {
       work.violent = true;
       return false;
     }
@@ -222,7 +222,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   take_hands(step);
   for (typename ImplicitWorkspace<Real>::System& system : work.systems)
     std::visit([&](auto& s) { s.set_pinned(state.inverse_mass); }, system);
-  work.unsolved = work.violent = false;
+  work.unsolved = work.violent = work.touching = false;
   see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
     const Real count = static_cast<Real>(substeps), begin = static_cast<Real>(s) / count;
@@ -234,6 +234,8 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
     move(step, collision);
+    work.touching = work.refuses && collision.touches(state);
+    if (work.touching) return result;
     if (!collision.empty()) reading = energies_at(step, state.x, state.v);
   }
   work.end_x = state.x;

@@ -25,8 +25,8 @@ struct ImplicitDef {
   double tolerance = 0.02;  ///< of each linear system, as a part of what it begins with
 };
 
-/// Substeps a tick at the least where there is contact, which acts between them: what holds the
-/// cloth is not part of its equations, so its springs give way for a substep.
+/// Substeps a tick at the least where there is anything to meet: contact acts between them, and what
+/// holds the cloth is not part of its equations.
 inline constexpr int kFewestInContact = 4;
 
 /// Describes each field to `visit(info, value)`.
@@ -69,8 +69,9 @@ struct ImplicitWorkspace {
   double last_dt = 0;             ///< [s]; 0: no history
   double credit = 0;              ///< energy that was lost not long ago, and may come back [J]
   bool unsolved = false;          ///< a linear system of the last tick found no solution
-  bool refuses_violence = false;  ///< the coming tick ends at once where it is violent
-  bool violent = false;           ///< the last tick ended so
+  bool refuses = false;           ///< the coming tick ends at once where it is violent or touches
+  bool violent = false;           ///< the last tick ended as it was
+  bool touching = false;          ///< the last tick ended as something touched
   double violent_energy = 0;      ///< below which nothing is [J]
 
   void prepare(const ClothModel<Real>& model);
@@ -89,8 +90,10 @@ struct ImplicitWorkspace {
 /// linear systems are not solved, is gone again by backward Euler in 1, 2, 4 ... pieces, which
 /// AdvanceResult::damped_substeps tells. A substep is violent that brings or loses a
 /// tenth of the energy of a cloth that is fast and stretched far: in one long step the waves in it
-/// are lost, and it comes to rest in tucks that they would have shaken out. Where
-/// `refuses_violence` is set, the tick ends there for somebody else to go it.
+/// are lost, and it comes to rest in tucks that they would have shaken out. And as contact acts
+/// after the linear systems, what it holds gives way for a whole substep to what pulls at it;
+/// friction, which lives on the pressure, then lets a strip slip over a bar that should hold it.
+/// Where `refuses` is set, ticks end at both for somebody else to go them.
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1

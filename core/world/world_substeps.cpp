@@ -1,0 +1,87 @@
+// How many substeps a tick has.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/world/world.h"
+
+namespace weft {
+namespace {
+
+/// Hands get at most so many times the substeps that the cloth needs, or so many a tick.
+constexpr long kMostForHands = 2, kEnoughForHands = 40;
+
+}  // namespace
+
+template <class Real>
+int World<Real>::choose_substeps(SolverKind kind) const {
+  if (kind == SolverKind::implicit) {
+    const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
+    return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
+  }
+  const int fewest =
+      kind == SolverKind::relaxation ? def_.relaxation.substeps : def_.solver.min_substeps;
+  long count = 0;
+  for (const ClothPart<Real>& part : model_.parts)
+    count = std::max(count, substeps_for(stability_bound(part, kind), tick_seconds(), fewest));
+  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(kind, count, fewest));
+  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+}
+
+/// No hand needs more than the cloth to be stable, but what one presses against an object or into
+/// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
+/// springs.
+template <class Real>
+long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const {
+  const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
+  long count = 0;
+  for (const ClothPart<Real>& part : model_.parts) {
+    StabilityBound hands;
+    for (const Grab<Real>& grab : grabs_.list) {
+      if (!part.triangles.contains(grab.def.triangle)) continue;
+      hands.omega2 += grab.bound.omega2;
+      hands.damping_rate += grab.bound.damping_rate;
+      count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
+    }
+    if (hands.omega2 == 0) continue;
+    StabilityBound together = stability_bound(part, kind);
+    together.omega2 += hands.omega2;
+    together.damping_rate += hands.damping_rate;
+    count =
+        std::max(count, std::min(kEnoughForHands, substeps_for(together, tick_seconds(), fewest)));
+  }
+  return count;
+}
+
+template <class Real>
+StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind) const {
+  StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
+  if (kind == SolverKind::verlet) {  // there the springs are forces too
+    bound.omega2 += part.bounds.membrane_omega2;
+    bound.damping_rate += part.bounds.membrane_damping_rate;
+  }
+  if (!has_air(environment_)) return bound;
+  // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
+  double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
+  for (const FanDef& fan : environment_.fans) fastest += fan.speed;
+  double speed2 = 0;
+  for (Index i = part.particles.first; i < part.particles.end(); ++i)
+    speed2 =
+        std::max(speed2, static_cast<double>(state_.v[static_cast<std::size_t>(i)].squaredNorm()));
+  fastest += std::sqrt(speed2);
+  const FabricDef& fabric = part.fabric;
+  bound.damping_rate +=
+      (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
+      fabric.areal_density;
+  return bound;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                \
+  template int World<Real>::choose_substeps(SolverKind) const;                \
+  template long World<Real>::substeps_for_hands(SolverKind, long, int) const; \
+  template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind) const;
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
