@@ -13,9 +13,9 @@ namespace {
 /// How often a tick that diverged is tried again, each time with twice the substeps.
 constexpr int kMostRetries = 2;
 
-/// With the solver implicit, verlet goes the ticks that are violent or in which anything touches,
-/// if it needs no more substeps than that (see advance_implicit).
-constexpr int kMostForVerlet = 2000;
+/// With the solver implicit, verlet goes the ticks that are violent or in which anything touches
+/// or could (see advance_implicit), if its substeps are at least that long [s].
+constexpr double kShortestForVerlet = 1.0 / 120000;
 
 template <class Real>
 double total_mass(const ClothModel<Real>& model) {
@@ -208,7 +208,8 @@ void World<Real>::advance_or_recover(int substeps) {
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
     implicit_.violent = implicit_.touching = false;
-    implicit_.refuses = without_loss <= kMostForVerlet;
+    implicit_.refuses =
+        without_loss <= kMostSubsteps && tick_seconds() >= without_loss * kShortestForVerlet;
     if (touching_ && implicit_.refuses) {
       kind = SolverKind::verlet;
       substeps = without_loss;

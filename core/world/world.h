@@ -60,7 +60,7 @@ struct TickReport {
   double largest_strain = 0;
   int damped_substeps = 0;  ///< that the solver implicit had to go again by backward Euler
   bool violent = false;     ///< gone by verlet, as the solver implicit would have lost too much
-  bool touching = false;    ///< gone by verlet instead of implicit, as something touched
+  bool touching = false;    ///< gone by verlet instead of implicit, as something touched or could
   bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
   std::optional<Divergence> divergence;
   Profile profile;

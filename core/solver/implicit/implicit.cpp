@@ -13,6 +13,9 @@ constexpr double kRounding = 1e-4;
 /// Part of the energy that was lost that may come back, kept each tick: for a moment the scheme has
 /// what a wave brings back in the next.
 constexpr double kKeptCredit = 0.9;
+/// Longest way of a particle beside the others in a substep that the guard shall keep apart, in
+/// mean lengths of the edges.
+constexpr double kFarWay = 1;
 /// Into how many pieces a substep is cut at the most.
 constexpr int kMostPieces = 64;
 /// Part of the kinetic and elastic energy that a violent substep takes.
@@ -152,6 +155,21 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading
   }
 }
 
+/// Whether anybody goes so far beside the others in a substep that the guard would look at half the
+/// cloth to keep him off it, and would stop him on the way.
+template <class Real>
+bool goes_far(const Step<Real>& step, const Collision<Real>& collision) {
+  if (!collision.guard) return false;
+  const Vec3Array<Real>& ways = step.work.way;
+  Vec3<Real> mean = Vec3<Real>::Zero();
+  for (const Vec3<Real>& way : ways) mean += way;
+  mean /= static_cast<Real>(ways.size());
+  const auto far = static_cast<Real>(step.work.far_way);
+  return std::any_of(ways.begin(), ways.end(), [&mean, far](const Vec3<Real>& way) {
+    return (way - mean).squaredNorm() > far * far;
+  });
+}
+
 /// Goes the ways as far as contact lets. Who was not hindered has the scheme's velocity at the end;
 /// who was has the mean one, and begins anew.
 template <class Real>
@@ -203,7 +221,16 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   for (GridVector<Real>* vector : {&residual, &step, &direction, &product, &preconditioned})
     vector->assign(longest, Real(0));
   last_dt = credit = 0;
-  double mass = 0;
+  double lengths = 0, mass = 0;
+  for (const Edge& edge : model.edges) {
+    const auto end = [&](std::size_t k) {
+      return model.rest_positions[static_cast<std::size_t>(edge[k])];
+    };
+    lengths += static_cast<double>((end(0) - end(1)).norm());
+  }
+  const double mean_length =
+      lengths / static_cast<double>(std::max<std::size_t>(model.edges.size(), 1));
+  far_way = kFarWay * mean_length;
   for (const Real m : model.mass) mass += static_cast<double>(m);
   violent_energy = mass * kViolentSpeed * kViolentSpeed / 2;
 }
@@ -233,6 +260,8 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     if (work.violent) return result;
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
+    work.touching = work.refuses && goes_far(step, collision);
+    if (work.touching) return result;
     move(step, collision);
     work.touching = work.refuses && collision.touches(state);
     if (work.touching) return result;

@@ -69,10 +69,11 @@ struct ImplicitWorkspace {
   double last_dt = 0;             ///< [s]; 0: no history
   double credit = 0;              ///< energy that was lost not long ago, and may come back [J]
   bool unsolved = false;          ///< a linear system of the last tick found no solution
-  bool refuses = false;           ///< the coming tick ends at once where it is violent or touches
+  bool refuses = false;           ///< the coming tick ends where it is violent or touches
   bool violent = false;           ///< the last tick ended as it was
   bool touching = false;          ///< the last tick ended as something touched
   double violent_energy = 0;      ///< below which nothing is [J]
+  double far_way = 0;             ///< see goes_far() [m]
 
   void prepare(const ClothModel<Real>& model);
 };
@@ -93,7 +94,8 @@ struct ImplicitWorkspace {
 /// are lost, and it comes to rest in tucks that they would have shaken out. And as contact acts
 /// after the linear systems, what it holds gives way for a whole substep to what pulls at it;
 /// friction, which lives on the pressure, then lets a strip slip over a bar that should hold it.
-/// Where `refuses` is set, ticks end at both for somebody else to go them.
+/// Nor can cloth be kept off cloth whose particles go far beside each other in one step. Where
+/// `refuses` is set, ticks end at each of these for somebody else to go them.
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1
