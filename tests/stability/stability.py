@@ -163,20 +163,25 @@ def brief(failures):
     return re.sub(r"\d+\.\d{4,}", lambda number: f"{float(number[0]):.3g}", "; ".join(failures))
 
 
-def rows_of(section):
-    """The rows of a section on other solvers, by case."""
-    return {line.split(" ")[1]: line + "\n" for line in section.splitlines() if line.startswith("| hard-")}
+def cells_of(section):
+    """What a section on other solvers tells, by case and solver."""
+    solvers, told = [], {}
+    for line in section.splitlines():
+        cells = line.strip("| ").split(" | ")
+        if line.startswith("| case |"):
+            solvers = cells[1:]
+        elif line.startswith("| hard-"):
+            told[cells[0]] = dict(zip(solvers, cells[1:]))
+    return told
 
 
 def verdict_cell(result):
-    if result is None:
-        return "–"
     verdict = result["verdict"]
     return "passes" if verdict["passed"] else "**fails**: " + brief(verdict["failures"])
 
 
 def solvers_report(results, ticks, known=None):
-    """The section on other solvers, from what the cases told with each, and known rows of others."""
+    """The section on other solvers, from what the cases told with each, and what is known of the others."""
     settings = "; ".join(f"`{' '.join(sets)}` ({name})" for name, sets in SOLVERS.items())
     text = SOLVERS_HEAD.format(
         ticks=ticks,
@@ -185,11 +190,13 @@ def solvers_report(results, ticks, known=None):
         names=" | ".join(SOLVERS),
         rules="---|" * len(SOLVERS),
     )
-    rows = dict(known or {})
-    for case in next(iter(results.values())):
-        cells = [verdict_cell(results[name].get(case)) for name in SOLVERS]
-        rows[case] = f"| {case} | " + " | ".join(cells) + " |\n"
-    return text + "".join(rows.values())
+    told = {case: dict((known or {}).get(case, {})) for case in cases()}
+    for solver, of_cases in results.items():
+        for case, result in of_cases.items():
+            told[case][solver] = verdict_cell(result)
+    for case, cells in told.items():
+        text += f"| {case} | " + " | ".join(cells.get(solver, "–") for solver in SOLVERS) + " |\n"
+    return text
 
 
 def without_solvers(text):
@@ -204,12 +211,16 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="cases at the same time")
     parser.add_argument("--write", action="store_true", help="write README.md")
     parser.add_argument("--write-solvers", action="store_true", help="write its last section")
+    parser.add_argument("--solvers", nargs="+", choices=SOLVERS, default=[], help="with --write-solvers: these "
+                                                                                  "alone, the other columns stay")
     parser.add_argument("--cases", nargs="+", default=[], help="run these alone; of the last section the other "
                                                                "rows stay, --write wants all")
     options = parser.parse_args()
     if options.write and options.cases:
         parser.error("--write wants all cases")
-    solvers = SOLVERS if options.write_solvers else {"": []}
+    solvers = {"": []}
+    if options.write_solvers:
+        solvers = {name: SOLVERS[name] for name in options.solvers or SOLVERS}
     results = {}
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for solver, settings in solvers.items():
@@ -224,7 +235,8 @@ def main():
     if options.write:
         readme.write_text(report(results[""], options.ticks) + section, encoding="utf-8")
     if options.write_solvers:
-        section = solvers_report(results, options.ticks, rows_of(section) if options.cases else None)
+        keeps = options.cases or options.solvers
+        section = solvers_report(results, options.ticks, cells_of(section) if keeps else None)
         readme.write_text(before + section, encoding="utf-8")
 
 
