@@ -6,6 +6,8 @@
 #define WEFT_TRIPLE_INL_H
 #endif
 
+#include <array>
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -59,17 +61,40 @@ HWY_INLINE Triple<V> drop_if(M mask, const Triple<V>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// The first three numbers of quads: four vectors hold every fourth quad from the k-th on.
+/// The numbers of quads: four vectors hold every fourth quad from the k-th on.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Triple<V> transposed(D d, V p0, V p1, V p2, V p3) {
+HWY_INLINE std::array<V, 4> transposed_four(D d, V p0, V p1, V p2, V p3) {
   const hn::Repartition<double, D> wide;
   const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, p0, p1)),
              xy23 = hn::BitCast(wide, hn::InterleaveLower(d, p2, p3)),
-             z01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
-             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
+             zw01 = hn::BitCast(wide, hn::InterleaveUpper(d, p0, p1)),
+             zw23 = hn::BitCast(wide, hn::InterleaveUpper(d, p2, p3));
   return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
           hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveLower(wide, z01, z23))};
+          hn::BitCast(d, hn::InterleaveLower(wide, zw01, zw23)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, zw01, zw23))};
+}
+
+/// The first three of them.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> transposed(D d, V p0, V p1, V p2, V p3) {
+  const auto four = transposed_four(d, p0, p1, p2, p3);
+  return {four[0], four[1], four[2]};
+}
+
+/// The other way, with 0 as the fourth number of the quads.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE std::array<V, 4> transposed_back(D d, const Triple<V>& a) {
+  const hn::Repartition<double, D> wide;
+  const auto zero = hn::Zero(d);
+  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, a.x, a.y)),
+             xy23 = hn::BitCast(wide, hn::InterleaveUpper(d, a.x, a.y)),
+             z01 = hn::BitCast(wide, hn::InterleaveLower(d, a.z, zero)),
+             z23 = hn::BitCast(wide, hn::InterleaveUpper(d, a.z, zero));
+  return {hn::BitCast(d, hn::InterleaveLower(wide, xy01, z01)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, xy01, z01)),
+          hn::BitCast(d, hn::InterleaveLower(wide, xy23, z23)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, xy23, z23))};
 }
 #endif
 

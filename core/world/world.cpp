@@ -280,7 +280,10 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
                                collision(), state_, relaxation_, report_.profile);
   result.work += contact_.work() + pin_drive_.work();
-  if (guard_) result.work += guard_->work();
+  if (guard_) {
+    result.work += guard_->work();
+    guard_->end_tick();
+  }
   return result;
 }
 

@@ -83,8 +83,7 @@ Index ClothGuard<Real>::part_of(Index particle) const {
 template <class Real>
 void ClothGuard<Real>::reset() {
   collected_ = rows_built_ = false;
-  rows_.clear();
-  row_slabs_.clear();
+  forget_rows();
   arrived_.clear();
   passed_.clear();
   pairs_.clear();

@@ -16,7 +16,7 @@
 #include "core/contact/guard/guard_row.h"
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/patch_boxes.h"
-#include "core/contact/guard/row_slabs.h"
+#include "core/contact/guard/row_deals.h"
 #include "core/contact/tangles/cloth_tangles.h"
 #include "core/executor.h"
 #include "core/world/profile.h"
@@ -112,12 +112,10 @@ class ClothGuard {
     return to_vector(on_path(particle, elapsed_));
   }
   Real reach() const { return reach_; }
+  /// At the end of a tick.
   const std::vector<GuardRow<Real>>& rows() const { return rows_; }
   /// Whether any cloth pressed against itself or another in the last step.
-  bool presses() const {
-    return std::any_of(rows_.begin(), rows_.end(),
-                       [](const GuardRow<Real>& row) { return row.push > 0; });
-  }
+  bool presses() const { return row_deals_.pushes(); }
   /// Time of the forces that the rows' impulses stand against [s].
   Real kicked() const { return kicked_; }
   /// Pairs about which nothing is promised: features that cross or touch since the start, and
@@ -130,6 +128,8 @@ class ClothGuard {
   void begin_tick() { tangles_.begin_tick(); }
   /// Work since then on what started through each other [J].
   double work() const { return tangles_.work(); }
+  /// Says that it ends: `rows` is up to date.
+  void end_tick() { row_deals_.give_back(rows_, executor_); }
   /// The cloths, two by two and each two once, that started through each other or themselves and
   /// are not apart yet. Allocates.
   std::vector<std::array<Index, 2>> tangled_cloths() const;
@@ -271,18 +271,16 @@ class ClothGuard {
                     const PairSeparation<Real>& s) const;
 
   // guard_solve.cpp
+  void forget_rows();
+  void look_at_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void load_rows(const ClothState<Real>& state);
   void store_rows(ClothState<Real>& state) const;
-  void aim(GuardRow<Real>& row, Real dt) const;
-  Real solve_row(GuardRow<Real>& row);
   void find_busy_rows(Real dt);
   bool is_busy(GuardRow<Real>& row, Real time) const;
   void warm_rows(Real dt, Real kicked);
-  Real kept_part(const GuardRow<Real>& row) const;
-  Real pressure_on(const GuardRow<Real>& row) const;
   Real sweep_rows();
   void measure_pressures();
-  Real lack_of(const GuardRow<Real>& row) const;
+  Real push_rows(std::span<const RowBlock<Real>> blocks);
 
   Index part_of(Index particle) const;
 
@@ -362,9 +360,9 @@ class ClothGuard {
   std::vector<char> is_tight_;
 
   // Rows.
-  bool rows_built_ = false;
-  QuadArray<Real> x_rows_;  ///< when the rows of each particle were made [m]
-  Real rows_time_ = 0;      ///< since all were looked at more closely [s]
+  bool rows_built_ = false, rows_lack_ = false;  ///< rows_lack_: some of their radius
+  QuadArray<Real> x_rows_;                       ///< when the rows of each particle were made [m]
+  Real rows_time_ = 0;                           ///< since all were looked at more closely [s]
   int rows_steps_ = 0;
   Real kicked_ = 0;       ///< time of the forces that the rows' impulses stand against [s]
   bool upwards_ = false;  ///< which way the last sweep went
@@ -384,9 +382,11 @@ class ClothGuard {
   QuadArray<Real> extra_;                   ///< velocity of the push [m/s]
   RowSlabs<Real> row_slabs_;                ///< those that push or soon may are busy
   bool rows_listed_ = false;                ///< there, all of them
+  RowDeals<Real> row_deals_;                ///< the busy ones between two looks
   std::vector<TurnPart<Real>> turn_parts_;  ///< of each of their lists
   std::vector<Real> inverse_area_;          ///< of fabric that belongs to each particle [1/m^2]
-  std::vector<Real> pressure_;              ///< about particles in rows, now [Pa]
+  std::vector<Real> pressure_;              ///< about particles in rows, at the last look [Pa]
+  Real most_pressure_ = 0;                  ///< of these [Pa]
   std::vector<Index> pushed_;
   std::vector<char> is_pushed_;
   Vec3Array<Real> pushed_v_;  ///< their velocities with it

@@ -28,6 +28,14 @@ struct GuardRow {
   std::uint64_t key = 0;  ///< of the pair
 };
 
+/// Rows are looked at every so many steps: whose particles have moved, which are busy, and how
+/// those that push lie. Between looks none changes but by its responses.
+inline constexpr int kStepsBetweenLooks = 4;
+
+/// Rows that have no particle in common; behind them kNone.
+inline constexpr std::size_t kBatchRows = 8;
+using RowBatch = std::array<Index, kBatchRows>;
+
 /// sum w of what the particles of a row have.
 template <class Real>
 Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
@@ -53,13 +61,6 @@ PairKind kind_of(const GuardRow<Real>& row) {
 template <class Real>
 Index triangle_of(const GuardRow<Real>& row) {
   return static_cast<Index>(row.key & 0x7fffffff);
-}
-
-/// Gives an impulse [N s] to the particles of a row, or what else is shared out like that.
-template <class Real>
-void share_out(const GuardRow<Real>& row, const Quad<Real>& impulse, QuadArray<Real>& velocities) {
-  for (std::size_t k = 0; k < 4; ++k)
-    velocities[static_cast<std::size_t>(row.particle[k])] += impulse * row.share[k];
 }
 
 }  // namespace weft

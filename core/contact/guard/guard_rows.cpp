@@ -13,11 +13,10 @@ namespace {
 /// they come nearer in twice the time that rows last.
 constexpr double kRowMargin = 0.1;
 
-/// The rows of a particle are made anew when it moved by this part of the thickness, which is
-/// looked at every so many steps; after this time [s], by a smaller part, within the margin: what
+/// The rows of a particle are made anew when it moved by this part of the thickness; after this
+/// time [s], by a smaller part, within the margin: what
 /// rests keeps its rows, which turn with their features.
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
-constexpr int kStepsBetweenMotions = 4;
 
 /// Pairs are looked at in parts with at least so many.
 constexpr std::size_t kPairsAtLeast = 512;
@@ -49,7 +48,7 @@ bool ClothGuard<Real>::find_moved() {
     rows_steps_ = 0;
     return true;
   }
-  if (rows_steps_ % kStepsBetweenMotions != 0) return false;
+  if (rows_steps_ % kStepsBetweenLooks != 0) return false;
   const bool old = rows_time_ > static_cast<Real>(kLongestRows);
   if (old) rows_time_ = 0;
   const Real most = thickest_ * static_cast<Real>(old ? kRestMotion : kRowMotion);
@@ -203,8 +202,10 @@ void ClothGuard<Real>::add_arrived(const ClothState<Real>& state, Profile& profi
     GuardRow<Real> row;
     if (has_row(pair)) continue;
     if (!make_row(state, pair, separate_pair(pair.kind, points(pair, legal_)), row)) continue;
-    row_slabs_.add(static_cast<Index>(rows_.size()), pair.particle);
+    const auto number = static_cast<Index>(rows_.size());
+    const std::size_t list = row_slabs_.add(number, pair.particle);
     add_row(row);
+    row_deals_.add(list, number, rows_);
   }
   arrived_.clear();
 }

@@ -11,6 +11,21 @@
 
 namespace weft {
 
+/// Calls work(k) for k from 0 on below kParts, of which every second one has nothing in common with
+/// another such: these at the same time, those between at the same time, and the last alone.
+/// @param upwards  in this order, or the other way
+template <std::size_t kParts, class Work>
+void for_every_second(Executor* executor, bool upwards, Work&& work) {
+  const auto from = [&](std::size_t first) {
+    run_chunks(executor, static_cast<int>(kParts / 2),
+               [&](int chunk) { work(2 * static_cast<std::size_t>(chunk) + first); });
+  };
+  if (!upwards) work(kParts - 1);
+  from(upwards ? 0 : 1);
+  from(upwards ? 1 : 0);
+  if (upwards) work(kParts - 1);
+}
+
 /// Rows of contact, sorted so that they can be swept on several threads with the same bits as on
 /// one. Space is cut into slabs with equally many particles, and a row belongs to the first slab
 /// that it has a particle in. Rows are short: nearly all reach no farther than the slab behind.
@@ -31,12 +46,13 @@ class RowSlabs {
 
   /// Forgets all rows.
   void clear();
-  /// Adds a row at the end of its list, as one that is busy.
-  void add(Index row, const std::array<Index, 4>& particles) {
+  /// Adds a row at the end of its list, as one that is busy. @return number of the list
+  std::size_t add(Index row, const std::array<Index, 4>& particles) {
     const std::uint8_t list = list_of(particles);
     rows_[list].push_back(row);
     busy_[list].push_back(row);
     ++busy_count_;
+    return list;
   }
   /// Chooses the busy rows, which alone are visited: those for which is_busy(row) is true, which
   /// may change what belongs to the row.
@@ -128,14 +144,7 @@ Real RowSlabs<Real>::largest(Executor* executor, bool upwards, Visit&& visit) {
     }
     of_list[slab] = most;
   };
-  const auto sweep_every_second = [&](std::size_t first) {
-    run_chunks(are_few() ? nullptr : executor, static_cast<int>(kSlabs / 2),
-               [&](int chunk) { sweep(2 * static_cast<std::size_t>(chunk) + first); });
-  };
-  if (!upwards) sweep(kSlabs);
-  sweep_every_second(upwards ? 0 : 1);
-  sweep_every_second(upwards ? 1 : 0);
-  if (upwards) sweep(kSlabs);
+  for_every_second<kLists>(are_few() ? nullptr : executor, upwards, sweep);
   return *std::max_element(of_list.begin(), of_list.end());
 }
 

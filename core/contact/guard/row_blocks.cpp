@@ -1,0 +1,87 @@
+#include "core/contact/guard/row_blocks.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/contact/guard/row_blocks.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Compiled once for each instruction set; the second inclusion guard belongs to that.
+#include "core/contact/guard/row_blocks-inl.h"
+
+#if HWY_ONCE
+namespace weft {
+
+HWY_EXPORT(take_f32);
+HWY_EXPORT(warm_f32);
+HWY_EXPORT(warm_f64);
+HWY_EXPORT(sweep_f32);
+HWY_EXPORT(sweep_f64);
+
+void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<float>> rows,
+               std::span<RowBlock<float>> blocks) {
+  HWY_DYNAMIC_DISPATCH(take_f32)(batches, rows, blocks);
+}
+void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<double>> rows,
+               std::span<RowBlock<double>> blocks) {
+  for (std::size_t n = 0; n < batches.size(); ++n) blocks[n] = {batches[n], rows};
+}
+bool warm_rows(std::span<RowBlock<float>> blocks, const RowPass<float>& pass) {
+  return HWY_DYNAMIC_DISPATCH(warm_f32)(blocks, pass);
+}
+bool warm_rows(std::span<RowBlock<double>> blocks, const RowPass<double>& pass) {
+  return HWY_DYNAMIC_DISPATCH(warm_f64)(blocks, pass);
+}
+float sweep_rows(std::span<RowBlock<float>> blocks, bool upwards, const RowPass<float>& pass) {
+  return HWY_DYNAMIC_DISPATCH(sweep_f32)(blocks, upwards, pass);
+}
+double sweep_rows(std::span<RowBlock<double>> blocks, bool upwards, const RowPass<double>& pass) {
+  return HWY_DYNAMIC_DISPATCH(sweep_f64)(blocks, upwards, pass);
+}
+
+template <class Real>
+RowBlock<Real>::RowBlock(const RowBatch& batch, std::span<const GuardRow<Real>> rows)
+    : row(batch), lacks(0), count(0) {
+  const GuardRow<Real> none = idle_row(rows[static_cast<std::size_t>(batch[0])]);
+  for (std::size_t k = 0; k < kBatchRows; ++k) {
+    const bool any = batch[k] != kNone;
+    const GuardRow<Real>& from = any ? rows[static_cast<std::size_t>(batch[k])] : none;
+    count += any ? 1 : 0;
+    for (std::size_t n = 0; n < 4; ++n) {
+      place[n][k] = 4 * static_cast<std::uint32_t>(from.particle[n]);
+      weight[n][k] = from.weight[n];
+      share[n][k] = from.share[n];
+    }
+    for (int c = 0; c < 3; ++c) {
+      const auto axis = static_cast<std::size_t>(c);
+      normal[axis][k] = from.normal[c];
+      drag[axis][k] = from.drag[c];
+      slip[axis][k] = from.slip[c];
+      apart[axis][k] = from.apart[c];
+    }
+    inertia[k] = from.inertia;
+    radius[k] = from.radius;
+    friction[k] = from.friction;
+    room[k] = from.room;
+    least_speed[k] = from.least_speed;
+    push[k] = from.push;
+  }
+}
+
+template <class Real>
+void RowBlock<Real>::give_back(std::span<GuardRow<Real>> rows) const {
+  for (std::size_t k = 0; k < count; ++k) {
+    GuardRow<Real>& to = rows[static_cast<std::size_t>(row[k])];
+    to.drag = quad(drag, k);
+    to.slip = quad(slip, k);
+    to.apart = quad(apart, k);
+    to.room = room[k];
+    to.least_speed = least_speed[k];
+    to.push = push[k];
+  }
+}
+
+template struct RowBlock<float>;
+template struct RowBlock<double>;
+
+}  // namespace weft
+#endif
