@@ -5,6 +5,9 @@
 namespace weft {
 namespace {
 
+/// With fewer rows threads take longer to meet than blocks take to respond.
+constexpr std::size_t kFewRows = 2000;
+
 RowBatch batch_of(Index row) {
   RowBatch batch;
   batch.fill(kNone);
@@ -36,7 +39,7 @@ template <class Real>
 void RowDeals<Real>::take(const RowSlabs<Real>& slabs, std::span<const GuardRow<Real>> rows,
                           std::size_t particles, Executor* executor) {
   next_batch_.resize(particles, 0);
-  few_ = slabs.are_few();
+  few_ = slabs.size() < kFewRows;
   changed_ = false;
   number_batches(slabs);
   for_every_second<kDeals>(few_ ? nullptr : executor, true,

@@ -61,6 +61,8 @@ class RowSlabs {
 
   /// Whether no row is busy.
   bool empty() const { return busy_count_ == 0; }
+  /// How many are busy.
+  std::size_t size() const { return busy_count_; }
   /// Whether so few are that other threads are no help.
   bool are_few() const { return busy_count_ < kFewRows; }
   /// The busy rows of a list, of kLists.
@@ -93,15 +95,15 @@ class RowSlabs {
   /// Calls visit(particle) for each particle that is listed, which may change what belongs to it.
   template <class Visit>
   void visit_particles(Executor* executor, Visit&& visit) const {
-    run_chunks(particle_count_ < kFewRows ? nullptr : executor, static_cast<int>(kSlabs),
+    run_chunks(particle_count_ < kFewParticles ? nullptr : executor, static_cast<int>(kSlabs),
                [&](int slab) {
                  for (const Index i : particles_[static_cast<std::size_t>(slab)]) visit(i);
                });
   }
 
  private:
-  /// With fewer rows threads take longer to meet than to sweep.
-  static constexpr std::size_t kFewRows = 600;
+  /// With fewer rows or particles threads take longer to meet than to visit them.
+  static constexpr std::size_t kFewRows = 600, kFewParticles = 16384;
 
   /// The list that a row belongs to.
   std::uint8_t list_of(const std::array<Index, 4>& particles) const;
