@@ -25,8 +25,8 @@ struct ImplicitDef {
   double tolerance = 0.02;  ///< of each linear system, as a part of what it begins with
 };
 
-/// Substeps a tick at the least where there is anything to meet: contact acts between them, and what
-/// holds the cloth is not part of its equations.
+/// Substeps a tick at the least where there is anything to meet: contact acts between them, and
+/// what holds the cloth is not part of its equations.
 inline constexpr int kFewestInContact = 4;
 
 /// Describes each field to `visit(info, value)`.
@@ -66,14 +66,14 @@ struct ImplicitWorkspace {
   std::size_t hand_count = 0;
   std::vector<double> starts;  ///< of each part's first linear system of a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
-  double last_dt = 0;             ///< [s]; 0: no history
-  double credit = 0;              ///< energy that was lost not long ago, and may come back [J]
-  bool unsolved = false;          ///< a linear system of the last tick found no solution
-  bool refuses = false;           ///< the coming tick ends where it is violent or touches
-  bool violent = false;           ///< the last tick ended as it was
-  bool touching = false;          ///< the last tick ended as something touched
-  double violent_energy = 0;      ///< below which nothing is [J]
-  double far_way = 0;             ///< see goes_far() [m]
+  double last_dt = 0;         ///< [s]; 0: no history
+  double credit = 0;          ///< energy that was lost not long ago, and may come back [J]
+  bool unsolved = false;      ///< a linear system of the last tick found no solution
+  bool refuses = false;       ///< the coming tick ends where it is violent or touches
+  bool violent = false;       ///< the last tick ended as it was
+  bool touching = false;      ///< the last tick ended as something touched
+  double violent_energy = 0;  ///< below which nothing is [J]
+  double far_way = 0;         ///< see goes_far() [m]
 
   void prepare(const ClothModel<Real>& model);
 };
