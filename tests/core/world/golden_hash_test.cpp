@@ -23,9 +23,12 @@ WorldDef mesh_scene() {
   ClothMesh mesh;
   Random random(5);
   for (int r = 0; r < kSide; ++r) {
-    for (int c = 0; c < kSide; ++c)
-      mesh.mesh.positions.emplace_back(0.04 * c + 0.01 * random.uniform(0, 1),
-                                       0.6 + 0.01 * random.uniform(0, 1), 0.04 * r);
+    for (int c = 0; c < kSide; ++c) {
+      // One after the other: compilers differ in the order of a call's arguments.
+      const double y = 0.6 + 0.01 * random.uniform(0, 1);
+      const double x = 0.04 * c + 0.01 * random.uniform(0, 1);
+      mesh.mesh.positions.emplace_back(x, y, 0.04 * r);
+    }
   }
   for (Index r = 0; r + 1 < kSide; ++r) {
     for (Index c = 0; c + 1 < kSide; ++c) {
