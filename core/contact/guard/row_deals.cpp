@@ -72,10 +72,10 @@ void RowDeals<Real>::deal(std::size_t number, const RowSlabs<Real>& slabs,
                           std::span<const GuardRow<Real>> rows) {
   batches_[number].clear();
   open_[number].clear();
-  static const std::vector<Index> kNoRows;
+  static const std::vector<Index> no_rows;
   const bool is_long = number == kPairs;
   const std::vector<Index>& a = slabs.list(is_long ? RowSlabs<Real>::kSlabs : number);
-  const std::vector<Index>& b = is_long ? kNoRows : slabs.list(number + kPairs);
+  const std::vector<Index>& b = is_long ? no_rows : slabs.list(number + kPairs);
   const auto deal_row = [&](Index row) {
     deal(number, row, rows[static_cast<std::size_t>(row)].particle);
   };

@@ -58,8 +58,8 @@ class RowDeals {
     return list == RowSlabs<Real>::kSlabs ? kPairs : list % kPairs;
   }
   void number_batches(const RowSlabs<Real>& slabs);
-  void deal(std::size_t deal, const RowSlabs<Real>& slabs, std::span<const GuardRow<Real>> rows);
-  void deal(std::size_t deal, Index row, const std::array<Index, 4>& particles);
+  void deal(std::size_t number, const RowSlabs<Real>& slabs, std::span<const GuardRow<Real>> rows);
+  void deal(std::size_t number, Index row, const std::array<Index, 4>& particles);
 
   std::array<std::vector<RowBlock<Real>>, kDeals> blocks_;
   std::array<std::vector<RowBatch>, kDeals> batches_;  ///< before they are blocks

@@ -11,19 +11,19 @@
 
 namespace weft {
 
-/// Calls work(k) for k from 0 on below kParts, of which every second one has nothing in common with
+/// Calls work(k) for k from 0 on below Parts, of which every second one has nothing in common with
 /// another such: these at the same time, those between at the same time, and the last alone.
 /// @param upwards  in this order, or the other way
-template <std::size_t kParts, class Work>
+template <std::size_t Parts, class Work>
 void for_every_second(Executor* executor, bool upwards, Work&& work) {
   const auto from = [&](std::size_t first) {
-    run_chunks(executor, static_cast<int>(kParts / 2),
+    run_chunks(executor, static_cast<int>(Parts / 2),
                [&](int chunk) { work(2 * static_cast<std::size_t>(chunk) + first); });
   };
-  if (!upwards) work(kParts - 1);
+  if (!upwards) work(Parts - 1);
   from(upwards ? 0 : 1);
   from(upwards ? 1 : 0);
-  if (upwards) work(kParts - 1);
+  if (upwards) work(Parts - 1);
 }
 
 /// Rows of contact, sorted so that they can be swept on several threads with the same bits as on
