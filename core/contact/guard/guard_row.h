@@ -19,8 +19,9 @@ struct GuardRow {
   Quad<Real> drag;                           ///< friction's impulse in a substep [N s]
   Quad<Real> slip;                           ///< displacement since it sticks [m]
   Quad<Real> apart;                          ///< sum w x when it was last aimed [m]
-  Real inertia = 0;                          ///< 1 / (sum of weight x share) [kg]
-  Real radius = 0;                           ///< that the gap shall keep [m]
+  // Blocks take over the rest four numbers at a time, in this order.
+  Real inertia = 0;  ///< 1 / (sum of weight x share) [kg]
+  Real radius = 0;   ///< that the gap shall keep [m]
   Real friction = 0;
   Real room = 0;          ///< of the gap above the radius, now [m]
   Real least_speed = 0;   ///< that the normal velocity must reach now [m/s]

@@ -14,8 +14,8 @@ namespace {
 constexpr double kRowMargin = 0.1;
 
 /// The rows of a particle are made anew when it moved by this part of the thickness; after this
-/// time [s], by a smaller part, within the margin: what
-/// rests keeps its rows, which turn with their features.
+/// time [s], by a smaller part, within the margin: what rests keeps its rows, which turn with their
+/// features.
 constexpr double kLongestRows = 1.0 / 120, kRowMotion = 0.5, kRestMotion = 0.05;
 
 /// Pairs are looked at in parts with at least so many.

@@ -69,17 +69,9 @@ class RowSlabs {
   const std::vector<Index>& list(std::size_t number) const { return busy_[number]; }
 
   /// Calls visit(row) for each busy row, which may change what belongs to the row and its
-  /// particles.
+  /// particles, and returns a number.
   /// @param executor  does what it does on its threads if that is worth while; may be null
-  template <class Visit>
-  void visit(Executor* executor, Visit&& visit) {
-    largest(executor, true, [&](Index row) {
-      visit(row);
-      return Real(0);
-    });
-  }
-  /// The same with a number from each row.
-  /// @param upwards  in the order in which rows were added to their slabs, or all the other way
+  /// @param upwards   in the order in which rows were added to their slabs, or all the other way
   /// @return largest of these numbers, and 0
   template <class Visit>
   Real largest(Executor* executor, bool upwards, Visit&& visit);

@@ -1,9 +1,7 @@
 #include "tests/core/contact/drags.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -11,6 +9,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/scenes.h"
+#include "tests/support/installed_meshes.h"
 #include "tests/support/seeded_random.h"
 #include "tests/support/sheets.h"
 
@@ -20,16 +19,6 @@ using namespace weft;
 using namespace weft::test;
 
 namespace {
-
-/// Where the build puts the meshes of installed packages; not there when only core is built.
-std::string mesh_directory() {
-  const char* build = std::getenv("WEFT_BUILD_DIR");
-  return build ? std::string(build) + "/meshes" : std::string();
-}
-
-bool has_bunny() {
-  return static_cast<bool>(std::ifstream(mesh_directory() + "/bunny.ply"));
-}
 
 /// A sheet of cotton, thick by a quarter of its edges, that falls upright and crumples.
 WorldDef pile(int n) {
@@ -112,7 +101,7 @@ void check_drags(const WorldDef& def, int settle_ticks, int drags, unsigned seed
 TEST_CASE("a few drags of up to ten hands at up to 5 m/s leave no crossing anywhere") {
   check_drags(pile(21), 40, 3, 1);
   check_drags(scene("hard-needles", 17), 20, 2, 2);
-  if (has_bunny())
+  if (has_mesh("bunny"))
     check_drags(scene("drop-on-bunny", 21), 30, 2, 3);
   else
     WARN("the bunny's package is not installed");
@@ -131,7 +120,7 @@ TEST_CASE("200 drags of up to ten hands at up to 5 m/s leave no crossing anywher
     check_drags(scene("hard-needles", 33), 40, kDrags, seed);
   for (unsigned seed = 411; seed <= 420; ++seed)
     check_drags(stirred(seed % 2 ? 9 : 17, seed % 3 ? 4e-4 : 3e-3, seed), 30, 3, seed);
-  REQUIRE(has_bunny());
+  REQUIRE(has_mesh("bunny"));
   for (unsigned seed = 301; seed <= 307; ++seed)
     check_drags(scene("drop-on-bunny", 49), 60, kDrags, seed);
 }

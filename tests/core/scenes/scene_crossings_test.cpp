@@ -1,5 +1,3 @@
-#include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <string>
 
@@ -7,27 +5,18 @@
 
 #include "core/scenes/scenes.h"
 #include "core/world/crossing_counter.h"
+#include "tests/support/installed_meshes.h"
 
 // In every built-in scene that promises it nothing crosses, at each tick. The hard cases have their
 // own verdicts (tests/stability); those of the seed promise nothing.
 
 using namespace weft;
+using namespace weft::test;
 
 namespace {
 
-/// Where the build puts the meshes of installed packages; not there when only core is built.
-std::string mesh_directory() {
-  const char* build = std::getenv("WEFT_BUILD_DIR");
-  return build ? std::string(build) + "/meshes" : std::string();
-}
-
 bool is_ordinary(const SceneInfo& scene) {
   return !scene.name.starts_with("hard-") && !scene.name.starts_with("seed-");
-}
-
-bool is_installed(const SceneInfo& scene) {
-  return scene.installed.empty() ||
-         std::ifstream(mesh_directory() + "/" + scene.installed + ".ply").good();
 }
 
 /// Runs each of them, and counts after each tick that its verdict does not leave out.

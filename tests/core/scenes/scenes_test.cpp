@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -11,25 +9,16 @@
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/world/world.h"
+#include "tests/support/installed_meshes.h"
 #include "tests/support/sleepers.h"
 #include "tests/support/worlds.h"
 
 // Each built-in scene shows what its sentence says, by numbers.
 
 using namespace weft;
+using namespace weft::test;
 
 namespace {
-
-/// Where the build puts the meshes of installed packages; not there when only core is built.
-std::string mesh_directory() {
-  const char* build = std::getenv("WEFT_BUILD_DIR");
-  return build ? std::string(build) + "/meshes" : std::string();
-}
-
-bool is_installed(const SceneInfo& scene) {
-  return scene.installed.empty() ||
-         std::ifstream(mesh_directory() + "/" + scene.installed + ".ply").good();
-}
 
 /// Edges of cloths and of the scene's boxes and meshes that pass through each other's triangles.
 std::size_t object_crossings(const World<float>& world, const WorldDef& def) {
@@ -171,7 +160,7 @@ TEST_CASE("in the same wind the silk flag streams and the denim flag hangs") {
 }
 
 TEST_CASE("the sheet comes to lie over the bunny, touches ears and ground, and enters nothing") {
-  if (!std::ifstream(mesh_directory() + "/bunny.ply")) {
+  if (!has_mesh("bunny")) {
     WARN("the bunny's package is not installed");
     return;
   }
