@@ -941,6 +941,9 @@ class _Connecting:
 
     async def _dial(self):
         """A socket that speaks weft.v1."""
+        if websockets is None:
+            raise ImportError("no package `websockets` for this Python: Debian has it as python3-websockets, "
+                              "for /usr/bin/python3")
         try:
             socket = await websockets.connect(
                 self._url,

@@ -12,6 +12,13 @@ HIT = weft.Hit(411, (0.25, 0.5, 0.25), (0, 1, 0), 222, 2.88)
 HANDS = golden.read("frame_hands.bin")  # epoch 1, 6 vertices, tick 2^40 + 5
 
 
+class WithoutWebsocketsTest(unittest.TestCase):
+    def test_a_python_without_the_package_is_told_which_one_is_missing(self):
+        with mock.patch.object(weft, "websockets", None):
+            with self.assertRaisesRegex(ImportError, "python3-websockets"):
+                weft.open("ws://127.0.0.1:1/ws")
+
+
 class ClientTest(unittest.IsolatedAsyncioTestCase):
     async def asyncSetUp(self):
         self.server = await self.enterAsyncContext(PlayedServer())
