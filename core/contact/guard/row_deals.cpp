@@ -1,6 +1,7 @@
 #include "core/contact/guard/row_deals.h"
 
 #include <limits>
+#include <utility>
 
 namespace weft {
 namespace {
@@ -42,8 +43,23 @@ void RowDeals<Real>::take(const RowSlabs<Real>& slabs, std::span<const GuardRow<
   few_ = slabs.size() < kFewRows;
   changed_ = false;
   number_batches(slabs);
-  for_every_second<kDeals>(few_ ? nullptr : executor, true,
-                           [&](std::size_t number) { deal(number, slabs, rows); });
+  for_every_second<kDeals>(few_ ? nullptr : executor, true, [&](std::size_t number) {
+    if (has_changed(number, slabs)) deal(number, slabs, rows);
+    blocks_[number].resize(batches_[number].size());
+    take_rows(batches_[number], rows, blocks_[number]);
+  });
+}
+
+/// Whether the lists of a deal have changed since it was made: what rests keeps its busy rows from
+/// look to look.
+template <class Real>
+bool RowDeals<Real>::has_changed(std::size_t number, const RowSlabs<Real>& slabs) {
+  bool changed = false;
+  for (std::size_t list = 0; list < RowSlabs<Real>::kLists; ++list) {
+    if (deal_of(list) != number) continue;
+    changed |= std::exchange(changes_[list], slabs.changes(list)) != slabs.changes(list);
+  }
+  return changed;
 }
 
 /// Gives each deal its own range of numbers. They rise in the order in which deals are made: what
@@ -83,8 +99,6 @@ void RowDeals<Real>::deal(std::size_t number, const RowSlabs<Real>& slabs,
     if (k < a.size()) deal_row(a[k]);
     if (k < b.size()) deal_row(b[k]);
   }
-  blocks_[number].resize(batches_[number].size());
-  take_rows(batches_[number], rows, blocks_[number]);
 }
 
 /// Puts a row into the first batch that has room and is behind those of all rows before it that

@@ -57,6 +57,7 @@ class RowDeals {
   static std::size_t deal_of(std::size_t list) {
     return list == RowSlabs<Real>::kSlabs ? kPairs : list % kPairs;
   }
+  bool has_changed(std::size_t number, const RowSlabs<Real>& slabs);
   void number_batches(const RowSlabs<Real>& slabs);
   void deal(std::size_t number, const RowSlabs<Real>& slabs, std::span<const GuardRow<Real>> rows);
   void deal(std::size_t number, Index row, const std::array<Index, 4>& particles);
@@ -64,6 +65,8 @@ class RowDeals {
   std::array<std::vector<RowBlock<Real>>, kDeals> blocks_;
   std::array<std::vector<RowBatch>, kDeals> batches_;  ///< before they are blocks
   std::array<std::vector<Index>, kDeals> open_;  ///< from each batch on, the next that has room
+  /// What lists had changed when they were dealt, each once at least.
+  std::array<std::uint64_t, RowSlabs<Real>::kLists> changes_{};
   /// The first batch that each particle may be in, counted through all deals of all times.
   std::vector<std::uint32_t> next_batch_;
   std::array<std::uint32_t, kDeals> first_batch_{};  ///< of each deal, counted so

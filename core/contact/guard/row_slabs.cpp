@@ -43,6 +43,7 @@ void RowSlabs<Real>::clear() {
   for (std::size_t k = 0; k < kLists; ++k) {
     rows_[k].clear();
     busy_[k].clear();
+    ++changes_[k];
   }
   busy_count_ = 0;
 }

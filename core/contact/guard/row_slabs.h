@@ -52,6 +52,7 @@ class RowSlabs {
     rows_[list].push_back(row);
     busy_[list].push_back(row);
     ++busy_count_;
+    ++changes_[list];
     return list;
   }
   /// Chooses the busy rows, which alone are visited: those for which is_busy(row) is true, which
@@ -67,6 +68,8 @@ class RowSlabs {
   bool are_few() const { return busy_count_ < kFewRows; }
   /// The busy rows of a list, of kLists.
   const std::vector<Index>& list(std::size_t number) const { return busy_[number]; }
+  /// How often the busy rows of a list have changed, by their numbers or what these stand for.
+  std::uint64_t changes(std::size_t number) const { return changes_[number]; }
 
   /// Calls visit(row) for each busy row, which may change what belongs to the row and its
   /// particles, and returns a number.
@@ -104,6 +107,7 @@ class RowSlabs {
   std::array<std::vector<Index>, kLists> rows_, busy_;  ///< of each slab; last the long ones
   std::array<std::vector<Real>, 3> samples_;            ///< of positions, along each axis [m]
   std::size_t busy_count_ = 0;
+  std::array<std::uint64_t, kLists> changes_{};
   std::array<std::vector<Index>, kSlabs> particles_;  ///< by the slab that they were in when listed
   std::size_t particle_count_ = 0;
 };
@@ -115,10 +119,18 @@ void RowSlabs<Real>::choose(Executor* executor, IsBusy&& is_busy) {
   for (const std::vector<Index>& list : rows_) rows += list.size();
   run_chunks(rows < kFewRows ? nullptr : executor, static_cast<int>(kLists), [&](int chunk) {
     const auto list = static_cast<std::size_t>(chunk);
-    busy_[list].clear();
+    std::vector<Index>& busy = busy_[list];
+    const std::size_t before = busy.size();
+    busy.resize(rows_[list].size());
+    std::size_t count = 0;
+    bool as_before = true;
     for (const Index row : rows_[list]) {
-      if (is_busy(row)) busy_[list].push_back(row);
+      if (!is_busy(row)) continue;
+      as_before = as_before && count < before && busy[count] == row;
+      busy[count++] = row;
     }
+    busy.resize(count);
+    if (!as_before || count != before) ++changes_[list];
   });
   busy_count_ = 0;
   for (const std::vector<Index>& list : busy_) busy_count_ += list.size();

@@ -204,8 +204,7 @@ Outcome<Real> singly(Pile<Real> pile) {
 }
 
 template <class Real>
-Outcome<Real> in_blocks(Pile<Real> pile, Executor* executor) {
-  RowDeals<Real> deals;
+Outcome<Real> in_blocks(Pile<Real> pile, Executor* executor, RowDeals<Real>& deals) {
   deals.take(pile.slabs, pile.rows, pile.x.size(), executor);
   const Real most_pressure = *std::max_element(pile.pressure.begin(), pile.pressure.end());
   const RowPass<Real> pass{pile.x.data(),
@@ -222,6 +221,12 @@ Outcome<Real> in_blocks(Pile<Real> pile, Executor* executor) {
   }
   deals.give_back(pile.rows, executor);
   return outcome(pile, changes);
+}
+
+template <class Real>
+Outcome<Real> in_blocks(const Pile<Real>& pile, Executor* executor) {
+  RowDeals<Real> deals;
+  return in_blocks(pile, executor, deals);
 }
 
 }  // namespace
@@ -272,6 +277,58 @@ TEST_CASE("each busy row is dealt once, into a block where nobody shares a parti
   CHECK(std::all_of(dealt.begin(), dealt.end(), [](int times) { return times == 1; }));
   // Else there would be no use in them.
   CHECK(full > blocks / 2);
+}
+
+TEST_CASE(
+    "busy rows that stay, go, come or stand for others have the bits of one after the other") {
+  SeededRandom random(12);
+  Pile<float> pile(random, 900, 2500);
+  RowDeals<float> deals;
+  const auto take_again = [&] { CHECK(in_blocks(pile, nullptr, deals) == singly(pile)); };
+  // Whether the busy rows have changed.
+  const auto choose = [&pile](auto&& is_busy) {
+    const std::uint64_t before = pile.slabs.changes(0);
+    pile.slabs.choose(nullptr, is_busy);
+    return pile.slabs.changes(0) != before;
+  };
+  const auto all = [](Index) { return true; };
+  const auto not_every = [](Index one_of) {
+    return [one_of](Index row) { return row % one_of != 0; };
+  };
+  take_again();
+  CHECK(choose(not_every(4)));
+  take_again();
+  // The same rows are busy, and lie otherwise.
+  for (GuardRow<float>& row : pile.rows) row.normal = row.normal * -1.0F;
+  CHECK_FALSE(choose(not_every(4)));
+  take_again();
+  CHECK(choose(not_every(3)));
+  take_again();
+  CHECK(choose(all));
+  take_again();
+  // The last of each list go.
+  CHECK(choose([](Index row) { return row < 2000; }));
+  take_again();
+  // One goes and another one comes.
+  const std::vector<Index> list = pile.slabs.list(0);
+  CHECK(choose([&](Index row) { return row < 2000 && row != list[9]; }));
+  take_again();
+  CHECK(choose([&](Index row) { return row < 2000 && row != list[8]; }));
+  take_again();
+  CHECK(choose(all));
+  pile.rows.push_back(pile.row(random, 2500));
+  pile.slabs.add(2500, pile.rows.back().particle);
+  take_again();
+  // As many rows, of other particles.
+  pile.slabs.clear();
+  for (Index k = 0; k <= 2500; ++k) {
+    pile.rows[static_cast<std::size_t>(k)] = pile.row(random, k);
+    pile.slabs.add(k, pile.rows[static_cast<std::size_t>(k)].particle);
+  }
+  CHECK_FALSE(choose(all));
+  take_again();
+  pile.slabs.clear();
+  take_again();
 }
 
 TEST_CASE("a row that comes later is behind all others, and gives back what it did") {
