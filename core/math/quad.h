@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <span>
 
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
@@ -57,5 +59,29 @@ Vec3<Real> to_vector(const Quad<Real>& q) {
 
 template <class Real>
 using QuadArray = AlignedVector<Quad<Real>>;
+
+/// Vectors as quads. All but the last are read as four numbers at once, which costs half.
+/// @param to  as many
+template <class Real>
+void to_quads(std::span<const Vec3<Real>> from, Quad<Real>* to) {
+  if (from.empty()) return;
+  const std::size_t last = from.size() - 1;
+  for (std::size_t i = 0; i < last; ++i) {
+    std::memcpy(&to[i].lanes, static_cast<const void*>(&from[i]), sizeof to[i].lanes);
+    to[i].lanes[3] = 0;
+  }
+  to[last] = to_quad(from[last]);
+}
+
+/// Quads as vectors, each written with a number too much, which the next one mends.
+/// @param to  as many
+template <class Real>
+void to_vectors(std::span<const Quad<Real>> from, Vec3<Real>* to) {
+  if (from.empty()) return;
+  const std::size_t last = from.size() - 1;
+  for (std::size_t i = 0; i < last; ++i)
+    std::memcpy(static_cast<void*>(&to[i]), &from[i].lanes, sizeof from[i].lanes);
+  to[last] = to_vector(from[last]);
+}
 
 }  // namespace weft

@@ -189,16 +189,25 @@ double external_work(const Tick<Real>& tick, const IndexRange& range) {
   return power * static_cast<double>(tick.dt);
 }
 
+/// Whether grids take over all particles after each drift, as contact may have changed what it
+/// left.
+template <class Real>
+bool takes_over(const Collision<Real>& collision) {
+  return collision.seed || collision.guard;
+}
+
 /// Moves everybody. @returns work of the external forces [J]
 template <class Real>
 double drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
   Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
+  const bool along =
+      tick.solver.damping_sweeps == 1 && (tick.pulled || !takes_over(tick.collision));
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const IndexRange& range = tick.part(p).particles;
     if (tick.sleeps(p)) continue;
-    if (tick.by_rows(p) && tick.solver.damping_sweeps == 1) {
+    if (tick.by_rows(p) && along) {
       work += tick.grid(p).drift(tick.dt, tick.pulled, v, x) * static_cast<double>(tick.dt);
     } else {
       work += external_work(tick, range);
@@ -250,7 +259,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     work += drift(tick);
     work += work_of_hands(state.v, tick.grabs);
     collision.after_drift(state, tick.dt, tick.profile);
-    if (collision.seed || collision.guard) load_grids(tick);
+    if (takes_over(collision)) load_grids(tick);
   }
   swept_kick(tick, kicks.closing, Real(1));
   pull(tick, kicks.closing, substeps, substeps);

@@ -26,6 +26,22 @@ constexpr int kStepsBetweenCuts = 64;
 /// Push-out: part of the lack a second, and its largest speed [1/s, m/s].
 constexpr double kPushRate = 60, kPushSpeed = 0.1;
 
+/// A particle that is copied alone costs as much as so many of all.
+constexpr std::size_t kCostOfOne = 2;
+
+/// All are copied on threads in parts with at least so many.
+constexpr std::size_t kCopiesAtLeast = 2048;
+
+/// Calls copy(elements, first) for each part of an array.
+template <class Array, class Copy>
+void copy_all(Executor* executor, const Array& array, Copy&& copy) {
+  const std::span all(array);
+  run_parts(executor, all.size(), parts_of(all.size(), kCopiesAtLeast),
+            [&](std::size_t, std::size_t from, std::size_t to) {
+              copy(all.subspan(from, to - from), from);
+            });
+}
+
 }  // namespace
 
 template <class Real>
@@ -37,7 +53,7 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
     forget_rows();
     return;
   }
-  for (std::size_t i = 0; i < legal_.size(); ++i) legal_[i] = to_quad(state.x[i]);
+  copy_all(executor_, state.x, [this](auto from, std::size_t at) { to_quads(from, &legal_[at]); });
   tangles_.draw(state, dt);
   rows_time_ += dt;
   ++rows_steps_;
@@ -74,8 +90,14 @@ void ClothGuard<Real>::look_at_rows(const ClothState<Real>& state, Real dt, Prof
   row_deals_.take(row_slabs_, rows_, legal_.size(), executor_);
 }
 
+/// Copies the velocities of the particles that rows have, or of all.
 template <class Real>
 void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
+  if (row_slabs_.particles() * kCostOfOne > state.v.size()) {
+    copy_all(executor_, state.v,
+             [this](auto from, std::size_t at) { to_quads(from, &quad_v_[at]); });
+    return;
+  }
   row_slabs_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     quad_v_[i] = to_quad(state.v[i]);
@@ -84,6 +106,11 @@ void ClothGuard<Real>::load_rows(const ClothState<Real>& state) {
 
 template <class Real>
 void ClothGuard<Real>::store_rows(ClothState<Real>& state) const {
+  if (row_slabs_.particles() * kCostOfOne > state.v.size()) {
+    copy_all(executor_, quad_v_,
+             [&](auto from, std::size_t at) { to_vectors(from, &state.v[at]); });
+    return;
+  }
   row_slabs_.visit_particles(executor_, [&](Index k) {
     const auto i = static_cast<std::size_t>(k);
     state.v[i] = to_vector(quad_v_[i]);

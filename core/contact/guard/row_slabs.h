@@ -86,6 +86,8 @@ class RowSlabs {
     ++particle_count_;
   }
   void clear_particles();
+  /// How many particles are listed.
+  std::size_t particles() const { return particle_count_; }
 
   /// Calls visit(particle) for each particle that is listed, which may change what belongs to it.
   template <class Visit>
