@@ -33,10 +33,6 @@ struct GuardRow {
 /// those that push lie. Between looks none changes but by its responses.
 inline constexpr int kStepsBetweenLooks = 4;
 
-/// Rows that have no particle in common; behind them kNone.
-inline constexpr std::size_t kBatchRows = 8;
-using RowBatch = std::array<Index, kBatchRows>;
-
 /// sum w of what the particles of a row have.
 template <class Real>
 Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {

@@ -191,7 +191,7 @@ template <class Real>
 void ClothGuard<Real>::measure_pressures() {
   row_slabs_.visit_particles(executor_,
                              [this](Index i) { pressure_[static_cast<std::size_t>(i)] = 0; });
-  most_pressure_ = row_slabs_.largest(executor_, true, [&](Index k) {
+  most_pressure_ = row_slabs_.largest(executor_, [&](Index k) {
     const GuardRow<Real>& row = rows_[static_cast<std::size_t>(k)];
     Real most = 0;
     if (row.push == 0) return most;

@@ -31,7 +31,11 @@ inline constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
 /// each other with in a step, at twice the pressure [Pa].
 inline constexpr double kCrushing = 2e4, kLeak = 0.1;
 
-/// Rows that have no particle in common, number by number, so that all respond at once.
+/// Rows that have no particle in common; behind them kNone.
+inline constexpr std::size_t kBatchRows = 8;
+using RowBatch = std::array<Index, kBatchRows>;
+
+/// Such rows number by number, so that all respond at once.
 template <class Real>
 struct RowBlock {
   using Numbers = std::array<Real, kBatchRows>;

@@ -12,7 +12,7 @@
 
 #include <hwy/highway.h>
 
-#include "core/contact/guard/guard_row.h"
+#include "core/contact/guard/row_blocks.h"
 #include "core/math/quad.h"
 #include "core/math/triple-inl.h"
 

@@ -72,12 +72,11 @@ class RowSlabs {
   std::uint64_t changes(std::size_t number) const { return changes_[number]; }
 
   /// Calls visit(row) for each busy row, which may change what belongs to the row and its
-  /// particles, and returns a number.
+  /// particles, and returns a number; in the order in which rows were added to their slabs.
   /// @param executor  does what it does on its threads if that is worth while; may be null
-  /// @param upwards   in the order in which rows were added to their slabs, or all the other way
   /// @return largest of these numbers, and 0
   template <class Visit>
-  Real largest(Executor* executor, bool upwards, Visit&& visit);
+  Real largest(Executor* executor, Visit&& visit);
 
   /// Lists a particle that rows have, once.
   void add_particle(Index particle) {
@@ -140,19 +139,13 @@ void RowSlabs<Real>::choose(Executor* executor, IsBusy&& is_busy) {
 
 template <class Real>
 template <class Visit>
-Real RowSlabs<Real>::largest(Executor* executor, bool upwards, Visit&& visit) {
+Real RowSlabs<Real>::largest(Executor* executor, Visit&& visit) {
   std::array<Real, kLists> of_list{};
-  const auto sweep = [&](std::size_t slab) {
-    const std::vector<Index>& rows = busy_[slab];
+  for_every_second<kLists>(are_few() ? nullptr : executor, true, [&](std::size_t list) {
     Real most = 0;
-    if (upwards) {
-      for (const Index row : rows) most = std::max(most, visit(row));
-    } else {
-      for (auto row = rows.rbegin(); row != rows.rend(); ++row) most = std::max(most, visit(*row));
-    }
-    of_list[slab] = most;
-  };
-  for_every_second<kLists>(are_few() ? nullptr : executor, upwards, sweep);
+    for (const Index row : busy_[list]) most = std::max(most, visit(row));
+    of_list[list] = most;
+  });
   return *std::max_element(of_list.begin(), of_list.end());
 }
 
