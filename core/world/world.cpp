@@ -340,6 +340,15 @@ void World<Real>::report_present_state() {
   report_.largest_strain = reading.largest_strain;
 }
 
+/// As above, after what moved nobody: the springs are as the report has them.
+template <class Real>
+void World<Real>::report_motion() {
+  const Vec3<Real> gravity = environment_.gravity.template cast<Real>();
+  const Energies& known = report_.energies;
+  const ElasticEnergy elastic{known.stretch, known.bending, report_.largest_strain};
+  report_.energies = read_energies(model_, state_, gravity, elastic).energies;
+}
+
 template class World<float>;
 template class World<double>;
 

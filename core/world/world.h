@@ -248,6 +248,7 @@ class World {
                                     int substeps) const;
   void restore_last_good();
   void report_present_state();
+  void report_motion();
 
   WorldDef def_;
   EnvironmentDef environment_;

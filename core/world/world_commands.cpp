@@ -17,7 +17,7 @@ PinId World<Real>::pin(const PinDef& def) {
   masses_changed();
   const PinId id = add_pin(model_, def, pins_, state_);
   wake(pins_.list.back().centre);
-  report_present_state();  // what is pinned has lost its velocity
+  report_motion();  // what is pinned has lost its velocity
   return id;
 }
 
@@ -40,7 +40,7 @@ template <class Real>
 bool World<Real>::stop_pin(PinId id) {
   if (!weft::stop_pin(id, pins_, state_)) return false;
   masses_changed();
-  report_present_state();  // what is fixed has lost its velocity
+  report_motion();  // what is fixed has lost its velocity
   return true;
 }
 
@@ -118,7 +118,7 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
   environment_ = environment;
   wake_all();
   make_room();
-  report_present_state();
+  report_motion();
 }
 
 template <class Real>

@@ -100,7 +100,7 @@ void World<Real>::put_to_sleep() {
   if (!sleep_.settle(state_)) return;
   sleep_changed();
   last_good_.v = state_.v;
-  report_present_state();
+  report_motion();
 }
 
 #define WEFT_INSTANTIATE(Real)                    \
