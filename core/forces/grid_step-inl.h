@@ -39,7 +39,9 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
 }
 
 /// The lines of scratch that the forces on a row go through. What acts on the next column or the
-/// one after it is stored so many places further, what acts on the row below is kept for that.
+/// one after it is stored where it comes from and read from so many places before: aligned stores
+/// are cheap, and what is read before a line's start is the cleared tail of the line before it.
+/// What acts on the row below is kept for that.
 template <class Real>
 struct ForceLines {
   Real *along, *down, *falling, *rising;  ///< factors of the springs
@@ -106,19 +108,19 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
     const V bend_here = hn::LoadU(d, bent + c);
     hn::StoreU(bend_below, d, bent + c);
 
-    V here = hn::Sub(hn::LoadU(d, carry + c), hn::LoadU(d, corner_in + c));
+    V here = hn::Sub(hn::LoadU(d, carry + c), hn::LoadU(d, corner_in + c - 1));
     here = hn::Sub(here, hn::Add(hn::Add(twist, bend_right), bend_below));
     here = fused(d, along, f_along, here);
     here = fused(d, down, f_down, here);
     hn::StoreU(fused(d, falling, f_falling, here), d, to.here + c);
     V right = fused(d, bend_right, two, twist);
     right = fused_minus(d, along, f_along, right);
-    hn::StoreU(fused(d, rising, f_rising, right), d, to.right + c + 1);
-    hn::StoreU(bend_right, d, to.ahead + c + 2);
+    hn::StoreU(fused(d, rising, f_rising, right), d, to.right + c);
+    hn::StoreU(bend_right, d, to.ahead + c);
     V below = fused(d, bend_below, two, hn::Sub(twist, bend_here));
     below = fused_minus(d, down, f_down, below);
     hn::StoreU(fused_minus(d, rising, f_rising, below), d, carry + c);
-    hn::StoreU(fused(d, falling, f_falling, twist), d, corner_out + c + 1);
+    hn::StoreU(fused(d, falling, f_falling, twist), d, corner_out + c);
   }
 }
 
@@ -129,7 +131,7 @@ HWY_INLINE void visit_forces(const GridView<Real>& g, const ForceLines<Real>& fr
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes)
     sink(c, hn::Add(hn::LoadU(d, from.here + c),
-                    hn::Sub(hn::LoadU(d, from.right + c), hn::LoadU(d, from.ahead + c))));
+                    hn::Sub(hn::LoadU(d, from.right + c - 1), hn::LoadU(d, from.ahead + c - 2))));
 }
 
 /// Nothing is carried into the first row, nor over the left border.
