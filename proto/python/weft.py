@@ -32,6 +32,7 @@ import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlsplit
 
 try:
     import numpy
@@ -932,11 +933,25 @@ class Drag:
                 raise
 
 
+def _socket_address(url: str) -> str:
+    """The address of a server's socket, which may be given as that of its page."""
+    scheme = {"http": "ws", "https": "wss"}
+    try:
+        parts = urlsplit(url)
+        known = parts.scheme in ("ws", "wss", *scheme) and parts.hostname and parts.port != 0
+    except ValueError:  # a port that is none
+        known = False
+    if not known:
+        raise WeftError(f"{url!r} is no address of a server: give one as ws://127.0.0.1:8080/ws, or that of its page")
+    path = parts.path if parts.path not in ("", "/") else "/ws"
+    return parts._replace(scheme=scheme.get(parts.scheme, parts.scheme), path=path, fragment="").geturl()
+
+
 class _Connecting:
     """What `connect` returns: awaited it is a client, with `async with` one that closes itself."""
 
     def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool):
-        self._url, self._hello, self._timeout, self._reconnect = url, hello, timeout, reconnect
+        self._url, self._hello, self._timeout, self._reconnect = _socket_address(url), hello, timeout, reconnect
         self._client: Client | None = None
 
     async def _dial(self):
@@ -992,7 +1007,10 @@ def connect(
     timeout: float = 10,
     reconnect: bool = False,
 ) -> _Connecting:
-    """Joins a server: `client = await connect(url)` or `async with connect(url) as client`."""
+    """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
+
+    `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
+    """
     return _Connecting(url, {"name": name, "color": color}, timeout, reconnect)
 
 
@@ -1096,5 +1114,5 @@ for _name in (
 
 
 def open(url: str, *, name=None, color=None, timeout: float = 10, reconnect=False) -> SyncClient:
-    """Joins a server, blocking; use it with `with`."""
+    """Joins a server, blocking; use it with `with`. `url` is as for `connect`."""
     return SyncClient(url, name=name, color=color, timeout=timeout, reconnect=reconnect)

@@ -244,6 +244,18 @@ class JoiningTest(unittest.IsolatedAsyncioTestCase):
         with self.assertRaises(weft.ConnectionLost):
             await weft.connect(url)
 
+    async def test_the_address_of_the_page_leads_to_the_socket(self):
+        async with PlayedServer() as server:
+            page = server.url.replace("ws://", "http://").removesuffix("/ws")
+            for url in (page, page + "/", page.replace("http", "ws"), server.url):
+                async with weft.connect(url):
+                    self.assertEqual(server.socket.path, "/ws", url)
+
+    async def test_what_is_no_address_is_told_with_one_that_is(self):
+        for url in ("127.0.0.1:8080", "ftp://127.0.0.1/ws", "ws://", "ws://127.0.0.1:x/ws", "ws://127.0.0.1:99999/ws", ""):
+            with self.assertRaisesRegex(weft.WeftError, "ws://127.0.0.1:8080/ws"):
+                await weft.connect(url, timeout=1)
+
     async def test_a_server_that_says_nothing_is_given_up(self):
         async with PlayedServer(welcome=()) as server:
             with self.assertRaises(weft.ConnectionLost):
