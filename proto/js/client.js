@@ -21,7 +21,7 @@ export class WeftClient extends Session {
   #nextDrag = 1;
 
   /**
-   * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`
+   * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`, or that of the page
    * @param {import('./session.js').Options} [options]
    */
   constructor(url, options = {}) {

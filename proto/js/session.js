@@ -40,6 +40,27 @@ const FIRST_PING_INTERVAL = 200; // [ms]
 const SILENCE_LIMIT = 10000; // without any message the connection counts as dead [ms]
 const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // whose effect can be seen
+const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], ['wss:', 'wss:']]);
+
+/**
+ * The address of a server's socket, which may be given as that of its page.
+ * @param {string} given
+ */
+function socketAddress(given) {
+  const wanted = 'give one as ws://127.0.0.1:8080/ws, or that of its page';
+  let url;
+  try {
+    url = new URL(given);
+  } catch (cause) {
+    throw new TypeError(`'${given}' is no address: ${wanted}`, { cause });
+  }
+  const protocol = SOCKETS.get(url.protocol);
+  if (!protocol) throw new TypeError(`'${given}' is no address of a server: ${wanted}`);
+  url.protocol = protocol;
+  url.hash = '';
+  if (url.pathname === '/') url.pathname = '/ws';
+  return url;
+}
 
 /**
  * Talks with a server: requests and their answers, events, the mesh, frames and their acks, clock
@@ -72,14 +93,14 @@ export class Session extends Emitter {
   wantedView = {};
 
   /**
-   * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`
+   * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`, or that of the page
    * @param {Options} [options]
    */
   constructor(url, options = {}) {
     super();
     this.options = options;
     this.timers = options.timers ?? systemTimers;
-    this.#url = new URL(url);
+    this.#url = socketAddress(url);
     if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
     this.#connection = new Connection(this.#url.href, {
       WebSocket: options.WebSocket ?? globalThis.WebSocket,

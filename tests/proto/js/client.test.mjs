@@ -41,6 +41,26 @@ test('the subprotocol is asked for and welcome ends the wait', async () => {
   assert.equal(client.connected, true);
 });
 
+test('the address of the page leads to the socket, and what is none is told with one', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const options = { WebSocket: FakeSocket, timers: new FakeTimers() };
+  const addresses = {
+    'http://host:1': 'ws://host:1/ws',
+    'https://host/': 'wss://host/ws',
+    'ws://host:1': 'ws://host:1/ws',
+    'wss://host/weft/ws': 'wss://host/weft/ws',
+  };
+  for (const [given, wanted] of Object.entries(addresses)) {
+    const client = new WeftClient(given, options);
+    const connected = client.connect();
+    assert.equal(sockets.at(-1).url, wanted, given);
+    client.close();
+    await assert.rejects(connected, /closed by this side/);
+  }
+  for (const url of ['host:1', 'ftp://host/ws', 'ws://host:99999/ws', ''])
+    assert.throws(() => new WeftClient(url, options), /ws:\/\/127\.0\.0\.1:8080\/ws/, url);
+});
+
 test('each call sends the golden command with an id of its own', async () => {
   const { client, socket } = await join();
   const ids = new Set();
