@@ -161,6 +161,7 @@ class Malformed(SocketTest):
         viewer, other = await self.viewer(), await self.viewer()
         await viewer.ask("advance", n=20)
         before = await other.ask("hash")
+        await other.ask("query", what="crossings")  # which a cloth that stands counts once, sooner or later
         state = (await other.ask("query", what="state"))["data"]
         for text, code, field in MALFORMED:
             with self.subTest(text=text[:100]):
