@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,8 @@ class Bvh {
   /// Box around everything; empty if there is nothing.
   const Aabb<Real>& bounds() const { return bounds_; }
 
-  /// Calls visit(primitive) for each primitive whose box overlaps `box`, in a fixed order.
+  /// Calls visit(primitive) for each primitive whose box overlaps `box`, in a fixed order. A box
+  /// with a bound that is infinite or NaN ends as every other does.
   template <class Visit>
   void for_each_overlap(const Aabb<Real>& box, Visit&& visit) const;
 
@@ -57,6 +59,10 @@ class Bvh {
     Aabb<Real> bounds() const;
   };
 
+  static void push(Index child, std::array<Index, kDeepest>& stack, std::size_t& size) {
+    assert(size < kDeepest);
+    stack[size++] = child;
+  }
   void split(std::size_t node, Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
   Index halve(Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
 
@@ -68,7 +74,8 @@ class Bvh {
 template <class Real>
 template <class Visit>
 void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
-  if (!bounds_.overlaps(box)) return;
+  // The empty box of an empty tree overlaps an infinite one.
+  if (nodes_.empty() || !bounds_.overlaps(box)) return;
   std::array<Index, kDeepest> stack;
   std::size_t size = 0;
   stack[size++] = 0;
@@ -85,11 +92,13 @@ void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
                                          static_cast<int>(node.upper[2][k] >= box.lower[2]));
     }
     for (std::size_t k = 0; k < kWidth; ++k) {
+      // The empty box of a missing child overlaps an infinite one.
+      if (node.child[k] == kNoChild) break;
       if (!hit[k]) continue;
       if (node.child[k] < 0)
         visit(~node.child[k]);
       else
-        stack[size++] = node.child[k];
+        push(node.child[k], stack, size);
     }
   }
 }
@@ -119,6 +128,7 @@ Real Bvh<Real>::nearest(Real bound, Distance&& distance, Narrow&& narrow) const 
       const Entry child{node.child[k], distance(node.box(k))};
       if (!(child.distance <= bound)) continue;
       // Sorted so that the nearest is on top.
+      assert(size < kDeepest);
       std::size_t at = size++;
       for (; at > first && stack[at - 1].distance < child.distance; --at) stack[at] = stack[at - 1];
       stack[at] = child;

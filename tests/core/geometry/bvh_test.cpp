@@ -1,6 +1,7 @@
 #include "core/geometry/bvh.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <catch2/catch.hpp>
 
@@ -98,6 +99,37 @@ TEST_CASE("a query far away visits nothing") {
   Aabb<double> query;
   query.add(Vec3d(10, 10, 10));
   CHECK(overlaps_of(tree, query).empty());
+}
+
+TEST_CASE("a query without bounds visits everything once, whatever the count of the boxes") {
+  SeededRandom random(9);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Aabb<float> everywhere;
+  everywhere.lower.setConstant(-kInfinity);
+  everywhere.upper.setConstant(kInfinity);
+  // 0 to 40 boxes: every count of children that a node can lack.
+  for (int count = 0; count <= 40; ++count) {
+    INFO("count " << count);
+    Bvh<float> tree;
+    tree.build(boxes_of_kind<float>(0, count, random));
+    std::vector<Index> found = overlaps_of(tree, everywhere);
+    std::sort(found.begin(), found.end());
+    REQUIRE(found.size() == static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) CHECK(found[static_cast<std::size_t>(i)] == i);
+  }
+}
+
+TEST_CASE("a query with a bound that is no number ends") {
+  SeededRandom random(10);
+  Bvh<float> tree;
+  tree.build(boxes_of_kind<float>(0, 13, random));
+  for (int axis = 0; axis < 3; ++axis) {
+    Aabb<float> query;
+    query.add(Vec3<float>(-2, -2, -2));
+    query.add(Vec3<float>(2, 2, 2));
+    query.lower[axis] = std::numeric_limits<float>::quiet_NaN();
+    CHECK(overlaps_of(tree, query).size() <= 13);
+  }
 }
 
 TEST_CASE("a query of a small region visits a small part of the tree") {
