@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/stop_signal.h"
+
 namespace weft {
 
 /// Runs independent chunks of work, on whatever threads its owner has. The physics owns no thread:
@@ -14,15 +16,40 @@ class Executor {
   virtual void run(int chunks, void (*work)(void* context, int chunk), void* context) = 0;
 };
 
-/// Runs a callable through an executor, or serially if there is none.
+namespace detail {
+inline constinit thread_local bool runs_serially = false;
+}
+
+/// While it lives, chunks of this thread run one after the other: for work beside the thread whose
+/// executor it is.
+class SerialScope {
+ public:
+  SerialScope() : outer_(detail::runs_serially) { detail::runs_serially = true; }
+  ~SerialScope() { detail::runs_serially = outer_; }
+  SerialScope(const SerialScope&) = delete;
+  SerialScope& operator=(const SerialScope&) = delete;
+
+ private:
+  bool outer_;
+};
+
+/// Runs a callable through an executor, or serially if there is none. A stop point lies between
+/// chunks; with an executor it lies behind the last one, because no chunk may throw there.
 template <class Work>
 void run_chunks(Executor* executor, int chunks, Work&& work) {
-  if (!executor) {
-    for (int chunk = 0; chunk < chunks; ++chunk) work(chunk);
+  if (!executor || detail::runs_serially) {
+    for (int chunk = 0; chunk < chunks; ++chunk) {
+      stop_point();
+      work(chunk);
+    }
     return;
   }
-  executor->run(
-      chunks, [](void* context, int chunk) { (*static_cast<Work*>(context))(chunk); }, &work);
+  {
+    const StopScope whole(nullptr);
+    executor->run(
+        chunks, [](void* context, int chunk) { (*static_cast<Work*>(context))(chunk); }, &work);
+  }
+  stop_point();
 }
 
 }  // namespace weft

@@ -1,6 +1,7 @@
 #include "core/attachments/grabs.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -96,6 +97,15 @@ Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
   return size > most ? Vec3<Real>(force * (most / size)) : force;
 }
 
+/// The place on the way from `from` to `to` that is at most `reach` from `from` [m].
+template <class Real>
+Vec3<Real> within_reach(const Vec3<Real>& from, const Vec3<Real>& to, double reach) {
+  const Vec3d way = (to - from).template cast<double>();
+  const double length = way.norm();
+  if (length <= reach) return to;
+  return from + Vec3<Real>((way * (reach / length)).template cast<Real>());
+}
+
 /// Force of a sling if it were fired now [N].
 template <class Real>
 Vec3<Real> sling_force(const Grab<Real>& grab, const ClothState<Real>& state) {
@@ -124,9 +134,9 @@ template <class Real>
 Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real seconds,
                       const Vec3Array<Real>& x, const Vec3<Real>& velocity, Real mobility) {
   const auto stiffness = static_cast<Real>(grab.def.stiffness);
-  const Vec3<Real> way = grab.target - grab.target_before;
-  const Vec3<Real> target = grab.target_before + way * step.progress;
-  const Vec3<Real> approach = way * step.rate - velocity;
+  const Vec3<Real> path = grab.path_end - grab.path_begin;
+  const Vec3<Real> target = grab.path_begin + path * step.progress;
+  const Vec3<Real> approach = path * step.rate - velocity;
   const Vec3<Real> pull =
       (target - held_point(grab, x) + approach * step.dt) * stiffness - velocity * grab.damping;
   const Real resistance = (grab.damping + stiffness * step.dt) * seconds * mobility;
@@ -209,7 +219,7 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
     hit += state.x[static_cast<std::size_t>(corners[k])] * static_cast<Real>(def.barycentric[k]);
   grab.offset = hit - weighted_mean(grab, state.x);
   grab.target = def.target.cast<Real>();
-  grab.target_before = hit;
+  grab.path_begin = grab.path_end = hit;
   if (def.mode == GrabMode::live) {
     const double per_mass = inverse_held_mass(model, grab);
     grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
@@ -249,8 +259,20 @@ std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real
 }
 
 template <class Real>
+void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grabs) {
+  assert(tick_seconds > 0);
+  const double lead = kFastestHeld * std::max(tick_seconds, kLeadSeconds);
+  for (Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode != GrabMode::live) continue;
+    const Vec3<Real> held = held_point(grab, x);
+    grab.path_begin = within_reach<Real>(held, grab.path_begin, lead);
+    grab.path_end = within_reach<Real>(held, grab.target, lead);
+  }
+}
+
+template <class Real>
 void finish_tick(Grabs<Real>& grabs) {
-  for (Grab<Real>& grab : grabs.list) grab.target_before = grab.target;
+  for (Grab<Real>& grab : grabs.list) grab.path_begin = grab.path_end;
   for (Shot<Real>& shot : grabs.shots) --shot.ticks_left;
   std::erase_if(grabs.shots, [](const Shot<Real>& shot) { return shot.ticks_left <= 0; });
 }
@@ -340,6 +362,7 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   template bool remove_grab(GrabId, Grabs<Real>&);                                           \
   template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,        \
                                                 Grabs<Real>&);                               \
+  template void lead_hands(double, const Vec3Array<Real>&, Grabs<Real>&);                    \
   template void finish_tick(Grabs<Real>&);                                                   \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
   template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \

@@ -21,11 +21,15 @@ enum class GrabMode : std::uint8_t {
 /// its whole impulse to the few grams of the held disc before the cloth around them can follow.
 inline constexpr double kSlingSeconds = 0.1;
 
-/// No live hand makes the cloth that it holds faster than this [m/s]: who jumps by metres comes
-/// after at this speed, as if it pulled less. Where the cloth cannot follow, a strong hand's force
-/// would else throw its few grams about at thousands of metres a second, and nothing near would be
-/// far enough from them not to matter.
-inline constexpr double kFastestHeld = 30;
+/// v_max: no live hand makes the cloth that it holds faster than this [m/s], and none leads it by
+/// more than the cloth can follow in a tick at this speed. A target that jumps by metres is
+/// approached at v_max, as if the hand pulled less. Otherwise a strong hand would throw the few
+/// grams that it holds about at thousands of metres a second, and contact would have to look for
+/// what they meet all over the scene. People fling a mouse at some 10 m/s; robots stay below.
+inline constexpr double kFastestHeld = 10;
+
+/// Shortest tick for which the lead is counted [s]: hands are no weaker where ticks are shorter.
+inline constexpr double kLeadSeconds = 1.0 / 60;
 
 /// A hand that holds the cloth at a point of a triangle. A live one pulls it towards a target with
 /// a damped spring of bounded force. A sling gives, when fired, the constant force stiffness
@@ -47,13 +51,15 @@ struct Grab {
   GrabId id = 0;
   GrabDef def;
   std::vector<Index> particles;
-  std::vector<Real> weights;         ///< of the particles, sum 1
-  Vec3<Real> offset;                 ///< held point minus weighted mean when taken [m]
-  Vec3<Real> target, target_before;  ///< at the end and at the start of the coming tick [m]
-  Real damping = 0;                  ///< of the spring [N s/m]
-  StabilityBound bound;              ///< of its spring alone, were it an explicit one
-  Vec3Array<Real> impulse;           ///< of each particle by the last force, pinned ones too [N s]
-  Vec3Array<Real> velocity;          ///< of each particle when last seen [m/s]
+  std::vector<Real> weights;  ///< of the particles, sum 1
+  Vec3<Real> offset;          ///< held point minus weighted mean when taken [m]
+  Vec3<Real> target;          ///< where the held point shall go [m]
+  Vec3<Real> path_begin,
+      path_end;              ///< of the hand in the coming tick, straight; see lead_hands [m]
+  Real damping = 0;          ///< of the spring [N s/m]
+  StabilityBound bound;      ///< of its spring alone, were it an explicit one
+  Vec3Array<Real> impulse;   ///< of each particle by the last force, pinned ones too [N s]
+  Vec3Array<Real> velocity;  ///< of each particle when last seen [m/s]
   /// Of a live hand: on the cloth, in the last substep; of a sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();
 };
@@ -88,7 +94,8 @@ template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs);
 
-/// Moves the target; the hand goes there in a straight line over the coming tick.
+/// Moves the target; the hand goes there in a straight line over the coming tick, as far as
+/// lead_hands lets it.
 /// Throws DefinitionError if the target is out of range. False if there is no such grab.
 template <class Real>
 bool move_grab(GrabId id, const Vec3d& target, Grabs<Real>& grabs);
@@ -105,7 +112,14 @@ template <class Real>
 std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real>& state,
                                      Grabs<Real>& grabs);
 
-/// To be called after each tick: targets are reached, shots grow older.
+/// To be called before each tick: plans each live hand's path from where it was towards its target,
+/// neither end farther from the held point than v_max = kFastestHeld lets cloth go in a tick of at
+/// least kLeadSeconds. At any load: a rule of the scene, not of the machine.
+/// @param tick_seconds  [s]
+template <class Real>
+void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grabs);
+
+/// To be called after each tick: hands are where their paths ended, shots grow older.
 template <class Real>
 void finish_tick(Grabs<Real>& grabs);
 

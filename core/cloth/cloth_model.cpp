@@ -7,6 +7,7 @@
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
 #include "core/error.h"
+#include "core/geometry/aabb.h"
 
 namespace weft {
 namespace {
@@ -48,14 +49,23 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   model.parts.push_back(std::move(part));
 }
 
+template <class Real>
+ClothModel<Real> build_by_kind(const ClothDef& def) {
+  if (def.mesh) return build_mesh_cloth<Real>(def);
+  return def.outline == Outline::rectangle ? build_grid_cloth<Real>(def)
+                                           : build_cut_grid<Real>(def);
+}
+
 }  // namespace
 
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def) {
   validate(def);
-  if (def.mesh) return build_mesh_cloth<Real>(def);
-  return def.outline == Outline::rectangle ? build_grid_cloth<Real>(def)
-                                           : build_cut_grid<Real>(def);
+  ClothModel<Real> model = build_by_kind<Real>(def);
+  Aabb<Real> box;
+  for (const Vec3<Real>& x : model.rest_positions) box.add(x);
+  model.parts.front().rest_diagonal = (box.upper - box.lower).norm();
+  return model;
 }
 
 template <class Real>

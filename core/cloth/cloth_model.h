@@ -120,6 +120,7 @@ struct ClothPart {
   int rows = 0, columns = 0;    ///< of a whole grid, whose particle (r, c) is particles.first +
                                 ///< r * columns + c; 0 if the cloth is none
   Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
+  Real rest_diagonal = 0;       ///< of the box around its rest positions [m]
   std::optional<GridSprings<Real>> grid_springs;   ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;        ///< of a grid; the hinges are none then
   std::vector<HingeStencil<Real>> hinge_stencils;  ///< of a mesh that is flat at rest

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/math/exact_sign.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -44,7 +45,9 @@ void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
 void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
                    const std::vector<Triangle>& triangles, bool one_cloth, const Bvh<double>& tree,
                    Crossings& sum) {
+  std::size_t looked = 0;
   for (const Edge& edge : edges) {
+    stop_point(looked++);
     const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
     Aabb<double> box;
     box.add(p);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/stop_signal.h"
+
 namespace weft {
 namespace {
 
@@ -102,6 +104,7 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
   GridPass<Real>& grid = tick.grid(p);
   double work = 0;
   for (int s = 0; s <= substeps; ++s) {
+    stop_point();
     if (tick.pulled) {
       const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
       grid.compute_air_forces(tick.surroundings.air_density);
@@ -141,6 +144,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   double work = 0, kept_work = 0;
   bool renew = false;
   for (; s < substeps && !renew && time + tick.dt <= paths->horizon; ++s) {
+    stop_point();
     if ((s - first) % kKeptSteps == 0) {
       for (GridPass<Real>& grid : tick.work.grids) grid.keep();
       kept = s, kept_time = time, kept_box = box, kept_work = work;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/forces/force_pass.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -158,6 +159,7 @@ void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
   const auto count = static_cast<std::size_t>(springs.count);
   if (count == 0) return;
   for (int s = 0; s < tick.solver.sweeps; ++s) {
+    stop_point();
     const bool compliant = tick.compliant(), down = (compliant ? turn + s : s) % 2 == 0;
     const std::size_t begin = down ? first : first + count - 1;
     const std::ptrdiff_t step = down ? 1 : -1;
@@ -170,7 +172,10 @@ void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
 
 template <class Real>
 void sweep_rows(const SweepView<Real>& grid, int sweeps, int turn) {
-  for (int s = 0; s < sweeps; ++s) sweep_grid(grid, (turn + s) % 2 == 0, s == 0, s + 1 == sweeps);
+  for (int s = 0; s < sweeps; ++s) {
+    stop_point();
+    sweep_grid(grid, (turn + s) % 2 == 0, s == 0, s + 1 == sweeps);
+  }
 }
 
 /// @param substep  counted from 0
@@ -196,8 +201,9 @@ void relax(Tick<Real>& tick, int substep) {
 }
 
 /// Takes the wanted positions, as far as contact lets them.
+/// @returns the motion that contact must not see, if there is one; nothing has moved then
 template <class Real>
-void move(Tick<Real>& tick) {
+std::optional<BlowUp> move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
   Vec3Array<Real>& wanted = tick.work.wanted;
   const bool ways = tick.compliant();
@@ -206,11 +212,13 @@ void move(Tick<Real>& tick) {
   if (tick.collision.empty()) {
     if (!ways) std::swap(state.x, wanted);
     for (std::size_t i = 0; ways && i < state.x.size(); ++i) state.x[i] += wanted[i];
-    return;
+    return std::nullopt;
   }
+  if (const auto found = find_blow_up(tick.model, state, tick.dt)) return found;
   tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;
   tick.collision.after_drift(state, tick.dt, tick.profile);
+  return std::nullopt;
 }
 
 /// Whether nothing but the sweeps' own arrays is needed during the tick.
@@ -305,10 +313,12 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
   see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
     const auto count = static_cast<Real>(substeps);
+    stop_point();
     evaluate_forces<Real>(tick, {static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt});
     predict(tick);
     relax(tick, s);
-    move(tick);
+    result.blow_up = move(tick);
+    if (result.blow_up) return result;
     result.work += external_work(tick) + work_of_hands(state.v, grabs);
   }
   const EnergyReading end = timed_energies(tick);

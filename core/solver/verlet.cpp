@@ -6,6 +6,7 @@
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -238,15 +239,18 @@ void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
 }
 
 /// The substeps of a tick where hands or contact see the particles between kick and drift.
+/// @param blow_up  gets the motion that ended the tick before contact saw it
 /// @returns work of hands and air [J]
 template <class Real>
-double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps) {
+double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps,
+                        std::optional<BlowUp>& blow_up) {
   ClothState<Real>& state = tick.state;
   const Collision<Real>& collision = tick.collision;
   double work = 0;
   see_velocities(state.v, tick.grabs);
   NextCalm next;
   for (int s = 0; s < substeps; ++s) {
+    stop_point();
     work += advance_calm(tick, kicks, substeps, s, next);
     if (s == substeps) break;
     if (s == 0)
@@ -255,6 +259,8 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
       swept_kick(tick, kicks.full, Real(0.5));
     const Kick<Real>& k = s == 0 ? kicks.opening : kicks.full;
     pull(tick, k, s, substeps);
+    if (!collision.empty()) blow_up = find_blow_up(tick.model, state, tick.dt);
+    if (blow_up) return work;
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
     work += work_of_hands(state.v, tick.grabs);
@@ -324,8 +330,9 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
       if (!tick.sleeps(p)) result.work += advance_alone(tick, p, kicks, substeps);
     }
   } else {
-    result.work = advance_together(tick, kicks, substeps);
+    result.work = advance_together(tick, kicks, substeps, result.blow_up);
   }
+  if (result.blow_up) return result;
   work.elastic.reset();
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;

@@ -11,6 +11,7 @@
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/forces/mesh_pass.h"
+#include "core/solver/blow_up.h"
 #include "core/solver/substep_rule.h"
 #include "core/world/profile.h"
 
@@ -58,6 +59,8 @@ struct AdvanceResult {
   double work = 0;            ///< done by hands and air over the tick [J]
   double largest_strain = 0;  ///< at the end
   int damped_substeps = 0;    ///< that `implicit` had to go again by backward Euler
+  /// Why the tick was ended in the midst of it; nothing above but `before` counts then.
+  std::optional<BlowUp> blow_up;
 };
 
 /// Arrays that live from tick to tick so that nothing allocates during a step.

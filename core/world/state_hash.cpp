@@ -74,7 +74,7 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
   for (const Grab<Real>& grab : grabs.list) {
     feed(hash, grab.particles.data(), grab.particles.size());
     feed(hash, grab.weights.data(), grab.weights.size());
-    feed(hash, &grab.target_before, 1);
+    feed(hash, &grab.path_begin, 1);
     feed(hash, &grab.target, 1);
     feed(hash, &grab.def.stiffness, 1);
     feed(hash, &grab.def.max_force, 1);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
+#include "core/stop_signal.h"
 #include "core/world/wind.h"
 
 namespace weft {
@@ -46,13 +48,40 @@ WorldDef validated(WorldDef def) {
   return def;
 }
 
+std::string describe_cause(const Divergence& d) {
+  switch (d.cause) {
+    case DivergenceCause::not_finite:
+      return "a value that is not finite";
+    case DivergenceCause::too_fast:
+      return "a speed of " + number_text(d.value) +
+             " m/s, farther in a substep than the cloth is "
+             "long,";
+    case DivergenceCause::too_far:
+      return "a distance of " + number_text(d.value) + " m from the origin";
+    case DivergenceCause::energy_runaway:
+      return "unexplained energy of " + number_text(d.value) + " J";
+    case DivergenceCause::unsolved:
+      return "a linear system that was not solved";
+  }
+  return {};
+}
+
+DivergenceCause cause_of(const BlowUp& blow_up) {
+  switch (blow_up.kind) {
+    case BlowUp::Kind::not_finite:
+      return DivergenceCause::not_finite;
+    case BlowUp::Kind::too_fast:
+      return DivergenceCause::too_fast;
+    case BlowUp::Kind::too_far:
+      return DivergenceCause::too_far;
+  }
+  return DivergenceCause::not_finite;
+}
+
 }  // namespace
 
 std::string describe(const Divergence& d) {
-  const std::string what = d.cause == DivergenceCause::not_finite ? "a value that is not finite"
-                           : d.cause == DivergenceCause::unsolved
-                               ? "a linear system that was not solved"
-                               : "unexplained energy of " + number_text(d.value) + " J";
+  const std::string what = describe_cause(d);
   const std::string done = d.remedy == DivergenceRemedy::more_substeps
                                ? "repeated with more substeps"
                                : "went back to the last good state and stopped the cloth";
@@ -120,17 +149,80 @@ void World<Real>::accept_state() {
   wake_all();
   last_good_.x = state_.x;
   last_good_.v = state_.v;
-  verlet_.elastic.reset();
   account_.clear();
   touching_ = false;
-  contact_.reset();
-  contact_.place(colliders_);
-  if (guard_) guard_->reset();
+  forget_motion();
   report_present_state();
 }
 
 template <class Real>
 const TickReport& World<Real>::step() {
+  keep_checkpoint();
+  report_.halted = false;
+  try {
+    step_in_order();
+  } catch (const Stopped&) {
+    go_back();
+  }
+  return report_;
+}
+
+template <class Real>
+const TickReport& World<Real>::halt() {
+  keep_checkpoint();
+  go_back();
+  return report_;
+}
+
+/// Everything that a tick changes and that decides the future.
+template <class Real>
+void World<Real>::keep_checkpoint() {
+  checkpoint_.state = state_;
+  checkpoint_.pins = pins_;
+  checkpoint_.grabs = grabs_;
+  checkpoint_.colliders = colliders_;
+  checkpoint_.grippers = grippers_;
+  checkpoint_.scene_hands = scene_hands_;
+  checkpoint_.wind = environment_.wind;
+  checkpoint_.account = account_;
+  if (sleep_.wanted()) checkpoint_.sleep = sleep_;
+  checkpoint_.report = report_;
+}
+
+template <class Real>
+void World<Real>::go_back() {
+  state_ = checkpoint_.state;
+  pins_ = checkpoint_.pins;
+  grabs_ = checkpoint_.grabs;
+  colliders_ = checkpoint_.colliders;
+  grippers_ = checkpoint_.grippers;
+  scene_hands_ = checkpoint_.scene_hands;
+  environment_.wind = checkpoint_.wind;
+  account_ = checkpoint_.account;
+  if (sleep_.wanted()) sleep_ = *checkpoint_.sleep;
+  report_ = checkpoint_.report;
+  report_.halted = true;
+  touching_ = false;
+  forget_motion();
+  sleep_changed();
+  last_good_.x = state_.x;
+  last_good_.v = state_.v;
+}
+
+/// Nothing that solvers and contact remember of the way here holds any longer.
+template <class Real>
+void World<Real>::forget_motion() {
+  verlet_.elastic.reset();
+  std::fill(verlet_.at_rest.begin(), verlet_.at_rest.end(), std::nullopt);
+  implicit_.forget();
+  contact_.reset();
+  contact_.place(colliders_);
+  if (guard_) guard_->reset();
+}
+
+/// A tick, stage by stage.
+template <class Real>
+void World<Real>::step_in_order() {
   report_.brought = 0;
   run_script();
   report_.profile.clear();
@@ -141,9 +233,13 @@ const TickReport& World<Real>::step() {
               colliders_);
   PinDrive<Real>::plan(tick_seconds(), state_, pins_);
   rouse_sleepers();
-  if (rests()) return rest();
+  if (rests()) {
+    rest();
+    return;
+  }
   const int substeps = choose_substeps(solver_of(def_));
   blow_wind();
+  lead_hands(tick_seconds(), state_.x, grabs_);
   advance_or_recover(substeps);
   finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_grippers(tick_seconds(), colliders_, grippers_);
@@ -154,7 +250,6 @@ const TickReport& World<Real>::step() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (measures_forces_) take_reactions();
-  return report_;
 }
 
 template <class Real>
@@ -293,6 +388,13 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   Divergence d;
   d.tick = tick_ + 1;
   d.substeps = substeps;
+  const auto dt = static_cast<Real>(tick_seconds() / substeps);
+  if (const auto found = result.blow_up ? result.blow_up : find_blow_up(model_, state_, dt)) {
+    d.cause = cause_of(*found);
+    d.particle = found->particle;
+    d.value = found->value;
+    return d;
+  }
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
   // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
@@ -322,11 +424,8 @@ template <class Real>
 void World<Real>::restore_last_good() {
   state_.x = last_good_.x;
   state_.v = last_good_.v;
-  verlet_.elastic.reset();
   take_back_motion(colliders_);
-  contact_.reset();
-  contact_.place(colliders_);
-  if (guard_) guard_->reset();
+  forget_motion();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was kept
   }

@@ -15,6 +15,7 @@
 #include "core/solver/relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
+#include "core/world/cost.h"
 #include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
 #include "core/world/profile.h"
@@ -27,6 +28,8 @@ namespace weft {
 /// Why a tick had to be taken back.
 enum class DivergenceCause : std::uint8_t {
   not_finite,      ///< a position, velocity or energy is NaN or infinite
+  too_fast,        ///< a particle went farther in a substep than its cloth is long
+  too_far,         ///< a particle is more than kFarthestFromOrigin from the origin
   energy_runaway,  ///< more energy than there was and than hands and air did work
   unsolved,        ///< a linear system of the solver implicit has no solution that was found
 };
@@ -42,8 +45,8 @@ struct Divergence {
   DivergenceCause cause = DivergenceCause::not_finite;
   DivergenceRemedy remedy = DivergenceRemedy::stopped_cloth;
   std::uint64_t tick = 0;
-  Index particle = kNone;  ///< the first one that is not finite, or the fastest
-  double value = 0;        ///< unexplained energy [J], or the offending number
+  Index particle = kNone;  ///< the first one at fault, or the fastest
+  double value = 0;        ///< unexplained energy [J], speed [m/s], distance [m], or that number
   int substeps = 0;        ///< of the last attempt that failed
 };
 
@@ -62,6 +65,9 @@ struct TickReport {
   bool violent = false;     ///< gone by verlet, as the solver implicit would have lost too much
   bool touching = false;    ///< gone by verlet instead of implicit, as something touched or could
   bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
+  /// The tick was ended from outside (stop_signal.h): the state at its start is back, and all else
+  /// here is as it was then.
+  bool halted = false;
   std::optional<Divergence> divergence;
   Profile profile;
 };
@@ -99,8 +105,14 @@ class World {
   /// Throws DefinitionError if the definition cannot be built.
   explicit World(const WorldDef& def, const Runtime& runtime = {});
 
-  /// Advances by one tick of 1 / tick_rate seconds.
+  /// Advances by one tick of 1 / tick_rate seconds. A stop signal of the calling thread ends it in
+  /// the midst of its work, with the same result as `halt`.
   const TickReport& step();
+
+  /// What a tick that was given up leaves: the state at its start, contact that has to look for
+  /// everything anew, and no time passed. The same whatever of the tick was done, so that a log
+  /// that tells of it can be replayed.
+  const TickReport& halt();
 
   /// Back to the start: pins as defined, no grabs, tick 0. The environment stays as it was set, but
   /// for a wind that the scene itself changes.
@@ -163,7 +175,8 @@ class World {
   /// So many pairs nothing is promised about; see BadStarts.
   std::size_t open_pairs() const;
   /// Those that the coming tick would find and leave, if nothing were changed until then: in a
-  /// world at its start nobody has looked yet. Works on a copy, as `coming_reactions` does.
+  /// world at its start nobody has looked yet. Works on a copy, as `coming_reactions` does, and may
+  /// throw the same.
   BadStarts coming_bad_starts() const;
 
   /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
@@ -174,7 +187,8 @@ class World {
   /// Those of the last tick, if they were measured in it, or of the coming one; null otherwise.
   const Reactions* reactions() const { return reactions_ ? &*reactions_ : nullptr; }
   /// Those that the coming tick would have, if nothing were changed until then. Works on a copy of
-  /// the world: costs a tick and more memory than the world itself, and changes nothing.
+  /// the world: costs a tick and more memory than the world itself, and changes nothing. Throws
+  /// Stopped if that tick was ended from outside, as the two functions that call it do.
   Reactions coming_reactions() const;
 
   /// What the state of the cloth, the copy to go back to and the arrays of `verlet` take [B]. Those
@@ -186,6 +200,10 @@ class World {
   std::vector<Aabb<float>> debug_boxes(const std::string& tree, int level);
   std::vector<std::string> debug_tree_names();
   int debug_tree_levels(const std::string& tree);
+
+  /// Estimate of a tick's cost without contact from the present state on, were the environment this
+  /// one; see check_cost.
+  TickCost cost_in(const EnvironmentDef& environment) const;
 
   /// As built: the jaws of grippers are the last of its colliders.
   const WorldDef& def() const { return def_; }
@@ -235,18 +253,25 @@ class World {
   bool rests() const;
   const TickReport& rest();
   void put_to_sleep();
-  int choose_substeps(SolverKind kind) const;
-  long substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const;
+  int choose_substeps(SolverKind kind) const { return choose_substeps(kind, environment_); }
+  int choose_substeps(SolverKind kind, const EnvironmentDef& environment) const;
+  long substeps_for_hands(SolverKind kind, const EnvironmentDef& environment, long cloth_alone,
+                          int fewest) const;
   void prepare_solver();
   void make_room();
-  StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind) const;
+  StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind,
+                                 const EnvironmentDef& environment) const;
   void blow_wind();
+  void keep_checkpoint();
+  void go_back();
+  void step_in_order();
   void advance_or_recover(int substeps);
   AdvanceResult advance(SolverKind kind, int substeps);
   Collision<Real> collision();
   std::optional<Divergence> examine(const AdvanceResult& result, SolverKind kind,
                                     int substeps) const;
   void restore_last_good();
+  void forget_motion();
   void report_present_state();
   void report_motion();
 
@@ -277,6 +302,20 @@ class World {
   bool touching_ = false;  ///< with the solver implicit: something touched when the last tick ended
   EnergyAccount account_;
   Sleep<Real> sleep_;
+  /// At the start of the tick under way, for `go_back`.
+  struct Checkpoint {
+    ClothState<Real> state;
+    Pins pins;
+    Grabs<Real> grabs;
+    ColliderStates colliders;
+    std::vector<Gripper> grippers;
+    std::vector<SceneHand> scene_hands;
+    Vec3d wind = Vec3d::Zero();
+    EnergyAccount account{0};
+    std::optional<Sleep<Real>> sleep;  ///< where a scene lets cloth sleep
+    TickReport report;
+  };
+  Checkpoint checkpoint_;
   std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;

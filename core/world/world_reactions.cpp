@@ -1,6 +1,7 @@
 // What holds the cloth, and with which forces: nothing is measured unless somebody asks.
 
 #include "core/contact/guard/guard_contacts.h"
+#include "core/stop_signal.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -61,14 +62,14 @@ Reactions World<Real>::coming_reactions() const {
   World trial = copy();
   trial.wake_all();  // what sleeps is held by forces all the same
   trial.measure_forces(true);
-  trial.step();
+  if (trial.step().halted) throw Stopped();
   return *trial.reactions();
 }
 
 template <class Real>
 BadStarts World<Real>::coming_bad_starts() const {
   World trial = copy();
-  trial.step();
+  if (trial.step().halted) throw Stopped();
   return {trial.bad_starts(), trial.open_pairs()};
 }
 

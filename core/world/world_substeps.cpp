@@ -14,7 +14,7 @@ constexpr long kMostForHands = 2, kEnoughForHands = 40;
 }  // namespace
 
 template <class Real>
-int World<Real>::choose_substeps(SolverKind kind) const {
+int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environment) const {
   if (kind == SolverKind::implicit) {
     const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
     return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
@@ -23,8 +23,10 @@ int World<Real>::choose_substeps(SolverKind kind) const {
       kind == SolverKind::relaxation ? def_.relaxation.substeps : def_.solver.min_substeps;
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts)
-    count = std::max(count, substeps_for(stability_bound(part, kind), tick_seconds(), fewest));
-  if (!grabs_.list.empty()) count = std::max(count, substeps_for_hands(kind, count, fewest));
+    count = std::max(
+        count, substeps_for(stability_bound(part, kind, environment), tick_seconds(), fewest));
+  if (!grabs_.list.empty())
+    count = std::max(count, substeps_for_hands(kind, environment, count, fewest));
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 
@@ -32,7 +34,8 @@ int World<Real>::choose_substeps(SolverKind kind) const {
 /// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
 /// springs.
 template <class Real>
-long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewest) const {
+long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& environment,
+                                     long cloth_alone, int fewest) const {
   const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts) {
@@ -44,7 +47,7 @@ long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewe
       count = std::max(count, std::min(most, substeps_for(grab.bound, tick_seconds(), fewest)));
     }
     if (hands.omega2 == 0) continue;
-    StabilityBound together = stability_bound(part, kind);
+    StabilityBound together = stability_bound(part, kind, environment);
     together.omega2 += hands.omega2;
     together.damping_rate += hands.damping_rate;
     count =
@@ -54,16 +57,17 @@ long World<Real>::substeps_for_hands(SolverKind kind, long cloth_alone, int fewe
 }
 
 template <class Real>
-StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind) const {
+StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind,
+                                            const EnvironmentDef& environment) const {
   StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
   if (kind == SolverKind::verlet) {  // there the springs are forces too
     bound.omega2 += part.bounds.membrane_omega2;
     bound.damping_rate += part.bounds.membrane_damping_rate;
   }
-  if (!has_air(environment_)) return bound;
+  if (!has_air(environment)) return bound;
   // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
-  double fastest = environment_.wind.norm() + 2 * environment_.gust_speed;
-  for (const FanDef& fan : environment_.fans) fastest += fan.speed;
+  double fastest = environment.wind.norm() + 2 * environment.gust_speed;
+  for (const FanDef& fan : environment.fans) fastest += fan.speed;
   double speed2 = 0;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
     speed2 =
@@ -71,15 +75,29 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
   fastest += std::sqrt(speed2);
   const FabricDef& fabric = part.fabric;
   bound.damping_rate +=
-      (environment_.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
+      (environment.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
       fabric.areal_density;
   return bound;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                \
-  template int World<Real>::choose_substeps(SolverKind) const;                \
-  template long World<Real>::substeps_for_hands(SolverKind, long, int) const; \
-  template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind) const;
+template <class Real>
+TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
+  const SolverKind kind = solver_of(def_);
+  TickCost cost;
+  cost.particles = static_cast<double>(model_.mass.size());
+  cost.substeps = choose_substeps(kind, environment);
+  cost.sweeps = sweeps_of(def_, kind);
+  cost.tick_rate = def_.tick_rate;
+  return cost;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template int World<Real>::choose_substeps(SolverKind, const EnvironmentDef&) const;         \
+  template long World<Real>::substeps_for_hands(SolverKind, const EnvironmentDef&, long, int) \
+      const;                                                                                  \
+  template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind,    \
+                                                       const EnvironmentDef&) const;          \
+  template TickCost World<Real>::cost_in(const EnvironmentDef&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

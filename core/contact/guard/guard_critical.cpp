@@ -5,6 +5,7 @@
 
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/travel.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -171,7 +172,10 @@ void ClothGuard<Real>::leave_calm_paths(int steps, Real time, const Vec3<Real>& 
 /// Certifies or stops the steps of particles that have no room for them.
 template <class Real>
 void ClothGuard<Real>::stop_crossings() {
-  while (find_critical()) anchor(loose_);
+  while (find_critical()) {
+    stop_point();
+    anchor(loose_);
+  }
   counts_.critical += critical_.size();
   for (Critical& c : critical_) {
     const GuardedPair<Real>& pair = pairs_[static_cast<std::size_t>(c.pair)];
@@ -181,6 +185,7 @@ void ClothGuard<Real>::stop_crossings() {
     c.fixed = false;
   }
   for (int round = 0;; ++round) {
+    stop_point();
     bool changed = false;
     for (Critical& c : critical_) {
       if (c.fixed || (round < kRounds && holds(c))) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/contact/guard/cloth_guard.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -59,7 +60,10 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
   open_pairs_ = 0;
   changed_.assign(n, 1);
   near_patches_.clear();
-  tree_.for_each_near_pair([&](Index p, Index q) { near_patches_.push_back({p, q}); });
+  tree_.for_each_near_pair([&](Index p, Index q) {
+    stop_point(near_patches_.size());
+    near_patches_.push_back({p, q});
+  });
   test_near_patches(true, profile);
   if (open_pairs() > 0) {
     note_touches();
@@ -115,7 +119,10 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
     if (tree_.is_marked(static_cast<Index>(p))) boxes_.forget(static_cast<Index>(p));
   }
   near_patches_.clear();
-  tree_.for_each_changed_pair([&](Index p, Index q) { near_patches_.push_back({p, q}); });
+  tree_.for_each_changed_pair([&](Index p, Index q) {
+    stop_point(near_patches_.size());
+    near_patches_.push_back({p, q});
+  });
   test_near_patches(false, profile);
   admit_pairs(kept);
   list_pairs(kept);

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/contact/guard/cloth_guard.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -78,8 +79,10 @@ template <class Real>
 void ClothGuard<Real>::search(std::size_t first, std::size_t last, bool all,
                               PairSearch<Real>& s) const {
   s.tests = 0;
-  for (std::size_t k = first; k < last; ++k)
+  for (std::size_t k = first; k < last; ++k) {
+    stop_point(k);
     test_patches(near_patches_[k].first, near_patches_[k].second, all, s);
+  }
   for (PairColumns<Real>& columns : s.columns) keep_near(columns, s);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/contact/guard/cloth_guard.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -114,6 +115,7 @@ void ClothGuard<Real>::anchor(const std::vector<Index>& list) {
   measure_steps();
   wave_list_ = list;
   for (int wave = 0; !wave_list_.empty(); ++wave) {
+    stop_point();
     if (wave == kMostWaves) {
       anchor_all();
       return;

@@ -6,6 +6,7 @@
 
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/guard/row_blocks.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -179,6 +180,7 @@ void ClothGuard<Real>::warm_rows(Real dt, Real kicked) {
 /// @return largest change of a normal velocity [m/s]
 template <class Real>
 Real ClothGuard<Real>::sweep_rows() {
+  stop_point();
   upwards_ = !upwards_;
   const RowPass<Real> pass{legal_.data(), quad_v_.data(), nullptr, 0, 0, 0};
   return row_deals_.largest(executor_, upwards_,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/contact/guard/cloth_guard.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -25,9 +26,11 @@ void ClothGuard<Real>::find_tangles(const ClothState<Real>& state) {
   is_heap_.assign(is_heap_.size(), 0);
   crossings_of_.assign(crossings_of_.size(), 0);
   heaps_ = 0;
+  std::size_t looked = 0;
   tree_.for_each_near_pair([&](Index p, Index q) {
     if (resting_[static_cast<std::size_t>(p)] && resting_[static_cast<std::size_t>(q)]) return;
     if (in_heap(p) || in_heap(q)) return;
+    stop_point(looked++);
     const std::size_t before = tangles_.size();
     look_through(p, q);
     if (p != q) look_through(q, p);

@@ -81,6 +81,10 @@ void Contact<Real>::reset() {
   moving_rows_.clear();
   exits_.clear();
   for (ColliderFrame<Real>& frame : frames_) frame.wary = frame.rest = 0;
+  // What they have room for decides how long pairs hold, and with it the coming ticks.
+  for (std::vector<Neighbourhood>& of_mesh : neighbourhoods_) {
+    for (Neighbourhood& about : of_mesh) about.box = {};
+  }
 }
 
 template <class Real>

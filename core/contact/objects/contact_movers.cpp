@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/contact/objects/contact.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -254,7 +255,10 @@ void Contact<Real>::certify_with_movers(ClothState<Real>& state, Real dt) {
   // Whoever still would cross is carried along by its object, if that is legal; else objects stand,
   // one after the other. When all stand, not moving is legal.
   bool carry = true;
-  while (hold_or_block(carry, state, dt)) carry = false;
+  while (hold_or_block(carry, state, dt)) {
+    stop_point();
+    carry = false;
+  }
 }
 
 /// Holds whoever would cross a plane of an object at rest or go beyond its reach, and carries or

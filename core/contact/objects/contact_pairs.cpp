@@ -8,6 +8,7 @@
 
 #include "core/contact/objects/contact.h"
 #include "core/contact/objects/feature_distance.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -71,8 +72,10 @@ void Contact<Real>::collect_pairs(const ClothState<Real>& state, Profile& profil
       for (Pairs* pairs : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
         pairs->clear();
       found.tests = 0;
-      for (std::size_t n = count * c / kChunks; n < count * (c + 1) / kChunks; ++n)
+      for (std::size_t n = count * c / kChunks; n < count * (c + 1) / kChunks; ++n) {
+        stop_point();
         pair_patch(m, near_patches_[n], own, found);
+      }
     });
     join_found(m, profile);
   }

@@ -6,6 +6,7 @@
 
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/contact.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -174,6 +175,7 @@ void Contact<Real>::solve_rows(ClothState<Real>& state, Real dt, Profile& profil
   std::uint64_t friction_evaluations = lone_response_.friction_evaluations;
   Real left = lone_response_.largest, among_cloths = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    stop_point();
     const bool again = sweep == 0 ? lone_apart_ : !(among_cloths > 0);
     left = std::max(left, sweep_rows(state, friction_evaluations, again));
     if (guard && sweep == 0) among_cloths = guard->sweep(state);

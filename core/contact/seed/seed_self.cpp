@@ -4,6 +4,7 @@
 
 #include "core/contact/seed/seed_contact.h"
 #include "core/geometry/distance.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -44,7 +45,7 @@ template <class Real>
 std::uint64_t SeedContact<Real>::find_particle_pairs(const Vec3Array<Real>& x) {
   std::uint64_t tests = 0;
   trees_.particles(x, thickest_ / 2).for_each_own_pair([&](Index i, Index j) {
-    ++tests;
+    stop_point(++tests);
     if (are_neighbours(i, j)) return;
     const Vec3<Real> away = x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)];
     const Real distance = away.norm();
@@ -64,7 +65,7 @@ std::uint64_t SeedContact<Real>::find_triangle_pairs(const Vec3Array<Real>& x) {
     return proximity_box<Real>(at(t[0]), at(t[1]), at(t[2]), thickest_);
   });
   particles.for_each_pair(triangles, [&](Index i, Index triangle) {
-    ++tests;
+    stop_point(++tests);
     const Triangle& t = triangles_[static_cast<std::size_t>(triangle)];
     for (const Index corner : t)
       if (are_neighbours(i, corner)) return;
@@ -84,7 +85,7 @@ std::uint64_t SeedContact<Real>::find_edge_pairs(const Vec3Array<Real>& x) {
   std::uint64_t tests = 0;
   const auto at = [&](Index i) -> const Vec3<Real>& { return x[static_cast<std::size_t>(i)]; };
   trees_.edges(x, edges_, thickest_ / 2).for_each_own_pair([&](Index first, Index second) {
-    ++tests;
+    stop_point(++tests);
     const Edge& a = edges_[static_cast<std::size_t>(first)];
     const Edge& b = edges_[static_cast<std::size_t>(second)];
     for (const Index i : a) {
@@ -139,8 +140,10 @@ void SeedContact<Real>::separate(ClothState<Real>& state, Profile& profile) {
   }
   const StageTimer timer(profile, Stage::self_contact,
                          pairs_.size() * static_cast<std::size_t>(def_.passes));
-  for (int pass = 0; pass < def_.passes; ++pass)
+  for (int pass = 0; pass < def_.passes; ++pass) {
+    stop_point();
     for (const SelfPair& pair : pairs_) take_approach(pair, state);
+  }
 }
 
 #define WEFT_INSTANTIATE(Real)                                                           \

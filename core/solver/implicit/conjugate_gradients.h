@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/solver/implicit/spring_grid.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 
@@ -41,6 +42,7 @@ LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, doub
   const double limit = std::max(tolerance * result.start, enough);
   for (std::size_t n = 0; n < v.count; ++n) v.direction[n] = v.preconditioned[n];
   for (; result.iterations < kMostLinearIterations; ++result.iterations) {
+    stop_point();
     if (std::sqrt(rz) <= limit) {
       result.solved = true;
       return result;

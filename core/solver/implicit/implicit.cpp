@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/solver/implicit/implicit_step.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -172,8 +173,9 @@ bool goes_far(const Step<Real>& step, const Collision<Real>& collision) {
 
 /// Goes the ways as far as contact lets. Who was not hindered has the scheme's velocity at the end;
 /// who was has the mean one, and begins anew.
+/// @returns the motion that contact must not see, if there is one; nothing has moved then
 template <class Real>
-void move(Step<Real>& step, const Collision<Real>& collision) {
+std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
   ClothState<Real>& state = step.state;
   ImplicitWorkspace<Real>& work = step.work;
   std::swap(state.v, work.last_v);  // the velocities before
@@ -182,9 +184,10 @@ void move(Step<Real>& step, const Collision<Real>& collision) {
     std::copy(work.x.begin(), work.x.end(), state.x.begin());
     std::copy(work.way.begin(), work.way.end(), work.last_way.begin());
     for (std::size_t i = 0; i < state.x.size(); ++i) work.history[i] = !step.damped;
-    return;
+    return std::nullopt;
   }
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.way[i] / step.dt;
+  if (const auto found = find_blow_up(step.model, state, step.dt)) return found;
   collision.before_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * step.dt;
   collision.after_drift(state, step.dt, step.profile);
@@ -195,6 +198,7 @@ void move(Step<Real>& step, const Collision<Real>& collision) {
     state.v[i] = work.v[i];
     work.last_way[i] = work.way[i];
   }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -236,6 +240,12 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
 }
 
 template <class Real>
+void ImplicitWorkspace<Real>::forget() {
+  std::fill(history.begin(), history.end(), 0);
+  last_dt = credit = 0;
+}
+
+template <class Real>
 AdvanceResult advance_implicit(const ClothModel<Real>& model,
                                const Surroundings<Real>& surroundings, const ImplicitDef& solver,
                                double dt, int substeps, Grabs<Real>& grabs,
@@ -252,6 +262,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   work.unsolved = work.violent = work.touching = false;
   see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
+    stop_point();
     const Real count = static_cast<Real>(substeps), begin = static_cast<Real>(s) / count;
     const EnergyReading before = reading;
     double brought = 0;
@@ -262,7 +273,8 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     result.work += brought;
     work.touching = work.refuses && goes_far(step, collision);
     if (work.touching) return result;
-    move(step, collision);
+    result.blow_up = move(step, collision);
+    if (result.blow_up) return result;
     work.touching = work.refuses && collision.touches(state);
     if (work.touching) return result;
     if (!collision.empty()) reading = energies_at(step, state.x, state.v);

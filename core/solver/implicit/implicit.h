@@ -76,6 +76,9 @@ struct ImplicitWorkspace {
   double far_way = 0;         ///< see goes_far() [m]
 
   void prepare(const ClothModel<Real>& model);
+
+  /// The coming substep begins anew: what came before it is not its past.
+  void forget();
 };
 
 /// One tick of the implicit solver: BDF2 with a few Newton iterations and conjugate gradients,

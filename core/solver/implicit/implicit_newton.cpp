@@ -4,6 +4,7 @@
 #include "core/forces/air.h"
 #include "core/solver/implicit/conjugate_gradients.h"
 #include "core/solver/implicit/implicit_step.h"
+#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -93,7 +94,7 @@ void add_hands(Step<Real>& step, Real progress) {
     HandTerm<Real>& hand = work.hands[h];
     Grab<Real>& grab = step.grabs.list[hand.grab];
     const auto stiffness = static_cast<Real>(grab.def.stiffness);
-    const Vec3<Real> target = grab.target_before + (grab.target - grab.target_before) * progress;
+    const Vec3<Real> target = grab.path_begin + (grab.path_end - grab.path_begin) * progress;
     Vec3<Real> velocity = Vec3<Real>::Zero();
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
       velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
@@ -225,6 +226,7 @@ bool find_ways(Step<Real>& step, Real progress) {
   for (int k = 0; k < step.solver.iterations; ++k) {
     linearise(step, progress);
     for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
+      stop_point();
       if (!step.state.is_asleep(p))
         solved = take_newton_step(step, p, k == 0, work.starts[p]) && solved;
     }

@@ -98,6 +98,46 @@ TEST_CASE(
   CHECK(lag.norm() < 10 / stiffness);
 }
 
+TEST_CASE("no hand leads its cloth by more than the cloth can follow, at any force and tick rate") {
+  const double tick_rate = GENERATE(30.0, 60.0, 1000.0);
+  WorldDef def = test::empty_world(test::flat_cloth(9, 9));
+  def.tick_rate = tick_rate;
+  def.pins = {{Corner::top_left, 0, {}}, {Corner::top_right, 0, {}}};
+  World<double> world(def);
+  GrabDef hand;
+  hand.triangle = 60;
+  hand.stiffness = 1e5;
+  hand.max_force = 1e6;
+  hand.target = Vec3d(0, -9000, 0);
+  const GrabId id = world.grab(hand);
+  const double lead = kFastestHeld * std::max(1 / tick_rate, kLeadSeconds);
+  for (int n = 0; n < 40; ++n) {
+    if (n % 4 == 3) world.move_grab(id, Vec3d(n % 8 == 3 ? 9000 : -9000, 0, 100));
+    const Vec3d held = held_point(world.grabs().list[0], world.state().x);
+    const TickReport& report = world.step();
+    CHECK_FALSE(report.divergence);
+    const Grab<double>& grab = world.grabs().list[0];
+    CHECK((grab.path_end - held).norm() <= lead * (1 + 1e-9));
+    for (const Index i : grab.particles)
+      CHECK(world.state().v[static_cast<std::size_t>(i)].norm() < kFastestHeld * 1.5);
+  }
+}
+
+TEST_CASE("a hand that moves within v_max is where its target is, to the bit") {
+  World<float> world(test::empty_world(test::flat_cloth(9, 9)));
+  GrabDef hand;
+  hand.triangle = 60;
+  hand.stiffness = 1000;
+  const GrabId id = world.grab(hand);
+  hand.target = held_point(world.grabs().list[0], world.state().x).cast<double>();
+  for (int n = 0; n < 20; ++n) {
+    hand.target += Vec3d(0.02, 0.01, 0);
+    world.move_grab(id, hand.target);
+    world.step();
+    CHECK(world.grabs().list[0].path_end == hand.target.cast<float>());
+  }
+}
+
 TEST_CASE("four hands at one triangle hold it still, weak ones and strong ones") {
   const double stiffness = GENERATE(100.0, 1e5);
   WorldDef def;
@@ -125,6 +165,9 @@ TEST_CASE("the work of a hand is the energy that it gives, also while its force 
   double work = 0;
   for (int tick = 0; tick < 5; ++tick) work += world.step().work;
   const double speed = world.state().v[40].norm();
-  if (max_force > 1) CHECK(speed == Approx(kFastestHeld).epsilon(1e-3));
+  if (max_force > 1) {
+    CHECK(speed > 0.8 * kFastestHeld);  // its own damping holds it back a little
+    CHECK(speed < 1.001 * kFastestHeld);
+  }
   CHECK(work == Approx(mass_of(world) * speed * speed / 2).epsilon(0.01));
 }

@@ -1,0 +1,71 @@
+#include "core/world/cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace weft {
+namespace {
+
+/// What a step of Newton's method with its linear systems is worth in sweeps: 5 to 10 iterations of
+/// conjugate gradients, each with a cycle over all levels of the grid.
+constexpr double kSweepsOfNewton = 60;
+
+std::size_t triangles_of(const ColliderDef& collider) {
+  const auto* mesh = std::get_if<MeshDef>(&collider.shape);
+  return mesh ? mesh->mesh.triangles.size() : 0;
+}
+
+void check_count(const char* field, const char* what, std::size_t count, std::size_t most) {
+  if (count <= most) return;
+  throw DefinitionError(field, std::to_string(count) + " " + what,
+                        "at most " + std::to_string(most) + " " + what + " in all",
+                        "use fewer or coarser ones");
+}
+
+}  // namespace
+
+void check_size(const WorldDef& def) {
+  std::size_t particles = 0, cloth_triangles = 0, object_triangles = 0;
+  for (const ClothDef& cloth : def.cloths) {
+    const auto rows = static_cast<std::size_t>(std::max(cloth.rows, 0)),
+               columns = static_cast<std::size_t>(std::max(cloth.columns, 0));
+    particles += cloth.mesh ? cloth.mesh->mesh.positions.size() : rows * columns;
+    cloth_triangles += cloth.mesh ? cloth.mesh->mesh.triangles.size() : 2 * rows * columns;
+  }
+  for (const ColliderDef& collider : def.colliders) object_triangles += triangles_of(collider);
+  check_count("cloths", "particles", particles, kMostParticles);
+  check_count("cloths", "triangles", cloth_triangles, kMostTriangles);
+  check_count("colliders", "triangles", object_triangles, kMostTriangles);
+}
+
+double sweeps_of(const WorldDef& def, SolverKind kind) {
+  switch (kind) {
+    case SolverKind::relaxation:
+      return def.relaxation.sweeps;
+    case SolverKind::implicit:
+      return def.implicit.iterations * kSweepsOfNewton;
+    default:
+      return def.solver.damping_sweeps;
+  }
+}
+
+void check_cost(const TickCost& cost, const std::string& field, const std::string& value) {
+  const double a_tick = cost.updates(), a_second = a_tick * cost.tick_rate;
+  if (a_tick <= kMostTickUpdates && a_second <= kMostUpdatesPerSecond) return;
+  const bool tick = a_tick > kMostTickUpdates;
+  const std::string per = tick ? "a tick" : "a simulated second";
+  const std::string estimate = number_text(std::round(cost.particles)) + " particles x " +
+                               number_text(std::round(cost.substeps)) + " substeps x " +
+                               number_text(std::round(cost.sweeps)) +
+                               " sweeps = " + number_text(a_tick) + " updates a tick";
+  throw DefinitionError(
+      field, value,
+      "what costs at most " + number_text(tick ? kMostTickUpdates : kMostUpdatesPerSecond) +
+          " updates of particles " + per + "; this is estimated at " + estimate,
+      "take fewer particles, softer springs, weaker wind or thinner air, or fewer substeps and "
+      "sweeps");
+}
+
+}  // namespace weft
