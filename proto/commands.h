@@ -282,6 +282,11 @@ struct Request {
 /// as far as they could be read, ready to be encoded as answer.
 Result<Request> parse_request(std::string_view text);
 
+/// The id that `parse_request` would answer with, found without reading the rest: for a message
+/// that is refused unread. Takes any bytes, of any length and depth, in one pass without building
+/// anything. Empty if the text is no object, does not end with it, or has no id or two.
+std::optional<Id> find_id(std::string_view text);
+
 /// The JSON text that parses to the same request; for logs and clients.
 std::string encode_request(const Request& request);
 

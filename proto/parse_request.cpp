@@ -314,7 +314,11 @@ Error unknown_operation(const std::string& name) {
 
 Result<Request> parse_request(std::string_view text) {
   Result<json> object = parse_object(text);
-  if (!object) return std::move(object).error();
+  if (!object) {
+    Error error = std::move(object).error();
+    error.id = find_id(text);
+    return error;
+  }
   FieldReader in(*object);
   Request request;
   std::string name;

@@ -13,24 +13,16 @@ class RateLimit {
 
   /// Whether one more message is within the limit.
   bool take(double now) {
-    if (now > last_) tokens_ = std::min(burst_, tokens_ + (now - last_) * rate_);
+    if (now > last_) tokens_ = std::max(tokens_, std::min(burst_, tokens_ + (now - last_) * rate_));
     last_ = std::max(last_, now);
-    if (tokens_ < 1) {
-      ++excess_;
-      return false;
-    }
+    if (tokens_ < 1) return false;
     tokens_ -= 1;
-    if (tokens_ > burst_ / 2) excess_ = 0;
     return true;
   }
-
-  /// Messages refused since the sender last kept well within the limit.
-  long excess() const { return excess_; }
 
  private:
   double rate_, burst_, tokens_;
   double last_ = 0;
-  long excess_ = 0;
 };
 
 }  // namespace weft::server

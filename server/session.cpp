@@ -45,8 +45,8 @@ using beast::error_code;
 constexpr std::size_t kMostReadBytes = 4 * proto::kMostMessageBytes;
 constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel keeps of one viewer
 constexpr double kAcksPerSecond = 4000;
-constexpr double kErrorPause = 0.25;  // between two `rate_limited` [s]
-constexpr double kCloseSeconds = 5;   // for the closing handshake
+constexpr double kFlood = 2;         // so many times the limit of messages ends the connection
+constexpr double kCloseSeconds = 5;  // for the closing handshake
 
 std::chrono::steady_clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -60,6 +60,8 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
       : context_(context), place_(std::move(place)), ws_(std::move(socket)),
         request_(std::move(request)), messages_(context.options.limits.messages_per_second,
                                                 context.options.limits.messages_per_second),
+        flood_(kFlood * context.options.limits.messages_per_second,
+               kFlood * context.options.limits.messages_per_second),
         acks_(kAcksPerSecond, kAcksPerSecond), watch_(ws_.get_executor()), cut_(ws_.get_executor()),
         viewer_(context.next_viewer++) {
     auto& buffered = ws_.next_layer();
@@ -80,7 +82,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void on_text(std::string_view text);
   void on_binary();
   void on_request(const proto::Request& request, double received);
-  void on_excess(double now);
+  void on_excess(std::string_view text);
   void refuse(const proto::Error& error);
   void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
   void note(bool wants_frame);
@@ -95,12 +97,12 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   UpgradeRequest request_;
   beast::flat_buffer incoming_;
   Message outgoing_;
-  RateLimit messages_, acks_;
+  RateLimit messages_, flood_, acks_;
   asio::steady_timer watch_, cut_;
   proto::ViewerId viewer_;
   ViewerChannel* channel_ = nullptr;  // of the hub; null before and after
   std::uint32_t number_ = 0;          // of the last text message
-  double alive_ = 0, next_error_ = 0;
+  double alive_ = 0;
   bool pinging_ = false, finished_ = false, cutting_ = false;
 };
 
@@ -167,7 +169,9 @@ void Session::on_binary() {
 void Session::on_text(std::string_view text) {
   const double received = context_.clock();
   ++number_;
-  if (!messages_.take(received)) return on_excess(received);
+  if (!flood_.take(received))
+    return close_by_policy(kClosePolicy, "far too many messages a second");
+  if (!messages_.take(received)) return on_excess(text);
   const auto request = proto::parse_request(text);
   if (request) return on_request(*request, received);
   refuse(request.error());
@@ -198,18 +202,16 @@ void Session::on_request(const proto::Request& request, double received) {
   note(false);
 }
 
-void Session::on_excess(double now) {
-  note(false);
-  const double allowed = context_.options.limits.messages_per_second;
-  if (static_cast<double>(messages_.excess()) > 2 * allowed)
-    return close_by_policy(kClosePolicy, "far too many messages a second");
-  if (now < next_error_) return;
-  next_error_ = now + kErrorPause;
+/// A message that is not read is answered all the same: its sender may wait for that.
+void Session::on_excess(std::string_view text) {
   proto::Error error = proto::make_error(proto::ErrorCode::rate_limited,
-                                         "too many messages a second; this one was dropped");
+                                         "too many messages a second; this one was dropped",
+                                         "wait for answers, or send less often");
+  error.id = proto::find_id(text);
   error.limit = proto::Limit{};
-  error.limit->maximum = allowed;
+  error.limit->maximum = context_.options.limits.messages_per_second;
   refuse(error);
+  note(false);
 }
 
 void Session::refuse(const proto::Error& error) {

@@ -99,6 +99,67 @@ TEST_CASE("An error is short and valid JSON whatever was sent") {
   }
 }
 
+TEST_CASE("The id of a message that is not read is the one that reading it gives") {
+  for (const json& golden : read_golden_json("accepted_commands.json")) {
+    std::string text = golden["text"];
+    INFO(text);
+    CHECK(find_id(text) == parse_request(text)->id);
+    // And where it is too large to be read.
+    text.insert(text.find('{') + 1,
+                R"("padding":")" + std::string(kMostMessageBytes, 'x') + R"(",)");
+    const Result<Request> refused = parse_request(text);
+    REQUIRE_FALSE(refused.has_value());
+    CHECK(refused.error().code == ErrorCode::too_large);
+    CHECK(refused.error().id == find_id(golden["text"].get<std::string>()));
+  }
+}
+
+TEST_CASE("Only an object that ends with the text and has one id of its own has an id") {
+  const auto with_five = [](const std::string& text) { return find_id(text) == Id(5); };
+  for (const char* text : {R"({"id":5})", R"( { "a" : [ 1, "}" , {"id":6} ] , "id" : 5 } )",
+                           R"({"a":"\"id\":7,","id":5})", R"({"id":5,"a":"\\"})",
+                           R"({"a":{"id":1},"id":5,"b":{"id":2}})", R"({"ids":1,"id":5e0})"}) {
+    INFO(text);
+    CHECK(with_five(text));
+  }
+  for (const char* text : {"",
+                           " ",
+                           "5",
+                           R"("id")",
+                           "nonsense",
+                           R"(["id",5])",
+                           R"({"id":5)",
+                           R"({"id":5}})",
+                           R"({"id":5} {})",
+                           R"({"id":5,"id":5})",
+                           R"({"id":})",
+                           R"({"id")",
+                           R"({"id":5,"a":"\"})",
+
+                           R"({"id":-5})",
+                           R"({"id":5.5})",
+                           R"({"id":[5]})",
+                           R"({"id":""})",
+                           R"({"id":1e999})",
+                           R"({"id":nonsense})",
+                           R"({id:5})",
+                           R"([{"id":5}])",
+                           R"({"a":{"id":5}})"}) {
+    INFO(text);
+    CHECK_FALSE(find_id(text));
+  }
+  for (const std::string piece : {"[", "{", "\"", "\\", "{\"a\":", "{\"id\":", ",", "]", "}"}) {
+    std::string text;
+    while (text.size() < 4 * kMostMessageBytes) text += piece;
+    CHECK_FALSE(find_id(text));
+    CHECK_FALSE(find_id("{\"id\":" + text));
+    CHECK_FALSE(find_id("{\"id\":5,\"a\":" + text));
+  }
+  CHECK(find_id(R"({"id":")" + std::string(kMostIdBytes, 'i') + R"("})") ==
+        Id(std::string(kMostIdBytes, 'i')));
+  CHECK_FALSE(find_id(R"({"id":")" + std::string(kMostIdBytes + 1, 'i') + R"("})"));
+}
+
 TEST_CASE("A token is never repeated") {
   const std::string secret(300, 's');
   const Result<Request> request = parse_request(R"({"op":"hello","token":")" + secret + R"("})");

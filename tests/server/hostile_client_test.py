@@ -377,6 +377,32 @@ class Limits(SocketTest):
         self.assertEqual(await viewer.wait_closed(), 1008)
         self.assertTrue(any(m["op"] == "error" and m["code"] == "rate_limited" for m in viewer.texts))
 
+    async def test_each_refused_message_is_answered_with_its_id_and_only_a_flood_closes_its_viewer(self):
+        viewer, other = await self.viewer(), await self.viewer()
+        ids = [f"call {k}" if k % 2 else k for k in range(90)]  # below twice the limit of 50
+        for id_ in ids:
+            await viewer.socket.send(json.dumps({"op": "hash", "id": id_, "x": [{"id": 5}, "]}"]}))
+        answers = [await viewer.wait_text(lambda m, id_=id_: m.get("id") == id_) for id_ in ids]
+        refused = [m for m in answers if m["op"] == "error"]
+        self.assertGreater(len(refused), 0)
+        for error in refused:
+            self.assertEqual((error["code"], error["limit"]), ("rate_limited", {"maximum": 50}))
+        self.assertEqual(sum(m["op"] == "result" for m in answers), 90 - len(refused))
+        seen = len(viewer.texts)
+        await viewer.socket.send("nonsense")
+        self.assertNotIn("id", await viewer.wait_text(lambda m: m["op"] == "error", seen))
+        self.assertEqual((await other.ask("hash"))["op"], "result")
+
+    async def test_messages_that_are_not_read_are_answered_with_their_id_too(self):
+        viewer = await self.viewer()
+        for text, code in (('{"op":"load","id":"large","scene":"' + "s" * 70000 + '"}', "too_large"),
+                           ('{"op":"hash","op":"hash","id":"large"}', "duplicate_key"),
+                           ('{"op":"ping","t":1e999,"id":"large"}', "not_finite")):
+            seen = len(viewer.texts)
+            await viewer.socket.send(text)
+            error = await viewer.wait_text(lambda m: m["op"] == "error", seen)
+            self.assertEqual((error["code"], error.get("id")), (code, "large"))
+
 
 class SlowReaders(SocketTest):
     options = ("--scene", "drape-sphere")

@@ -31,6 +31,10 @@ def refused_texts():
     yield refuse('{"op":"pause","\\u0061":1,"a":2}', "duplicate_key", field="a")
     yield refuse('{"op":"ping","t":1e999}', "not_finite", field="t", value="1e999")
     yield refuse(MOVE + "[0,-1e400,0]}", "not_finite", field="target[1]", value="-1e400")
+    # Not read, but the id can be found.
+    yield refuse('{"op":"ping","t":1e999,"id":5}', "not_finite", field="t", id=5)
+    yield refuse('{"op":"pause","id":"a","a":{"b":1,"b":[{"id":2}]}}', "duplicate_key", field="a.b", id="a")
+    yield refuse('{"op":"pause","a":' + "[" * 8 + "]" * 8 + ' , "id" : 7.0 }', "bad_json", id=7)
 
 
 def refused_bytes():
