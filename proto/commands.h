@@ -196,8 +196,12 @@ struct Set {
   bool operator==(const Set&) const = default;
 };
 
+/// Which frames of an `advance` its viewer gets, whatever the rate that it asked for.
+enum class AdvanceFrames : std::uint8_t { none, last, all };
+
 struct Advance {
-  std::uint32_t n = 1;  ///< ticks
+  std::uint32_t n = 1;                  ///< ticks
+  std::optional<AdvanceFrames> frames;  ///< absent: those that `view` allows
   bool operator==(const Advance&) const = default;
 };
 
@@ -270,6 +274,7 @@ const char* name_of(QueryWhat what);
 const char* name_of(QueryFormat format);
 const char* name_of(Codec codec);
 const char* name_of(OverBudget remedy);
+const char* name_of(AdvanceFrames frames);
 
 /// A command with its sender's id, if it had one.
 struct Request {

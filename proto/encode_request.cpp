@@ -112,7 +112,10 @@ struct FieldWriter {
     put_if(out, "budget_ms", c.budget_ms);
     if (c.over_budget) out["over_budget"] = name_of(*c.over_budget);
   }
-  void operator()(const Advance& c) { out["n"] = c.n; }
+  void operator()(const Advance& c) {
+    out["n"] = c.n;
+    if (c.frames) out["frames"] = name_of(*c.frames);
+  }
   void operator()(const Query& c) {
     out["what"] = name_of(c.what);
     out["format"] = name_of(c.format);
@@ -176,6 +179,9 @@ const char* name_of(DragMode mode) {
 }
 const char* name_of(OverBudget remedy) {
   return kOverBudgetWords[static_cast<std::size_t>(remedy)];
+}
+const char* name_of(AdvanceFrames frames) {
+  return kAdvanceFramesWords[static_cast<std::size_t>(frames)];
 }
 const char* name_of(QueryWhat what) {
   return kQueryWhatWords[static_cast<std::size_t>(what)];

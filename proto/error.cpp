@@ -11,13 +11,36 @@
 namespace weft::proto {
 
 const char* name_of(ErrorCode code) {
-  static constexpr std::array kNames = {
-      "bad_json",      "bad_utf8",       "duplicate_key",      "too_large",       "not_an_object",
-      "unknown_op",    "missing_field",  "wrong_type",         "wrong_length",    "not_finite",
-      "out_of_range",  "unknown_value",  "conflicting_fields", "unknown_scene",   "unknown_drag",
-      "unknown_pin",   "unknown_viewer", "unknown_collider",   "unknown_gripper", "drag_exists",
-      "held",          "not_paused",     "too_many",           "rate_limited",    "not_allowed",
-      "not_supported", "busy",           "internal",           "bad_binary"};
+  static constexpr std::array kNames = {"bad_json",
+                                        "bad_utf8",
+                                        "duplicate_key",
+                                        "too_large",
+                                        "not_an_object",
+                                        "unknown_op",
+                                        "missing_field",
+                                        "wrong_type",
+                                        "wrong_length",
+                                        "not_finite",
+                                        "out_of_range",
+                                        "unknown_value",
+                                        "conflicting_fields",
+                                        "unknown_scene",
+                                        "unknown_drag",
+                                        "unknown_pin",
+                                        "unknown_viewer",
+                                        "unknown_collider",
+                                        "unknown_gripper",
+                                        "drag_exists",
+                                        "held",
+                                        "not_paused",
+                                        "too_many",
+                                        "rate_limited",
+                                        "not_allowed",
+                                        "not_supported",
+                                        "busy",
+                                        "stalled",
+                                        "internal",
+                                        "bad_binary"};
   static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::bad_binary) + 1);
   return kNames[static_cast<std::size_t>(code)];
 }

@@ -43,6 +43,7 @@ enum class ErrorCode : std::uint8_t {
   not_allowed,
   not_supported,
   busy,
+  stalled,
   internal,
   bad_binary,  ///< of the decoders alone, never on the wire
 };

@@ -207,6 +207,7 @@ Command read_set(FieldReader& in) {
 Command read_advance(FieldReader& in) {
   Advance advance;
   in.read("n", advance.n, kAdvanceRange);
+  in.read_if_there("frames", advance.frames, kAdvanceFramesWords);
   return advance;
 }
 

@@ -25,6 +25,8 @@ inline constexpr std::array<const char*, 3> kDragPhaseWords = {"start", "move", 
 inline constexpr std::array<const char*, 2> kDragModeWords = {"live", "sling"};
 inline constexpr std::array<const char*, 2> kOverBudgetWords = {"slow", "soften"};
 
+inline constexpr std::array<const char*, 3> kAdvanceFramesWords = {"none", "last", "all"};
+
 template <std::size_t N>
 std::vector<std::string> list_words(const std::array<const char*, N>& words) {
   return {words.begin(), words.end()};

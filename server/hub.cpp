@@ -57,7 +57,10 @@ void Hub::offer_mesh(std::uint64_t hash, SharedBytes bytes) {
 }
 
 void Hub::offer_frame(const Frame& frame) {
-  for (auto& [id, viewer] : viewers_) viewer.channel->offer_frame(frame);
+  for (auto& [id, viewer] : viewers_) {
+    if (frame.only_to != 0 && id != frame.only_to) continue;
+    if (id != frame.not_to) viewer.channel->offer_frame(frame);
+  }
 }
 
 void Hub::set_frame_rate(double frame_rate) {

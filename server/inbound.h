@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "proto/commands.h"
@@ -18,7 +19,8 @@ struct Leave {};
 /// A text message that needed nothing of the room: refused, or answered by the session. Only its
 /// number matters, so that frames can tell that it is behind them.
 struct Noted {
-  bool wants_frame = false;  ///< the viewer wants the present state once more
+  bool wants_frame = false;    ///< the viewer lacks what a frame would tell it, and wants one
+  std::optional<bool> forces;  ///< it wants them in its frames from now on, or no longer
 };
 
 /// What reaches a room from its viewers, in the order of arrival.

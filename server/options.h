@@ -51,8 +51,8 @@ struct ConnectionLimits {
   double handshake_seconds = 5;         ///< for a request to be complete
   double idle_seconds = 30;             ///< HTTP connection without a request
   double pong_seconds = 20;             ///< WebSocket without any sign of life
-  std::size_t queued_messages = 512;    ///< text messages waiting for one viewer
-  std::size_t queued_bytes = 8 << 20;   ///< the same in bytes; a single larger one is let through
+  std::size_t queued_messages = 4096;   ///< messages waiting for one viewer
+  std::size_t queued_bytes = 8 << 20;   ///< the same in bytes, but for the largest and the mesh
   std::size_t waiting_commands = 1024;  ///< commands of one viewer that wait for the room
 };
 

@@ -20,6 +20,9 @@ class RateLimit {
     return true;
   }
 
+  /// Allows one more, beyond rate and burst.
+  void allow_one() { tokens_ += 1; }
+
  private:
   double rate_, burst_, tokens_;
   double last_ = 0;

@@ -70,6 +70,9 @@ class Room {
   double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
+  /// Whether `advance_until` would do nothing now, as its viewer has not yet taken its frames.
+  bool advance_waits() const;
+
   /// After ticks and commands: ends leases, tells what has changed, sends the newest frame.
   void finish_turn();
   /// When `finish_turn` is wanted even if nothing happens [s].
@@ -88,7 +91,12 @@ class Room {
   struct Viewer {
     proto::ViewerInfo info;
     bool mesh_over_http = false;
+    bool wants_frame = false;   ///< it lacks the present one
+    bool wants_forces = false;  ///< in its frames
     std::uint32_t applied = 0;  ///< number of the last text message that was taken
+    /// Each frame of its own `advance` that is on its way to it has a copy.
+    std::shared_ptr<const int> ticket = std::make_shared<int>();
+    bool stalled = false;  ///< it took none for too long, and has not taken one since
   };
 
   /// A hand: who holds, under which number of its own, and when it was heard of last.
@@ -103,6 +111,8 @@ class Room {
     proto::ViewerId viewer = 0;
     std::optional<proto::Id> id;
     std::uint32_t left = 0;
+    std::optional<proto::AdvanceFrames> frames;  ///< those that its viewer gets whatever its `hz`
+    double taken = 0;                            ///< when it last could go on [s]
   };
 
   using Outcome = proto::Result<proto::Reply>;
@@ -112,7 +122,11 @@ class Room {
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
   void take_deferred();
-  void finish_advance();
+  void show_advanced();
+  bool frames_wait(const Viewer& viewer) const;
+  bool shows_next_tick() const;
+  proto::Error stalled_error() const;
+  void finish_advance(const std::optional<proto::Error>& error = {});
   double step_world();
   void measure_forces();
   void tell_guarantee();  // room_queries.cpp
@@ -123,8 +137,15 @@ class Room {
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
   void end_leases();
+  bool has_news() const;
   void tell_changes();
-  void publish();
+  void tell_changes_if_due(double now);
+  bool frames_stand() const;
+  double next_frame() const;
+  Frame encode_frame();
+  void publish(double now);
+  void show_to(proto::ViewerId viewer);
+  void show_to_those_who_lack(double now);
   void start_world(const WorldDef& def);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
@@ -209,10 +230,16 @@ class Room {
   double next_state_ = 0, next_slow_notice_ = 0, slow_since_ = -1;
   double last_tick_done_ = 0;  // [s]
 
+  // What has not been told yet, and since the last frame to all what was changed by commands, moved
+  // by ticks of the clock or of `advance`, or replaced as a whole.
   bool state_changed_ = false, roster_changed_ = false, pins_changed_ = false;
   bool grabs_changed_ = false;
-  bool frame_wanted_ = false, jumped_ = false;
-  double next_idle_frame_ = 0;  // of a room whose ticks stand still [s]
+  std::vector<proto::Notice> notices_;
+  double next_telling_ = 0;  // [s]
+  bool frame_wanted_ = false, ticked_ = false, advanced_ = false, jumped_ = false;
+  double next_idle_frame_ = 0;       // that no tick of the clock makes [s]
+  double next_jump_ = 0;             // that need not wait for any of them [s]
+  proto::ViewerId advance_for_ = 0;  // has what `advance` made, or does not want it
   std::uint32_t sequence_ = 0;
   std::uint64_t frames_encoded_ = 0;
   std::uint32_t transfers_ = 0;

@@ -146,9 +146,14 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
   if (hand == hands_.end())
     return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
                        command.drag, "start it; it may have ended by its lease");
-  world_->move_grab(hand->grab, from_wire(command.target));
+  const Vec3d target = from_wire(command.target);
+  const auto& grabs = world_->grabs().list;
+  const auto grab = std::find_if(grabs.begin(), grabs.end(),
+                                 [&](const Grab<float>& g) { return g.id == hand->grab; });
+  // A hand at rest repeats its target, which changes nothing.
+  if (grab == grabs.end() || grab->target != target.cast<float>()) frame_wanted_ = true;
+  world_->move_grab(hand->grab, target);
   hand->heard = clock_();
-  frame_wanted_ = true;
   return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab, {}, {}});
 }
 
@@ -227,16 +232,18 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Camera& command) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
-  paused_ = state_changed_ = frame_wanted_ = true;
+  if (!paused_) frame_wanted_ = true;
+  paused_ = state_changed_ = true;
   steps_left_ = 0;
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
   if (paused_) meter_.restart(clock_());
+  if (paused_) frame_wanted_ = true;
   paused_ = false;
   steps_left_ = 0;
-  state_changed_ = frame_wanted_ = true;
+  state_changed_ = true;
   return proto::Reply(proto::PauseReply{world_->tick(), false});
 }
 
@@ -319,7 +326,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   }
   if (command.softness || command.budget_ms || command.over_budget)
     ask_for_budget(with_settings(budget_.budget(), command));
-  state_changed_ = frame_wanted_ = true;
+  state_changed_ = true;
+  if (measures_forces_) frame_wanted_ = true;  // those of the coming tick are others now
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }
 
@@ -327,7 +335,14 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   if (!paused_) return not_paused();
   if (steps_left_ > 0)
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
-  advance_ = Advance{viewer, std::nullopt, command.n};
+  Viewer& caller = viewers_.at(viewer);
+  caller.stalled = caller.stalled && frames_wait(caller);
+  if (caller.stalled && command.frames) return stalled_error();
+  advance_ = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
+  // What commands before it have changed is shown with what its ticks change.
+  advanced_ = advanced_ || frame_wanted_;
+  frame_wanted_ = false;
+  advance_for_ = command.frames ? viewer : 0;
   return proto::Reply(proto::AdvanceReply{});
 }
 

@@ -63,6 +63,7 @@ class PostedRoom {
   void take(Inbound item) { room_.take(std::move(item)); }
   bool advancing() const { return room_.advancing(); }
   void advance_until(double deadline) { room_.advance_until(deadline); }
+  bool advance_waits() const { return room_.advance_waits(); }
   bool ticking() const { return room_.ticking(); }
   double tick_interval() const { return room_.tick_interval(); }
   void tick() { room_.tick(); }

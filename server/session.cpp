@@ -82,10 +82,11 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void on_text(std::string_view text);
   void on_binary();
   void on_request(const proto::Request& request, double received);
+  void on_view(const std::optional<proto::Id>& id, const proto::View& view);
   void on_excess(std::string_view text);
   void refuse(const proto::Error& error);
   void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
-  void note(bool wants_frame);
+  void note();
   void watch();
   void close_by_policy(std::uint16_t code, const std::string& reason);
   void cut_later();
@@ -175,23 +176,18 @@ void Session::on_text(std::string_view text) {
   const auto request = proto::parse_request(text);
   if (request) return on_request(*request, received);
   refuse(request.error());
-  note(false);
+  note();
 }
 
 void Session::on_request(const proto::Request& request, double received) {
   if (const auto* ping = std::get_if<proto::Ping>(&request.command)) {
     context_.metrics.count_command("ping");
     answer(request.id, proto::PingReply{ping->t, received, context_.clock()});
-    return note(false);
+    return note();
   }
   if (const auto* view = std::get_if<proto::View>(&request.command)) {
     context_.metrics.count_command("view");
-    if (view->hz) context_.hub.set_most_frames(viewer_, *view->hz);
-    if (view->forces) context_.hub.want_forces(viewer_, *view->forces);
-    if (channel_)
-      answer(request.id, proto::ViewReply{channel_->asked_frames(), proto::Codec::f32,
-                                          channel_->asked_forces()});
-    return note(true);
+    return on_view(request.id, *view);
   }
   if (context_.mailbox.put({viewer_, number_, request})) return;
   proto::Error error = proto::make_error(proto::ErrorCode::busy, "too many commands are waiting",
@@ -199,7 +195,22 @@ void Session::on_request(const proto::Request& request, double received) {
   error.command = proto::name_of(request.command);
   error.id = request.id;
   refuse(error);
-  note(false);
+  note();
+}
+
+void Session::on_view(const std::optional<proto::Id>& id, const proto::View& view) {
+  if (!channel_) return;
+  const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
+  if (view.hz) context_.hub.set_most_frames(viewer_, *view.hz);
+  if (view.forces) context_.hub.want_forces(viewer_, *view.forces);
+  answer(id,
+         proto::ViewReply{channel_->most_frames(), proto::Codec::f32, channel_->asked_forces()});
+  // What was not sent before is missing now; nothing else that a viewer wants makes a frame.
+  Noted noted;
+  noted.wants_frame =
+      (channel_->wants_frames() && !had_frames) || (channel_->wants_forces() && !had_forces);
+  noted.forces = view.forces;
+  context_.mailbox.put({viewer_, number_, noted});
 }
 
 /// A message that is not read is answered all the same: its sender may wait for that.
@@ -211,7 +222,7 @@ void Session::on_excess(std::string_view text) {
   error.limit = proto::Limit{};
   error.limit->maximum = context_.options.limits.messages_per_second;
   refuse(error);
-  note(false);
+  note();
 }
 
 void Session::refuse(const proto::Error& error) {
@@ -223,11 +234,12 @@ void Session::answer(const std::optional<proto::Id>& id, const proto::Reply& rep
   if (id && channel_) channel_->send(text_message(proto::encode_reply(*id, reply)));
 }
 
-void Session::note(bool wants_frame) {
-  context_.mailbox.put({viewer_, number_, Noted{wants_frame}});
+void Session::note() {
+  context_.mailbox.put({viewer_, number_, Noted{}});
 }
 
 void Session::write(const Message& message) {
+  if (message.topic == Topic::frame) acks_.allow_one();  // each frame is answered by one
   outgoing_ = message;
   ws_.binary(message.binary);
   ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),

@@ -12,8 +12,8 @@ namespace weft::server {
 /// what is to be told. A room that cannot keep up runs in slow motion and still hears commands
 /// between any two ticks.
 ///
-/// @tparam Room   take, advancing, advance_until, ticking, tick_interval, tick, finish_turn,
-/// next_wake
+/// @tparam Room   take, advancing, advance_until, advance_waits, ticking, tick_interval, tick,
+/// finish_turn, next_wake
 /// @tparam Inbox  take_all, wait, stopped
 template <class Room, class Inbox>
 class SimulationLoop {
@@ -38,7 +38,7 @@ class SimulationLoop {
       room_.advance_until(now + kAdvanceSlice);
       was_ticking_ = false;
       room_.finish_turn();
-      return now;
+      return room_.advance_waits() ? now + kAdvancePause : now;
     }
     const bool ticking = room_.ticking();
     if (ticking && !was_ticking_) pacer_.restart(now);
@@ -49,7 +49,8 @@ class SimulationLoop {
   }
 
  private:
-  static constexpr double kAdvanceSlice = 0.01;  // [s]
+  static constexpr double kAdvanceSlice = 0.01;   // [s]
+  static constexpr double kAdvancePause = 0.001;  // while its viewer does not take its frames [s]
 
   Room& room_;
   Inbox& inbox_;

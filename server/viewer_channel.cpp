@@ -1,30 +1,80 @@
 #include "server/viewer_channel.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
+#include "proto/limits.h"
 #include "server/close_codes.h"
 
 namespace weft::server {
+namespace {
+
+// Parts of the time between two frames by which one may come early, and by which one that came late
+// does not delay the next. Together they are less than one, so that in no second more than `hz` + 1
+// frames are sent, and ticks that come unevenly at that rate are all seen.
+constexpr double kEarly = 0.25, kLate = 0.5;
+
+/// Whether it counts towards the bound of bytes.
+bool counts(const Message& message) {
+  return message.topic != Topic::mesh_data && message.topic != Topic::frame;
+}
+
+/// Whether it tells nothing of interest any more when a mesh is announced.
+bool is_of_mesh(const Message& message) {
+  return message.topic == Topic::mesh || message.topic == Topic::mesh_data ||
+         message.topic == Topic::state || message.topic == Topic::pins ||
+         message.topic == Topic::grabs;
+}
+
+}  // namespace
 
 ViewerChannel::ViewerChannel(ViewerStream& stream, const Clock& clock, double frame_rate,
                              const ChannelLimits& limits)
     : stream_(stream), clock_(clock), limits_(limits), window_(frame_rate), frame_rate_(frame_rate),
-      most_frames_(std::numeric_limits<double>::infinity()) {}
+      most_frames_(proto::kFrameRateRange.maximum) {}
 
 void ViewerChannel::send(Message message) {
   if (closing_ || closed_) return;
-  const std::size_t size = message.bytes.size();
-  // One message larger than the bound is let through alone; a big cloth's mesh may be one.
-  if (queue_.size() >= limits_.queued_messages ||
-      (!queue_.empty() && queued_bytes_ + size > limits_.queued_bytes)) {
+  if (message.topic == Topic::mesh) drop_queued(is_of_mesh);
+  if (message.topic == Topic::frame) ++frames_sent_;
+  enqueue(std::move(message));
+  if (overflows()) {
     close(kCloseViewerDoesNotRead, "the queue of messages overflowed");
     return;
   }
-  queued_bytes_ += size;
-  queue_.push_back(std::move(message));
   pump();
+}
+
+/// At the place of one that it replaces, for it may not wait the longer the more often it changes.
+void ViewerChannel::enqueue(Message message) {
+  if (counts(message)) queued_bytes_ += message.bytes.size();
+  const bool must_arrive = message.topic == Topic::none || message.topic == Topic::frame;
+  const auto older = std::find_if(queue_.begin(), queue_.end(), [&](const Message& queued) {
+    return !must_arrive && queued.topic == message.topic;
+  });
+  if (older == queue_.end()) {
+    queue_.push_back(std::move(message));
+    return;
+  }
+  if (counts(*older)) queued_bytes_ -= older->bytes.size();
+  *older = std::move(message);
+}
+
+template <class Predicate>
+void ViewerChannel::drop_queued(Predicate&& is_old) {
+  for (const Message& message : queue_)
+    if (is_old(message) && counts(message)) queued_bytes_ -= message.bytes.size();
+  std::erase_if(queue_, is_old);
+}
+
+bool ViewerChannel::overflows() const {
+  if (queue_.size() > limits_.queued_messages) return true;
+  if (queued_bytes_ <= limits_.queued_bytes) return false;
+  // One may be of any size: the positions of a large cloth as text, for instance.
+  std::size_t largest = 0;
+  for (const Message& message : queue_)
+    if (counts(message)) largest = std::max(largest, message.bytes.size());
+  return queued_bytes_ - largest > limits_.queued_bytes;
 }
 
 void ViewerChannel::welcome_done() {
@@ -36,7 +86,9 @@ void ViewerChannel::offer_frame(const Frame& frame) {
   if (!wants_frames()) return;
   // A frame left out because the viewer asked for fewer is not a dropped one.
   if (waiting_frame_ && (writing_ || !window_.has_room())) ++frames_dropped_;
+  const bool at_once = frame.at_once || (waiting_frame_ && waiting_frame_->at_once);
   waiting_frame_ = frame;
+  waiting_frame_->at_once = at_once;
   pump();
 }
 
@@ -53,18 +105,16 @@ void ViewerChannel::on_written() {
 void ViewerChannel::set_most_frames(double hz) {
   most_frames_ = hz;
   window_.set_frame_rate(std::min(frame_rate_, most_frames_));
-  if (hz == 0) waiting_frame_.reset();
-  next_frame_time_ = 0;
+  if (hz == 0)
+    waiting_frame_.reset();
+  else
+    next_frame_time_ = std::min(next_frame_time_, clock_() + 1 / hz);
   pump();
 }
 
 void ViewerChannel::set_frame_rate(double frame_rate) {
   frame_rate_ = frame_rate;
   window_.set_frame_rate(std::min(frame_rate_, most_frames_));
-}
-
-double ViewerChannel::frame_interval() const {
-  return most_frames_ >= frame_rate_ ? 0 : 1 / most_frames_;
 }
 
 void ViewerChannel::close(std::uint16_t code, const std::string& reason,
@@ -90,7 +140,17 @@ std::uint64_t ViewerChannel::take_dropped() {
 }
 
 bool ViewerChannel::frame_is_due(double now) const {
-  return waiting_frame_ && wants_frames() && window_.has_room() && now >= next_frame_time_;
+  if (!waiting_frame_ || !wants_frames() || !window_.has_room()) return false;
+  return now >= next_frame_time_ - kEarly / most_frames_ ||
+         (waiting_frame_->at_once && now >= next_urgent_frame_);
+}
+
+void ViewerChannel::count_frame(const Frame& frame, double now) {
+  window_.sent(frame.sequence, now);
+  ++frames_sent_;
+  const double interval = 1 / most_frames_;
+  next_frame_time_ = std::max(next_frame_time_, now - kLate * interval) + interval;
+  if (frame.at_once) next_urgent_frame_ = now + interval;
 }
 
 void ViewerChannel::pump() {
@@ -98,7 +158,7 @@ void ViewerChannel::pump() {
   if (!queue_.empty()) {
     const Message message = std::move(queue_.front());
     queue_.pop_front();
-    queued_bytes_ -= std::min(queued_bytes_, message.bytes.size());
+    if (counts(message)) queued_bytes_ -= message.bytes.size();
     start(message);
     return;
   }
@@ -110,12 +170,8 @@ void ViewerChannel::pump() {
   const double now = clock_();
   if (!frame_is_due(now)) return;
   const Frame frame = *std::exchange(waiting_frame_, std::nullopt);
-  window_.sent(frame.sequence, now);
-  ++frames_sent_;
-  // Due times follow one another without drift, but do not pile up behind a pause.
-  const double interval = frame_interval();
-  next_frame_time_ = (now - next_frame_time_ < interval ? next_frame_time_ : now) + interval;
-  start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true});
+  count_frame(frame, now);
+  start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true, Topic::frame});
 }
 
 void ViewerChannel::start(const Message& message) {

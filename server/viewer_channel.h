@@ -30,20 +30,22 @@ class ViewerStream {
 };
 
 struct ChannelLimits {
-  std::size_t queued_messages = 512;
-  std::size_t queued_bytes = 8 << 20;
+  std::size_t queued_messages = 4096;  ///< more than its own commands can bring at once
+  std::size_t queued_bytes = 8 << 20;  ///< without the largest, and without meshes and kept frames
 };
 
-/// What waits for one viewer: a bounded queue of messages that must arrive in order, and one slot
-/// for the newest frame. A slow viewer sees fewer frames, never older ones, and delays nobody.
-/// Lives on the network thread.
+/// What waits for one viewer: a bounded queue of messages in order, and one slot for the newest
+/// frame. A slow viewer sees fewer frames, never older ones, and delays no other. What tells how
+/// something is (`Topic`) waits once at most, so that only a viewer's own answers can overflow its
+/// queue. Lives on the network thread.
 class ViewerChannel {
  public:
   /// @param frame_rate  of the room [1/s]
   ViewerChannel(ViewerStream& stream, const Clock& clock, double frame_rate,
                 const ChannelLimits& limits);
 
-  /// Queues a message. If the viewer does not read and the queue overflows, closes with 4000.
+  /// Queues a message, in place of one of its topic that waits. If the viewer does not read and the
+  /// queue overflows, closes with 4000.
   void send(Message message);
 
   /// The viewer was told all that comes before frames; until then `offer_frame` does nothing.
@@ -64,10 +66,10 @@ class ViewerChannel {
   /// Sends what has become due with time; called a few times a second or more.
   void poll() { pump(); }
 
-  /// @param hz  most frames a second; 0: none; at or above the room's rate: every one
+  /// @param hz  most frames a second of real time, 0 to 240; 0: none
   void set_most_frames(double hz);
-  /// The `hz` in force [1/s]; 240, the most that may be asked for, if none was.
-  double asked_frames() const { return std::min(most_frames_, 240.0); }
+  /// The `hz` in force [1/s]; the most that may be asked for, if none was.
+  double most_frames() const { return most_frames_; }
   /// Whether its frames shall tell contacts and reactions.
   void want_forces(bool wanted) { with_forces_ = wanted; }
   bool wants_forces() const { return with_forces_ && wants_frames(); }
@@ -90,9 +92,13 @@ class ViewerChannel {
   std::uint64_t take_dropped();
 
  private:
+  void enqueue(Message message);
+  template <class Predicate>
+  void drop_queued(Predicate&& is_old);
+  bool overflows() const;
   void pump();
   bool frame_is_due(double now) const;
-  double frame_interval() const;
+  void count_frame(const Frame& frame, double now);
   void start(const Message& message);
 
   ViewerStream& stream_;
@@ -100,7 +106,7 @@ class ViewerChannel {
   ChannelLimits limits_;
   FrameWindow window_;
   double frame_rate_;
-  double most_frames_;  // as asked for; may be above the room's rate
+  double most_frames_;
   bool frames_allowed_ = false;
   bool with_forces_ = false;
   bool writing_ = false;
@@ -108,9 +114,10 @@ class ViewerChannel {
   std::uint16_t close_code_ = 0;
   std::string close_reason_;
   std::deque<Message> queue_;
-  std::size_t queued_bytes_ = 0;
+  std::size_t queued_bytes_ = 0;  // of those that count
   std::optional<Frame> waiting_frame_;
-  double next_frame_time_ = 0;  // by `most_frames_` [s]
+  double next_frame_time_ = 0;    // by `most_frames_`, if all came evenly [s]
+  double next_urgent_frame_ = 0;  // that may come before it [s]
   std::uint64_t frames_sent_ = 0, frames_dropped_ = 0, dropped_told_ = 0;
 };
 

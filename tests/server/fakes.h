@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -67,12 +68,19 @@ inline Frame fake_frame(std::uint32_t sequence) {
 struct RecordingOutput : RoomOutput {
   std::vector<std::pair<proto::ViewerId, std::string>> sent;  ///< text; viewer 0: to all
   std::vector<std::string> binary;
-  std::vector<std::string> frames;
+  std::vector<std::string> frames;  ///< that were offered, to all or to one
+  std::vector<Frame> offered;       ///< the same
+  std::vector<std::pair<proto::ViewerId, std::string>> kept_frames;  ///< sent to one for sure
+  bool takes_kept_frames = true;                                     ///< else they wait
+  std::vector<std::shared_ptr<const void>> waiting;
   bool viewers_want_frames = true, viewers_want_forces = false;
   std::vector<std::string> frames_with_forces;
 
   void send(proto::ViewerId viewer, Message message) override {
-    if (message.binary)
+    if (message.topic == Topic::frame) {
+      kept_frames.emplace_back(viewer, text_of(message));
+      if (!takes_kept_frames) waiting.push_back(message.ticket);
+    } else if (message.binary)
       binary.push_back(text_of(message));
     else
       sent.emplace_back(viewer, text_of(message));
@@ -86,6 +94,13 @@ struct RecordingOutput : RoomOutput {
   void offer_frame(Frame frame) override {
     if (frame.with_forces) frames_with_forces.push_back(text_of({frame.with_forces, true}));
     frames.push_back(text_of({frame.bytes, true}));
+    offered.push_back(std::move(frame));
+  }
+  /// How many frames this viewer was offered.
+  long frames_for(proto::ViewerId viewer) const {
+    return std::count_if(offered.begin(), offered.end(), [viewer](const Frame& frame) {
+      return frame.not_to != viewer && (frame.only_to == 0 || frame.only_to == viewer);
+    });
   }
 
   /// The last message with this `op` (and, for results and errors, this id).
@@ -132,12 +147,24 @@ struct TestRoom {
   }
 
   void join(proto::ViewerId viewer) { room->take({viewer, 0, Join{}}); }
-  void leave(proto::ViewerId viewer) { room->take({viewer, 0, Leave{}}); }
+  void leave(proto::ViewerId viewer) {
+    if (!room->ticking()) clock.now += room->world().tick_seconds();
+    room->take({viewer, 0, Leave{}});
+  }
 
-  /// Sends a command as its JSON text would arrive and returns the answer (null without id).
+  /// Hands a command over as its JSON text would arrive.
+  void tell(proto::ViewerId viewer, const std::string& text) {
+    auto request = proto::parse_request(text);
+    if (!request) throw std::runtime_error("the test's own command is wrong: " + text);
+    room->take({viewer, ++number, *request});
+  }
+
+  /// Hands a command over, lets the room finish its turn and returns the answer (null without id).
+  /// While no ticks pass, a tick's time does before, so that changes are told at once.
   nlohmann::json say(proto::ViewerId viewer, const std::string& text) {
     auto request = proto::parse_request(text);
     if (!request) throw std::runtime_error("the test's own command is wrong: " + text);
+    if (!room->ticking()) clock.now += room->world().tick_seconds();
     room->take({viewer, ++number, *request});
     while (room->advancing()) room->advance_until(clock.now + 1);
     room->finish_turn();

@@ -100,7 +100,7 @@ struct LyingRoom : TestRoom {
   /// As after a viewer's `view`.
   proto::Frame ask_for_forces() {
     output.viewers_want_forces = true;
-    room->take({1, ++number, Noted{true}});
+    room->take({1, ++number, Noted{true, {}}});
     clock.now += 0.1;
     room->finish_turn();
     REQUIRE(output.frames_with_forces.size() >= 1);
@@ -161,6 +161,7 @@ TEST_CASE("a viewer that asks for forces gets the frames that have them, the oth
   channel.want_forces(true);
   CHECK(channel.wants_forces());
   frame.sequence = 2;
+  clock.now += 1;
   channel.offer_frame(frame);
   CHECK(stream.written.back() == "frame with forces");
   channel.set_most_frames(0);

@@ -23,6 +23,9 @@ TEST_CASE("a rate limit lets a burst and then its rate pass") {
   now += 10;
   for (int i = 0; i < 100; ++i) CHECK(limit.take(now));
   CHECK_FALSE(limit.take(now));
+  for (int i = 0; i < 500; ++i) limit.allow_one();
+  for (int i = 0; i < 500; ++i) CHECK(limit.take(now));
+  CHECK_FALSE(limit.take(now));
 }
 
 TEST_CASE("connections are counted by address while they live") {

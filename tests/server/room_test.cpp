@@ -49,8 +49,9 @@ TEST_CASE("no frame is encoded while nobody wants one") {
 TEST_CASE("each tick is encoded once, however many viewers there are") {
   TestRoom t(false);
   for (proto::ViewerId viewer = 1; viewer <= 20; ++viewer) t.join(viewer);
+  const std::uint64_t before = t.room->frames_encoded();
   t.tick(10);
-  CHECK(t.room->frames_encoded() == 10);
+  CHECK(t.room->frames_encoded() == before + 10);
 }
 
 TEST_CASE("advance twice from the start gives the same hash") {

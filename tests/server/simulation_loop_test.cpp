@@ -27,6 +27,7 @@ struct CostlyRoom {
       fake.now += cost;
     }
   }
+  bool advance_waits() const { return false; }
   bool ticking() const { return running; }
   double tick_interval() const { return interval; }
   void tick() {

@@ -143,7 +143,7 @@ TEST_CASE("the default scene in calm air settles and sends nothing; a touch wake
   t.room = std::make_unique<Room>(options, scene, t.output, t.clock.clock(), t.metrics);
   t.join(1);
   t.tick(60);
-  CHECK(t.output.frames.size() == 60);
+  CHECK(t.output.frames.size() == 1 + 60);
   t.say(1, R"({"op":"set","wind":[0,0,0],"gust_speed":0,"drag":2})");
   for (int k = 0; k < 1800 && !t.room->world().sleep().all_asleep(); ++k) t.tick(1);
   REQUIRE(t.room->world().sleep().all_asleep());

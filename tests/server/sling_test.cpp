@@ -14,7 +14,7 @@ TEST_CASE("a sling is fired by its end, and by nothing else that lets go") {
       R"({"op":"drag","phase":"start","particle":38,"target":[0,5,0],"mode":"sling"})";
   const auto shots = [&t] { return t.room->world().grabs().shots.size(); };
   t.say(1, start);
-  t.room->finish_turn();
+  t.tick(1);
   CHECK(t.output.last("grabs")["grabs"][0]["mode"] == "sling");
   CHECK(t.output.last("grabs")["grabs"][0]["stiffness"] == 20);
   const json kept = t.say(1, R"({"op":"drag","id":1,"phase":"end","fire":false})");

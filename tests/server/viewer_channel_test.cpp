@@ -1,3 +1,7 @@
+#include <cmath>
+#include <functional>
+#include <random>
+
 #include <catch2/catch.hpp>
 
 #include "server/close_codes.h"
@@ -19,6 +23,10 @@ struct OneViewer {
   ViewerChannel channel;
 };
 
+std::string numbered(const char* name, int number) {
+  return std::string(name).append(" ").append(std::to_string(number));
+}
+
 TEST_CASE("a viewer never has more than one write in flight") {
   OneViewer v;
   for (std::uint32_t i = 1; i <= 50; ++i) {
@@ -37,6 +45,7 @@ TEST_CASE("a stalled viewer gets the newest frame when it reads again, none of t
   OneViewer v;
   v.channel.offer_frame(fake_frame(1));
   for (std::uint32_t i = 2; i <= 100; ++i) v.channel.offer_frame(fake_frame(i));
+  v.fake.now += 1;
   v.stream.finish_write();
   CHECK(v.stream.written == std::vector<std::string>{"frame 1", "frame 100"});
   CHECK(v.channel.frames_dropped() == 98);
@@ -45,6 +54,7 @@ TEST_CASE("a stalled viewer gets the newest frame when it reads again, none of t
 TEST_CASE("frames stop without acks and go on with them") {
   OneViewer v;
   for (std::uint32_t i = 1; i <= 10; ++i) {
+    v.fake.now += 1;
     v.channel.offer_frame(fake_frame(i));
     v.stream.drain();
   }
@@ -117,15 +127,208 @@ TEST_CASE("an overflowing queue of texts closes its viewer with 4000 at once") {
   CHECK(v.stream.written.size() == 1);
 }
 
-TEST_CASE("the queue is bounded in bytes too, but a single large message passes") {
+TEST_CASE("the queue is bounded in bytes too, but for its largest message") {
   ChannelLimits limits;
   limits.queued_bytes = 1000;
   OneViewer v(limits);
   v.channel.send(text_message("in flight"));
+  v.channel.send(text_message(std::string(500, 'a')));
   v.channel.send(text_message(std::string(5000, 'm')));
+  v.channel.send(text_message(std::string(500, 'b')));
   CHECK_FALSE(v.stream.closed);
   v.channel.send(text_message("x"));
   CHECK(v.stream.closed == kCloseViewerDoesNotRead);
+}
+
+TEST_CASE("of what tells how something is, only the newest waits, and it closes nobody") {
+  ChannelLimits limits;
+  limits.queued_messages = 10;
+  limits.queued_bytes = 1000;
+  OneViewer v(limits);
+  v.channel.send(text_message("in flight"));
+  v.channel.send(text_message("answer 1"));
+  const std::vector<std::pair<const char*, Topic>> kinds = {{"state", Topic::state},
+                                                            {"pins", Topic::pins},
+                                                            {"grabs", Topic::grabs},
+                                                            {"roster", Topic::roster}};
+  for (int k = 0; k <= 1000; ++k)
+    for (const auto& [name, topic] : kinds) v.channel.send(text_message(numbered(name, k), topic));
+  v.channel.send(text_message("answer 2"));
+  v.channel.send(text_message("pins 1001", Topic::pins));
+  CHECK_FALSE(v.stream.closed);
+  v.stream.drain();
+  CHECK(v.stream.written == std::vector<std::string>{"in flight", "answer 1", "state 1000",
+                                                     "pins 1001", "grabs 1000", "roster 1000",
+                                                     "answer 2"});
+}
+
+TEST_CASE("a mesh of any size passes, with all that is told around it") {
+  ChannelLimits limits;
+  limits.queued_bytes = 1000;
+  OneViewer v(limits);
+  const std::string mesh(1'000'000, 'm');
+  v.channel.send(text_message("welcome"));
+  v.channel.send(text_message("mesh", Topic::mesh));
+  v.channel.send({SharedBytes(mesh), true, Topic::mesh_data});
+  for (int k = 0; k < 3; ++k) v.channel.send(text_message(std::string(300, 'x')));
+  CHECK_FALSE(v.stream.closed);
+  v.stream.drain();
+  CHECK(v.stream.written.size() == 6);
+}
+
+TEST_CASE("only the newest mesh waits, and nothing that was told of the ones before") {
+  ChannelLimits limits;
+  limits.queued_messages = 10;
+  OneViewer v(limits);
+  v.channel.send(text_message("in flight"));
+  v.channel.send(text_message("roster", Topic::roster));
+  for (int k = 1; k <= 100; ++k) {
+    v.channel.send(text_message(numbered("mesh", k), Topic::mesh));
+    v.channel.send({SharedBytes(numbered("data", k)), true, Topic::mesh_data});
+    v.channel.send(text_message(numbered("state", k), Topic::state));
+    v.channel.send(text_message(numbered("pins", k), Topic::pins));
+    v.channel.send(text_message(numbered("grabs", k), Topic::grabs));
+  }
+  v.channel.send(text_message("answer"));
+  CHECK_FALSE(v.stream.closed);
+  v.stream.drain();
+  CHECK(v.stream.written == std::vector<std::string>{"in flight", "roster", "mesh 100", "data 100",
+                                                     "state 100", "pins 100", "grabs 100",
+                                                     "answer"});
+}
+
+TEST_CASE("frames that must arrive keep their order with the answers, and hold their tickets") {
+  ChannelLimits limits;
+  limits.queued_bytes = 10;
+  OneViewer v(limits);
+  const auto ticket = std::make_shared<const int>();
+  v.channel.offer_frame(fake_frame(1));
+  v.channel.offer_frame(fake_frame(2));
+  for (const char* text : {"kept 3", "kept 4", "kept 5"})
+    v.channel.send({SharedBytes(std::string(text)), true, Topic::frame, ticket});
+  v.channel.send(text_message("result"));
+  CHECK_FALSE(v.stream.closed);
+  v.fake.now += 1;
+  CHECK(ticket.use_count() == 4);
+  v.stream.finish_write();
+  v.stream.finish_write();
+  CHECK(ticket.use_count() == 2);
+  v.stream.drain();
+  CHECK(v.stream.written ==
+        std::vector<std::string>{"frame 1", "kept 3", "kept 4", "kept 5", "result", "frame 2"});
+  CHECK(v.channel.frames_sent() == 5);
+}
+
+/// Offers frames, with jitter, of a room that makes `rate` a second, and acknowledges them.
+struct WatchedRoom : OneViewer {
+  std::vector<double> times;  // at which frames were sent
+  std::uint32_t sequence = 0;
+  std::mt19937 random{20261124};
+
+  /// @param jitter  by which they come too early or too late [parts of the time between two]
+  void run(
+      double rate, double seconds, double jitter, const std::function<void()>& before = [] {}) {
+    const double start = fake.now;
+    double polled = fake.now;
+    for (int k = 1; k < seconds * rate; ++k) {
+      const double shift = jitter * std::uniform_real_distribution<double>(-1, 1)(random);
+      const double at = std::max(fake.now, start + (k + shift) / rate);
+      while (polled + 0.01 < at) {  // as the network thread does
+        fake.now = std::max(fake.now, polled += 0.01);
+        channel.poll();
+        take();
+      }
+      fake.now = at;
+      before();
+      channel.offer_frame(fake_frame(++sequence));
+      take();
+    }
+  }
+  void take() {
+    while (stream.in_flight > 0) {
+      times.push_back(fake.now);
+      stream.finish_write();
+      channel.on_acknowledged(sequence);
+    }
+  }
+  /// The most frames in any second.
+  std::size_t most_in_a_second() const {
+    std::size_t most = 0;
+    for (std::size_t i = 0, first = 0; i < times.size(); ++i) {
+      while (times[i] - times[first] >= 1) ++first;
+      most = std::max(most, i - first + 1);
+    }
+    return most;
+  }
+};
+
+TEST_CASE("no viewer gets more frames in a second than its hz and one, at any rate of the room") {
+  for (const double rate : {10.0, 60.0, 600.0, 1000.0}) {
+    for (const double hz : {0.5, 1.0, 24.0, 30.0, 59.94, 60.0, 144.0, 240.0}) {
+      for (const double jitter : {0.0, 0.2, 0.5}) {
+        CAPTURE(rate, hz, jitter);
+        WatchedRoom v;
+        v.channel.set_most_frames(hz);
+        v.run(rate, 10, jitter);
+        CHECK(v.most_in_a_second() <= static_cast<std::size_t>(std::ceil(hz)) + 1);
+        CHECK(static_cast<double>(v.times.size()) >= 0.8 * std::min(hz, rate) * 10 - 2);
+      }
+    }
+  }
+  WatchedRoom v;  // that did not say how many
+  v.run(1000, 3, 0.1);
+  CHECK(v.most_in_a_second() <= 241);
+}
+
+TEST_CASE(
+    "a viewer whose hz is the room's rate sees every tick, come they a tenth too early or late") {
+  WatchedRoom v;
+  v.channel.set_most_frames(60);
+  v.run(60, 20, 0.1);
+  CHECK(v.times.size() == v.sequence);
+}
+
+TEST_CASE("asking again and again for another hz brings no more frames than the highest") {
+  WatchedRoom v;
+  int k = 0;
+  v.run(1000, 5, 0.1, [&] { v.channel.set_most_frames(++k % 2 == 0 ? 30 : 20); });
+  CHECK(v.most_in_a_second() <= 31);
+}
+
+TEST_CASE("a higher hz holds at once after a low one") {
+  OneViewer v;
+  v.channel.set_most_frames(0.01);
+  v.channel.offer_frame(fake_frame(1));
+  v.stream.drain();
+  v.channel.on_acknowledged(1);
+  v.channel.set_most_frames(60);
+  v.fake.now += 0.02;
+  v.channel.offer_frame(fake_frame(2));
+  CHECK(v.stream.written.back() == "frame 2");
+}
+
+TEST_CASE("a frame that comes at once does not wait for hz, but many of them do") {
+  OneViewer v;
+  v.channel.set_most_frames(1);
+  std::uint32_t sequence = 0;
+  const auto offer = [&](bool at_once) {
+    Frame frame = fake_frame(++sequence);
+    frame.at_once = at_once;
+    v.channel.offer_frame(frame);
+    v.stream.drain();
+    v.channel.on_acknowledged(sequence);
+  };
+  offer(false);
+  offer(false);
+  CHECK(v.channel.frames_sent() == 1);
+  v.fake.now += 0.1;
+  offer(true);
+  CHECK(v.channel.frames_sent() == 2);
+  for (int k = 0; k < 1000; ++k) {
+    v.fake.now += 0.01;
+    offer(true);
+  }
+  CHECK(v.channel.frames_sent() <= 2 + 2 * 10);
 }
 
 TEST_CASE(
@@ -215,7 +418,9 @@ TEST_CASE("a frame of the mesh before is not sent after a new mesh") {
   hub.offer_frame(fake_frame(2));
   hub.offer_mesh(99, SharedBytes(std::string("mesh")));
   hub.send(1, text_message("mesh"));
-  hub.offer_frame(fake_frame(3));
+  Frame first = fake_frame(3);
+  first.at_once = true;
+  hub.offer_frame(first);
   stream.drain();
   CHECK(stream.written == std::vector<std::string>{"frame 1", "mesh", "frame 3"});
   CHECK(hub.find_mesh(99));

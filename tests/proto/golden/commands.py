@@ -126,6 +126,10 @@ ACCEPTED = [
         ],
     ),
     accepted('{"op":"advance","n":100000}', op="advance", n=100000),
+    accepted('{"op":"advance","n":1,"frames":null}', op="advance", n=1),
+    accepted('{"op":"advance","n":1,"frames":"all"}', op="advance", n=1, frames="all"),
+    accepted('{"op":"advance","n":2,"frames":"last"}', op="advance", n=2, frames="last"),
+    accepted('{"op":"advance","n":3,"frames":"none"}', op="advance", n=3, frames="none"),
     accepted('{"op":"query","what":"energies"}', op="query", what="energies", format="json"),
     accepted(
         '{"op":"query","what":"velocities","format":"f64"}',

@@ -194,6 +194,9 @@ def refused_fields():
     yield refuse('{"op":"set","drag":-1}', "out_of_range", field="drag", limit=limits(0, 1000))
     yield refuse('{"op":"advance"}', "missing_field", field="n")
     yield refuse('{"op":"advance","n":100001}', "out_of_range", field="n", limit=limits(1, 100000))
+    yield refuse('{"op":"advance","n":1,"frames":"some"}', "unknown_value", field="frames", value="some",
+                 limit={"allowed": ["none", "last", "all"]})
+    yield refuse('{"op":"advance","n":1,"frames":1}', "wrong_type", field="frames", value=1)
     yield refuse('{"op":"query"}', "missing_field", field="what")
     yield refuse('{"op":"query","what":"secrets"}', "unknown_value", field="what", value="secrets")
     yield refuse('{"op":"query","what":"energies","format":"f32"}', "conflicting_fields",
