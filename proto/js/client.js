@@ -3,6 +3,11 @@ import { Session } from './session.js';
 
 /** @typedef {import('./messages.js').Vec3} Vec3 */
 /** @typedef {import('./messages.js').Hold} Hold */
+/** @typedef {import('./session.js').Call} Call */
+
+const LOAD_TIMEOUT = 300_000; // [ms]
+const ADVANCE_TIMEOUT = 60_000; // [ms]
+const ADVANCE_TICK_TIMEOUT = 1000; // more for each tick [ms]
 
 /** @param {Hold} hold */
 function holdFields(hold) {
@@ -12,8 +17,10 @@ function holdFields(hold) {
 
 /**
  * A viewer of a Weft server. Commands (proto/README.md section 5) return promises of their results;
- * they reject with `CommandError` if the server refuses and with `ConnectionLost` if the connection
- * ends first. Events are listed in session.js.
+ * they reject with `CommandError` if the server refuses, with `ConnectionLost` if the connection ends
+ * first, and with `CallTimeout` if no answer comes in time: `timeout` of the client's options, or of
+ * the call, which is each command's last argument. `load` waits five minutes by default, `advance`
+ * one, and a second more for each tick. Events are listed in session.js.
  */
 export class WeftClient extends Session {
   /** @type {Map<number, Drag>} */
@@ -38,48 +45,57 @@ export class WeftClient extends Session {
     });
   }
 
-  /** @param {{name?: string, color?: string}} options  kept over reconnections */
-  hello(options) {
+  /**
+   * @param {{name?: string, color?: string}} options  kept over reconnections
+   * @param {Call} [call]
+   */
+  hello(options, call) {
     Object.assign(this.options, options);
-    return this.request('hello', options);
+    return this.request('hello', options, call);
   }
 
   /**
    * @param {Vec3} origin     [m]
    * @param {Vec3} direction
+   * @param {Call} [call]
    * @returns {Promise<import('./messages.js').Hit | null>}
    */
-  async pick(origin, direction) {
-    return (await this.request('pick', { origin, direction })).hit;
+  async pick(origin, direction, call) {
+    return (await this.request('pick', { origin, direction }, call)).hit;
   }
 
   /**
    * Takes the cloth in hand. Returns at once; `started` of what it returns tells how it went.
    * @param {Hold} hold  a hit of `pick` will do
    * @param {import('./messages.js').DragOptions} [options]
+   * @param {Call} [call]  of its start
    */
-  drag(hold, options = {}) {
+  drag(hold, options = {}, call) {
     const number = this.#nextDrag++;
     const send = (/** @type {object} */ fields) => this.post('drag', fields);
     const drag = new Drag(number, options.target, send, this.timers);
     this.#drags.set(number, drag);
     drag.ended.then(() => this.#drags.delete(number));
     const start = { phase: 'start', drag: number, ...holdFields(hold), ...options };
-    drag.begin(this.request('drag', start));
+    drag.begin(this.request('drag', start, call));
     return drag;
   }
 
   /**
    * @param {Hold} hold
    * @param {{radius?: number}} [options]
+   * @param {Call} [call]
    */
-  pin(hold, options = {}) {
-    return this.request('pin', { ...holdFields(hold), ...options });
+  pin(hold, options = {}, call) {
+    return this.request('pin', { ...holdFields(hold), ...options }, call);
   }
 
-  /** @param {{pin: number} | {particle: number} | {all: true}} which */
-  release(which) {
-    return this.request('release', which);
+  /**
+   * @param {{pin: number} | {particle: number} | {all: true}} which
+   * @param {Call} [call]
+   */
+  release(which, call) {
+    return this.request('release', which, call);
   }
 
   /**
@@ -87,30 +103,41 @@ export class WeftClient extends Session {
    * @param {Vec3} position
    * @param {Vec3} target
    * @param {{up?: Vec3, fov?: number}} [options]
+   * @param {Call} [call]
    */
-  camera(position, target, options = {}) {
-    return this.request('camera', { position, target, ...options });
+  camera(position, target, options = {}, call) {
+    return this.request('camera', { position, target, ...options }, call);
   }
 
-  pause() {
-    return this.request('pause');
+  /** @param {Call} [call] */
+  pause(call) {
+    return this.request('pause', {}, call);
   }
 
-  resume() {
-    return this.request('resume');
+  /** @param {Call} [call] */
+  resume(call) {
+    return this.request('resume', {}, call);
   }
 
-  step(n = 1) {
-    return this.request('step', { n });
+  /**
+   * @param {number} [n]
+   * @param {Call} [call]
+   */
+  step(n = 1, call) {
+    return this.request('step', { n }, call);
   }
 
-  reset() {
-    return this.request('reset');
+  /** @param {Call} [call] */
+  reset(call) {
+    return this.request('reset', {}, call);
   }
 
-  /** @param {number} speed */
-  speed(speed) {
-    return this.request('speed', { speed });
+  /**
+   * @param {number} speed
+   * @param {Call} [call]
+   */
+  speed(speed, call) {
+    return this.request('speed', { speed }, call);
   }
 
   /**
@@ -120,10 +147,11 @@ export class WeftClient extends Session {
    * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number,
    *   force?: boolean} | {release: true} |
    *   {position: Vec3, speed?: number, seconds?: number, max_force?: number} | {stop: true}} where
+   * @param {Call} [call]
    */
-  move(what, where) {
+  move(what, where, call) {
     const named = typeof what === 'number' ? { pin: what } : { collider: what };
-    return this.request('move', { ...named, ...where });
+    return this.request('move', { ...named, ...where }, call);
   }
 
   /**
@@ -131,34 +159,50 @@ export class WeftClient extends Session {
    * @param {string} name
    * @param {{opening?: number, force?: number, position?: Vec3, rotation?: number[], speed?: number,
    *   turn_speed?: number}} wanted
+   * @param {Call} [call]
    */
-  gripper(name, wanted) {
-    return this.request('gripper', { name, ...wanted });
+  gripper(name, wanted, call) {
+    return this.request('gripper', { name, ...wanted }, call);
   }
 
-  /** @param {Partial<import('./messages.js').Settings>} values */
-  set(values) {
-    return this.request('set', values);
+  /**
+   * @param {Partial<import('./messages.js').Settings>} values
+   * @param {Call} [call]
+   */
+  set(values, call) {
+    return this.request('set', values, call);
   }
 
-  /** @param {number} n */
-  advance(n) {
-    return this.request('advance', { n });
+  /**
+   * @param {number} n
+   * @param {{frames?: import('./messages.js').AdvanceFrames}} [options]  which of its frames this
+   *   viewer gets, whatever its `hz`; by default those that its `hz` allows
+   * @param {Call} [call]
+   */
+  advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {
+    return this.request('advance', { n, ...options }, call);
   }
 
-  hash() {
-    return this.request('hash');
+  /** @param {Call} [call] */
+  hash(call) {
+    return this.request('hash', {}, call);
   }
 
-  /** @param {string | object} scene  name, or a scene as the schema says */
-  load(scene) {
-    return this.request('load', { scene });
+  /**
+   * @param {string | object} scene  name, or a scene as the schema says
+   * @param {Call} [call]
+   */
+  load(scene, call = { timeout: LOAD_TIMEOUT }) {
+    return this.request('load', { scene }, call);
   }
 
-  /** @param {{hz?: number, codec?: string, forces?: boolean}} options  kept over reconnections */
-  view(options) {
+  /**
+   * @param {{hz?: number, codec?: string, forces?: boolean}} options  kept over reconnections
+   * @param {Call} [call]
+   */
+  view(options, call) {
     Object.assign(this.wantedView, options);
-    return this.request('view', options);
+    return this.request('view', options, call);
   }
 
   /**
@@ -166,10 +210,11 @@ export class WeftClient extends Session {
    * @param {import('./messages.js').QueryWhat} what
    * @param {{format?: 'json' | 'f32' | 'f64', viewer?: number,
    *   tree?: string, level?: number}} [options]
+   * @param {Call} [call]
    * @returns {Promise<any>}
    */
-  async query(what, options = {}) {
-    return (await this.request('query', { what, ...options })).data;
+  async query(what, options = {}, call) {
+    return (await this.request('query', { what, ...options }, call)).data;
   }
 
   /**

@@ -21,3 +21,17 @@ export class ConnectionLost extends Error {
     this.name = 'ConnectionLost';
   }
 }
+
+/** An answer did not come in time. The command may have been carried out, or may still be. */
+export class CallTimeout extends Error {
+  /**
+   * @param {string} command
+   * @param {number} milliseconds
+   */
+  constructor(command, milliseconds) {
+    super(`${command}: no answer within ${milliseconds} ms`);
+    this.name = 'CallTimeout';
+    this.command = command;
+    this.milliseconds = milliseconds;
+  }
+}

@@ -12,7 +12,7 @@
 
 export { WeftClient } from './client.js';
 export { Drag } from './drag.js';
-export { CommandError, ConnectionLost } from './errors.js';
+export { CallTimeout, CommandError, ConnectionLost } from './errors.js';
 export {
   ProtocolError,
   decodeBinary,

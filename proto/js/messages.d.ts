@@ -21,6 +21,9 @@ export type QueryWhat =
   | 'grippers'
   | 'crossings';
 
+/** Which frames of an `advance` its viewer gets, whatever its `hz`. */
+export type AdvanceFrames = 'none' | 'last' | 'all';
+
 /** A hierarchy of boxes. */
 export interface Tree {
   tree: string;

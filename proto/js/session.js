@@ -1,8 +1,9 @@
 import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
 import { Connection, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
-import { CommandError, ConnectionLost } from './errors.js';
+import { CallTimeout, CommandError, ConnectionLost } from './errors.js';
 import { fetchMesh, matchMesh } from './mesh.js';
+import { Pace } from './pace.js';
 import { ClockEstimate, LatencyMeter } from './timing.js';
 
 /** @typedef {import('./messages.js').Result} Result */
@@ -14,10 +15,14 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @property {string} [color]            `#rrggbb`
  * @property {'socket' | 'http'} [mesh]  where the mesh comes from; over HTTP it is cached
  * @property {boolean} [reconnect]       default true
+ * @property {number} [timeout]          for an answer [ms], default 30,000; Infinity: none
  * @property {any} [WebSocket]           the class; default that of the environment
  * @property {typeof fetch} [fetch]      for mesh: 'http'
  * @property {import('./connection.js').Timers} [timers]  for tests
  * @property {() => number} [random]     for tests
+ *
+ * @typedef {object} Call
+ * @property {number} [timeout]  for the answer to this call [ms]; Infinity: none
  *
  * @typedef {object} Events
  * @property {import('./messages.js').Welcome} welcome  after each (re)connection
@@ -37,6 +42,8 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
 const PING_INTERVAL = 2000; // [ms]
 const FIRST_PINGS = 5; // these follow each other quickly, for a good clock from the start
 const FIRST_PING_INTERVAL = 200; // [ms]
+const CALL_TIMEOUT = 30000; // for an answer [ms]
+const LONGEST_TIMER = 2 ** 31 - 1; // that timers know [ms]
 const SILENCE_LIMIT = 10000; // without any message the connection counts as dead [ms]
 const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // whose effect can be seen
@@ -76,6 +83,7 @@ export class Session extends Emitter {
   #transfers = new Map();
   #nextId = 1;
   #sentMessages = 0;
+  #pace;
   /** @type {import('./messages.js').MeshAnnouncement | null} */
   #announced = null;
   /** @type {any} */
@@ -100,6 +108,7 @@ export class Session extends Emitter {
     super();
     this.options = options;
     this.timers = options.timers ?? systemTimers;
+    this.#pace = new Pace(this.timers);
     this.#url = socketAddress(url);
     if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
     this.#connection = new Connection(this.#url.href, {
@@ -165,18 +174,15 @@ export class Session extends Emitter {
   }
 
   /**
-   * Sends a command and waits for its answer.
+   * Sends a command and waits for its answer. It goes as soon as the server's limit of messages a
+   * second allows; rejects with `CallTimeout` if nothing has come in time.
    * @param {string} op
    * @param {object} [fields]
+   * @param {Call} [call]
    * @returns {Promise<Result>}
    */
-  request(op, fields = {}) {
-    const id = this.#nextId++;
-    return new Promise((resolve, reject) => {
-      if (!this.connected) return reject(new ConnectionLost('not connected'));
-      this.#waiting.set(id, { resolve, reject });
-      this.#send({ op, id, ...fields });
-    });
+  request(op, fields = {}, { timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
+    return this.#ask({ op, ...fields }, () => ({}), timeout);
   }
 
   /**
@@ -188,27 +194,63 @@ export class Session extends Emitter {
     if (this.connected) this.#send({ op, ...fields });
   }
 
-  /** Measures round trip and clock once; done by itself every two seconds. */
-  async ping() {
-    const t = this.#now();
-    const { received, sent } = await this.request('ping', { t });
+  /**
+   * Measures round trip and clock once; done by itself every two seconds.
+   * @param {Call} [call]
+   */
+  async ping({ timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
+    let t = NaN;
+    const stamp = () => ({ t: (t = this.#now()) }); // when it leaves, not when it was asked for
+    const { received, sent } = await this.#ask({ op: 'ping' }, stamp, timeout);
     this.#clock.add(t, this.#now(), { received, sent });
     return this.#clock.roundTrip;
+  }
+
+  /**
+   * @param {{op: string, [field: string]: unknown}} message
+   * @param {() => object} last  fields that are filled in when it is sent
+   * @param {number} timeout     [ms]
+   * @returns {Promise<Result>}
+   */
+  #ask({ op, ...fields }, last, timeout) {
+    const id = this.#nextId++;
+    return new Promise((resolve, reject) => {
+      if (!this.connected) return reject(new ConnectionLost('not connected'));
+      const expire = () => {
+        this.#waiting.delete(id);
+        reject(new CallTimeout(op, timeout));
+      };
+      const timer =
+        timeout <= LONGEST_TIMER ? this.timers.setTimeout(expire, timeout) : null;
+      /** @param {(value: any) => void} settle */
+      const finish = (settle) => (/** @type {any} */ value) => {
+        this.timers.clearTimeout(timer);
+        settle(value);
+      };
+      this.#waiting.set(id, { resolve: finish(resolve), reject: finish(reject) });
+      this.#send({ op, id, ...fields }, last);
+    });
   }
 
   #now() {
     return this.timers.now() / 1000;
   }
 
-  /** @param {{op: string, [field: string]: unknown}} message */
-  #send(message) {
-    this.#sentMessages += 1;
-    if (MEASURED.has(message.op)) this.#meter.sent(this.#sentMessages, this.#now());
-    this.#connection.send(JSON.stringify(message));
+  /**
+   * @param {{op: string, [field: string]: unknown}} message
+   * @param {() => object} [last]  fields that are filled in when it is sent
+   */
+  #send(message, last = () => ({})) {
+    this.#pace.push(() => {
+      this.#sentMessages += 1;
+      if (MEASURED.has(message.op)) this.#meter.sent(this.#sentMessages, this.#now());
+      this.#connection.send(JSON.stringify({ ...message, ...last() }));
+    });
   }
 
   #opened() {
     this.#sentMessages = 0;
+    this.#pace.clear();
     this.#meter.clear();
     this.#clock = new ClockEstimate();
     this.#pings = 0;
@@ -246,6 +288,7 @@ export class Session extends Emitter {
     const waiting = [...this.#waiting.values()];
     this.#waiting.clear();
     this.#transfers.clear();
+    this.#pace.clear();
     for (const { reject } of waiting) reject(new ConnectionLost(reason));
   }
 
@@ -289,6 +332,7 @@ export class Session extends Emitter {
   /** @param {import('./messages.js').Welcome} message */
   #welcomed(message) {
     this.#connection.settled();
+    this.#pace.setLimit(message.limits?.messages_per_second);
     this.welcome = message;
     this.emit('welcome', message);
   }

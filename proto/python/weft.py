@@ -1,6 +1,7 @@
 """Client of a Weft server: one shared cloth, stepped on the server, seen and held from here.
 
-It speaks weft.v1 (proto/README.md) over the package `websockets` (10.4) and needs nothing else. Asynchronous:
+It speaks weft.v1 (proto/README.md) over the package `websockets` (10.4) and needs nothing else but Python 3.11.
+Asynchronous:
 
     async with weft.connect("ws://127.0.0.1:8080/ws", name="script") as cloth:
         hit = await cloth.pick([0, 1, 3], [0, 0, -1])
@@ -15,7 +16,12 @@ and the same, blocking:
         print(cloth.advance(60)["hash"])
 
 Units are SI and y is up. Vertex data has one row a vertex: a numpy array if numpy is installed, else
-`Rows`, a read-only sequence of tuples.
+`Rows`, a read-only sequence of tuples. Numbers and vectors may be given as numpy's too.
+
+No call waits for ever: `timeout` of `connect` and `open` bounds joining, `call_timeout` every answer (30 s), and
+each command takes a `timeout` of its own; None is no bound. What is not answered in time raises CallTimeout.
+`load` waits 300 s by default, `advance` 60 s and one more for each tick, and only `until_asleep` for ever. Commands
+are paced so that the server's limit of messages a second is kept: a loop of calls runs on, at that rate.
 """
 
 from __future__ import annotations
@@ -50,6 +56,11 @@ if sys.byteorder != "little":
 SUBPROTOCOL = "weft.v1"
 REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.5
 MOST_MESSAGE_BYTES = 256 * 2**20
+CALL_SECONDS = 30.0  # for an answer or a frame
+LOAD_SECONDS = 300.0  # for that of `load`
+ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for that of `advance`, and more for each tick
+USUAL_RATE = 1000  # messages a second, where `welcome` names no limit
+RATE_PART, BURST_SECONDS = 0.95, 0.25  # of the limit: what is sent in the long run, and at once
 FIRST_PAUSE, LONGEST_PAUSE = 0.25, 8.0  # before a new attempt to connect [s]
 FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # the same would happen again
 
@@ -72,11 +83,33 @@ class ConnectionLost(WeftError):
         self.code, self.reason = code, reason
 
 
+class CallTimeout(WeftError, TimeoutError):
+    """An answer did not come in time. The command may have been carried out, or may still be."""
+
+    def __init__(self, command: str, seconds: float):
+        super().__init__(f"{command}: nothing came within {seconds:g} s")
+        self.command, self.seconds = command, seconds
+
+
+def _limit_text(limit: dict) -> str:
+    """What would have been allowed, in words."""
+    least, most = limit.get("minimum"), limit.get("maximum")
+    if "allowed" in limit:
+        return "allowed: " + ", ".join(limit["allowed"])
+    if "length" in limit:
+        return f"allowed: {limit['length']} elements"
+    if least is not None and most is not None:
+        return f"allowed: {least:g} to {most:g}"
+    return f"allowed: at most {most:g}" if most is not None else ""
+
+
 class CommandError(WeftError):
     """The server refused a command; the fields are those of its `error` message."""
 
     def __init__(self, message: dict):
-        super().__init__(message.get("message", ""))
+        details = [f"field: {message['field']}" if message.get("field") else ""]
+        details += [_limit_text(message.get("limit") or {}), message.get("hint") or ""]
+        super().__init__("; ".join(part for part in (message.get("message", ""), *details) if part))
         self.code: str = message.get("code", "internal")
         self.command: str | None = message.get("command")
         self.field: str | None = message.get("field")
@@ -423,9 +456,24 @@ def encode_ack(sequence: int) -> bytes:
 # --- the client ---
 
 
+_CLIENTS = object()  # as time-out of a call: the client's
+
+
+def _is_number(value) -> bool:
+    """Whether it is a whole number, numpy's too."""
+    return hasattr(value, "__index__")
+
+
+def _plain(value):
+    """What JSON can say of numpy's numbers and arrays, and of all that lists itself as they do."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a value of type {type(value).__name__} cannot be sent")
+
+
 def _hold_fields(hold) -> dict:
     """Fields that say where to take hold: a Hit, a particle's number, or a dict with them."""
-    if isinstance(hold, int):
+    if _is_number(hold):
         return {"particle": hold}
     if isinstance(hold, Hit):
         return {"triangle": hold.triangle, "barycentric": list(hold.barycentric)}
@@ -442,6 +490,27 @@ def _pause_before(attempt: int, jitter: float) -> float:
     return min(LONGEST_PAUSE, FIRST_PAUSE * 2 ** min(attempt, 16)) * (0.5 + 0.5 * jitter)
 
 
+class _Pace:
+    """Spreads messages over time so that they stay below a limit: some at once after a quiet time, then one after
+    the other."""
+
+    def __init__(self, limit: float = USUAL_RATE):
+        self._free = 0.0  # when all that was sent so far is worked off [s]
+        self._interval = 1 / (RATE_PART * limit)
+
+    def set_limit(self, limit: float, now: float) -> None:
+        """Messages a second that the server allows, and as many at once."""
+        sent = max(0.0, self._free - now) / self._interval  # counts by the new limit, too
+        self._interval = 1 / (RATE_PART * limit)
+        self._free = now + sent * self._interval
+
+    def wait_before_next(self, now: float) -> float:
+        """Takes a message's place and returns how long it must wait for it [s]."""
+        begin = max(self._free, now)
+        self._free = begin + self._interval
+        return max(0.0, begin - max(0.0, BURST_SECONDS - self._interval) - now)
+
+
 class Client:
     """A viewer of a Weft server. Make one with `connect`.
 
@@ -451,14 +520,20 @@ class Client:
     two `code` and `reason`.
 
     Commands return the server's `result` as a dict, or what is said there. They raise CommandError if
-    the server refuses and ConnectionLost if the connection ends first.
+    the server refuses, ConnectionLost if the connection ends first and CallTimeout if no answer comes
+    within `timeout` seconds: the client's own `call_timeout` unless one is given, None for ever.
 
     Kept up to date: `welcome`, `mesh` (the text message), `mesh_data`, `frame` (the newest), and the
     messages `state`, `roster`, `pins`, `grabs`; each is None until it has come.
     """
 
-    def __init__(self, socket, dial: Callable[[], Awaitable], hello: dict, reconnect: bool):
+    def __init__(
+        self, socket, dial: Callable[[], Awaitable], hello: dict, reconnect: bool,
+        call_timeout: float | None = CALL_SECONDS,
+    ):  # fmt: skip
         self._socket, self._dial = socket, dial
+        self.call_timeout = call_timeout  # for an answer or a frame [s]; None: for ever
+        self._pace, self._turn = _Pace(), asyncio.Lock()
         self._hello, self._view = _without_none(hello), {}  # said again after a reconnection
         self._reconnect = reconnect
         self._redial: asyncio.Task | None = None
@@ -497,9 +572,9 @@ class Client:
         """Whether all cloths sleep; no frame comes then until something wakes one or an object moves."""
         return bool(self.sleeping) and len(self.sleeping) == len(self.mesh["cloths"])
 
-    async def until_asleep(self) -> None:
+    async def until_asleep(self, *, timeout: float | None = None) -> None:
         """Waits until all cloths sleep, in a running room whose scene lets them (`sleep.after`)."""
-        await self._until(lambda: self.all_asleep)
+        await self._in_time("until_asleep", timeout, self._until(lambda: self.all_asleep))
 
     def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
         """Calls `listener` with each message of this name (`frame`, `mesh`, `state`, `notice`, …,
@@ -517,8 +592,11 @@ class Client:
 
     # --- commands (section 5 of the specification) ---
 
-    async def request(self, op: str, **fields) -> dict:
+    async def request(self, op: str, *, timeout=_CLIENTS, **fields) -> dict:
         """Sends any command and waits for its result."""
+        return await self._in_time(op, timeout, self._ask(op, fields))
+
+    async def _ask(self, op: str, fields: dict) -> dict:
         if self._lost:
             raise self._lost
         id_, self._next_id = self._next_id, self._next_id + 1
@@ -529,6 +607,19 @@ class Client:
             return await answer
         finally:
             self._waiting.pop(id_, None)
+            if answer.done() and not answer.cancelled():
+                answer.exception()  # looked at, also where sending failed first
+
+    async def _in_time(self, what: str, timeout, waiting: Awaitable):
+        """What it returns, or CallTimeout."""
+        seconds = self.call_timeout if timeout is _CLIENTS else timeout
+        try:
+            async with asyncio.timeout(seconds) as bound:
+                return await waiting
+        except TimeoutError as error:
+            if not bound.expired():
+                raise
+            raise CallTimeout(what, seconds) from error
 
     async def post(self, op: str, **fields) -> None:
         """Sends a command without waiting for an answer."""
@@ -537,21 +628,30 @@ class Client:
         await self._send(op, **fields)
 
     async def _send(self, op: str, **fields) -> None:
-        text = json.dumps({"op": op, **fields}, allow_nan=False)
-        try:
-            await self._socket.send(text)
-        except websockets.ConnectionClosed as closed:
-            raise self._lost or ConnectionLost(1006, str(closed)) from closed
+        text = json.dumps({"op": op, **fields}, allow_nan=False, default=_plain)
+        socket = self._socket
+        async with self._turn:  # so that none overtakes another
+            wait = self._pace.wait_before_next(asyncio.get_running_loop().time())
+            if wait > 0:
+                await asyncio.sleep(wait)
+            if socket is not self._socket:  # what was said to the one before is not said to the next
+                raise self._lost or ConnectionLost(1006, "the connection was lost before it was sent")
+            try:
+                await socket.send(text)
+            except websockets.ConnectionClosed as closed:
+                raise self._lost or ConnectionLost(1006, str(closed)) from closed
 
-    async def hello(self, *, name: str | None = None, color: str | None = None) -> dict:
+    async def hello(self, *, name: str | None = None, color: str | None = None, timeout=_CLIENTS) -> dict:
         fields = _without_none({"name": name, "color": color})
         self._hello.update(fields)
-        return await self.request("hello", **fields)
+        return await self.request("hello", timeout=timeout, **fields)
 
-    async def pick(self, origin: Iterable[float], direction: Iterable[float]) -> Hit | None:
+    async def pick(
+        self, origin: Iterable[float], direction: Iterable[float], *, timeout=_CLIENTS
+    ) -> Hit | None:
         """Where a ray meets the cloth."""
-        result = await self.request("pick", origin=list(origin), direction=list(direction))
-        hit = result["hit"]
+        ray = {"origin": list(origin), "direction": list(direction)}
+        hit = (await self.request("pick", timeout=timeout, **ray))["hit"]
         if hit is None:
             return None
         return Hit(
@@ -563,79 +663,98 @@ class Client:
         )
 
     def drag(
-        self, hold, *, target=None, radius=None, stiffness=None, max_force=None, mode=None
+        self, hold, *, target=None, radius=None, stiffness=None, max_force=None, mode=None, timeout=_CLIENTS
     ) -> Drag:
         """A hand; it takes hold with `async with` or `await start()`.
 
         `hold` is a Hit, a particle's number, or a dict with `particle` or `triangle` and
-        `barycentric`. With mode="sling" the cloth is left alone until the hand lets go.
+        `barycentric`. With mode="sling" the cloth is left alone until the hand lets go. `timeout` is
+        for each of its commands.
         """
         number, self._next_drag = self._next_drag, self._next_drag + 1
         fields = {"radius": radius, "stiffness": stiffness, "max_force": max_force, "mode": mode}
         fields["target"] = None if target is None else list(target)
-        return Drag(self, number, {**_hold_fields(hold), **_without_none(fields)})
+        return Drag(self, number, {**_hold_fields(hold), **_without_none(fields)}, timeout)
 
-    async def pin(self, hold, *, radius: float | None = None) -> dict:
-        return await self.request("pin", **_hold_fields(hold), **_without_none({"radius": radius}))
+    async def pin(self, hold, *, radius: float | None = None, timeout=_CLIENTS) -> dict:
+        fields = {**_hold_fields(hold), **_without_none({"radius": radius})}
+        return await self.request("pin", timeout=timeout, **fields)
 
-    async def release(self, *, pin: int | None = None, particle: int | None = None, all=None):
+    async def release(
+        self, *, pin: int | None = None, particle: int | None = None, all=None, timeout=_CLIENTS
+    ) -> dict:
         """Removes one pin, those of a particle, or all."""
         fields = {"pin": pin, "particle": particle, "all": all}
-        return await self.request("release", **_without_none(fields))
+        return await self.request("release", timeout=timeout, **_without_none(fields))
 
-    async def camera(self, position, target, *, up=None, fov: float | None = None) -> dict:
-        options = _without_none({"up": up, "fov": fov})
-        return await self.request(
-            "camera", position=list(position), target=list(target), **options
-        )
+    async def camera(
+        self, position, target, *, up=None, fov: float | None = None, timeout=_CLIENTS
+    ) -> dict:
+        fields = {"position": list(position), "target": list(target), "fov": fov}
+        fields["up"] = None if up is None else list(up)
+        return await self.request("camera", timeout=timeout, **_without_none(fields))
 
-    async def pause(self) -> dict:
-        return await self.request("pause")
+    async def pause(self, *, timeout=_CLIENTS) -> dict:
+        return await self.request("pause", timeout=timeout)
 
-    async def resume(self) -> dict:
-        return await self.request("resume")
+    async def resume(self, *, timeout=_CLIENTS) -> dict:
+        return await self.request("resume", timeout=timeout)
 
-    async def step(self, n: int = 1) -> dict:
-        return await self.request("step", n=n)
+    async def step(self, n: int = 1, *, timeout=_CLIENTS) -> dict:
+        return await self.request("step", timeout=timeout, n=n)
 
-    async def reset(self) -> dict:
-        return await self.request("reset")
+    async def reset(self, *, timeout=_CLIENTS) -> dict:
+        return await self.request("reset", timeout=timeout)
 
-    async def speed(self, speed: float) -> dict:
-        return await self.request("speed", speed=speed)
+    async def speed(self, speed: float, *, timeout=_CLIENTS) -> dict:
+        return await self.request("speed", timeout=timeout, speed=speed)
 
     async def move(
         self, what: str | int, position=None, rotation=None, *, speed=None, turn_speed=None,
-        force=None, release=None, seconds=None, max_force=None, stop=None,
+        force=None, release=None, seconds=None, max_force=None, stop=None, timeout=_CLIENTS,
     ) -> dict:  # fmt: skip
         """Sends a collider, by its name, to a pose at bounded speed, or back to its keyframes (release=True);
         or a pin, by its id, to a position, at bounded speed or within some seconds, or fixes it where it is
         on its way (stop=True)."""
-        fields = {"pin" if isinstance(what, int) else "collider": what}
+        fields = {"pin" if _is_number(what) else "collider": what}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
         fields |= {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}
         fields |= {"seconds": seconds, "max_force": max_force, "stop": stop}
-        return await self.request("move", **_without_none(fields))
+        return await self.request("move", timeout=timeout, **_without_none(fields))
 
     async def gripper(
         self, name: str, *, opening=None, force=None, position=None, rotation=None, speed=None,
-        turn_speed=None,
+        turn_speed=None, timeout=_CLIENTS,
     ) -> dict:  # fmt: skip
         """Opens, closes (opening=0) or moves a gripper; what is not told stays as it is."""
         fields = {"opening": opening, "force": force, "speed": speed, "turn_speed": turn_speed}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
-        return await self.request("gripper", name=name, **_without_none(fields))
+        return await self.request("gripper", timeout=timeout, name=name, **_without_none(fields))
 
-    async def set(self, **values) -> dict:
-        """Any of gravity, wind, gust_speed, gust_length, air_density, still_air, drag, fans, softness, budget_ms,
-        over_budget."""
-        return await self.request("set", **values)
+    async def set(
+        self, *, gravity=None, wind=None, gust_speed=None, gust_length=None, air_density=None, still_air=None,
+        drag=None, fans=None, softness=None, budget_ms=None, over_budget=None, timeout=_CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Changes what acts on the cloth; what is not told stays as it is."""
+        fields = {"gravity": gravity, "wind": wind, "gust_speed": gust_speed, "gust_length": gust_length}
+        fields |= {"air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans}
+        fields |= {"softness": softness, "budget_ms": budget_ms, "over_budget": over_budget}
+        return await self.request("set", timeout=timeout, **_without_none(fields))
 
-    async def advance(self, n: int) -> dict:
-        """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash."""
-        return await self.request("advance", n=n)
+    async def advance(self, n: int, *, frames: str | None = None, timeout=_CLIENTS) -> dict:
+        """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
+
+        `frames` says which of its frames this viewer gets, whatever its `hz`: "all", "last" or "none";
+        by default those that its `hz` allows. They come before the result, so that `frame` is the last
+        tick's then.
+        """
+        if timeout is _CLIENTS:
+            ticks = n if _is_number(n) or isinstance(n, float) else 0  # the server tells what is none
+            timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
+        fields = _without_none({"frames": frames})
+        return await self.request("advance", timeout=timeout, n=n, **fields)
 
     async def query(
         self,
@@ -645,44 +764,49 @@ class Client:
         viewer: int | None = None,
         tree: str | None = None,
         level: int | None = None,
+        timeout=_CLIENTS,
     ):
         """The data of a query; a `Data` if the format is "f32" or "f64"."""
         options = _without_none({"format": format, "viewer": viewer, "tree": tree, "level": level})
-        return (await self.request("query", what=what, **options))["data"]
+        return (await self.request("query", timeout=timeout, what=what, **options))["data"]
 
-    async def hash(self) -> str:
-        return (await self.request("hash"))["hash"]
+    async def hash(self, *, timeout=_CLIENTS) -> str:
+        return (await self.request("hash", timeout=timeout))["hash"]
 
-    async def load(self, scene: str | dict) -> dict:
-        return await self.request("load", scene=scene)
+    async def load(self, scene: str | dict, *, timeout=_CLIENTS) -> dict:
+        if timeout is _CLIENTS:
+            timeout = LOAD_SECONDS
+        return await self.request("load", timeout=timeout, scene=scene)
 
     async def view(
-        self, *, hz: float | None = None, codec: str | None = None, forces: bool | None = None
-    ) -> dict:
+        self, *, hz: float | None = None, codec: str | None = None, forces: bool | None = None,
+        timeout=_CLIENTS,
+    ) -> dict:  # fmt: skip
         fields = _without_none({"hz": hz, "codec": codec, "forces": forces})
         self._view.update(fields)
-        return await self.request("view", **fields)
+        return await self.request("view", timeout=timeout, **fields)
 
-    async def ping(self) -> tuple[float, float]:
+    async def ping(self, *, timeout=_CLIENTS) -> tuple[float, float]:
         """Round trip and the server's clock minus the own one [s]."""
         now = asyncio.get_running_loop().time
         sent = now()
-        answer = await self.request("ping", t=sent)
+        answer = await self.request("ping", timeout=timeout, t=sent)
         back = now()
         round_trip = back - sent - (answer["sent"] - answer["received"])
         return round_trip, (answer["received"] - sent + answer["sent"] - back) / 2
 
     # --- frames ---
 
-    async def next_frame(self) -> Frame:
-        """The next frame that comes; while all cloths sleep none does."""
+    async def next_frame(self, *, timeout=_CLIENTS) -> Frame:
+        """The next frame that comes; none does while nothing changes: all cloths sleep, or a room stands still."""
         before = self.frame
-        await self._until(lambda: self.frame is not before)
+        await self._in_time("next_frame", timeout, self._until(lambda: self.frame is not before))
         return self.frame
 
-    async def frame_at(self, tick: int) -> Frame:
+    async def frame_at(self, tick: int, *, timeout=_CLIENTS) -> Frame:
         """The first frame from now on whose tick is at least this one."""
-        await self._until(lambda: self.frame is not None and self.frame.tick >= tick)
+        reached = self._until(lambda: self.frame is not None and self.frame.tick >= tick)
+        await self._in_time("frame_at", timeout, reached)
         return self.frame
 
     async def frames(self) -> AsyncIterator[Frame]:
@@ -757,6 +881,7 @@ class Client:
             try:
                 self._socket = await self._dial()
                 self._connections += 1
+                self._pace = _Pace()
                 if self._hello:
                     await self._send("hello", **self._hello)
                 if self._view:
@@ -819,6 +944,8 @@ class Client:
             setattr(self, op, message)
         if op == "welcome":
             self._lost, self._attempts = None, 0
+            limit = message.get("limits", {}).get("messages_per_second") or USUAL_RATE
+            self._pace.set_limit(limit, asyncio.get_running_loop().time())
         return op, message
 
     def _answer(self, message: dict) -> tuple[str, Any]:
@@ -870,8 +997,9 @@ class Client:
 class Drag:
     """A hand that pulls the cloth towards a target. It repeats the target while it holds."""
 
-    def __init__(self, client: Client, number: int, start: dict):
+    def __init__(self, client: Client, number: int, start: dict, timeout=_CLIENTS):
         self._client, self._start, self._target = client, start, start.get("target")
+        self._timeout = timeout
         self._repeater: asyncio.Task | None = None
         self._connection = client._connections
         self.number = number
@@ -880,7 +1008,7 @@ class Drag:
     async def start(self) -> Drag:
         self._connection = self._client._connections
         fields = {"phase": "start", "drag": self.number, **self._start}
-        result = await self._client.request("drag", **fields)
+        result = await self._client.request("drag", timeout=self._timeout, **fields)
         self.grab = result["grab"]
         if self._target is None:
             self._target = result.get("target")
@@ -893,7 +1021,7 @@ class Drag:
         if self._is_lost():
             raise ConnectionLost(1006, "the hand was lost with its connection")
         fields = {"phase": "move", "drag": self.number, "target": self._target}
-        return await self._client.request("drag", **fields)
+        return await self._client.request("drag", timeout=self._timeout, **fields)
 
     async def end(self, *, fire=None) -> dict | None:
         """Lets go; a sling gives its impulse then, unless fire is False."""
@@ -904,7 +1032,7 @@ class Drag:
         if self._is_lost():
             return None
         fields = {"phase": "end", "drag": self.number, **_without_none({"fire": fire})}
-        return await self._client.request("drag", **fields)
+        return await self._client.request("drag", timeout=self._timeout, **fields)
 
     def _is_lost(self) -> bool:
         return self._connection != self._client._connections
@@ -950,8 +1078,9 @@ def _socket_address(url: str) -> str:
 class _Connecting:
     """What `connect` returns: awaited it is a client, with `async with` one that closes itself."""
 
-    def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool):
+    def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool, call_timeout: float | None):
         self._url, self._hello, self._timeout, self._reconnect = _socket_address(url), hello, timeout, reconnect
+        self._call_timeout = call_timeout
         self._client: Client | None = None
 
     async def _dial(self):
@@ -976,7 +1105,8 @@ class _Connecting:
         return socket
 
     async def _connect(self) -> Client:
-        self._client = Client(await self._dial(), self._dial, self._hello, self._reconnect)
+        socket = await self._dial()
+        self._client = Client(socket, self._dial, self._hello, self._reconnect, self._call_timeout)
         try:
             try:
                 await asyncio.wait_for(self._client._ready(), self._timeout)
@@ -1006,12 +1136,14 @@ def connect(
     color: str | None = None,
     timeout: float = 10,
     reconnect: bool = False,
+    call_timeout: float | None = CALL_SECONDS,
 ) -> _Connecting:
     """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
 
     `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
+    `timeout` [s] is for joining, `call_timeout` for each answer of a call that gives none; None: for ever.
     """
-    return _Connecting(url, {"name": name, "color": color}, timeout, reconnect)
+    return _Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout)
 
 
 # --- blocking ---
@@ -1050,12 +1182,17 @@ class SyncClient:
     It has the commands and properties of `Client`. Listeners are called in that thread.
     """
 
-    def __init__(self, url: str, *, name=None, color=None, timeout: float = 10, reconnect=False):
+    def __init__(
+        self, url: str, *, name=None, color=None, timeout: float = 10, reconnect=False,
+        call_timeout: float | None = CALL_SECONDS,
+    ):  # fmt: skip
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="weft", daemon=True)
         self._thread.start()
         try:
-            joining = connect(url, name=name, color=color, timeout=timeout, reconnect=reconnect)
+            joining = connect(
+                url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
+            )
             self._client: Client = self._run(joining._connect())
         except BaseException:
             self._stop()
@@ -1094,7 +1231,7 @@ class SyncClient:
 
 _PROPERTIES = frozenset(
     ("viewer", "welcome", "mesh", "mesh_data", "frame", "state", "roster", "pins", "grabs", "sleeping",
-     "all_asleep")
+     "all_asleep", "call_timeout")
 )
 
 
@@ -1113,6 +1250,11 @@ for _name in (
     setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
 
 
-def open(url: str, *, name=None, color=None, timeout: float = 10, reconnect=False) -> SyncClient:
-    """Joins a server, blocking; use it with `with`. `url` is as for `connect`."""
-    return SyncClient(url, name=name, color=color, timeout=timeout, reconnect=reconnect)
+def open(
+    url: str, *, name=None, color=None, timeout: float = 10, reconnect=False,
+    call_timeout: float | None = CALL_SECONDS,
+) -> SyncClient:  # fmt: skip
+    """Joins a server, blocking; use it with `with`. Everything is as for `connect`."""
+    return SyncClient(
+        url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
+    )

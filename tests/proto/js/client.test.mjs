@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { CommandError, ConnectionLost, WeftClient } from '../../../proto/js/index.js';
+import { CallTimeout, CommandError, ConnectionLost, WeftClient } from '../../../proto/js/index.js';
 import { FakeTimers, fakeSockets, settle } from './fakes.mjs';
 import { readGolden, readGoldenJson, specificationExamples } from './golden.mjs';
 
@@ -224,6 +224,131 @@ test('what waits for an answer is told when the connection ends', async () => {
   socket.lose(1006);
   for (const call of calls) await assert.rejects(call, ConnectionLost);
   await assert.rejects(client.pause(), ConnectionLost);
+});
+
+test('a call that is not answered in time rejects, and a late answer does no harm', async () => {
+  const { client, socket, timers } = await join({ timeout: 700 });
+  const settled = [];
+  const watch = (name, promise) =>
+    promise.then(
+      () => settled.push(`${name} answered`),
+      (error) => {
+        assert.ok(error instanceof CallTimeout, `${error}`);
+        settled.push(`${name} ${error.command} ${error.milliseconds}`);
+      },
+    );
+  watch('own', client.hash({ timeout: 300 }));
+  watch('client', client.pause());
+  watch('longer', client.step(1, { timeout: 2000 }));
+  watch('none', client.reset({ timeout: Infinity }));
+  watch('advance', client.advance(10));
+  watch('load', client.load('flag'));
+  const ids = socket.sent.map(({ id }) => id);
+  await timers.pass(299);
+  assert.deepEqual(settled, []);
+  await timers.pass(401);
+  assert.deepEqual(settled, ['own hash 300', 'client pause 700']);
+  socket.say({ op: 'result', id: ids[0], command: 'hash', hash: 'ff' });
+  socket.say({ op: 'error', id: ids[1], code: 'internal', message: 'no' });
+  const talk = async (seconds) => {
+    // The server must not fall silent meanwhile.
+    for (let i = 0; i < seconds; i++) {
+      socket.say(example('state'));
+      await timers.pass(1000);
+    }
+  };
+  await talk(2);
+  assert.deepEqual(settled.slice(2), ['longer step 2000']);
+  await talk(68); // a minute, and a second for each tick
+  assert.deepEqual(settled.slice(3), ['advance advance 70000']);
+  await talk(240);
+  assert.deepEqual(settled.slice(4), ['load load 300000']);
+  answer(socket, 'reset');
+  await timers.pass(1);
+  assert.deepEqual(settled.slice(5), ['none answered']);
+});
+
+test('every command takes a time-out of its own as its last argument', async () => {
+  const { client, timers } = await join();
+  const calls = [];
+  for (const { method, args, options } of readGoldenJson('client_calls.json')) {
+    // Those that take options have them before it.
+    const given = Object.keys(options).length ? [options] : [];
+    const wanted = client[method].toString().match(/^(?:async )?\w+\(([^)]*(?:\([^)]*\))?[^)]*)\) \{/)[1];
+    const names = wanted.replace(/\{[^}]*\}/g, '').split(',').map((part) => part.trim().split(' ')[0]);
+    const list = [...args, ...given];
+    while (list.length < names.indexOf('call')) list.push(undefined);
+    assert.ok(names.includes('call'), method);
+    calls.push(assert.rejects(client[method](...list, { timeout: 5 }), CallTimeout, method));
+  }
+  await timers.pass(5000);
+  await Promise.all(calls);
+});
+
+test('messages are sent in their order and never faster than the limit that welcome tells', async () => {
+  for (const limit of [1, 3, 50, 1000]) {
+    const limits = { ...welcome.limits, messages_per_second: limit };
+    const { FakeSocket, sockets } = fakeSockets();
+    const timers = new FakeTimers();
+    const client = new WeftClient('ws://host:1/ws', { WebSocket: FakeSocket, timers, name: 'Ada' });
+    const connected = client.connect();
+    const times = [];
+    FakeSocket.prototype.send = function (data) {
+      this.sent.push(JSON.parse(data));
+      times.push(timers.time);
+    };
+    sockets[0].open();
+    sockets[0].say({ ...welcome, limits });
+    await connected;
+    const count = 3 * limit + 5;
+    for (let number = 0; number < count; number++) client.post('camera', { number });
+    for (let ms = 0; ms < 20000; ms += 500) {
+      sockets[0].say(example('state'));
+      await timers.pass(500);
+    }
+    const numbers = sockets[0].ops('camera').map(({ number }) => number);
+    assert.deepEqual(numbers, [...Array(count).keys()], `${limit}`);
+    // The server's bucket: as many at once as in a second.
+    let tokens = limit;
+    let last = 0;
+    for (const time of times) {
+      tokens = Math.min(limit, tokens + ((time - last) * limit) / 1000);
+      last = time;
+      assert.ok(tokens >= 1, `${limit}: message at ${time} ms`);
+      tokens -= 1;
+    }
+    const [first, end] = [times[0], times[count - 1]];
+    assert.ok(end - first <= (1000 * count) / (0.9 * limit) + 3000 / limit, `${limit}`);
+    client.close();
+  }
+});
+
+test('what waits for its turn when the connection is lost is not sent on the next', async () => {
+  const { client, sockets, timers } = await join();
+  for (let i = 0; i < 2000; ++i) client.post('camera', { i });
+  const last = client.hash();
+  assert.equal(sockets[0].ops('hash').length, 0);
+  sockets[0].lose(1006);
+  await assert.rejects(last, ConnectionLost);
+  await timers.pass(300);
+  sockets[1].open();
+  sockets[1].say(welcome);
+  await timers.pass(5000);
+  assert.deepEqual(new Set(sockets[1].sent.map(({ op }) => op)), new Set(['ping']));
+});
+
+test('a ping is stamped when it leaves, not when it waits for its turn', async () => {
+  const { client, socket, timers } = await join();
+  while (socket.ops('ping').length) socket.sent.pop();
+  for (let i = 0; i < 1000; ++i) client.post('camera', {});
+  const measured = client.ping();
+  await timers.pass(2000);
+  const { id, t } = socket.ops('ping')[0];
+  const clock = timers.time / 1000;
+  assert.ok(t > 0.5, `${t}`);
+  socket.say({ op: 'result', id, command: 'ping', t, received: clock, sent: clock });
+  await measured;
+  assert.ok(client.roundTrip < 2 - 0.5);
 });
 
 test('it reconnects with growing pauses, and soon again after a welcome', async () => {
