@@ -262,10 +262,16 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
+/// The room took back the tick under way. Of logs alone: no client can send it.
+struct Halt {
+  std::string cause;  ///< for people
+  bool operator==(const Halt&) const = default;
+};
+
 using Command =
     std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin, ReleaseParticle,
                  ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed, Move, MoveEnd, MovePin,
-                 StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View>;
+                 StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View, Halt>;
 
 /// The word in `op`, e.g. "drag".
 const char* name_of(const Command& command);

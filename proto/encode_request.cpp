@@ -130,6 +130,7 @@ struct FieldWriter {
     else
       out["scene"] = Json::parse(c.definition);
   }
+  void operator()(const Halt& c) { out["cause"] = c.cause; }
   void operator()(const View& c) {
     put_if(out, "hz", c.hz);
     if (c.codec) out["codec"] = name_of(*c.codec);
@@ -167,6 +168,7 @@ struct Name {
   const char* operator()(const Ping&) const { return "ping"; }
   const char* operator()(const Load&) const { return "load"; }
   const char* operator()(const View&) const { return "view"; }
+  const char* operator()(const Halt&) const { return "halt"; }
 };
 
 }  // namespace

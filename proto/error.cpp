@@ -39,6 +39,9 @@ const char* name_of(ErrorCode code) {
                                         "not_supported",
                                         "busy",
                                         "stalled",
+                                        "interrupted",
+                                        "halted",
+                                        "too_costly",
                                         "internal",
                                         "bad_binary"};
   static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::bad_binary) + 1);

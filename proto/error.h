@@ -44,6 +44,9 @@ enum class ErrorCode : std::uint8_t {
   not_supported,
   busy,
   stalled,
+  interrupted,
+  halted,
+  too_costly,
   internal,
   bad_binary,  ///< of the decoders alone, never on the wire
 };

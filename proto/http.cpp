@@ -27,10 +27,12 @@ std::string encode_scenes(const std::vector<SceneListing>& scenes) {
 }
 
 std::string encode_readiness(const Readiness& readiness) {
-  return text_of({{"ready", readiness.ready},
-                  {"scene", readiness.scene},
-                  {"tick", readiness.tick},
-                  {"real_time_factor", readiness.real_time_factor}});
+  Json body = {{"ready", readiness.ready},
+               {"scene", readiness.scene},
+               {"tick", readiness.tick},
+               {"real_time_factor", readiness.real_time_factor}};
+  if (readiness.stalled > 0) body["stalled"] = readiness.stalled;
+  return text_of(body);
 }
 
 std::string encode_http_error(const HttpError& error) {

@@ -21,6 +21,7 @@ struct Readiness {
   std::string scene;
   std::uint64_t tick = 0;
   double real_time_factor = 0;
+  double stalled = 0;  ///< for how long the room has not turned over [s]; below a second 0
 };
 
 struct HttpError {

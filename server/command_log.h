@@ -14,6 +14,7 @@ enum class CommandOrigin : std::uint8_t {
   lease,   ///< a drag was not heard of for too long
   leave,   ///< its viewer has gone
   budget,  ///< ticks took more time than they may, or less again
+  limit,   ///< a tick took more CPU than it may, or became worthless, and was given up
 };
 
 /// One accepted command at its place: after state `tick` and before the next one.

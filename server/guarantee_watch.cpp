@@ -7,6 +7,7 @@ namespace weft::server {
 namespace {
 
 constexpr double kCountShare = 0.01;  // of the time may go into counting
+constexpr double kCountPatience = 1;  // what a count is taken to need that was given up [s]
 
 bool contains(const std::vector<std::string>& list, const std::string& text) {
   return std::find(list.begin(), list.end(), text) != list.end();
@@ -14,11 +15,11 @@ bool contains(const std::vector<std::string>& list, const std::string& text) {
 
 }  // namespace
 
-void GuaranteeWatch::start(const ServedWorld& world) {
+void GuaranteeWatch::start(const ServedWorld& world, BadStarts bad_starts) {
   counter_ = {};
   crossings_.reset();
   crossings_at_start_.reset();
-  bad_starts_at_start_ = world.coming_bad_starts();
+  bad_starts_at_start_ = std::move(bad_starts);
   if (pause_ > 0) crossings_at_start_ = count(world);
   restart();
 }
@@ -61,6 +62,8 @@ void GuaranteeWatch::tell_bad_starts(BadStarts found, bool voided) {
 const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   if (crossings_ && uncounted_ == 0) return *crossings_;
   const double start = clock_();
+  // Where it takes too long it is tried again as late as if it had been done.
+  next_count_ = start + kCountPatience / kCountShare;
   crossings_ = crossings_of(world, counter_);
   const double end = clock_();
   uncounted_ = 0;

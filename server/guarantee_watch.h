@@ -27,8 +27,9 @@ class GuaranteeWatch {
   /// @param clock  [s], for that alone
   GuaranteeWatch(std::uint32_t pause, Clock clock) : pause_(pause), clock_(std::move(clock)) {}
 
-  /// Another world, at its start: looks one tick ahead for what starts where it should not be.
-  void start(const ServedWorld& world);
+  /// Another world, at its start.
+  /// @param bad_starts  what its first tick will find where it should not be
+  void start(const ServedWorld& world, BadStarts bad_starts);
   /// The same world is back at its start.
   void restart();
 

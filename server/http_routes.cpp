@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include <boost/asio/ip/address.hpp>
@@ -19,6 +20,8 @@ namespace http = boost::beast::http;
 constexpr const char* kJson = "application/json";
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kMeshPath = "/api/v1/mesh/";
+/// A room that has not turned over for so long does not come back by itself [s].
+constexpr double kDeadSeconds = 30;
 
 std::string_view view_of(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -158,7 +161,12 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
     return out;
   }
   const std::string path = path_of(request);
-  if (path == "/healthz") return response(request, http::status::ok, kText, "ok");
+  if (path == "/healthz") {
+    const double stalled = context.readiness().stalled;
+    if (stalled < kDeadSeconds) return response(request, http::status::ok, kText, "ok");
+    return response(request, http::status::service_unavailable, kText,
+                    "the room has stood for " + std::to_string(std::lround(stalled)) + " s");
+  }
   if (path == "/readyz") {
     const proto::Readiness readiness = context.readiness();
     return response(request, readiness.ready ? http::status::ok : http::status::service_unavailable,

@@ -17,6 +17,7 @@ bool Mailbox::put(Inbound item) {
     items_.push_back(std::move(item));
   }
   arrived_.notify_one();
+  on_arrival();
   return true;
 }
 
@@ -34,7 +35,17 @@ void Mailbox::finished(proto::ViewerId viewer) {
 void Mailbox::wait(double deadline) {
   std::unique_lock lock(mutex_);
   arrived_.wait_until(lock, time_point_of(deadline),
-                      [this] { return stopped_ || !items_.empty(); });
+                      [this] { return stopped_ || woken_ || !items_.empty(); });
+  woken_ = false;
+}
+
+void Mailbox::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  arrived_.notify_one();
+  on_arrival();
 }
 
 void Mailbox::stop() {
@@ -43,6 +54,7 @@ void Mailbox::stop() {
     stopped_ = true;
   }
   arrived_.notify_one();
+  on_arrival();
 }
 
 bool Mailbox::stopped() const {

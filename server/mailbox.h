@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <unordered_map>
 #include <vector>
@@ -16,6 +17,10 @@ class Mailbox {
   /// @param most_commands  of one viewer that may wait at a time
   explicit Mailbox(std::size_t most_commands) : most_commands_(most_commands) {}
 
+  /// Called whenever something was added or the mailbox was stopped or woken, on the thread that
+  /// did so. Set before the first of these.
+  std::function<void()> on_arrival = [] {};
+
   /// Adds at the end and wakes the reader. False, with nothing added, if the viewer has too many
   /// commands waiting; everything but commands is always taken.
   bool put(Inbound item);
@@ -29,6 +34,9 @@ class Mailbox {
   /// Sleeps until something is there, `stop` was called, or the process clock reads `deadline`.
   void wait(double deadline);
 
+  /// Ends a `wait` although nothing has come.
+  void wake();
+
   void stop();
   bool stopped() const;
 
@@ -38,7 +46,7 @@ class Mailbox {
   std::condition_variable arrived_;
   std::vector<Inbound> items_;
   std::unordered_map<proto::ViewerId, std::size_t> waiting_;
-  bool stopped_ = false;
+  bool stopped_ = false, woken_ = false;
 };
 
 }  // namespace weft::server

@@ -85,6 +85,8 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_switch(serve, "--paused", o.paused, "Start paused");
   add_number(serve, "--count-crossings", o.count_crossings, kCountPauses,
              "Ticks between two counts of crossings (60; 0: none)");
+  add_number(serve, "--tick-limit", o.tick_limit, kTickLimits,
+             "Seconds of CPU after which a tick is given up and the room pauses (2; 0: never)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option("--allow-origin", o.allowed_origins,
                    "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");
@@ -113,6 +115,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
+  add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,
+             "Seconds of CPU after which a tick is given up, with exit code 4 (2; 0: never)");
   add_number(simulate, "--check-every", o.check_every, kTickCounts,
              "Count crossings after every so many ticks (1); exit code 3 if there are any");
 }

@@ -49,6 +49,8 @@ std::string Metrics::text() const {
   single(out, "ticks_total", "counter", "Ticks simulated.", ticks_.load());
   single(out, "ticks_rested_total", "counter", "Ticks in which all cloth slept.",
          rested_ticks_.load());
+  single(out, "ticks_halted_total", "counter", "Ticks that took too long and were given up.",
+         halts_.load());
   single(out, "cloths_asleep", "gauge", "Cloths that sleep.", asleep_.load());
   head(out, "tick_seconds", "histogram", "Time that a tick took.");
   std::uint64_t below = 0;

@@ -22,6 +22,7 @@ class Metrics {
   void count_error(const std::string& code) { count(errors_, code); }
   void count_frames(std::uint64_t sent, std::uint64_t dropped);
   void count_bytes(std::uint64_t sent) { bytes_sent_ += sent; }
+  void count_halt() { ++halts_; }
   void set_asleep(int cloths) { asleep_ = cloths; }
   void set_viewers(int viewers) { viewers_ = viewers; }
   void set_real_time_factor(double factor) { real_time_factor_ = factor; }
@@ -33,7 +34,7 @@ class Metrics {
   void count(std::map<std::string, std::uint64_t>& counts, const std::string& label);
 
   std::array<std::atomic<std::uint64_t>, kTickBounds.size() + 1> tick_counts_{};
-  std::atomic<std::uint64_t> ticks_{0}, rested_ticks_{0}, tick_nanoseconds_{0};
+  std::atomic<std::uint64_t> ticks_{0}, rested_ticks_{0}, tick_nanoseconds_{0}, halts_{0};
   std::atomic<std::uint64_t> frames_sent_{0}, frames_dropped_{0}, bytes_sent_{0};
   std::atomic<int> viewers_{0}, asleep_{0};
   std::atomic<double> real_time_factor_{0};

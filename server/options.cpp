@@ -80,6 +80,7 @@ void validate(const ServerOptions& options) {
   if (options.rate != 0) check_range("--rate", options.rate, kRates);
   check_range("--threads", options.threads, kThreadCounts);
   check_range("--count-crossings", options.count_crossings, kCountPauses);
+  check_range("--tick-limit", options.tick_limit, kTickLimits);
   check_range("--max-seconds", options.max_seconds, kRunSeconds);
   check_range("--max-viewers", options.limits.viewers, kViewerCounts);
   check_range("--max-connections", options.limits.connections, kSocketCounts);

@@ -28,6 +28,7 @@ inline constexpr OptionRange kThreadCounts{1, 64};
 inline constexpr OptionRange kTickCounts{1, 10'000'000};
 inline constexpr OptionRange kCountPauses{0, 1'000'000};  // [ticks]
 inline constexpr OptionRange kRunSeconds{0, 1e7};         // [s]
+inline constexpr OptionRange kTickLimits{0, 3600};        // [s of CPU]
 inline constexpr OptionRange kViewerCounts{1, 10'000};
 inline constexpr OptionRange kSocketCounts{1, 100'000};
 inline constexpr OptionRange kMessageRates{1, 1e6};    // [1/s]
@@ -56,22 +57,26 @@ struct ConnectionLimits {
   std::size_t waiting_commands = 1024;  ///< commands of one viewer that wait for the room
 };
 
+/// CPU time after which a tick is given up [s]: a hundred times what a tick of a large scene takes.
+inline constexpr double kUsualTickLimit = 2;
+
 /// Threads for the physics where nobody says how many: two where there are two cores, as contact
 /// has work for them in many a tick, and no more. They never change a bit of the motion.
 int usual_threads();
 
 /// Everything that `weft serve` can be told.
 struct ServerOptions {
-  std::string bind = "127.0.0.1";  ///< address; others than loopback need `open`
-  int port = 8080;                 ///< 0 to 65535; 0 lets the system choose
-  bool open = false;               ///< serve other machines, without authentication
-  std::string scene = "default";   ///< a name, or a file that ends in .json
-  std::string scenes;              ///< directory with further scenes and meshes; empty: none
-  double rate = 0;                 ///< ticks a second, 1 to 1000; 0: the scene's own
-  int threads = usual_threads();   ///< for the physics, 1 to 64
-  bool paused = false;             ///< start paused
-  int count_crossings = 60;        ///< ticks between two counts, 0 to 1,000,000; 0: none
-  std::string web;                 ///< directory of the page; empty: beside the executable
+  std::string bind = "127.0.0.1";       ///< address; others than loopback need `open`
+  int port = 8080;                      ///< 0 to 65535; 0 lets the system choose
+  bool open = false;                    ///< serve other machines, without authentication
+  std::string scene = "default";        ///< a name, or a file that ends in .json
+  std::string scenes;                   ///< directory with further scenes and meshes; empty: none
+  double rate = 0;                      ///< ticks a second, 1 to 1000; 0: the scene's own
+  int threads = usual_threads();        ///< for the physics, 1 to 64
+  bool paused = false;                  ///< start paused
+  int count_crossings = 60;             ///< ticks between two counts, 0 to 1,000,000; 0: none
+  double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
+  std::string web;                      ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;                   ///< besides the server's own
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   double max_seconds = 0;          ///< stop by itself after this; 0: never

@@ -39,7 +39,7 @@ Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock cl
   WorldDef def = options_.scene_def ? *options_.scene_def : definition_of(options_.scene);
   if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
-  start_world(def);
+  start_world(build_scene(def, executor_, options_.limit ? options_.limit->seconds() : 0));
   meter_.restart(clock_());
 }
 
@@ -50,13 +50,9 @@ WorldDef Room::definition_of(const std::string& scene) const {
   return def;
 }
 
-void Room::start_world(const WorldDef& def) {
-  Runtime runtime;
-  runtime.executor = executor_;
-  runtime.clock = &process_seconds;
-  // Built before anything changes, because building may throw.
-  auto world = std::make_unique<ServedWorld>(def, runtime);
-  world_ = std::move(world);
+/// Puts a scene in the place of the present one; nothing of it can fail.
+void Room::start_world(BuiltScene&& scene) {
+  world_ = std::move(scene.world);
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
@@ -65,35 +61,14 @@ void Room::start_world(const WorldDef& def) {
   tick_times_.clear();
   next_tick_time_ = 0;
   ++epoch_;
-  proto::Bytes bytes = proto::encode_mesh_data(scene_mesh(*world_));
-  mesh_ = mesh_announcement(*world_);
+  mesh_ = std::move(scene.mesh);
   mesh_.epoch = epoch_;
-  mesh_.hash = proto::content_hash(bytes);
-  mesh_.bytes = bytes.size();
-  mesh_bytes_ = SharedBytes(std::move(bytes));
+  mesh_bytes_ = std::move(scene.mesh_bytes);
   output_.offer_mesh(mesh_.hash, mesh_bytes_);
   wanted_softness_ = 1;
   budget_.restart(world_->def().budget, {});
-  guarantee_.start(*world_);
+  guarantee_.start(*world_, std::move(scene.bad_starts));
   output_.set_frame_rate(world_->def().tick_rate * speed());
-}
-
-void Room::take(Inbound item) {
-  if (!advance_) return take_now(std::move(item));
-  if (std::holds_alternative<Join>(item.what)) return take_now(std::move(item));
-  const bool its_end = std::holds_alternative<Leave>(item.what) && item.viewer == advance_->viewer;
-  deferred_.push_back(std::move(item));
-  if (!its_end) return;
-  advance_.reset();
-  take_deferred();
-}
-
-void Room::take_deferred() {
-  while (!advance_ && !deferred_.empty()) {
-    Inbound item = std::move(deferred_.front());
-    deferred_.pop_front();
-    take_now(std::move(item));
-  }
 }
 
 void Room::take_now(Inbound item) {
@@ -103,7 +78,9 @@ void Room::take_now(Inbound item) {
   if (found == viewers_.end()) return;
   found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
+    const double before = options_.cpu_clock();
     handle(item.viewer, *request);
+    charge(item.viewer, options_.cpu_clock() - before);
     on_finished(item.viewer);
     return;
   }
@@ -139,7 +116,8 @@ void Room::join(proto::ViewerId id, const Join& join) {
   output_.send(id, text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins));
   output_.send(id, text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs));
   output_.welcome_done(id);
-  show_to(id);
+  viewer.wants_frame = true;
+  if (!in_tick_) show_to(id);
 }
 
 void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
@@ -166,16 +144,25 @@ void Room::measure_forces() {
   }
   if (wanted == measures_forces_) return;
   measures_forces_ = wanted;
-  world_->measure_forces(measures_forces_);
+  within_limit([this] { world_->measure_forces(measures_forces_); });
 }
 
-/// @returns what it took [s]
-double Room::step_world() {
+/// @returns what it took [s]; nothing if the tick was given up
+std::optional<double> Room::step_world() {
   measure_forces();
   const double start = clock_();
-  const TickReport& report = world_->step();
+  gives_up_ = over_limit_ = false;
+  in_tick_ = true;
+  // A tick that is ended throws nothing: its report tells.
+  within_limit([this] { world_->step(); });
+  in_tick_ = false;
+  const TickReport& report = world_->report();
   last_tick_done_ = clock_();
   const double seconds = last_tick_done_ - start;
+  if (report.halted) {
+    note_halt();
+    return std::nullopt;
+  }
   metrics_.count_tick(seconds, report.rested);
   if (tick_times_.size() < kTickTimes) tick_times_.resize(tick_times_.size() + 1);
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
@@ -183,11 +170,11 @@ double Room::step_world() {
   if (!report.rested) guarantee_.note_tick(*world_);
   // What rests is counted once: nothing will change it.
   const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();
-  if (report.rested || fell_asleep) {
-    if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
-  } else if (guarantee_.count_if_due(*world_)) {
-    state_changed_ = true;
-  }
+  within_limit([&] {
+    if (report.rested || fell_asleep ? guarantee_.count_if_stale(*world_)
+                                     : guarantee_.count_if_due(*world_))
+      state_changed_ = true;
+  });
   if (report.rested) return seconds;
   tell_guarantee();
   tell_pins();
@@ -201,11 +188,12 @@ double Room::step_world() {
 }
 
 void Room::tick() {
-  const double seconds = step_world();
+  const std::optional<double> seconds = step_world();
+  if (!seconds) return;
   meter_.add(world_->tick_seconds(), clock_());
   if (!world_->report().rested) {
     ticked_ = true;
-    keep_budget(seconds);
+    keep_budget(*seconds);
   }
   if (paused_ && steps_left_ > 0 && --steps_left_ == 0) state_changed_ = true;
 }
@@ -219,7 +207,7 @@ void Room::advance_until(double deadline) {
     }
     advance_->taken = clock_();
     const bool shown = shows_next_tick();
-    step_world();
+    if (!step_world()) return;  // it was told, and the advance ended if nothing replaces it
     --advance_->left;
     advanced_ = advanced_ || !world_->report().rested;
     if (shown) show_advanced();
@@ -270,7 +258,6 @@ void Room::finish_advance(const std::optional<proto::Error>& error) {
   else
     answer(done.viewer, done.id, proto::AdvanceReply{world_->tick(), world_->hash()});
   state_changed_ = true;
-  take_deferred();
 }
 
 double Room::real_time_factor() const {
@@ -278,6 +265,7 @@ double Room::real_time_factor() const {
 }
 
 void Room::finish_turn() {
+  work_off();
   const double now = clock_();
   end_leases();
   if (ticking() && now >= next_state_) {
@@ -285,7 +273,11 @@ void Room::finish_turn() {
     tell_slow_motion(now);
   }
   const bool stands = !ticking() && !advance_ && now - last_tick_done_ >= kStatePause;
-  if (stands && guarantee_.count_if_stale(*world_)) state_changed_ = true;
+  if (stands) {
+    within_limit([this] {
+      if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
+    });
+  }
   tell_changes_if_due(now);
   if (now >= next_frame()) publish(now);
   if (now >= next_idle_frame_) show_to_those_who_lack(now);
@@ -303,6 +295,7 @@ double Room::next_wake() const {
   const double now = clock_();
   double wake = std::min(now + kLongestSleep, next_frame());
   if (has_news()) wake = std::min(wake, next_telling_);
+  if (!waiting_.empty()) wake = std::min(wake, next_turn());
   for (const auto& [id, viewer] : viewers_)
     if (viewer.wants_frame) wake = std::min(wake, next_idle_frame_);
   return wake;
@@ -414,7 +407,7 @@ void Room::show_to(proto::ViewerId viewer) {
 /// A frame of the present state.
 Frame Room::encode_frame() {
   measure_forces();
-  world_->measure_present_forces();
+  within_limit([this] { world_->measure_present_forces(); });
   grab_samples_.clear();
   for (const Grab<float>& grab : world_->grabs().list) {
     const auto hand = std::find_if(hands_.begin(), hands_.end(),

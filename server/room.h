@@ -22,8 +22,10 @@
 #include "server/inbound.h"
 #include "server/metrics.h"
 #include "server/room_output.h"
+#include "server/scene_build.h"
 #include "server/tick_pacer.h"
 #include "server/translate.h"
+#include "server/work_limit.h"
 
 namespace weft::server {
 
@@ -43,6 +45,17 @@ struct RoomOptions {
   std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
   std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
+  /// Bounds a tick, and what else looks one tick ahead; outlives the room. Null: no bound.
+  WorkLimit* limit = nullptr;
+  double build_limit = 0;  ///< of CPU for building a scene [s]; 0: no bound
+  /// CPU time of the room's thread, by which dear commands let their viewers wait [s]; the default
+  /// never does.
+  Clock cpu_clock = [] { return 0.0; };
+  /// Runs a job beside the room, on another thread; the default runs it at once. The room looks for
+  /// its end in each turn.
+  std::function<void(std::function<void()>)> beside = [](const std::function<void()>& job) {
+    job();
+  };
 };
 
 /// One shared cloth with its clock, its hands and its order of commands. All of it happens on the
@@ -57,9 +70,23 @@ class Room {
   /// Called when a command that was taken is done with.
   std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
 
-  /// Applies what came from a viewer, between two ticks. While an `advance` runs, everything but
-  /// joining waits for its end.
+  /// Takes what came from a viewer, between two ticks, and does all that has its turn. While an
+  /// `advance` runs, the other commands of its viewer wait for its end; those of others are done
+  /// between its ticks.
   void take(Inbound item);
+
+  /// The same while a tick passes: does at once what is beside the cloth, and lets the rest wait.
+  void take_meanwhile(Inbound item);
+  /// Whether the work in hand shall end, because it takes too long or for a command that makes it
+  /// worthless. The stop signal's owner asks.
+  bool gives_up();
+  /// The signal that ends the work in hand; null where nothing does.
+  StopSignal* stop_signal() { return options_.limit ? &options_.limit->signal() : nullptr; }
+
+  /// Ends the building of a scene that a `load` wanted, at the end of the room.
+  void cancel_build() {
+    if (building_) building_->build->cancel();
+  }
 
   bool advancing() const { return advance_.has_value(); }
   /// Runs ticks of the present `advance` until it is done or the clock has passed `deadline`.
@@ -97,6 +124,7 @@ class Room {
     /// Each frame of its own `advance` that is on its way to it has a copy.
     std::shared_ptr<const int> ticket = std::make_shared<int>();
     bool stalled = false;  ///< it took none for too long, and has not taken one since
+    double next_turn = 0;  ///< its commands wait until then, as one of them was dear [s]
   };
 
   /// A hand: who holds, under which number of its own, and when it was heard of last.
@@ -115,19 +143,38 @@ class Room {
     double taken = 0;                            ///< when it last could go on [s]
   };
 
+  /// A `load` under way.
+  struct Building {
+    proto::ViewerId viewer = 0;
+    proto::Request request;
+    std::shared_ptr<SceneBuild> build;
+  };
+
   using Outcome = proto::Result<proto::Reply>;
+
+  // room_order.cpp: whose turn it is
+  bool must_wait(const Inbound& item) const;
+  void work_off();
+  void let_go(proto::ViewerId viewer);
+  double next_turn() const;
+  void charge(proto::ViewerId viewer, double cost);
+  void start_build(proto::ViewerId viewer, std::function<WorldDef()> definition);
+  void finish_build();
+  void note_halt();
+  void end_advance(proto::ErrorCode code, const std::string& why, const char* hint);
+  template <class Work>
+  bool within_limit(Work&& work);
 
   // room.cpp: coming, going, ticks and telling
   void join(proto::ViewerId id, const Join& join);
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
-  void take_deferred();
   void show_advanced();
   bool frames_wait(const Viewer& viewer) const;
   bool shows_next_tick() const;
   proto::Error stalled_error() const;
   void finish_advance(const std::optional<proto::Error>& error = {});
-  double step_world();
+  std::optional<double> step_world();
   void measure_forces();
   void tell_guarantee();  // room_queries.cpp
   void tell_pins();       // room_queries.cpp
@@ -146,7 +193,8 @@ class Room {
   void publish(double now);
   void show_to(proto::ViewerId viewer);
   void show_to_those_who_lack(double now);
-  void start_world(const WorldDef& def);
+  void start_world(BuiltScene&& scene);
+  void tell_loaded(proto::ViewerId viewer);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
   void notify(proto::NoticeLevel level, const char* code, std::string message,
@@ -157,7 +205,7 @@ class Room {
   std::vector<proto::PinInfo> pins() const;
   std::vector<proto::GrabInfo> grabs(bool with_force) const;
   WorldDef definition_of(const std::string& scene) const;
-  WorldDef definition_of(const proto::Load& command) const;
+  WorldDef definition_of(const std::string& name, const std::string& json) const;
 
   // room_commands.cpp: one function a command
   void handle(proto::ViewerId viewer, const proto::Request& request);
@@ -191,9 +239,11 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Load& command);
   Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
   Outcome apply(proto::ViewerId viewer, const proto::View& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Halt& command);
   Outcome query_numbers(const proto::Query& command, std::span<const float> values,
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);
+  Reactions coming_reactions();
   std::optional<proto::Error> check_new_hand(proto::ViewerId viewer, std::uint32_t drag) const;
   std::optional<proto::Error> check_free(proto::ViewerId viewer, Index particle) const;
   Outcome release_pins(const std::vector<std::uint32_t>& ids);
@@ -217,7 +267,11 @@ class Room {
   BudgetKeeper budget_;
   std::uint32_t steps_left_ = 0;
   std::optional<Advance> advance_;
-  std::deque<Inbound> deferred_;
+  std::optional<Building> building_;
+  std::deque<Inbound> waiting_;
+  bool in_tick_ = false;     ///< a tick passes
+  bool gives_up_ = false;    ///< it is to be ended for a command that replaces the state
+  bool over_limit_ = false;  ///< it is to be ended because it takes too long
 
   std::map<proto::ViewerId, Viewer> viewers_;
   std::vector<Hand> hands_;
@@ -256,5 +310,19 @@ class Room {
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };
+
+/// Does work that the limit may end.
+/// @returns false if it did
+template <class Work>
+bool Room::within_limit(Work&& work) {
+  try {
+    std::optional<WorkLimit::Scope> scope;
+    if (options_.limit) scope.emplace(*options_.limit);
+    work();
+    return true;
+  } catch (const Stopped&) {
+    return false;
+  }
+}
 
 }  // namespace weft::server

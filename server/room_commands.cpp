@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/world/cost.h"
 #include "server/room.h"
 #include "server/translate.h"
 #include "server/translate_holds.h"
@@ -44,6 +45,11 @@ proto::Error not_paused() {
   return make_error(ErrorCode::not_paused, "the room is running", "send pause first");
 }
 
+proto::Error advancing_error() {
+  return make_error(ErrorCode::busy, "another viewer's advance is running",
+                    "wait for its end, or end it by pause");
+}
+
 }  // namespace
 
 void Room::handle(ViewerId viewer, const proto::Request& request) {
@@ -53,14 +59,23 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
     const Outcome outcome =
         std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
     if (!outcome) return refuse(viewer, request, outcome.error());
+    if (std::holds_alternative<proto::Load>(request.command)) {
+      building_->request = request;  // it is in the log and answered when it is done
+      return finish_build();
+    }
     log_.add(tick, viewer, CommandOrigin::viewer, request.command);
-    if (advance_) {
+    if (std::holds_alternative<proto::Advance>(request.command)) {
       advance_->id = request.id;  // it is answered when it is done
       return;
     }
     answer(viewer, request.id, *outcome);
   } catch (const DefinitionError& error) {
     refuse(viewer, request, to_wire(error));
+  } catch (const Stopped&) {
+    refuse(viewer, request,
+           make_error(ErrorCode::too_costly,
+                      "the tick that this looks ahead to takes more than the limit of CPU time",
+                      "ask when less of the cloth is in contact"));
   } catch (const std::exception& error) {
     spdlog::error("command {}: {}", proto::name_of(request.command), error.what());
     refuse(viewer, request, make_error(ErrorCode::internal, "the server failed at this command"));
@@ -235,6 +250,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
   if (!paused_) frame_wanted_ = true;
   paused_ = state_changed_ = true;
   steps_left_ = 0;
+  if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent pause", "");
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
@@ -249,12 +265,14 @@ Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
 
 Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
   if (!paused_) return not_paused();
+  if (advance_) return advancing_error();
   if (steps_left_ == 0) meter_.restart(clock_());
   steps_left_ += command.n;
   return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + steps_left_});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
+  if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
   world_->reset();
   hands_.clear();
   pin_owners_.clear();
@@ -319,7 +337,10 @@ Room::Outcome Room::apply(ViewerId, const proto::Gripper& command) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
-  world_->set_environment(with_settings(world_->environment(), command));
+  const EnvironmentDef environment = with_settings(world_->environment(), command);
+  validate(environment);
+  check_cost(world_->cost_in(environment), "set", "environment");
+  world_->set_environment(environment);
   if (command.softness) {
     wanted_softness_ = *command.softness;
     world_->set_softness(wanted_softness_);
@@ -333,6 +354,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   if (!paused_) return not_paused();
+  if (advance_) return advancing_error();
   if (steps_left_ > 0)
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);
@@ -350,10 +372,11 @@ Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
   return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
 }
 
-WorldDef Room::definition_of(const proto::Load& command) const {
-  if (command.definition.empty()) return definition_of(command.scene);
+/// The scene that a `load` asks for. Called beside the room: looks at nothing that changes.
+WorldDef Room::definition_of(const std::string& name, const std::string& json) const {
+  if (json.empty()) return definition_of(name);
   try {
-    WorldDef def = options_.read_scene(command.definition);
+    WorldDef def = options_.read_scene(json);
     if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
     return def;
   } catch (const DefinitionError& error) {
@@ -362,6 +385,7 @@ WorldDef Room::definition_of(const proto::Load& command) const {
   }
 }
 
+/// The scene before it goes on until the new one is ready.
 Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   if (!command.definition.empty() && !options_.read_scene)
     return make_error(ErrorCode::not_supported, "this server takes scenes by name alone");
@@ -372,7 +396,15 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
     error.code = ErrorCode::unknown_scene;
     return error;
   }
-  start_world(definition_of(command));
+  start_build(viewer, [this, name = command.scene, json = command.definition] {
+    return definition_of(name, json);
+  });
+  return proto::Reply(proto::LoadReply{});
+}
+
+/// Tells all that the scene is another one.
+void Room::tell_loaded(ViewerId viewer) {
+  if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
   steps_left_ = 0;
   meter_.restart(clock_());
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
@@ -380,7 +412,12 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
   tell_guarantee();
   tell_changes();
-  return proto::Reply(proto::LoadReply{0, world_->def().name, epoch_});
+}
+
+/// Of the room's own; only a log that is replayed has it.
+Room::Outcome Room::apply(ViewerId, const proto::Halt&) {
+  world_->halt();
+  return proto::Reply(proto::DoneReply{"halt", world_->tick()});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Ping&) {

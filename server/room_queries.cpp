@@ -93,16 +93,17 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       reply.data = measurements_of(*world_);
       break;
     case proto::QueryWhat::contacts:
-      reply.data = contacts_of(*world_, world_->coming_reactions());
+      reply.data = contacts_of(*world_, coming_reactions());
       break;
     case proto::QueryWhat::reactions: {
-      proto::ReactionInfo reactions = reactions_of(*world_, world_->coming_reactions());
+      proto::ReactionInfo reactions = reactions_of(*world_, coming_reactions());
       for (const proto::GrabInfo& grab : grabs(true))
         reactions.grabs.push_back({grab.id, grab.viewer, *grab.force});
       reply.data = std::move(reactions);
       break;
     }
     case proto::QueryWhat::crossings:
+      if (!within_limit([&] { guarantee_.count(*world_); })) throw Stopped();
       reply.data = guarantee_.count(*world_);
       break;
     case proto::QueryWhat::grippers:
@@ -124,6 +125,13 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
     }
   }
   return proto::Reply(std::move(reply));
+}
+
+/// Looks one tick ahead, within the limit of a tick. Throws Stopped beyond it.
+Reactions Room::coming_reactions() {
+  Reactions found;
+  if (!within_limit([&] { found = world_->coming_reactions(); })) throw Stopped();
+  return found;
 }
 
 /// Which cloths sleep is told when it changes.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -31,8 +32,11 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kPollPause = std::chrono::milliseconds(10);  // of the hub
-constexpr auto kGoodbye = std::chrono::seconds(2);          // for viewers to close
+constexpr auto kGoodbye = std::chrono::seconds(1);          // for viewers to close
+constexpr auto kLastWork = std::chrono::milliseconds(500);  // for what is under way to end
 constexpr double kReadinessPause = 0.1;                     // [s]
+constexpr double kStallSeconds = 1;   // without a turn of the room that are worth telling [s]
+constexpr double kBuildSeconds = 30;  // of CPU for a scene that is loaded [s]
 
 /// What the network thread may know of the room, as of a moment ago.
 class Bulletin {
@@ -44,12 +48,22 @@ class Bulletin {
     readiness_.real_time_factor = room.real_time_factor();
     readiness_.ready = !room.ticking() || readiness_.real_time_factor >= 0.9 * room.speed();
   }
+  /// The room has turned over.
+  void beat() { last_turn_.store(process_seconds(), std::memory_order_relaxed); }
+  /// Tells too where the room stands in the midst of something and posts nothing.
   proto::Readiness read() const {
     const std::lock_guard lock(mutex_);
-    return readiness_;
+    proto::Readiness readiness = readiness_;
+    const double stalled = process_seconds() - last_turn_.load(std::memory_order_relaxed);
+    if (stalled > kStallSeconds) {
+      readiness.stalled = stalled;
+      readiness.ready = false;
+    }
+    return readiness;
   }
 
  private:
+  std::atomic<double> last_turn_ = process_seconds();
   mutable std::mutex mutex_;
   proto::Readiness readiness_;
 };
@@ -61,6 +75,9 @@ class PostedRoom {
     bulletin_.post(room_);
   }
   void take(Inbound item) { room_.take(std::move(item)); }
+  void take_meanwhile(Inbound item) { room_.take_meanwhile(std::move(item)); }
+  bool gives_up() { return room_.gives_up(); }
+  StopSignal* stop_signal() { return room_.stop_signal(); }
   bool advancing() const { return room_.advancing(); }
   void advance_until(double deadline) { room_.advance_until(deadline); }
   bool advance_waits() const { return room_.advance_waits(); }
@@ -70,6 +87,7 @@ class PostedRoom {
   double next_wake() const { return room_.next_wake(); }
   void finish_turn() {
     room_.finish_turn();
+    bulletin_.beat();
     const double now = process_seconds();
     if (now < next_post_) return;
     next_post_ = now + kReadinessPause;
@@ -81,6 +99,43 @@ class PostedRoom {
   Bulletin& bulletin_;
   double next_post_ = 0;
 };
+
+/// A thread beside the room, for one job at a time.
+class Beside {
+ public:
+  explicit Beside(Mailbox& mailbox) : mailbox_(mailbox) {}
+
+  void start(std::function<void()> job) {
+    if (thread_.joinable()) thread_.join();  // it is done: the room gives no second job before
+    running_ = true;
+    thread_ = std::jthread([this, job = std::move(job)] {
+      job();
+      running_ = false;
+      mailbox_.wake();
+    });
+  }
+  bool running() const { return running_; }
+
+ private:
+  Mailbox& mailbox_;
+  std::atomic<bool> running_ = false;
+  std::jthread thread_;
+};
+
+/// Waits for the end of work that was told to end. Where it does not hear that, the process ends
+/// without it: nothing is kept that could be lost.
+template <class Done>
+void end_or_exit(Done&& done) {
+  const auto last = std::chrono::steady_clock::now() + kLastWork;
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > last) {
+      spdlog::warn("stopped in the midst of work");
+      spdlog::shutdown();
+      std::_Exit(0);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
 
 std::string random_session() {
   std::random_device source;
@@ -161,6 +216,7 @@ class Network {
   void stop(const char* why) {
     spdlog::info("stopping: {}", why);
     context_.stopping = true;
+    context_.mailbox.stop();  // ends the tick under way, too
     last_ = std::chrono::steady_clock::now() + kGoodbye;
     listener_.stop();
     signals_.cancel();
@@ -227,10 +283,18 @@ int serve(const ServerOptions& options) {
   asio::io_context io(1);
   NetworkOutput output(io, hub);
   ThreadPool pool(options.threads);
+  WorkLimit limit(options.tick_limit);
+  RoomOptions settings = room_options(options, library);
+  settings.limit = &limit;
+  settings.build_limit = kBuildSeconds;
+  settings.cpu_clock = &thread_cpu_seconds;
+  Beside beside(mailbox);
+  settings.beside = [&beside](std::function<void()> job) { beside.start(std::move(job)); };
   Room room(
-      room_options(options, library),
-      [&library](const std::string& name) { return library.named(name); }, output, process_seconds,
-      metrics, options.threads > 1 ? &pool : nullptr);
+      std::move(settings), [&library](const std::string& name) { return library.named(name); },
+      output, process_seconds, metrics, options.threads > 1 ? &pool : nullptr);
+  mailbox.on_arrival = [&limit] { limit.signal().raise(); };
+  const LimitWatch watch(limit);
   room.on_finished = [&mailbox](proto::ViewerId viewer) { mailbox.finished(viewer); };
 
   std::optional<Network> network;
@@ -243,13 +307,20 @@ int serve(const ServerOptions& options) {
 
   PostedRoom posted(room, bulletin);
   SimulationLoop<PostedRoom, Mailbox> loop(posted, mailbox, process_seconds);
-  std::jthread simulation([&loop] { loop.run(); });
+  std::atomic<bool> simulating = true;
+  std::jthread simulation([&] {
+    loop.run();
+    simulating = false;
+  });
   spdlog::info("scene {} with {} particles, {} ticks a second", options.scene,
                room.world().model().mass.size(), room.world().def().tick_rate);
   print_addresses(options, context.port);
   network->run();
   mailbox.stop();
+  end_or_exit([&simulating] { return !simulating; });
   simulation.join();
+  room.cancel_build();
+  end_or_exit([&beside] { return !beside.running(); });
   return 0;
 }
 

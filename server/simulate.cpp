@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -21,6 +22,7 @@
 #include "server/scene_schema.h"
 #include "server/thread_pool.h"
 #include "server/translate.h"
+#include "server/work_limit.h"
 
 namespace weft::server {
 namespace {
@@ -29,6 +31,8 @@ using Json = nlohmann::ordered_json;
 
 /// Exit code where something crossed.
 constexpr int kCrossed = 3;
+/// And where a tick took more than its limit.
+constexpr int kHalted = 4;
 
 double cpu_seconds() {
   timespec now{};
@@ -54,9 +58,14 @@ struct Measurement {
   Verdict<float> verdict;                    // of a hard case
 };
 
-void measure_tick(World<float>& world, Measurement& m) {
+/// @returns false if the tick took more than its limit; nothing has changed then
+bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
   const double cpu = cpu_seconds(), wall = process_seconds();
-  const TickReport& report = world.step();
+  const TickReport& report = [&]() -> const TickReport& {
+    const WorkLimit::Scope scope(limit);
+    return world.step();
+  }();
+  if (report.halted) return false;
   const double seconds = process_seconds() - wall;
   m.cpu += cpu_seconds() - cpu;
   m.wall += seconds;
@@ -70,6 +79,7 @@ void measure_tick(World<float>& world, Measurement& m) {
       m.least_substeps == 0 ? report.substeps : std::min(m.least_substeps, report.substeps);
   m.most_substeps = std::max(m.most_substeps, report.substeps);
   m.largest_strain = std::max(m.largest_strain, report.largest_strain);
+  return true;
 }
 
 /// Whether the scene's contact promises that nothing crosses: that of the seed does not, and
@@ -94,13 +104,16 @@ void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Mea
   m.broken_promises += broken_promises(world, found);
 }
 
-Measurement run(World<float>& world, const SimulateOptions& options) {
+/// @returns nothing if a tick was given up
+std::optional<Measurement> run(World<float>& world, const SimulateOptions& options) {
+  WorkLimit limit(options.tick_limit);
+  const LimitWatch watch(limit);
   Measurement m;
   m.ticks.reserve(static_cast<std::size_t>(options.ticks));
   CrossingCounter<float> counter;
   const bool judged = world.def().verdict.strain > 0;
   for (int i = 1; i <= options.ticks; ++i) {
-    measure_tick(world, m);
+    if (!measure_tick(world, limit, m)) return std::nullopt;
     if (judged) m.verdict.look(world);
     if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
@@ -263,12 +276,22 @@ int simulate(const SimulateOptions& options) {
   check_range("--ticks", options.ticks, kTickCounts);
   check_range("--threads", options.threads, kThreadCounts);
   check_range("--check-every", options.check_every, kTickCounts);
+  check_range("--tick-limit", options.tick_limit, kTickLimits);
   check_out(options.out);
   WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
-  const Measurement measurement = run(world, options);
+  const std::optional<Measurement> measured = run(world, options);
+  if (!measured) {
+    std::fprintf(stderr,
+                 "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
+                 "fewer particles or substeps, or raise --tick-limit\n",
+                 static_cast<unsigned long long>(world.tick() + 1), options.scene.c_str(),
+                 options.tick_limit);
+    return kHalted;
+  }
+  const Measurement& measurement = *measured;
   if (!options.out.empty()) write_mesh(cloth_mesh(world), options.out);
   const Json result = summary(options, world, measurement);
   if (options.json)

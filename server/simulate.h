@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/options.h"
+
 namespace weft::server {
 
 /// What `weft simulate` can be told.
@@ -19,12 +21,14 @@ struct SimulateOptions {
   /// last, 1 to 10,000,000. They cost time, which the figures leave out, and take the place in the
   /// caches of what the next step needs.
   int check_every = 1;
+  double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
 };
 
 /// Runs a scene without a clock and prints a summary.
 /// @return exit code: 3 if something crossed after the time that the scene has for it (its
 /// verdict's
-///         `clear_after`), which is told on standard error too; else 0
+///         `clear_after`), 4 if a tick took more than its limit and was given up; both are told on
+///         standard error too; else 0
 /// Throws OptionError or DefinitionError if something cannot be accepted.
 int simulate(const SimulateOptions& options);
 

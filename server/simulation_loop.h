@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/stop_signal.h"
 #include "server/clock.h"
 #include "server/tick_pacer.h"
 
@@ -12,14 +13,24 @@ namespace weft::server {
 /// what is to be told. A room that cannot keep up runs in slow motion and still hears commands
 /// between any two ticks.
 ///
-/// @tparam Room   take, advancing, advance_until, advance_waits, ticking, tick_interval, tick,
-/// finish_turn, next_wake
+/// What comes while a tick passes is heard at its next stop point, if the inbox raises the room's
+/// stop signal.
+///
+/// @tparam Room   take, take_meanwhile, gives_up, stop_signal, advancing, advance_until,
+/// advance_waits, ticking, tick_interval, tick, finish_turn, next_wake
 /// @tparam Inbox  take_all, wait, stopped
 template <class Room, class Inbox>
 class SimulationLoop {
  public:
   SimulationLoop(Room& room, Inbox& inbox, Clock clock)
-      : room_(room), inbox_(inbox), clock_(std::move(clock)) {}
+      : room_(room), inbox_(inbox), clock_(std::move(clock)) {
+    if (StopSignal* const signal = room_.stop_signal()) {
+      signal->attend = [this, signal] {
+        signal->lower();
+        return attend();
+      };
+    }
+  }
 
   /// Until the inbox is stopped.
   void run() {
@@ -49,6 +60,14 @@ class SimulationLoop {
   }
 
  private:
+  /// In the midst of a tick: hears what has come.
+  /// @returns whether the tick shall be given up
+  bool attend() {
+    if (inbox_.stopped()) return true;
+    for (auto& item : inbox_.take_all()) room_.take_meanwhile(std::move(item));
+    return room_.gives_up();
+  }
+
   static constexpr double kAdvanceSlice = 0.01;   // [s]
   static constexpr double kAdvancePause = 0.001;  // while its viewer does not take its frames [s]
 

@@ -342,7 +342,10 @@ proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
 }
 
 proto::Error to_wire(const DefinitionError& error) {
-  proto::Error out = proto::make_error(proto::ErrorCode::out_of_range, error.what(), error.hint);
+  const bool cost = dynamic_cast<const CostError*>(&error) != nullptr;
+  proto::Error out =
+      proto::make_error(cost ? proto::ErrorCode::too_costly : proto::ErrorCode::out_of_range,
+                        error.what(), error.hint);
   out.field = error.field;
   out.value = proto::quoted_value(error.value);
   return out;

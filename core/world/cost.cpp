@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-
 namespace weft {
 namespace {
 
@@ -17,11 +15,16 @@ std::size_t triangles_of(const ColliderDef& collider) {
   return mesh ? mesh->mesh.triangles.size() : 0;
 }
 
+/// All its digits: people compare the two numbers.
+std::string whole(double value) {
+  return std::to_string(std::llround(value));
+}
+
 void check_count(const char* field, const char* what, std::size_t count, std::size_t most) {
   if (count <= most) return;
-  throw DefinitionError(field, std::to_string(count) + " " + what,
-                        "at most " + std::to_string(most) + " " + what + " in all",
-                        "use fewer or coarser ones");
+  throw CostError(field, std::to_string(count) + " " + what,
+                  "at most " + std::to_string(most) + " " + what + " in all",
+                  "use fewer or coarser ones");
 }
 
 }  // namespace
@@ -56,13 +59,12 @@ void check_cost(const TickCost& cost, const std::string& field, const std::strin
   if (a_tick <= kMostTickUpdates && a_second <= kMostUpdatesPerSecond) return;
   const bool tick = a_tick > kMostTickUpdates;
   const std::string per = tick ? "a tick" : "a simulated second";
-  const std::string estimate = number_text(std::round(cost.particles)) + " particles x " +
-                               number_text(std::round(cost.substeps)) + " substeps x " +
-                               number_text(std::round(cost.sweeps)) +
-                               " sweeps = " + number_text(a_tick) + " updates a tick";
-  throw DefinitionError(
+  const std::string estimate = whole(cost.particles) + " particles x " + whole(cost.substeps) +
+                               " substeps x " + whole(cost.sweeps) + " sweeps = " + whole(a_tick) +
+                               " updates a tick";
+  throw CostError(
       field, value,
-      "what costs at most " + number_text(tick ? kMostTickUpdates : kMostUpdatesPerSecond) +
+      "what costs at most " + whole(tick ? kMostTickUpdates : kMostUpdatesPerSecond) +
           " updates of particles " + per + "; this is estimated at " + estimate,
       "take fewer particles, softer springs, weaker wind or thinner air, or fewer substeps and "
       "sweeps");

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "core/error.h"
 #include "core/world/world_def.h"
 
 // What a scene may cost, estimated before it is taken. Only what can be told beforehand is in the
@@ -23,6 +24,11 @@ inline constexpr double kMostTickUpdates = 1.5e8;
 /// The same in a simulated second: about a minute of CPU.
 inline constexpr double kMostUpdatesPerSecond = 1e10;
 
+/// A definition that would cost more than it may.
+struct CostError : DefinitionError {
+  using DefinitionError::DefinitionError;
+};
+
 /// Estimate of what a tick costs without contact.
 struct TickCost {
   double particles = 0;
@@ -33,14 +39,14 @@ struct TickCost {
   double updates() const { return particles * substeps * sweeps; }
 };
 
-/// Throws DefinitionError where a scene has more particles or triangles than it may, before
+/// Throws CostError where a scene has more particles or triangles than it may, before
 /// anything is built.
 void check_size(const WorldDef& def);
 
 /// Sweeps over all springs that the chosen solver makes in a substep.
 double sweeps_of(const WorldDef& def, SolverKind kind);
 
-/// Throws DefinitionError where the estimate is beyond kMostTickUpdates or kMostUpdatesPerSecond.
+/// Throws CostError where the estimate is beyond kMostTickUpdates or kMostUpdatesPerSecond.
 /// @param field  whose value is to blame, e.g. "set.wind"
 /// @param value  of that field
 void check_cost(const TickCost& cost, const std::string& field, const std::string& value);

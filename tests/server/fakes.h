@@ -137,8 +137,8 @@ inline WorldDef small_scene(const std::string& name) {
 /// A room with a fake clock and an output that remembers.
 struct TestRoom {
   explicit TestRoom(bool paused = true,
-                    std::vector<std::pair<std::string, std::string>> settings = {}) {
-    RoomOptions options;
+                    std::vector<std::pair<std::string, std::string>> settings = {},
+                    RoomOptions options = {}) {
     options.settings = std::move(settings);
     options.scene = "small";
     options.scene_names = {"small", "other"};

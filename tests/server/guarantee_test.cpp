@@ -219,7 +219,7 @@ TEST_CASE("counts are a hundred times as far apart as one takes") {
   const World<float> world(bad_scene("through"));
   GuaranteeWatch watch(1, clock.clock());
   clock.between_reads = [] { return 1.0; };  // so a count takes a second
-  watch.start(world);
+  watch.start(world, world.coming_bad_starts());
   const double counted = clock.now;
   int ticks = 0;
   do {

@@ -20,6 +20,9 @@ struct CostlyRoom {
   int advance_left = 0;
 
   void take(int) { ticks_before_command.push_back(ticks); }
+  void take_meanwhile(int) {}
+  bool gives_up() const { return false; }
+  StopSignal* stop_signal() { return nullptr; }
   bool advancing() const { return advance_left > 0; }
   void advance_until(double deadline) {
     while (advance_left > 0 && fake.now < deadline) {

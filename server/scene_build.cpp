@@ -1,0 +1,74 @@
+#include "server/scene_build.h"
+
+#include <utility>
+
+#include "core/error.h"
+#include "core/world/cost.h"
+
+namespace weft::server {
+namespace {
+
+/// What the first tick of a world will find, if it can be told within the limit.
+BadStarts look_ahead(const ServedWorld& world, double tick_limit) {
+  WorkLimit limit(tick_limit);
+  // The thread's own signal still ends it, without an answer.
+  StopSignal* const outer = current_stop_signal();
+  limit.signal().attend = [&limit, outer] { return limit.is_over() || (outer && outer->raised()); };
+  limit.signal().raise();
+  try {
+    const WorkLimit::Scope scope(limit);
+    return world.coming_bad_starts();
+  } catch (const Stopped&) {
+    if (outer && outer->raised()) throw;
+    return {};
+  }
+}
+
+}  // namespace
+
+BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
+  const SerialScope serial;
+  check_size(def);
+  Runtime runtime;
+  runtime.executor = executor;
+  runtime.clock = &process_seconds;
+  BuiltScene built;
+  built.world = std::make_unique<ServedWorld>(def, runtime);
+  check_cost(built.world->cost_in(def.environment), "scene", def.name);
+  stop_point();
+  proto::Bytes bytes = proto::encode_mesh_data(scene_mesh(*built.world));
+  built.mesh = mesh_announcement(*built.world);
+  built.mesh.hash = proto::content_hash(bytes);
+  built.mesh.bytes = bytes.size();
+  built.mesh_bytes = SharedBytes(std::move(bytes));
+  built.bad_starts = look_ahead(*built.world, tick_limit);
+  return built;
+}
+
+void SceneBuild::run() {
+  try {
+    const LimitWatch watch(limit_);
+    limit_.signal().attend = [this] {
+      if (!cancelled()) limit_.signal().lower();
+      return cancelled() || limit_.is_over();
+    };
+    if (cancelled()) limit_.signal().raise();
+    const WorkLimit::Scope scope(limit_);
+    scene_ = make_();
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+  done_.store(true, std::memory_order_release);
+}
+
+void SceneBuild::cancel() {
+  cancelled_.store(true, std::memory_order_release);
+  limit_.signal().raise();
+}
+
+BuiltScene SceneBuild::take() {
+  if (failure_) std::rethrow_exception(failure_);
+  return std::move(*scene_);
+}
+
+}  // namespace weft::server

@@ -1,0 +1,364 @@
+// Whose turn it is: ticks that are given up, an advance that others see through, scenes that are
+// built beside the room, and what may cost how much.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "server/scene_json.h"
+#include "server/simulation_loop.h"
+#include "tests/server/fakes.h"
+#include "tests/support/two_threads.h"
+
+namespace weft::server {
+namespace {
+
+using nlohmann::json;
+
+/// A limit whose CPU time is set by hand and passes with each look at it.
+struct HandLimit {
+  double now = 0, step = 0;
+  WorkLimit limit{2, [this] { return now += step; }};
+};
+
+/// A room whose ticks end at a chosen stop point, as if they had taken too long.
+struct HaltingRoom {
+  explicit HaltingRoom(bool paused = false, RoomOptions options = {}) {
+    options.limit = &hand.limit;
+    room = std::make_unique<TestRoom>(paused, std::vector<std::pair<std::string, std::string>>{},
+                                      options);
+    hand.limit.signal().attend = [this] {
+      if (seen++ == stop) hand.now += 3;
+      if (at_stop) at_stop();
+      return room->room->gives_up();
+    };
+    hand.limit.signal().raise();
+  }
+  Room& get() { return *room->room; }
+  /// Ends the coming tick at its stop point of this number.
+  void halt_at(int number) {
+    seen = 0;
+    stop = number;
+  }
+
+  HandLimit hand;
+  int seen = 0, stop = -1;
+  std::function<void()> at_stop;  ///< done at each stop point
+  std::unique_ptr<TestRoom> room;
+};
+
+/// Jobs that are done when a test says so.
+struct Jobs {
+  std::vector<std::function<void()>> list;
+  void run_all() {
+    for (auto& job : std::exchange(list, {})) job();
+  }
+};
+
+RoomOptions with_jobs(Jobs& jobs) {
+  RoomOptions options;
+  options.beside = [&jobs](std::function<void()> job) { jobs.list.push_back(std::move(job)); };
+  return options;
+}
+
+std::string hash_of(Room& room) {
+  return proto::hash_text(room.world().hash());
+}
+
+/// The same commands in a room of its own, on other threads.
+std::string replayed(const Room& original, std::uint64_t ticks, Executor* executor) {
+  RecordingOutput output;
+  FakeClock clock;
+  Metrics metrics;
+  RoomOptions options;
+  options.scene = "small";
+  options.paused = true;
+  Room replay(options, small_scene, output, clock.clock(), metrics, executor);
+  replay.take({1, 0, Join{}});
+  for (const LogEntry& entry : original.log().entries()) {
+    while (replay.world().tick() < entry.tick) replay.tick();
+    replay.take({1, 1, proto::Request{std::nullopt, entry.command}});
+  }
+  while (replay.world().tick() < ticks) replay.tick();
+  return hash_of(replay);
+}
+
+TEST_CASE("a tick beyond its limit is given up, told with its cause, logged, and pauses the room") {
+  HaltingRoom t;
+  t.room->join(1);
+  t.room->tick(10);
+  const std::string before = hash_of(t.get());
+  t.halt_at(2);
+  t.room->tick(1);
+  CHECK(t.get().world().tick() == 10);
+  CHECK(hash_of(t.get()) == before);
+  CHECK(t.get().paused());
+  t.room->clock.now += 1;
+  t.get().finish_turn();
+  const json notice = t.room->output.last("notice");
+  CHECK(notice["code"] == "halted");
+  CHECK(notice["message"].get<std::string>().find("2 s of CPU") != std::string::npos);
+  const auto& entries = t.get().log().entries();
+  REQUIRE(entries.size() == 2);
+  CHECK(std::holds_alternative<proto::Halt>(entries[0].command));
+  CHECK(std::holds_alternative<proto::Pause>(entries[1].command));
+  CHECK(entries[0].tick == 10);
+  CHECK(entries[0].origin == CommandOrigin::limit);
+  t.room->say(1, R"({"op":"resume"})");
+  t.room->tick(5);
+  CHECK(t.get().world().tick() == 15);
+}
+
+TEST_CASE("a log that holds halts replays to the same hash, with one thread and with two") {
+  HaltingRoom t;
+  t.room->join(1);
+  t.room->say(1, R"({"op":"drag","phase":"start","drag":5,"particle":38,"target":[0.3,1,0.4]})");
+  for (const int stop : {0, 3, 1, 7}) {
+    t.room->tick(9);
+    t.halt_at(stop);
+    t.room->tick(1);
+    REQUIRE(t.get().paused());
+    t.room->say(1, R"({"op":"resume"})");
+  }
+  t.room->tick(20);
+  test::TwoThreads threads;
+  const std::uint64_t ticks = t.get().world().tick();
+  CHECK(replayed(t.get(), ticks, nullptr) == hash_of(t.get()));
+  CHECK(replayed(t.get(), ticks, &threads) == hash_of(t.get()));
+}
+
+TEST_CASE("an advance whose tick is given up ends with an error that names the tick") {
+  HaltingRoom t(true);
+  t.room->join(1);
+  t.halt_at(40);
+  const json error = t.room->say(1, R"({"op":"advance","id":7,"n":500})");
+  CHECK(error["op"] == "error");
+  CHECK(error["code"] == "halted");
+  CHECK(error["command"] == "advance");
+  CHECK(t.get().world().tick() < 500);
+  CHECK(t.room->say(1, R"({"op":"advance","id":8,"n":2})")["op"] == "result");
+}
+
+TEST_CASE("who joins and what is beside the cloth does not wait for a tick") {
+  HaltingRoom t;
+  t.room->join(1);
+  bool done = false;
+  const std::size_t frames = t.room->output.frames.size();
+  t.at_stop = [&] {
+    if (std::exchange(done, true)) return;
+    t.get().take_meanwhile({2, 0, Join{}});
+    t.get().take_meanwhile({1, 1, *proto::parse_request(R"({"op":"pause","id":3})")});
+    t.get().take_meanwhile({1, 2, *proto::parse_request(R"({"op":"hash","id":4})")});
+    CHECK(t.room->output.last("welcome")["viewer"] == 2);
+    CHECK(t.room->output.last("result", 3)["paused"] == true);
+    CHECK(t.room->output.last("result", 4).is_null());  // needs the cloth
+    CHECK(t.room->output.frames.size() == frames);      // nobody sees half a tick
+  };
+  t.room->tick(1);
+  REQUIRE(done);
+  CHECK(t.get().world().tick() == 1);
+  CHECK(t.room->output.last("result", 4)["tick"] == 1);
+  CHECK(t.room->output.frames.size() > frames);
+}
+
+TEST_CASE("a reset ends the tick under way and comes at once") {
+  HaltingRoom t;
+  t.room->join(1);
+  t.room->tick(5);
+  bool done = false;
+  t.at_stop = [&] {
+    if (std::exchange(done, true)) return;
+    t.get().take_meanwhile({1, 1, *proto::parse_request(R"({"op":"reset","id":3})")});
+  };
+  t.get().tick();
+  CHECK(t.get().world().tick() == 5);
+  t.get().finish_turn();
+  CHECK(t.get().world().tick() == 0);
+  CHECK_FALSE(t.get().paused());
+  CHECK(t.room->output.last("result", 3)["tick"] == 0);
+  t.room->tick(7);
+  CHECK(replayed(t.get(), 7, nullptr) == hash_of(t.get()));
+}
+
+TEST_CASE("a stopped inbox ends the tick under way") {
+  struct Inbox {
+    bool stop = false;
+    std::vector<Inbound> take_all() { return {}; }
+    bool stopped() const { return stop; }
+    void wait(double) {}
+  };
+  HandLimit hand;
+  RoomOptions options;
+  options.limit = &hand.limit;
+  TestRoom t(false, {}, options);
+  Inbox inbox;
+  SimulationLoop<Room, Inbox> loop(*t.room, inbox, t.clock.clock());
+  loop.turn();
+  const std::uint64_t tick = t.room->world().tick();
+  inbox.stop = true;
+  hand.limit.signal().raise();
+  t.clock.now += 1;
+  loop.turn();
+  CHECK(t.room->world().tick() == tick);
+}
+
+TEST_CASE("between the ticks of an advance others are answered, and its own viewer waits") {
+  TestRoom t;
+  t.join(1);
+  t.join(2);
+  t.tell(1, R"({"op":"advance","id":1,"n":50})");
+  t.tell(1, R"({"op":"hash","id":2})");
+  t.room->advance_until(0);
+  t.tell(2, R"({"op":"hash","id":3})");
+  CHECK(t.output.last("result", 3)["tick"] == 1);
+  CHECK(t.output.last("result", 2).is_null());
+  t.tell(2, R"({"op":"advance","id":4,"n":1})");
+  CHECK(t.output.last("error", 4)["code"] == "busy");
+  while (t.room->advancing()) t.room->advance_until(0);
+  t.room->finish_turn();
+  CHECK(t.output.last("result", 1)["tick"] == 50);
+  CHECK(t.output.last("result", 2)["tick"] == 50);
+}
+
+TEST_CASE("its viewer and every other one can end an advance") {
+  for (const proto::ViewerId viewer : {1u, 2u}) {
+    for (const char* op : {"pause", "reset", "load"}) {
+      if (viewer == 1 && std::string(op) != "pause") continue;  // behind the advance
+      INFO(op << " by viewer " << viewer);
+      TestRoom t;
+      t.join(1);
+      t.join(2);
+      t.tell(1, R"({"op":"advance","id":1,"n":100000})");
+      t.room->advance_until(0);
+      t.tell(viewer, std::string(R"({"op":")") + op + R"(","scene":"other"})");
+      CHECK_FALSE(t.room->advancing());
+      const json error = t.output.last("error", 1);
+      CHECK(error["code"] == "interrupted");
+      CHECK(error["message"].get<std::string>().find("tick") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("what a viewer changed before it went is changed, and what it asked is dropped") {
+  TestRoom t;
+  t.join(1);
+  t.join(2);
+  t.tell(1, R"({"op":"advance","n":100000})");
+  const std::size_t pins = t.room->world().pins().list.size();
+  t.tell(1, R"({"op":"pin","particle":20})");
+  t.tell(1, R"({"op":"advance","n":100000})");
+  t.leave(1);
+  CHECK_FALSE(t.room->advancing());
+  CHECK(t.room->world().pins().list.size() == pins + 1);
+  CHECK(t.say(2, R"({"op":"advance","id":3,"n":1})")["op"] == "result");
+}
+
+TEST_CASE("a scene is built beside the running one, which goes on until it is ready") {
+  Jobs jobs;
+  TestRoom t(false, {}, with_jobs(jobs));
+  t.join(1);
+  t.join(2);
+  t.tell(1, R"({"op":"load","id":1,"scene":"other"})");
+  t.tell(1, R"({"op":"hash","id":2})");
+  t.tick(5);
+  CHECK(t.room->world().tick() == 5);
+  CHECK(t.room->epoch() == 1);
+  t.tell(2, R"({"op":"hash","id":3})");
+  CHECK(t.output.last("result", 3)["tick"] == 5);
+  CHECK(t.output.last("result", 1).is_null());
+  CHECK(t.output.last("result", 2).is_null());  // comes behind the load
+  jobs.run_all();
+  t.room->finish_turn();
+  CHECK(t.output.last("result", 1)["epoch"] == 2);
+  CHECK(t.room->world().def().name == "other");
+  const LogEntry& entry = t.room->log().entries().back();
+  CHECK(std::holds_alternative<proto::Load>(entry.command));
+  CHECK(entry.tick == 5);
+  t.clock.now += 0.3;  // after what was sent to all its viewer pauses
+  t.room->finish_turn();
+  CHECK(t.output.last("result", 2)["tick"] == 0);
+}
+
+TEST_CASE("a load that fails, however it fails, leaves scene, epoch and clock alone") {
+  struct Case {
+    std::function<WorldDef()> make;
+    const char* code;
+  };
+  const std::vector<Case> cases = {
+      {[]() -> WorldDef { throw DefinitionError("scene.x", "1", "less"); }, "out_of_range"},
+      {[]() -> WorldDef { throw std::bad_alloc(); }, "internal"},
+      {[]() -> WorldDef { throw Stopped(); }, "too_costly"},
+      {[] {
+         WorldDef def;
+         def.cloths[0].rows = def.cloths[0].columns = 1000;
+         return def;
+       },
+       "too_costly"}};
+  for (const Case& c : cases) {
+    INFO(c.code);
+    RoomOptions options;
+    options.read_scene = [&c](const std::string&) { return c.make(); };
+    TestRoom t(false, {}, options);
+    t.join(1);
+    t.tick(3);
+    const json error = t.say(1, R"({"op":"load","id":1,"scene":{"name":"x"}})");
+    CHECK(error["code"] == c.code);
+    CHECK(t.room->epoch() == 1);
+    CHECK(t.room->world().def().name == "small");
+    CHECK(t.room->log().entries().empty());
+    t.tick(2);
+    CHECK(t.room->world().tick() == 5);
+  }
+}
+
+TEST_CASE(
+    "what would cost too much is refused with its estimate and the limit, and changes nothing") {
+  TestRoom t;
+  t.join(1);
+  const json set = t.say(1, R"({"op":"set","id":1,"wind":[100,0,0],"air_density":1000,)"
+                            R"("fans":[{"position":[0,1,1],"direction":[0,0,-1],"speed":50}]})");
+  CHECK(set["op"] == "result");  // a small cloth may
+  RoomOptions options;
+  options.read_scene = [](const std::string&) {
+    WorldDef def;
+    def.cloths[0].rows = def.cloths[0].columns = 200;
+    def.solver.min_substeps = 20000;
+    return def;
+  };
+  TestRoom large(true, {}, options);
+  large.join(1);
+  const json load = large.say(1, R"({"op":"load","id":1,"scene":{"name":"x"}})");
+  CHECK(load["code"] == "too_costly");
+  const std::string message = load["message"];
+  CHECK(message.find("40000 particles x 20000 substeps") != std::string::npos);
+  CHECK(message.find("150000000") != std::string::npos);
+  CHECK(large.room->world().def().name == "small");
+}
+
+TEST_CASE("after a dear command a viewer waits in proportion, while others are answered") {
+  double cpu = 0;
+  RoomOptions options;
+  options.cpu_clock = [&cpu] { return cpu += 0.05; };
+  TestRoom t(true, {}, options);
+  t.join(1);
+  t.tell(1, R"({"op":"hash","id":1})");
+  t.tell(1, R"({"op":"hash","id":2})");
+  CHECK_FALSE(t.output.last("result", 2).is_null());  // alone, nobody waits
+  t.join(2);
+  t.tell(1, R"({"op":"hash","id":3})");
+  t.tell(1, R"({"op":"hash","id":4})");
+  CHECK_FALSE(t.output.last("result", 3).is_null());
+  CHECK(t.output.last("result", 4).is_null());
+  t.tell(2, R"({"op":"hash","id":5})");
+  CHECK_FALSE(t.output.last("result", 5).is_null());
+  CHECK(t.room->next_wake() <= t.clock.now + 0.15 + 1e-9);
+  t.clock.now += 0.2;
+  t.room->finish_turn();
+  CHECK_FALSE(t.output.last("result", 4).is_null());
+}
+
+}  // namespace
+}  // namespace weft::server
