@@ -165,17 +165,11 @@ class Room {
   template <class Work>
   bool within_limit(Work&& work);
 
-  // room.cpp: coming, going, ticks and telling
+  // room.cpp: coming, going and ticks
   void join(proto::ViewerId id, const Join& join);
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
-  void show_advanced();
-  bool frames_wait(const Viewer& viewer) const;
-  bool shows_next_tick() const;
-  proto::Error stalled_error() const;
-  void finish_advance(const std::optional<proto::Error>& error = {});
   std::optional<double> step_world();
-  void measure_forces();
   void tell_guarantee();  // room_queries.cpp
   void tell_pins();       // room_queries.cpp
   void tell_grabs();      // room_queries.cpp
@@ -184,28 +178,38 @@ class Room {
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
   void end_leases();
-  bool has_news() const;
-  void tell_changes();
-  void tell_changes_if_due(double now);
-  bool frames_stand() const;
-  double next_frame() const;
-  Frame encode_frame();
-  void publish(double now);
-  void show_to(proto::ViewerId viewer);
-  void show_to_those_who_lack(double now);
   void start_world(BuiltScene&& scene);
   void tell_loaded(proto::ViewerId viewer);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
-  void notify(proto::NoticeLevel level, const char* code, std::string message,
-              proto::ViewerId viewer = 0, std::optional<std::uint32_t> drag = {},
-              std::optional<double> value = {});
   proto::State state() const;
   std::vector<proto::ViewerInfo> roster() const;
   std::vector<proto::PinInfo> pins() const;
   std::vector<proto::GrabInfo> grabs(bool with_force) const;
   WorldDef definition_of(const std::string& scene) const;
   WorldDef definition_of(const std::string& name, const std::string& json) const;
+
+  // room_advance.cpp
+  bool frames_wait(const Viewer& viewer) const;
+  bool shows_next_tick() const;
+  void show_advanced();
+  proto::Error stalled_error() const;
+  void finish_advance(const std::optional<proto::Error>& error = {});
+
+  // room_telling.cpp: frames, and what has changed
+  bool has_news() const;
+  void tell_changes();
+  void tell_changes_if_due(double now);
+  void notify(proto::NoticeLevel level, const char* code, std::string message,
+              proto::ViewerId viewer = 0, std::optional<std::uint32_t> drag = {},
+              std::optional<double> value = {});
+  void measure_forces();
+  bool frames_stand() const;
+  double next_frame() const;
+  Frame encode_frame();
+  void publish(double now);
+  void show_to(proto::ViewerId viewer);
+  void show_to_those_who_lack(double now);
 
   // room_commands.cpp: one function a command
   void handle(proto::ViewerId viewer, const proto::Request& request);

@@ -372,48 +372,6 @@ Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
   return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
 }
 
-/// The scene that a `load` asks for. Called beside the room: looks at nothing that changes.
-WorldDef Room::definition_of(const std::string& name, const std::string& json) const {
-  if (json.empty()) return definition_of(name);
-  try {
-    WorldDef def = options_.read_scene(json);
-    if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
-    return def;
-  } catch (const DefinitionError& error) {
-    const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
-    throw DefinitionError(field, error.value, error.limit, error.hint);
-  }
-}
-
-/// The scene before it goes on until the new one is ready.
-Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
-  if (!command.definition.empty() && !options_.read_scene)
-    return make_error(ErrorCode::not_supported, "this server takes scenes by name alone");
-  const auto& names = options_.scene_names;
-  if (command.definition.empty() &&
-      std::find(names.begin(), names.end(), command.scene) == names.end()) {
-    proto::Error error = proto::word_error("scene", command.scene, names);
-    error.code = ErrorCode::unknown_scene;
-    return error;
-  }
-  start_build(viewer, [this, name = command.scene, json = command.definition] {
-    return definition_of(name, json);
-  });
-  return proto::Reply(proto::LoadReply{});
-}
-
-/// Tells all that the scene is another one.
-void Room::tell_loaded(ViewerId viewer) {
-  if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
-  steps_left_ = 0;
-  meter_.restart(clock_());
-  for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
-  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
-  notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
-  tell_guarantee();
-  tell_changes();
-}
-
 /// Of the room's own; only a log that is replayed has it.
 Room::Outcome Room::apply(ViewerId, const proto::Halt&) {
   world_->halt();

@@ -18,8 +18,6 @@ constexpr double kOrderSlice = 0.1;
 /// A command below this is for nothing [s of CPU]. The viewer of a dearer one waits for
 /// kWaitPerCost times as long before its next, if there are others.
 constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
-/// So long after a `load`, which is sent to all [s].
-constexpr double kPauseAfterLoad = 0.25;
 
 template <class Command>
 bool is(const Inbound& item) {
@@ -127,48 +125,6 @@ void Room::charge(proto::ViewerId viewer, double cost) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end() || viewers_.size() < 2 || cost < kFreeCost) return;
   found->second.next_turn = clock_() + cost * kWaitPerCost;
-}
-
-void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definition) {
-  Executor* const executor = executor_;
-  const double limit = options_.limit ? options_.limit->seconds() : 0;
-  building_.emplace();
-  building_->viewer = viewer;
-  building_->build =
-      std::make_shared<SceneBuild>([definition = std::move(definition), executor,
-                                    limit] { return build_scene(definition(), executor, limit); },
-                                   options_.build_limit);
-  options_.beside([build = building_->build] { build->run(); });
-}
-
-/// Puts a scene that has been built in the place of the present one.
-void Room::finish_build() {
-  if (!building_ || !building_->build->done()) return;
-  const Building done = std::move(*building_);
-  building_.reset();
-  try {
-    const std::uint64_t tick = world_->tick();
-    start_world(done.build->take());
-    log_.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
-    tell_loaded(done.viewer);
-    answer(done.viewer, done.request.id, proto::LoadReply{0, world_->def().name, epoch_});
-    if (const auto found = viewers_.find(done.viewer);
-        found != viewers_.end() && viewers_.size() > 1)
-      found->second.next_turn = clock_() + kPauseAfterLoad;
-  } catch (const DefinitionError& error) {
-    refuse(done.viewer, done.request, to_wire(error));
-  } catch (const Stopped&) {
-    refuse(done.viewer, done.request,
-           proto::make_error(proto::ErrorCode::too_costly,
-                             "to build this scene takes more than " +
-                                 proto::number_text(options_.build_limit) + " s of CPU",
-                             "take fewer particles or triangles"));
-  } catch (const std::exception& error) {
-    spdlog::error("load: {}", error.what());
-    refuse(done.viewer, done.request,
-           proto::make_error(proto::ErrorCode::internal, "the server failed at this command",
-                             "the scene before it goes on"));
-  }
 }
 
 /// Says that a tick was given up: it is in the log, so that a replay does the same.

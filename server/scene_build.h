@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "core/executor.h"
-#include "proto/events.h"
 #include "server/message.h"
 #include "server/translate.h"
 #include "server/work_limit.h"

@@ -77,7 +77,7 @@ function socketAddress(given) {
 export class Session extends Emitter {
   #url;
   #connection;
-  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
+  /** @type {Map<number, {resolve: (value: any) => void, reject: (e: Error) => void, timer: any}>} */
   #waiting = new Map();
   /** Answers whose binary part is still to come. @type {Map<number, (data: any) => void>} */
   #transfers = new Map();
@@ -220,14 +220,9 @@ export class Session extends Emitter {
         this.#waiting.delete(id);
         reject(new CallTimeout(op, timeout));
       };
-      const timer =
-        timeout <= LONGEST_TIMER ? this.timers.setTimeout(expire, timeout) : null;
-      /** @param {(value: any) => void} settle */
-      const finish = (settle) => (/** @type {any} */ value) => {
-        this.timers.clearTimeout(timer);
-        settle(value);
-      };
-      this.#waiting.set(id, { resolve: finish(resolve), reject: finish(reject) });
+      const bounded = timeout <= LONGEST_TIMER; // an infinite one is not
+      const timer = bounded ? this.timers.setTimeout(expire, timeout) : null;
+      this.#waiting.set(id, { resolve, reject, timer });
       this.#send({ op, id, ...fields }, last);
     });
   }
@@ -285,11 +280,9 @@ export class Session extends Emitter {
     this.timers.clearTimeout(this.#pingTimer);
     this.welcome = null;
     this.#announced = null;
-    const waiting = [...this.#waiting.values()];
-    this.#waiting.clear();
     this.#transfers.clear();
     this.#pace.clear();
-    for (const { reject } of waiting) reject(new ConnectionLost(reason));
+    for (const id of [...this.#waiting.keys()]) this.#take(id)?.reject(new ConnectionLost(reason));
   }
 
   /**
@@ -358,13 +351,9 @@ export class Session extends Emitter {
   /** @param {Result} message */
   #answer(message) {
     const id = Number(message.id);
-    const waiting = this.#waiting.get(id);
-    if (!waiting) return;
+    if (!this.#waiting.has(id)) return;
     /** @param {Result} result */
-    const settle = (result) => {
-      this.#waiting.delete(id);
-      waiting.resolve(result);
-    };
+    const settle = (result) => this.#take(id)?.resolve(result);
     if (!message.binary) return settle(message);
     // It goes on waiting for the binary part, before which the connection may end.
     this.#transfers.set(message.binary.transfer, (data) => settle({ ...message, data }));
@@ -373,11 +362,20 @@ export class Session extends Emitter {
   /** @param {import('./messages.js').ErrorMessage} message */
   #refuse(message) {
     const error = new CommandError(message);
-    const id = Number(message.id);
+    const waiting = this.#take(Number(message.id));
+    if (waiting) waiting.reject(error);
+    else this.emit('refused', error);
+  }
+
+  /**
+   * What waits for this answer, and no longer does.
+   * @param {number} id
+   */
+  #take(id) {
     const waiting = this.#waiting.get(id);
-    if (!waiting) return this.emit('refused', error);
     this.#waiting.delete(id);
-    waiting.reject(error);
+    if (waiting) this.timers.clearTimeout(waiting.timer);
+    return waiting;
   }
 
   /** @param {ArrayBuffer} bytes */

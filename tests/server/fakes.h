@@ -60,6 +60,19 @@ struct FakeStream : ViewerStream {
   }
 };
 
+/// A channel with its clock and its stream, past its welcome.
+struct OneViewer {
+  explicit OneViewer(ChannelLimits limits = {}) : channel(stream, time, 60, limits) {
+    stream.channel = &channel;
+    channel.welcome_done();
+  }
+
+  FakeClock fake;
+  Clock time = fake.clock();
+  FakeStream stream;
+  ViewerChannel channel;
+};
+
 inline Frame fake_frame(std::uint32_t sequence) {
   return {SharedBytes("frame " + std::to_string(sequence)), sequence};
 }

@@ -99,7 +99,9 @@ class LockStep(SocketTest):
         await deaf.tell("advance", n=100000, frames="all")
         await asyncio.sleep(0.1)
         deaf.socket.transport.pause_reading()
-        self.assertEqual((await other.ask("hash"))["op"], "result")
+        self.assertEqual((await other.ask("hash"))["op"], "result")  # while it still waits
+        while (await other.ask("advance", n=1)).get("code") == "busy":
+            await asyncio.sleep(0.1)
         deaf.socket.transport.resume_reading()
         error = await deaf.wait_text(lambda m: m["op"] == "error")
         self.assertEqual((error["code"], error["command"]), ("stalled", "advance"))

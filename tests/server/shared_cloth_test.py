@@ -285,7 +285,8 @@ class Wall(SocketTest):
     async def test_a_drag_of_50_n_through_a_wall_leaves_the_cloth_on_its_side(self):
         a = await self.viewer()
         particle = 15 * 25 + 12
-        answer = await a.ask("drag", phase="start", particle=particle, max_force=50)
+        answer = await a.ask("drag", phase="start", particle=particle, max_force=50,
+                             stiffness=1000)
         x, y, _ = answer["target"]
         for target in ([x, y, -1], [x, y - 0.3, -3], [x + 0.5, y, -0.6]):
             await a.ask("drag", phase="move", target=target)

@@ -1,0 +1,108 @@
+// How a room comes by another scene: it is built beside the running one.
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "core/error.h"
+#include "server/room.h"
+
+namespace weft::server {
+namespace {
+
+using proto::ErrorCode;
+using proto::make_error;
+using proto::ViewerId;
+
+/// So long a viewer waits after its `load`, which is sent to all [s].
+constexpr double kPauseAfterLoad = 0.25;
+
+}  // namespace
+
+/// The scene that a `load` asks for. Called beside the room: looks at nothing that changes.
+WorldDef Room::definition_of(const std::string& name, const std::string& json) const {
+  if (json.empty()) return definition_of(name);
+  try {
+    WorldDef def = options_.read_scene(json);
+    if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
+    return def;
+  } catch (const DefinitionError& error) {
+    const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
+    throw DefinitionError(field, error.value, error.limit, error.hint);
+  }
+}
+
+/// The scene before it goes on until the new one is ready.
+Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
+  if (!command.definition.empty() && !options_.read_scene)
+    return make_error(ErrorCode::not_supported, "this server takes scenes by name alone");
+  const auto& names = options_.scene_names;
+  if (command.definition.empty() &&
+      std::find(names.begin(), names.end(), command.scene) == names.end()) {
+    proto::Error error = proto::word_error("scene", command.scene, names);
+    error.code = ErrorCode::unknown_scene;
+    return error;
+  }
+  start_build(viewer, [this, name = command.scene, json = command.definition] {
+    return definition_of(name, json);
+  });
+  return proto::Reply(proto::LoadReply{});
+}
+
+/// Tells all that the scene is another one.
+void Room::tell_loaded(ViewerId viewer) {
+  if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
+  steps_left_ = 0;
+  meter_.restart(clock_());
+  for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
+  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
+  notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
+  tell_guarantee();
+  tell_changes();
+}
+
+void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definition) {
+  Executor* const executor = executor_;
+  const double limit = options_.limit ? options_.limit->seconds() : 0;
+  building_.emplace();
+  building_->viewer = viewer;
+  building_->build =
+      std::make_shared<SceneBuild>([definition = std::move(definition), executor,
+                                    limit] { return build_scene(definition(), executor, limit); },
+                                   options_.build_limit);
+  options_.beside([build = building_->build] { build->run(); });
+}
+
+/// Puts a scene that has been built in the place of the present one.
+void Room::finish_build() {
+  if (!building_ || !building_->build->done()) return;
+  const Building done = std::move(*building_);
+  building_.reset();
+  try {
+    const std::uint64_t tick = world_->tick();
+    start_world(done.build->take());
+    log_.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
+    tell_loaded(done.viewer);
+    answer(done.viewer, done.request.id, proto::LoadReply{0, world_->def().name, epoch_});
+    if (const auto found = viewers_.find(done.viewer);
+        found != viewers_.end() && viewers_.size() > 1)
+      found->second.next_turn = clock_() + kPauseAfterLoad;
+  } catch (const DefinitionError& error) {
+    refuse(done.viewer, done.request, to_wire(error));
+  } catch (const Stopped&) {
+    refuse(done.viewer, done.request,
+           proto::make_error(proto::ErrorCode::too_costly,
+                             "to build this scene takes more than " +
+                                 proto::number_text(options_.build_limit) + " s of CPU",
+                             "take fewer particles or triangles"));
+  } catch (const std::exception& error) {
+    spdlog::error("load: {}", error.what());
+    refuse(done.viewer, done.request,
+           proto::make_error(proto::ErrorCode::internal, "the server failed at this command",
+                             "the scene before it goes on"));
+  }
+}
+
+}  // namespace weft::server

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "server/room.h"
+#include "server/translate_forces.h"
+#include "server/translate_holds.h"
+
+// When a room sends frames and tells what has changed, and what is in them.
+
+namespace weft::server {
+namespace {
+
+constexpr double kStatePause = 0.25;            // between two `state` while ticks pass [s]
+constexpr double kShortestTelling = 1.0 / 240;  // between two of what has changed [s]
+constexpr double kTellingRate = 2e6;            // of one viewer, in the long run [bytes/s]
+
+}  // namespace
+
+/// Measures them as long as a viewer wants them.
+void Room::measure_forces() {
+  bool wanted = output_.wants_forces();
+  if (advance_ &&
+      advance_->frames.value_or(proto::AdvanceFrames::none) != proto::AdvanceFrames::none) {
+    const auto caller = viewers_.find(advance_->viewer);
+    wanted = wanted || (caller != viewers_.end() && caller->second.wants_forces);
+  }
+  if (wanted == measures_forces_) return;
+  measures_forces_ = wanted;
+  within_limit([this] { world_->measure_forces(measures_forces_); });
+}
+
+void Room::show_to_those_who_lack(double now) {
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.wants_frame) continue;
+    show_to(id);
+    next_idle_frame_ = now + world_->tick_seconds();
+  }
+}
+
+/// Whether ticks make no frames now: none pass by the clock, or all cloth sleeps.
+bool Room::frames_stand() const {
+  return !ticking() || world_->report().rested;
+}
+
+/// When a frame to all is due [s]; infinity if nothing that frames show has changed. Ticks of the
+/// clock make one each, whatever commands come between them. What else changes it has at most one
+/// in a tick's time, but for the first after the state was replaced.
+double Room::next_frame() const {
+  double next = std::numeric_limits<double>::infinity();
+  if (!output_.wants_frames()) return next;
+  if (ticked_) return -next;
+  if (jumped_) next = next_jump_;
+  if (advanced_ || jumped_ || (frame_wanted_ && frames_stand()))
+    next = std::min(next, next_idle_frame_);
+  return next;
+}
+
+bool Room::has_news() const {
+  return state_changed_ || roster_changed_ || pins_changed_ || grabs_changed_ || !notices_.empty();
+}
+
+/// Whatever changes is told together, at most once in a tick's time, so that no viewer can flood
+/// the others by changing it. Long lists of pins are told less often.
+void Room::tell_changes_if_due(double now) {
+  if (has_news() && now >= next_telling_) tell_changes();
+}
+
+void Room::tell_changes() {
+  std::size_t bytes = 0;
+  const auto tell = [&](std::string text, Topic topic) {
+    bytes += text.size();
+    output_.broadcast(text_message(std::move(text), topic));
+  };
+  const double now = clock_();
+  for (const proto::Notice& notice : std::exchange(notices_, {}))
+    tell(proto::encode_notice(notice), Topic::none);
+  if (state_changed_) {
+    tell(proto::encode_state(state()), Topic::state);
+    next_state_ = now + kStatePause;
+  }
+  if (roster_changed_) tell(proto::encode_roster(roster()), Topic::roster);
+  if (pins_changed_) tell(proto::encode_pins(world_->tick(), pins()), Topic::pins);
+  if (grabs_changed_) tell(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs);
+  state_changed_ = roster_changed_ = pins_changed_ = grabs_changed_ = false;
+  next_telling_ = now + std::max({world_->tick_seconds(), kShortestTelling,
+                                  static_cast<double>(bytes) / kTellingRate});
+}
+
+/// The newest frame, to all whom it tells something.
+void Room::publish(double now) {
+  Frame frame = encode_frame();
+  frame.at_once = jumped_;
+  // What `advance` made is its viewer's by what it asked for, until something else changes.
+  if (!frame_wanted_ && !ticked_) frame.not_to = advance_for_;
+  if (jumped_) next_jump_ = now + world_->tick_seconds();
+  next_idle_frame_ = now + world_->tick_seconds();
+  for (auto& [id, viewer] : viewers_)
+    if (id != frame.not_to) viewer.wants_frame = false;
+  if (frame.not_to == 0) advance_for_ = 0;
+  frame_wanted_ = ticked_ = advanced_ = jumped_ = false;
+  output_.offer_frame(std::move(frame));
+}
+
+/// A frame to a viewer that lacks the present one.
+void Room::show_to(proto::ViewerId viewer) {
+  Frame frame = encode_frame();
+  frame.at_once = true;
+  frame.only_to = viewer;
+  viewers_.at(viewer).wants_frame = false;
+  output_.offer_frame(std::move(frame));
+}
+
+/// A frame of the present state.
+Frame Room::encode_frame() {
+  measure_forces();
+  within_limit([this] { world_->measure_present_forces(); });
+  grab_samples_.clear();
+  for (const Grab<float>& grab : world_->grabs().list) {
+    const auto hand = std::find_if(hands_.begin(), hands_.end(),
+                                   [&](const Hand& h) { return h.grab == grab.id; });
+    grab_samples_.push_back(grab_sample(*world_, grab, hand == hands_.end() ? 0 : hand->viewer));
+  }
+  applied_.clear();
+  for (const auto& [id, viewer] : viewers_)
+    if (viewer.applied > 0) applied_.push_back({id, viewer.applied});
+
+  proto::FrameView view;
+  view.header.flags = static_cast<std::uint8_t>(
+      proto::kFrameKey | (jumped_ ? proto::kFrameJump : 0) | (paused_ ? proto::kFramePaused : 0));
+  view.header.tick = world_->tick();
+  view.header.time = static_cast<double>(world_->tick()) * world_->tick_seconds();
+  view.header.server_time = last_tick_done_;
+  view.header.sequence = view.header.reference = ++sequence_;
+  view.header.epoch = epoch_;
+  view.positions = floats_of(world_->state().x);
+  view.grabs = grab_samples_;
+  view.applied = applied_;
+  pose_samples(*world_, pose_samples_);
+  view.poses = pose_samples_;
+  proto::Bytes bytes, with_forces;
+  proto::encode_frame(view, bytes);
+  Frame frame{SharedBytes(std::move(bytes)), sequence_};
+  if (world_->reactions()) {
+    contact_samples_ = contact_samples(*world_);
+    reaction_samples_ = reaction_samples(*world_);
+    view.contacts = contact_samples_;
+    view.reactions = reaction_samples_;
+    proto::encode_frame(view, with_forces);
+    frame.with_forces = SharedBytes(std::move(with_forces));
+  }
+  ++frames_encoded_;
+  return frame;
+}
+
+void Room::notify(proto::NoticeLevel level, const char* code, std::string message,
+                  proto::ViewerId viewer, std::optional<std::uint32_t> drag,
+                  std::optional<double> value) {
+  proto::Notice notice;
+  notice.level = level;
+  notice.code = code;
+  notice.message = std::move(message);
+  notice.tick = world_->tick();
+  if (viewer != 0) notice.viewer = viewer;
+  notice.drag = drag;
+  notice.value = value;
+  // Once, and the newest, however often the same thing happens before it is told.
+  std::erase_if(notices_, [&notice](const proto::Notice& told) {
+    return told.code == notice.code && told.message == notice.message &&
+           told.viewer == notice.viewer && told.drag == notice.drag;
+  });
+  notices_.push_back(std::move(notice));
+}
+
+}  // namespace weft::server
