@@ -27,10 +27,15 @@ struct Collision {
            (seed && seed->touches());
   }
 
+  /// Before a kick, with the velocities of the last drift.
+  void before_kick(const ClothState<Real>& state) const {
+    if (weft) weft->note_motion(state);
+  }
   /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
+    if (weft) weft->note_kicked(state);
     if (guard) guard->solve(state, dt, profile);
     if (weft)
       weft->resolve(state, dt, profile, guard);
@@ -52,6 +57,7 @@ struct Collision {
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->settle(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
+    if (weft) weft->note_kicked(state);
     if (guard) guard->settle(state, dt, profile);
     if (weft)
       weft->settle(state, dt, profile, guard);

@@ -314,6 +314,7 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
   for (int s = 0; s < substeps; ++s) {
     const auto count = static_cast<Real>(substeps);
     stop_point();
+    collision.before_kick(state);
     evaluate_forces<Real>(tick, {static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt});
     predict(tick);
     relax(tick, s);

@@ -253,6 +253,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     stop_point();
     work += advance_calm(tick, kicks, substeps, s, next);
     if (s == substeps) break;
+    collision.before_kick(state);
     if (s == 0)
       opening_kick(tick, kicks.opening);
     else
@@ -267,6 +268,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     collision.after_drift(state, tick.dt, tick.profile);
     if (takes_over(collision)) load_grids(tick);
   }
+  collision.before_kick(state);
   swept_kick(tick, kicks.closing, Real(1));
   pull(tick, kicks.closing, substeps, substeps);
   collision.settle(state, tick.dt, tick.profile);

@@ -114,6 +114,7 @@ struct Particles {
     profile.clear();
     contact.begin_tick(tick_seconds);
     for (int s = 0; s < substeps; ++s) {
+      contact.note_motion(state);
       kick();
       const ClothState<Real> before = state;
       contact.resolve(state, static_cast<Real>(dt()), profile);

@@ -26,6 +26,8 @@ Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
                        const std::vector<ColliderDef>& colliders, ClothPatches patches,
                        Executor* executor)
     : cloths_(cloths), executor_(executor), patches_(std::move(patches)) {
+  bounces_ = std::any_of(cloths.begin(), cloths.end(),
+                         [](const ContactDef& cloth) { return cloth.restitution > 0; });
   thickness_ =
       static_cast<Real>(std::max_element(cloths.begin(), cloths.end(), is_thinner)->thickness);
   for (std::size_t k = 0; k < colliders.size(); ++k) {
@@ -80,6 +82,9 @@ void Contact<Real>::reset() {
   rows_.clear();
   moving_rows_.clear();
   exits_.clear();
+  v_came_.clear();
+  v_kicked_.clear();
+  impacts_.clear();
   for (ColliderFrame<Real>& frame : frames_) frame.wary = frame.rest = 0;
   // What they have room for decides how long pairs hold, and with it the coming ticks.
   for (std::vector<Neighbourhood>& of_mesh : neighbourhoods_) {
@@ -148,6 +153,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
     if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
     solve_rows(state, dt, profile, guard);
+    bounce(state, profile, guard);
     if (guard) guard->push_apart(state);
     certify(state, dt, guard != nullptr);
   } else if (guard) {
@@ -174,6 +180,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   aim_rows(state, dt);
   if (any_jaw_) share_squeeze(state, dt / 2);
   solve_rows(state, dt, profile, guard);
+  bounce(state, profile, guard);
   if (!guard || guard->rows().empty()) return;
   std::uint64_t friction_evaluations = 0;
   for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {

@@ -71,6 +71,13 @@ class Contact {
   /// to wake what an object will meet.
   void let_rest(const ClothState<Real>& state);
 
+  /// Before a kick, notes the velocities with which everybody has moved: what bounces comes with
+  /// them. Without, a bounce asks for the velocities after the kick alone.
+  void note_motion(const ClothState<Real>& state);
+  /// After the kick and before any impulse of contact, that of cloths on each other too, notes the
+  /// velocities. Without, `resolve` and `settle` take those that they find for them.
+  void note_kicked(const ClothState<Real>& state);
+
   /// Makes the velocities admissible for the coming drift of `dt` [s], in which objects move as
   /// planned. Positions change only by pushing out what is nearer than the thickness, slowly and
   /// without giving it velocity. `move_objects` must follow.
@@ -274,11 +281,18 @@ class Contact {
   void push_out(ClothState<Real>& state, Real dt);
   void aim_rows(const ClothState<Real>& state, Real dt);
   Real sweep_rows(ClothState<Real>& state, std::uint64_t& friction_evaluations, bool again = false);
+  void respond(std::size_t r, const Vec3<Real>& v, Real vn, Real push, ClothState<Real>& state,
+               std::uint64_t& friction_evaluations);
   void solve_rows(ClothState<Real>& state, Real dt, Profile& profile, ClothGuard<Real>* guard);
   void certify(ClothState<Real>& state, Real dt, bool others);
   bool keep_off(const ContactRow<Real>& row, bool hold, ClothState<Real>& state, Real dt);
   void log_stop(const ContactRow<Real>& row, std::size_t k, const Vec3<Real>& before,
                 const ClothState<Real>& state);
+
+  // contact_bounce.cpp
+  Vec3<Real> velocity_over(const ContactRow<Real>& row, const Vec3Array<Real>& v) const;
+  void note_impact(std::size_t r, const ClothState<Real>& state);
+  void bounce(ClothState<Real>& state, Profile& profile, ClothGuard<Real>* guard);
 
   // contact_grip.cpp
   void share_squeeze(const ClothState<Real>& state, Real dt);
@@ -367,6 +381,9 @@ class Contact {
   std::vector<RowRoom<Real>> rooms_;      ///< of the rows
   std::vector<std::size_t> busy_rows_;    ///< rows that can respond in this step
   std::vector<std::size_t> pushed_rows_;  ///< those that have, some more than once
+  bool bounces_ = false;                  ///< a cloth has restitution
+  Vec3Array<Real> v_came_, v_kicked_;     ///< of this step, as noted; empty if not [m/s]
+  std::vector<Impact<Real>> impacts_;     ///< of this step
   LoneRows<Real> lone_rows_;              ///< those that know of no other one
   std::vector<std::size_t> joint_rows_;   ///< all others
   LoneResponse<Real> lone_response_;      ///< of this step, before others respond

@@ -46,6 +46,7 @@ struct ContactRow {
   Index cloth = 0;                         ///< whose friction and restitution it has
   Index mover = kNone;                     ///< number among the rows with moving objects
   Index collider = 0;                      ///< the object
+  Index impact = kNone;                    ///< number among the impacts of this step
   bool responds = true;                    ///< false: only certifies, another pair responds
 };
 
@@ -77,6 +78,16 @@ struct MovingRow {
   Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
   /// Friction that the squeeze of a jaw still allows in this step [m/s].
   Real grip = 0;
+};
+
+/// What a row has besides whose point hits its object in this step and shall bounce.
+template <class Real>
+struct Impact {
+  std::size_t row = 0;
+  Real speed = 0;  ///< to leave with [m/s]
+  /// What the object has taken of the point's motion along the normal until now: twice the energy
+  /// over the point's mass [m^2/s^2].
+  Real taken = 0;
 };
 
 /// A cloth that got into an object other than through contact: it started there. Until it is out

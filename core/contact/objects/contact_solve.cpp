@@ -6,6 +6,7 @@
 
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/contact.h"
+#include "core/contact/objects/row_values.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -21,31 +22,8 @@ constexpr int kSweeps = 2;
 constexpr int kMoreSweeps = 8;
 constexpr double kResidual = 0.01, kStill = 5e-4;
 
-/// Slower impacts do not bounce [m/s].
-constexpr double kBounceSpeed = 0.05;
-
 /// Rounds of projection on violated planes before a particle is held.
 constexpr int kCertifyRounds = 3;
-
-/// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
-/// particle, of weight 1.
-template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> weighted(const ContactRow<Real>& row,
-                                                  const Vec3Array<Real>& values) {
-  const auto at = [&](std::size_t k) -> const Vec3<Real>& {
-    return values[static_cast<std::size_t>(row.particle[k])];
-  };
-  if (row.count == 1) return at(0);
-  const Vec3<Real> two = at(0) * row.weight[0] + at(1) * row.weight[1];
-  return row.count == 2 ? two : (two + at(2) * row.weight[2]).eval();
-}
-
-/// Moves the row's point by `change`, shared by mass.
-template <class Real>
-void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<Real>& values) {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-    values[static_cast<std::size_t>(row.particle[k])] += change * row.share[k];
-}
 
 }  // namespace
 
@@ -95,12 +73,12 @@ void Contact<Real>::push_out(ClothState<Real>& state, Real dt) {
 }
 
 /// Normal velocity that each row must reach: no farther down than the thickness within the step,
-/// none when touching, and a bounce after an impact.
+/// and none when touching.
 template <class Real>
 void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
+  impacts_.clear();
   for (const std::size_t r : busy_rows_) {
     ContactRow<Real>& row = rows_[r];
-    const Real bounce = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].restitution);
     const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
     const Real room = std::max(Real(0), gap - row.thickness - Real(kTouchSlack));
     row.least_speed = -room / dt;
@@ -108,19 +86,37 @@ void Contact<Real>::aim_rows(const ClothState<Real>& state, Real dt) {
       MovingRow<Real>& moving = moving_rows_[static_cast<std::size_t>(row.mover)];
       moving.surface = frames_[moving.collider].velocity_at(weighted(row, state.x));
     }
-    if (bounce == 0) continue;
-    // It bounces in the step that would have brought it there, with the speed that it comes with.
-    Real speed = row.normal.dot(weighted(row, state.v));
-    if (row.mover != kNone)
-      speed -= row.normal.dot(moving_rows_[static_cast<std::size_t>(row.mover)].surface);
-    if (speed < std::min(row.least_speed, -Real(kBounceSpeed))) row.least_speed = -bounce * speed;
+    if (bounces_) note_impact(r, state);
   }
 }
 
-/// A sweep of projected Gauss-Seidel. Friction: the tangential velocity is stopped if that takes at
-/// most friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed).
-/// What jaws squeeze has besides the normal impulses that cancel there, and their friction does
-/// not.
+/// Pushes a row's point. Friction: the tangential velocity is stopped if that takes at most
+/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
+/// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
+/// @param v,vn  velocity of the point over the object, and along the normal [m/s]
+/// @param push  change of the latter [m/s]
+template <class Real>
+void Contact<Real>::respond(std::size_t r, const Vec3<Real>& v, Real vn, Real push,
+                            ClothState<Real>& state, std::uint64_t& friction_evaluations) {
+  const ContactRow<Real>& row = rows_[r];
+  Real* grip =
+      row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
+  Vec3<Real> change = row.normal * push;
+  const Real friction = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
+  if (friction > 0) {
+    ++friction_evaluations;
+    const Vec3<Real> slip = v - row.normal * vn;
+    const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
+    change -= speed > most ? (slip * (most / speed)).eval() : slip;
+    if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
+  }
+  share_out(row, change, state.v);
+  pushed_rows_.push_back(r);
+  if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
+  if (log_.wanted()) log_.add(row, change, state);
+}
+
+/// A sweep of projected Gauss-Seidel.
 /// @param again  nobody but these rows has changed a velocity since the last sweep: lone ones have
 ///               what they want
 /// @return largest change of a normal velocity [m/s]
@@ -136,30 +132,19 @@ Real Contact<Real>::sweep_rows(ClothState<Real>& state, std::uint64_t& friction_
   for (const std::size_t r : busy_rows_) {
     if (again && lone_rows_.has(r)) continue;
     const ContactRow<Real>& row = rows_[r];
-    Vec3<Real> v = weighted(row, state.v);
-    if (row.mover != kNone) v -= moving_rows_[static_cast<std::size_t>(row.mover)].surface;
+    const Vec3<Real> v = velocity_over(row, state.v);
     const Real vn = row.normal.dot(v);
-    Real* grip =
-        row.mover == kNone ? nullptr : &moving_rows_[static_cast<std::size_t>(row.mover)].grip;
     Real push = row.least_speed - vn;
     if (!(push > 0)) {
-      if (!grip || *grip == 0) continue;
+      if (row.mover == kNone || moving_rows_[static_cast<std::size_t>(row.mover)].grip == 0)
+        continue;
       push = 0;
+    } else if (row.impact != kNone) {
+      impacts_[static_cast<std::size_t>(row.impact)].taken +=
+          vn * vn - row.least_speed * row.least_speed;
     }
     largest = std::max(largest, push);
-    Vec3<Real> change = row.normal * push;
-    const Real friction = static_cast<Real>(cloths_[static_cast<std::size_t>(row.cloth)].friction);
-    if (friction > 0) {
-      ++friction_evaluations;
-      const Vec3<Real> slip = v - row.normal * vn;
-      const Real speed = slip.norm(), most = friction * push + (grip ? *grip : Real(0));
-      change -= speed > most ? (slip * (most / speed)).eval() : slip;
-      if (grip) *grip -= std::clamp(speed - friction * push, Real(0), *grip);
-    }
-    share_out(row, change, state.v);
-    pushed_rows_.push_back(r);
-    if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
-    if (log_.wanted()) log_.add(row, change, state);
+    respond(r, v, vn, push, state, friction_evaluations);
   }
   return largest;
 }
@@ -272,6 +257,8 @@ void Contact<Real>::certify(ClothState<Real>& state, Real dt, bool others) {
   template void Contact<Real>::hold_within_reach(ClothState<Real>&, Real);                       \
   template void Contact<Real>::push_out(ClothState<Real>&, Real);                                \
   template void Contact<Real>::aim_rows(const ClothState<Real>&, Real);                          \
+  template void Contact<Real>::respond(std::size_t, const Vec3<Real>&, Real, Real,               \
+                                       ClothState<Real>&, std::uint64_t&);                       \
   template Real Contact<Real>::sweep_rows(ClothState<Real>&, std::uint64_t&, bool);              \
   template void Contact<Real>::solve_rows(ClothState<Real>&, Real, Profile&, ClothGuard<Real>*); \
   template bool Contact<Real>::keep_off(const ContactRow<Real>&, bool, ClothState<Real>&, Real); \

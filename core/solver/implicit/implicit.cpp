@@ -178,6 +178,7 @@ template <class Real>
 std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
   ClothState<Real>& state = step.state;
   ImplicitWorkspace<Real>& work = step.work;
+  collision.before_kick(state);
   std::swap(state.v, work.last_v);  // the velocities before
   if (collision.empty()) {
     std::copy(work.v.begin(), work.v.end(), state.v.begin());
