@@ -27,7 +27,7 @@ struct Readiness {
 struct HttpError {
   std::string code, message, hint;
   std::string value;                 ///< what was asked for; may be empty
-  std::vector<std::string> offered;  ///< subprotocols; empty if it is not about them
+  std::vector<std::string> offered;  ///< what would be taken in its place; may be empty
 };
 
 std::string encode_version(const VersionInfo& version);

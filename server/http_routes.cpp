@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string_view>
 
-#include <boost/asio/ip/address.hpp>
 #include <boost/beast/http/rfc7230.hpp>
 
 #include "proto/events.h"
+#include "server/origin.h"
 #include "server/scene_schema.h"
 
 namespace weft::server {
@@ -22,6 +22,8 @@ constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kMeshPath = "/api/v1/mesh/";
 /// A room that has not turned over for so long does not come back by itself [s].
 constexpr double kDeadSeconds = 30;
+constexpr const char* kConnectPath = "/api/v1/connect";
+constexpr std::size_t kToldBytes = 80;  // of what a request said, in an error
 
 std::string_view view_of(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -33,6 +35,7 @@ HttpResponse response(const HttpRequest& request, http::status status, const cha
   out.set(http::field::server, "weft");
   out.set(http::field::content_type, content_type);
   out.set("X-Content-Type-Options", "nosniff");
+  out.set("Referrer-Policy", "same-origin");
   out.keep_alive(request.keep_alive());
   out.content_length(body.size());
   if (request.method() != http::verb::head) out.body() = std::move(body);
@@ -82,26 +85,100 @@ HttpResponse file_response(const ServiceContext& context, const HttpRequest& req
   return out;
 }
 
-/// Host and port of an address such as "http://127.0.0.1:8080".
-std::string_view authority_of(std::string_view origin) {
-  const std::size_t start = origin.find("://");
-  return start == std::string_view::npos ? std::string_view() : origin.substr(start + 3);
+OriginRules rules_of(const ServiceContext& context) {
+  return {context.options.allowed_origins, context.port};
 }
 
-/// A browser tells where the page came from. On loopback only the names of this machine are its
-/// own, because any other name may have been pointed here by somebody else.
-bool origin_allowed(const ServiceContext& context, const HttpRequest& request) {
-  const auto field = request.find(http::field::origin);
-  if (field == request.end()) return true;  // no browser
-  const std::string_view origin = view_of(field->value());
-  const auto& allowed = context.options.allowed_origins;
-  if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
-  const std::string port = ":" + std::to_string(context.port);
-  const std::string_view authority = authority_of(origin);
-  for (const char* name : {"127.0.0.1", "localhost", "[::1]"})
-    if (authority == name + port) return true;
-  if (is_loopback(context.options.bind)) return authority == context.options.bind + port;
-  return !authority.empty() && authority == view_of(request[http::field::host]);
+HttpResponse bad_request(const HttpRequest& request, const char* message, std::string_view value) {
+  proto::HttpError error;
+  error.code = "bad_request";
+  error.message = message;
+  error.value = std::string(value.substr(0, kToldBytes));
+  return error_response(request, http::status::bad_request, error);
+}
+
+HttpResponse foreign_host(const HttpRequest& request, const OriginRules& rules,
+                          const std::string& host) {
+  proto::HttpError error;
+  error.code = "not_allowed";
+  error.message = "this server does not answer to the name " + host.substr(0, kToldBytes);
+  error.value = host.substr(0, kToldBytes);
+  error.offered = rules.allowed_hosts();
+  error.offered.emplace_back("any IP address");
+  error.hint = "open one of those, or start the server with --allow-origin http://" +
+               host.substr(0, kToldBytes) + " (https:// behind a proxy with TLS)";
+  return error_response(request, http::status::forbidden, error);
+}
+
+/// Brings the target `http://host/path` into the form `/path`, and its host into the place of that
+/// of the field Host (RFC 9112 section 3.2.2). A target of another form stays.
+/// @return false if its host is none
+bool take_absolute_target(HttpRequest& request) {
+  const std::string target(request.target());
+  const std::size_t slashes = target.find("://");
+  if (target.starts_with('/') || slashes == std::string::npos) return true;
+  const std::size_t path = target.find_first_of("/?", slashes + 3);
+  const std::optional<Origin> origin = parse_origin(target.substr(0, path));
+  if (!origin || (origin->scheme != "http" && origin->scheme != "https")) return false;
+  request.set(http::field::host, target.substr(slashes + 3, path - slashes - 3));
+  const std::string rest = path == std::string::npos ? "" : target.substr(path);
+  request.target(rest.starts_with('/') ? rest : "/" + rest);
+  return true;
+}
+
+/// Why a page of this origin may not open the socket; status 101 if it may.
+HttpResponse check_origin(const ServiceContext& context, const HttpRequest& request,
+                          std::string_view origin) {
+  const auto host = parse_authority(view_of(request[http::field::host])).value_or(Authority{});
+  if (!rules_of(context).origin_allowed(origin, host)) {
+    proto::HttpError error;
+    error.code = "not_allowed";
+    error.message = "pages of " + std::string(origin.substr(0, kToldBytes)) + " may not connect";
+    error.value = std::string(origin.substr(0, kToldBytes));
+    error.hint = parse_origin(origin) ? "start the server with --allow-origin " + error.value
+                                      : "a page from a file or a sandbox has no origin to allow";
+    return error_response(request, http::status::forbidden, error);
+  }
+  return {http::status::switching_protocols, request.version()};
+}
+
+/// Why there is no room for another viewer; status 101 if there is.
+HttpResponse check_capacity(const ServiceContext& context, const HttpRequest& request) {
+  const auto viewers = static_cast<std::size_t>(context.options.limits.viewers);
+  if (context.hub.viewers() >= viewers || context.stopping) {
+    proto::HttpError error;
+    error.code = "busy";
+    error.message =
+        context.stopping ? "the server stops" : "at most " + std::to_string(viewers) + " viewers";
+    error.hint = "try again later";
+    return error_response(request, http::status::service_unavailable, error);
+  }
+  return {http::status::switching_protocols, request.version()};
+}
+
+/// What the query `origin=` says; the target's own text, as an origin needs no escapes.
+std::string_view asked_origin(std::string_view target) {
+  constexpr std::string_view kName = "origin=";
+  for (std::size_t at = target.find('?'); at != std::string_view::npos; at = target.find('&', at)) {
+    const std::string_view rest = target.substr(++at);
+    if (rest.starts_with(kName)) return rest.substr(kName.size(), rest.find('&') - kName.size());
+  }
+  return {};
+}
+
+/// Tells a page in words what its refused socket does not: browsers hide the answer to an upgrade.
+HttpResponse connect_response(const ServiceContext& context, const HttpRequest& request) {
+  const std::string_view origin = asked_origin(view_of(request.target()));
+  if (!origin.empty()) {
+    HttpResponse refusal = check_origin(context, request, origin);
+    if (refusal.result() != http::status::switching_protocols) return refusal;
+  }
+  HttpResponse refusal = check_capacity(context, request);
+  if (refusal.result() != http::status::switching_protocols) return refusal;
+  HttpResponse out =
+      response(request, http::status::ok, kJson, proto::encode_version(context.version));
+  out.set(http::field::cache_control, "no-store");
+  return out;
 }
 
 }  // namespace
@@ -125,30 +202,36 @@ HttpResponse error_response(const HttpRequest& request, http::status status,
 
 HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request) {
   if (path_of(request) != "/ws") return not_found(request, path_of(request));
-  proto::HttpError error;
-  if (!origin_allowed(context, request)) {
-    error.code = "not_allowed";
-    error.message = "pages of this origin may not connect";
-    error.value = std::string(view_of(request[http::field::origin]).substr(0, 80));
-    error.hint = "allow it with --allow-origin";
-    return error_response(request, http::status::forbidden, error);
+  const auto origin = request.find(http::field::origin);
+  if (origin != request.end()) {  // a browser
+    HttpResponse refusal = check_origin(context, request, view_of(origin->value()));
+    if (refusal.result() != http::status::switching_protocols) return refusal;
   }
   const auto offered = request[http::field::sec_websocket_protocol];
   if (!http::token_list(offered).exists(proto::kSubprotocol)) {
+    proto::HttpError error;
     error.code = "unknown_protocol";
     error.message = std::string("this server speaks ") + proto::kSubprotocol;
-    error.value = std::string(view_of(offered).substr(0, 80));
+    error.value = std::string(view_of(offered).substr(0, kToldBytes));
     error.offered = {proto::kSubprotocol};
     return error_response(request, http::status::bad_request, error);
   }
-  const auto viewers = static_cast<std::size_t>(context.options.limits.viewers);
-  if (context.hub.viewers() >= viewers || context.stopping) {
-    error.code = "busy";
-    error.message = "at most " + std::to_string(viewers) + " viewers";
-    error.hint = "try again later";
-    return error_response(request, http::status::service_unavailable, error);
-  }
-  return HttpResponse(http::status::switching_protocols, request.version());
+  return check_capacity(context, request);
+}
+
+std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpRequest& request) {
+  const std::size_t hosts = request.count(http::field::host);
+  if (hosts > 1) return bad_request(request, "more than one Host", "");
+  if (hosts == 0 && request.version() >= 11) return bad_request(request, "no Host", "");
+  if (!take_absolute_target(request))
+    return bad_request(request, "the target's host is none", view_of(request.target()));
+  const auto field = request.find(http::field::host);
+  if (field == request.end()) return std::nullopt;  // HTTP/1.0: no browser
+  const std::optional<Authority> host = parse_authority(view_of(field->value()));
+  if (!host) return bad_request(request, "Host is no host", view_of(field->value()));
+  const OriginRules rules = rules_of(context);
+  if (!rules.host_allowed(*host)) return foreign_host(request, rules, host->host);
+  return std::nullopt;
 }
 
 HttpResponse answer_request(const ServiceContext& context, const HttpRequest& request) {
@@ -181,6 +264,7 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
     return response(request, http::status::ok, kJson, proto::encode_scenes(context.scenes));
   if (path == kSceneSchemaPath)
     return response(request, http::status::ok, "application/schema+json", scene_schema());
+  if (path == kConnectPath) return connect_response(context, request);
   if (path.starts_with(kMeshPath)) return mesh_response(context, request, path);
   if (path == "/ws") {
     error.code = "upgrade_required";

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -16,6 +18,10 @@ std::string path_of(const HttpRequest& request);
 
 /// Whether the request wants to become a WebSocket connection.
 bool wants_upgrade(const HttpRequest& request);
+
+/// Why the host that a request is for is not answered to (origin.h): 400 where it names none, or
+/// several; nothing if it is. Brings a target in absolute form into origin form.
+std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpRequest& request);
 
 /// Why this upgrade to a WebSocket is refused; status 101 if it is not.
 HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request);

@@ -89,6 +89,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void respond() {
     if (refuse_) return refuse(http::status::service_unavailable, "busy", "too many connections");
+    if (std::optional<HttpResponse> refusal = refuse_host(context_, request_))
+      return write(std::move(*refusal));
     if (!wants_upgrade(request_) || request_.method() != http::verb::get)
       return write(answer_request(context_, request_));
     HttpResponse answer = check_upgrade(context_, request_);

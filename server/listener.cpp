@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/v6_only.hpp>
 #include <spdlog/spdlog.h>
 
 #include "server/http_session.h"
@@ -16,6 +17,7 @@ using asio::ip::tcp;
 
 // Sockets beyond the limit that are told so; more are closed without a word.
 constexpr int kMostRefusals = 32;
+constexpr auto kComplaintPause = std::chrono::seconds(30);
 
 }  // namespace
 
@@ -25,6 +27,8 @@ Listener::Listener(asio::io_context& io, ServiceContext& context)
                                static_cast<unsigned short>(context.options.port));
   acceptor_.open(endpoint.protocol());
   acceptor_.set_option(asio::socket_base::reuse_address(true));
+  // Whatever the system's default, :: stands for every address, IPv4 too.
+  if (endpoint.address().is_v6()) acceptor_.set_option(asio::ip::v6_only(false));
   acceptor_.bind(endpoint);
   acceptor_.listen();
 }
@@ -40,7 +44,7 @@ void Listener::accept() {
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
     if (error) {
       // Most likely out of file descriptors: others have to end first.
-      spdlog::warn("accept: {}", error.message());
+      complain(error.message());
       pause_.expires_after(std::chrono::milliseconds(100));
       pause_.async_wait([this](boost::system::error_code stopped) {
         if (!stopped) accept();
@@ -50,6 +54,16 @@ void Listener::accept() {
     welcome(std::move(socket));
     accept();
   });
+}
+
+void Listener::complain(const std::string& why) {
+  const auto now = std::chrono::steady_clock::now();
+  ++failures_;
+  if (now < next_complaint_) return;
+  next_complaint_ = now + kComplaintPause;
+  spdlog::warn("no connection can be accepted: {} (failed attempts since this was last told: {})",
+               why, failures_);
+  failures_ = 0;
 }
 
 void Listener::welcome(tcp::socket socket) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <string>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -20,11 +24,14 @@ class Listener {
 
  private:
   void accept();
+  void complain(const std::string& why);
   void welcome(boost::asio::ip::tcp::socket socket);
 
   ServiceContext& context_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer pause_;
+  std::chrono::steady_clock::time_point next_complaint_{};
+  std::uint64_t failures_ = 0;  ///< to accept, since the last complaint
 };
 
 }  // namespace weft::server

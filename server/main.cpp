@@ -1,19 +1,23 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/log_sink.h"
 #include "server/mesh_child.h"
 #include "server/options.h"
+#include "server/output.h"
 #include "server/serve.h"
 #include "server/simulate.h"
 #include "server/version.h"
@@ -33,6 +37,9 @@ Examples:
   weft serve --scene my.json                      a scene of your own; weft scenes --schema
   weft scenes                                     what there is
   weft scenes --json flag                         one as a file to start from
+
+Exit codes: 0 done, 1 failed, 2 what was asked for is refused, 3 something crossed in simulate,
+4 output could not be written
 )";
 
 /// Splits "key=value"; the key may not be empty.
@@ -89,7 +96,8 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
              "Seconds of CPU after which a tick is given up and the room pauses (2; 0: never)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option("--allow-origin", o.allowed_origins,
-                   "Origin whose pages may connect, e.g. http://localhost:3000; may be repeated");
+                   "Origin whose pages may connect, and whose host is answered to, e.g. "
+                   "https://weft.example of a proxy, or http://localhost:3000; may be repeated");
   add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (64)");
   add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (256)");
   add_number(serve, "--max-connections-per-address", l.connections_per_address, kSocketCounts,
@@ -194,7 +202,12 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // help or version
+    if (error.get_exit_code() == 0) {  // help or version
+      std::ostringstream text;
+      const int code = app.exit(error, text);
+      std::fputs(text.str().c_str(), stdout);
+      return code;
+    }
     complain(describe(app, error, argc, argv));
     return 2;
   }
@@ -212,10 +225,17 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("weft"));
+  prepare_standard_streams();
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("weft", std::make_shared<LogSink>(STDERR_FILENO)));
   try {
     if (argc == 3 && std::string_view(argv[1]) == kMeshChildCommand) return run_mesh_child(argv[2]);
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    flush_standard_output();
+    return code;
+  } catch (const OutputError& error) {
+    complain(error.what());
+    return kOutputFailed;
   } catch (const OptionError& error) {
     complain(error.what());
   } catch (const weft::DefinitionError& error) {

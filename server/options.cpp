@@ -8,6 +8,8 @@
 
 #include <boost/asio/ip/address.hpp>
 
+#include "server/origin.h"
+
 namespace weft::server {
 namespace {
 
@@ -16,14 +18,6 @@ std::string text_of(double value) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
-}
-
-/// scheme://host[:port] as browsers send it, without a path.
-bool is_origin(const std::string& text) {
-  const std::size_t colon = text.find("://");
-  if (colon == std::string::npos || colon == 0) return false;
-  const std::string authority = text.substr(colon + 3);
-  return !authority.empty() && authority.find_first_of("/?#@ \t\r\n") == std::string::npos;
 }
 
 template <class Number>
@@ -89,8 +83,9 @@ void validate(const ServerOptions& options) {
   check_range("--max-messages-per-second", options.limits.messages_per_second, kMessageRates);
   check_range("--pong-seconds", options.limits.pong_seconds, kPongSeconds);
   for (const std::string& origin : options.allowed_origins) {
-    if (!is_origin(origin))
-      throw OptionError("--allow-origin", origin, "an origin such as http://localhost:3000");
+    if (!parse_origin(origin))
+      throw OptionError("--allow-origin", origin,
+                        "an origin such as https://weft.example or http://localhost:3000");
   }
   static constexpr std::array<const char*, 6> kLevels = {"trace",   "debug", "info",
                                                          "warning", "error", "off"};

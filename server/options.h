@@ -77,7 +77,7 @@ struct ServerOptions {
   int count_crossings = 60;             ///< ticks between two counts, 0 to 1,000,000; 0: none
   double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
   std::string web;                      ///< directory of the page; empty: beside the executable
-  std::vector<std::string> allowed_origins;                   ///< besides the server's own
+  std::vector<std::string> allowed_origins;  ///< besides the server's own; origin.h
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   double max_seconds = 0;          ///< stop by itself after this; 0: never
   std::string log_level = "info";  ///< trace, debug, info, warning, error or off

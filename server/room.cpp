@@ -48,6 +48,8 @@ WorldDef Room::definition_of(const std::string& scene) const {
 /// Puts a scene in the place of the present one; nothing of it can fail.
 void Room::start_world(BuiltScene&& scene) {
   world_ = std::move(scene.world);
+  repairs_ = std::move(scene.repairs);
+  for (const std::string& what : repairs_) spdlog::warn("scene {}: {}", world_->def().name, what);
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
@@ -110,6 +112,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
   output_.send(id, text_message(proto::encode_roster(roster()), Topic::roster));
   output_.send(id, text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins));
   output_.send(id, text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs));
+  for (const std::string& what : repairs_) output_.send(id, repair_notice(what));
   output_.welcome_done(id);
   viewer.wants_frame = true;
   if (!in_tick_) show_to(id);
@@ -241,6 +244,15 @@ void Room::tell_slow_motion(double now) {
   next_slow_notice_ = now + kSlowNoticePause;
   notify(proto::NoticeLevel::warning, "slow_motion",
          "the cloth is too heavy for its tick rate and moves in slow motion", 0, {}, factor);
+}
+
+Message Room::repair_notice(const std::string& what) const {
+  proto::Notice notice;
+  notice.level = proto::NoticeLevel::warning;
+  notice.code = "mesh_repaired";
+  notice.message = what;
+  notice.tick = world_->tick();
+  return text_message(proto::encode_notice(notice));
 }
 
 proto::State Room::state() const {

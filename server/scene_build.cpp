@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/world/cost.h"
+#include "core/world/object_repair.h"
 
 namespace weft::server {
 namespace {
@@ -33,7 +34,9 @@ BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limi
   runtime.executor = executor;
   runtime.clock = &process_seconds;
   BuiltScene built;
-  built.world = std::make_unique<ServedWorld>(def, runtime);
+  WorldDef repaired = def;
+  built.repairs = repair_objects(repaired);
+  built.world = std::make_unique<ServedWorld>(repaired, runtime);
   check_cost(built.world->cost_in(def.environment), "scene", def.name);
   stop_point();
   proto::Bytes bytes = proto::encode_mesh_data(scene_mesh(*built.world));

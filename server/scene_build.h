@@ -19,7 +19,8 @@ struct BuiltScene {
   std::unique_ptr<ServedWorld> world;
   proto::MeshAnnouncement mesh;  ///< but for its epoch
   SharedBytes mesh_bytes;
-  BadStarts bad_starts;  ///< that its first tick finds
+  BadStarts bad_starts;              ///< that its first tick finds
+  std::vector<std::string> repairs;  ///< of its objects' meshes, a sentence each
 };
 
 /// Builds a scene, and looks one tick ahead for what starts where it should not be. Throws

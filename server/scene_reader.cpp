@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/world/object_repair.h"
 #include "core/world/world.h"
 #include "server/scene_file.h"
 #include "server/scene_format.h"
@@ -266,7 +267,9 @@ std::string file_path(const std::string& field) {
 /// What only the whole scene can tell.
 void check_whole(const WorldDef& def) {
   try {
-    const World<float> world(def);
+    WorldDef repaired = def;  // whoever makes a world of it repairs it again, and says so
+    repair_objects(repaired);
+    const World<float> world(repaired);
   } catch (const DefinitionError& error) {
     throw DefinitionError(file_path(error.field), error.value, error.limit, error.hint);
   }

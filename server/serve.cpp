@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -17,9 +16,11 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "server/addresses.h"
 #include "server/close_codes.h"
 #include "server/listener.h"
 #include "server/network_output.h"
+#include "server/output.h"
 #include "server/room.h"
 #include "server/scene_library.h"
 #include "server/simulation_loop.h"
@@ -164,16 +165,19 @@ RoomOptions room_options(const ServerOptions& options, const SceneLibrary& libra
 }
 
 void print_addresses(const ServerOptions& options, int port) {
-  const bool v6 = options.bind.find(':') != std::string::npos;
-  const std::string authority =
-      (v6 ? "[" + options.bind + "]" : options.bind) + ":" + std::to_string(port);
-  const nlohmann::ordered_json line = {{"url", "http://" + authority + "/"},
-                                       {"websocket", "ws://" + authority + "/ws"},
-                                       {"host", options.bind},
-                                       {"port", port},
-                                       {"scene", options.scene}};
+  std::vector<std::string> urls;
+  for (const std::string& host : hosts_to_open(options.bind, interface_addresses()))
+    urls.push_back("http://" + host + ":" + std::to_string(port) + "/");
+  const nlohmann::ordered_json line = {
+      {"url", urls.front()}, {"websocket", std::string(urls.front()).replace(0, 4, "ws") + "ws"},
+      {"urls", urls},        {"host", options.bind},
+      {"port", port},        {"scene", options.scene}};
   std::printf("%s\n", line.dump().c_str());
-  std::fflush(stdout);
+  try {
+    flush_standard_output();
+  } catch (const OutputError& error) {
+    spdlog::warn("the addresses could not be told: {}; port {}", error.what(), port);
+  }
 }
 
 /// The network thread with its timers and its end.
@@ -251,7 +255,6 @@ void listen(std::optional<Network>& network, asio::io_context& io, ServiceContex
 
 int serve(const ServerOptions& options) {
   validate(options);
-  std::signal(SIGPIPE, SIG_IGN);
   Metrics metrics;
   Mailbox mailbox(options.limits.waiting_commands);
   const StaticFiles files(page_directory(options));

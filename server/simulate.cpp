@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <optional>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -14,10 +15,12 @@
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
 #include "core/world/crossing_counter.h"
+#include "core/world/object_repair.h"
 #include "core/world/verdict.h"
 #include "core/world/world.h"
 #include "server/clock.h"
 #include "server/options.h"
+#include "server/output.h"
 #include "server/scene_library.h"
 #include "server/scene_schema.h"
 #include "server/thread_pool.h"
@@ -167,7 +170,8 @@ Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
         {"hands_lag", world.def().verdict.hands_lag}}}};
 }
 
-Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m) {
+Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m,
+             const std::vector<std::string>& notices) {
   const double simulated = options.ticks * world.tick_seconds();
   std::vector<float> scratch;
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
@@ -217,7 +221,8 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"solver", solver_name(world.def())},
       {"substeps", world.report().substeps},
       {"substeps_of_run", {m.least_substeps, m.most_substeps}},
-      {"divergences", m.divergences}};
+      {"divergences", m.divergences},
+      {"notices", notices}};
 }
 
 void print_row(const std::string& name, const Json& value) {
@@ -268,6 +273,8 @@ void check_out(const std::string& out) {
   std::error_code error;
   if (!folder.empty() && !std::filesystem::is_directory(folder, error))
     throw OptionError("--out", out, "a file in a folder that exists");
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+    throw OptionError("--out", out, "a file in a folder that may be written to");
 }
 
 }  // namespace
@@ -280,6 +287,8 @@ int simulate(const SimulateOptions& options) {
   check_out(options.out);
   WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  const std::vector<std::string> notices = repair_objects(def);
+  for (const std::string& notice : notices) std::fprintf(stderr, "weft: %s\n", notice.c_str());
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
   const std::optional<Measurement> measured = run(world, options);
@@ -292,12 +301,13 @@ int simulate(const SimulateOptions& options) {
     return kHalted;
   }
   const Measurement& measurement = *measured;
-  if (!options.out.empty()) write_mesh(cloth_mesh(world), options.out);
-  const Json result = summary(options, world, measurement);
+  const Json result = summary(options, world, measurement, notices);
   if (options.json)
     std::printf("%s\n", result.dump(2).c_str());
   else
     print_table(result, "");
+  // What was found is told even where the file cannot be written.
+  if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
   return warn_of_crossings(measurement);
 }
 

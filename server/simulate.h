@@ -29,7 +29,8 @@ struct SimulateOptions {
 /// verdict's
 ///         `clear_after`), 4 if a tick took more than its limit and was given up; both are told on
 ///         standard error too; else 0
-/// Throws OptionError or DefinitionError if something cannot be accepted.
+/// Throws OptionError or DefinitionError if something cannot be accepted, OutputError if the file
+/// cannot be written.
 int simulate(const SimulateOptions& options);
 
 /// What `weft scenes` can be told.

@@ -178,8 +178,8 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
   return file;
 }
 
-void write_mesh(const TriangleMesh& mesh, const std::string& path) {
-  const std::string format = format_of(path);
+std::string encode_mesh(const TriangleMesh& mesh, const std::string& name) {
+  const std::string format = format_of(name);
   // Assimp's scene owns what it points to.
   aiScene scene;
   scene.mRootNode = new aiNode();
@@ -190,8 +190,9 @@ void write_mesh(const TriangleMesh& mesh, const std::string& path) {
   scene.mRootNode->mMeshes = new unsigned[1]{0};
   scene.mRootNode->mNumMeshes = 1;
   Assimp::Exporter exporter;
-  if (exporter.Export(&scene, format, path) != aiReturn_SUCCESS)
-    throw DefinitionError("out", path, "a file that can be written", exporter.GetErrorString());
+  const aiExportDataBlob* const blob = exporter.ExportToBlob(&scene, format);
+  if (!blob) throw DefinitionError("out", name, "a mesh that fits", exporter.GetErrorString());
+  return {static_cast<const char*>(blob->data), blob->size};
 }
 
 }  // namespace weft

@@ -9,11 +9,11 @@
 
 namespace weft {
 
-/// Writes a mesh as Wavefront OBJ or PLY, by the ending of `path` (".obj" or ".ply"), replacing a
-/// file of that name. Positions keep float precision. PLY keeps the order of the vertices; OBJ
-/// lists them as the triangles name them first, and those at exactly one place become one. Throws
-/// DefinitionError on another ending or if the file cannot be written.
-void write_mesh(const TriangleMesh& mesh, const std::string& path);
+/// The bytes of a file that holds a mesh, as Wavefront OBJ or PLY by the ending of its name (".obj"
+/// or ".ply"). Positions keep float precision. PLY keeps the order of the vertices; OBJ lists them
+/// as the triangles name them first, and those at exactly one place become one. Throws
+/// DefinitionError on another ending.
+std::string encode_mesh(const TriangleMesh& mesh, const std::string& name);
 
 /// What a file holds.
 struct MeshFile {

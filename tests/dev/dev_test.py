@@ -31,9 +31,11 @@ done
              'printf "CMAKE_HOME_DIRECTORY:INTERNAL=%s\\n" "$TREE" > "$2/CMakeCache.txt"\n',
     "ninja": 'exit "$(cat "$MACHINE/ninja-status")"\n',
     "ctest": 'echo "100% tests passed, 0 tests failed out of 1"; exit "$(cat "$MACHINE/ctest-status")"\n',
+    "dpkg-deb": "mkdir -p usr/sbin && printf '#!/bin/bash' > usr/sbin/nginx && chmod +x usr/sbin/nginx\n",
     "clang-format-14": "",
     "clang-tidy-14": "",
 }
+NGINX = "tests/web/support/nginx.sh"
 SERVER = """
 port="$*"
 port="${port##*--port }"
@@ -61,7 +63,12 @@ class DevScript(unittest.TestCase):
         for name, text in TOOLS.items():
             executable(self.machine / "bin" / name, RECORD + text)
         executable(self.tree / "build" / "weft", RECORD + SERVER)
+        self.nginx = self.tree / ".tools" / "nginx" / "usr" / "sbin" / "nginx"
+        self.nginx.parent.mkdir(parents=True)
+        executable(self.nginx, "#!/bin/bash")
         shutil.copy(ROOT / "dev", self.tree / "dev")
+        (self.tree / NGINX).parent.mkdir(parents=True)
+        shutil.copy(ROOT / NGINX, self.tree / NGINX)
         (self.tree / "web" / "package-lock.json").write_text("{}")
         for name, text in (("calls", ""), ("missing", ""), ("node-version", "v18.20.4\n"),
                            ("ninja-status", "0"), ("ctest-status", "0")):
@@ -140,6 +147,17 @@ class DevScript(unittest.TestCase):
         self.assertEqual(self.dev("test")[0], 0)
         (call,) = self.calls("apt-get")
         self.assertTrue(call.endswith(" catch2 chromium"), call)
+
+    def test_testing_unpacks_a_proxy_and_installs_none_and_running_needs_none(self):
+        self.nginx.unlink()
+        self.dev("setup")
+        self.assertEqual(self.calls("apt-get"), [])
+        self.assertEqual(self.dev("test")[0], 0)
+        (call,) = self.calls("apt-get")
+        self.assertTrue(call.endswith(" download nginx"), call)
+        self.assertTrue(os.access(self.nginx, os.X_OK))
+        self.assertEqual(self.dev("test")[0], 0)
+        self.assertEqual(self.calls("apt-get"), [])
 
     def test_the_pages_packages_follow_the_lock_file(self):
         self.dev("setup")

@@ -8,7 +8,7 @@ import time
 
 from foreign_client import PATIENCE, SocketTest, main
 
-UPGRADE = (b"GET /ws HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+UPGRADE = (b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
            b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
            b"Sec-WebSocket-Protocol: weft.v1\r\n\r\n")
 NO_MASK = bytes(4)  # a mask of zeros leaves the payload as it is
@@ -99,10 +99,10 @@ class LastWords(SocketTest):
 
     def test_the_answer_to_a_request_arrives_before_its_body_is_sent(self):
         for begin, status in (
-                (b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4194304\r\n\r\n", b"413"),
+                (b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 4194304\r\n\r\n", b"413"),
                 (b"nonsense\r\n\r\n", b"400"),
                 (b"GET /" + b"a" * 20000, b"431"),
-                (b"GET /version HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", b"200")):
+                (b"GET /version HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", b"200")):
             with self.subTest(status=status):
                 answer = self.answer_while_sending(begin, 4 << 20)
                 self.assertTrue(answer.startswith(b"HTTP/1.1 " + status), answer[:40])
@@ -134,7 +134,7 @@ class Refusals(SocketTest):
 
     def test_the_answer_that_there_are_too_many_arrives_at_who_goes_on_sending(self):
         with Raw(self.server), Raw(self.server), Raw(self.server) as third:
-            third.socket.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+            third.socket.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
             third.wait_readable()
             for _ in range(64):
                 third.socket.sendall(b"a" * PART)

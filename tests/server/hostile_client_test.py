@@ -249,7 +249,7 @@ class Connecting(SocketTest):
         self.assertTrue(answer.startswith(b"HTTP/1.1 403"), answer)
 
     def test_the_refusal_says_what_is_offered(self):
-        answer = self.raw(b"GET /ws HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        answer = self.raw(b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                           b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
                           b"Sec-WebSocket-Protocol: weft.v7\r\n\r\n")
         body = json.loads(answer.split(b"\r\n\r\n", 1)[1])["error"]
@@ -282,7 +282,7 @@ class Connecting(SocketTest):
         mask = b"\x01\x02\x03\x04"
         frame = (b"\x81\xfe" + struct.pack(">H", len(text)) + mask
                  + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
-        writer.write(b"GET /ws HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        writer.write(b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                      b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
                      b"Cookie: " + b"c" * 4000 + b"\r\n"
                      b"Sec-WebSocket-Protocol: weft.v1\r\n\r\n" + frame)
@@ -306,14 +306,14 @@ class Connecting(SocketTest):
     def test_http_that_is_none_is_answered_with_400(self):
         self.assertTrue(self.raw(b"nonsense\r\n\r\n").startswith(b"HTTP/1.1 400"))
         self.assertTrue(self.raw(b"GET /" + b"a" * 20000).startswith(b"HTTP/1.1 431"))
-        self.assertTrue(self.raw(b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n")
+        self.assertTrue(self.raw(b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n")
                         .startswith(b"HTTP/1.1 405"))
-        self.assertTrue(self.raw(b"GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello")
+        self.assertTrue(self.raw(b"GET / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello")
                         .startswith(b"HTTP/1.1 413"))
 
     def test_paths_never_leave_the_page(self):
         for path in ("/../weft", "/..%2f..%2fetc/passwd", "//etc/passwd", "/./healthz", "/%00"):
-            answer = self.raw(f"GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n".encode())
+            answer = self.raw(f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode())
             self.assertTrue(answer.startswith(b"HTTP/1.1 404"), answer[:100])
 
     def test_the_plain_paths_answer_as_specified(self):

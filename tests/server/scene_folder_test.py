@@ -15,11 +15,17 @@ SQUARE = "v 0 1 0\nv 1 1 0\nv 1 0 0\nv 0 0 0\nf 1 4 2\nf 2 4 3\n"
 # Assimp 5.2.5 counts to the end of the numbers on a list this long.
 ENDLESS = (b"ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\n"
            b"property list uint float y\nelement face 4294967295\nend_header\n\0\0\0\0\xff\xff\xff\xff")
+# A tetrahedron whose triangles face inwards, and one more without area.
+INWARD = ("v 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nv 0 0 0.2\n"
+          "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\nf 2 3 2\n")
+REPAIRS = ["model: 1 of its 5 triangles have no area and are left out",
+           "model: its triangles faced inwards and are turned, so that it is solid"]
 SMALL = {"cloths": [{"rows": 5, "columns": 7}], "pins": [{"place": "corner", "corner": "top_left"}]}
 
 
 def fill(folder):
     (folder / "square.obj").write_text(SQUARE)
+    (folder / "inward.obj").write_text(INWARD)
     (folder / "eight.stl").write_bytes(b"solid\0\0\0")
     (folder / "huge.obj").write_bytes(b"v 0 0 0\n" * (5 << 20))
     (folder / "tall.json").write_text(json.dumps({**SMALL, "description": "A small cloth."}))
@@ -65,6 +71,23 @@ class SceneFolder(SocketTest):
                           for c in mesh["cloths"]], [("cloth", 0, 24, 0, 30), ("sail", 24, 4, 30, 2)])
         state = await viewer.wait_text(lambda m: m["op"] == "state" and m["scene"] == "mine")
         self.assertEqual(state["fabric"], "silk, default")
+
+    async def test_a_repaired_object_is_told_to_who_is_there_and_who_comes_later(self):
+        viewer = await self.viewer()
+        scene = {**SMALL, "colliders": [{"name": "model", "shape": "mesh", "source": "inward.obj"}]}
+        self.assertEqual((await viewer.ask("load", scene=scene))["op"], "result")
+        later = await self.viewer()
+        await later.wait_frame(lambda f: True)
+        for each in (viewer, later):
+            notices = [m for m in each.texts if m["op"] == "notice" and m["code"] == "mesh_repaired"]
+            self.assertEqual([notice["message"] for notice in notices], REPAIRS)
+            self.assertEqual({notice["level"] for notice in notices}, {"warning"})
+        mesh = [m for m in later.texts if m["op"] == "mesh"][-1]
+        self.assertEqual(mesh["colliders"][0]["triangles"], 4)
+        await viewer.ask("load", scene="tall")
+        last = await self.viewer()
+        await last.wait_frame(lambda f: True)
+        self.assertNotIn("mesh_repaired", [m.get("code") for m in last.texts])
 
     async def test_the_same_object_gives_the_same_hash_as_the_same_file(self):
         viewer = await self.viewer()
@@ -125,14 +148,14 @@ class SceneFolder(SocketTest):
 
 
 class HostileMeshes(unittest.TestCase):
-    def simulate(self, source):
+    def simulate(self, source, *options):
         with tempfile.TemporaryDirectory(prefix="weft_mesh_") as folder:
             fill(Path(folder))
             (Path(folder) / "endless.ply").write_bytes(ENDLESS)
             scene = Path(folder) / "scene.json"
             scene.write_text(json.dumps({"cloths": [{"rows": 3, "columns": 3}],
-                                         "colliders": [{"shape": "mesh", "source": source}]}))
-            return subprocess.run([PROGRAM, "simulate", "--scene", scene, "--ticks", "1"],
+                                         "colliders": [{"name": "model", "shape": "mesh", "source": source}]}))
+            return subprocess.run([PROGRAM, "simulate", "--scene", scene, "--ticks", "1", *options],
                                   capture_output=True, text=True, timeout=100)
 
     def test_bad_mesh_files_are_refused_in_one_line(self):
@@ -150,6 +173,13 @@ class HostileMeshes(unittest.TestCase):
 
     def test_a_good_one_is_taken(self):
         self.assertEqual(self.simulate("square.obj").returncode, 0)
+
+    def test_a_repaired_one_is_told_in_a_line_and_in_the_summary(self):
+        result = self.simulate("inward.obj", "--json")
+        self.assertEqual(result.returncode, 0, result)
+        self.assertEqual(result.stderr, "".join(f"weft: {line}\n" for line in REPAIRS))
+        self.assertEqual(json.loads(result.stdout)["notices"], REPAIRS)
+        self.assertEqual(json.loads(self.simulate("square.obj", "--json").stdout)["notices"], [])
 
     def test_the_child_answers_counts_numbers_and_indices(self):
         answer = subprocess.run([PROGRAM, "mesh-child", "square.obj"], input=SQUARE.encode(),

@@ -2,6 +2,19 @@ import { CommandError, WeftClient } from '../../proto/js/index.js';
 
 const LONGEST_NAME = 32; // of a viewer, by the wire
 const EVERY_TICK = 240; // frames a second; more than any display shows
+const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
+const PATIENCE = 3; // attempts that fail before a proxy in between is suspected
+
+/** Why the server does not let the page in, and what helps. */
+export interface Refusal {
+  message: string;
+  hint: string;
+}
+
+const SUSPECTED_PROXY: Refusal = {
+  message: 'the server answers, but its socket does not open',
+  hint: 'a proxy in between has to pass WebSocket upgrades on',
+};
 
 /** Connects to the server that the page came from; `?name=Ada` in its address names the viewer. */
 export function connect_client(): WeftClient {
@@ -18,6 +31,43 @@ export function connect_client(): WeftClient {
   window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect());
   client.connect().catch(() => {}); // the status tells
   return client;
+}
+
+/**
+ * Tells why the socket does not open, after each attempt that fails; null where nothing is known of
+ * it, and once it is open. Browsers hide the answer to a refused upgrade, so a plain request asks.
+ */
+export function explain_refusals(client: WeftClient, tell: (refusal: Refusal | null) => void): void {
+  let failures = 0;
+  let last: string = 'connecting'; // as connect_client has left it
+  client.on('status', ({ phase }) => {
+    const failed = last === 'connecting' && phase === 'waiting';
+    last = phase;
+    if (phase === 'open') {
+      failures = 0;
+      tell(null);
+    }
+    if (!failed) return;
+    const attempt = ++failures;
+    void ask_refusal(attempt >= PATIENCE).then((refusal) => {
+      if (attempt === failures) tell(refusal);
+    });
+  });
+}
+
+async function ask_refusal(suspect_proxy: boolean): Promise<Refusal | null> {
+  const url = new URL('api/v1/connect', window.location.href);
+  url.hash = '';
+  url.search = `origin=${window.location.origin}`;
+  try {
+    const signal = AbortSignal.timeout(ASKING_LIMIT);
+    const answer = await fetch(url, { signal, cache: 'no-store' });
+    if (answer.ok) return suspect_proxy ? SUSPECTED_PROXY : null;
+    const { error } = (await answer.json()) as { error: Refusal };
+    return { message: error.message, hint: error.hint ?? '' };
+  } catch {
+    return null; // nobody answers, or not in the server's words
+  }
 }
 
 /**

@@ -3,7 +3,7 @@ import type { WeftClient } from '../../proto/js/index.js';
 import type { Frame, Grab, State, Viewer } from '../../proto/js/messages.js';
 import { BoxView } from './box_view.js';
 import { OrbitCamera } from './camera.js';
-import { connect_client, tell_refusal } from './connection.js';
+import { connect_client, explain_refusals, tell_refusal } from './connection.js';
 import { FanHold } from './fan_hold.js';
 import { fan_of_view, Fans } from './fans.js';
 import type { FanHit } from './fans.js';
@@ -109,6 +109,7 @@ export class Page {
     const { client, panels } = this;
     client.on('status', ({ phase }) => this.change_phase(phase === 'open' ? 'connecting' : phase));
     client.on('welcome', () => this.change_phase('open'));
+    explain_refusals(client, (refusal) => panels.refused(refusal));
     client.on('mesh', ({ announcement, data }) => {
       const same = this.world?.announcement.scene === announcement.scene;
       this.world?.dispose();

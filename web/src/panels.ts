@@ -1,4 +1,5 @@
 import type { Roster, State } from '../../proto/js/messages.js';
+import type { Refusal } from './connection.js';
 import { crossings_text, guarantee_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
@@ -16,22 +17,39 @@ export function element<Type extends HTMLElement>(id: string): Type {
 /** Connection, measurements, viewers and notices. */
 export class Panels {
   private toast_timer = 0;
+  private phase: Phase = 'connecting';
+  private refusal: Refusal | null = null;
   private ticks: { tick: number; time: number }[] = [];
 
   connection(phase: Phase): void {
+    this.phase = phase;
+    this.show_phase();
+    if (phase === 'open') return;
+    this.ticks = [];
+    for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
+    for (const id of ['guarantee', 'crossings']) element(id).hidden = true;
+    element('viewers').replaceChildren();
+  }
+
+  /** Shows why the server does not let the page in, for as long as it does not. */
+  refused(refusal: Refusal | null): void {
+    this.refusal = refusal;
+    const told = element('refusal');
+    told.hidden = refusal === null;
+    set_text('refusal-message', sentence(refusal?.message ?? ''));
+    set_text('refusal-hint', sentence(refusal?.hint ?? ''));
+    this.show_phase();
+  }
+
+  private show_phase(): void {
     const words: Record<Phase, string> = {
       connecting: 'Connecting',
       open: 'Connected',
       waiting: 'Reconnecting',
       closed: 'Disconnected',
     };
-    element('connection').dataset.phase = phase;
-    set_text('connection-text', words[phase]);
-    if (phase === 'open') return;
-    this.ticks = [];
-    for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
-    for (const id of ['guarantee', 'crossings']) element(id).hidden = true;
-    element('viewers').replaceChildren();
+    element('connection').dataset.phase = this.refusal ? 'closed' : this.phase;
+    set_text('connection-text', this.refusal ? 'Refused' : words[this.phase]);
   }
 
   state(state: State): void {
@@ -109,4 +127,10 @@ export class Panels {
 function set_text(id: string, text: string): void {
   const target = element(id);
   if (target.textContent !== text) target.textContent = text;
+}
+
+/** As a sentence of its own: what the server says begins small and ends without a stop. */
+function sentence(text: string): string {
+  if (!text) return '';
+  return `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? '' : '.'}`;
 }

@@ -13,6 +13,7 @@
 #include "core/contact/objects/analytic_shapes.h"
 #include "core/contact/objects/cloth_patches.h"
 #include "core/contact/objects/contact_log.h"
+#include "core/contact/objects/contact_parts.h"
 #include "core/contact/objects/contact_row.h"
 #include "core/contact/objects/corners.h"
 #include "core/contact/objects/feature_distance.h"
@@ -128,6 +129,8 @@ class Contact {
   using Rod = ObjectRod<Real>;
   using Round = RoundObject<Real>;
   using Pairs = std::vector<ContactCandidate<Real>>;
+  using Barrier = ContactBarrier<Real>;
+  using Look = ContactLook<Real>;
   using Measure = void (*)(const FeatureTable<Real>&);
   /// Features of a cloth's patch, or of a mesh near it, as rows or columns of a FeatureTable.
   struct Features {
@@ -154,32 +157,12 @@ class Contact {
     Features particles, edges, triangles;
     std::vector<Real> distance2;
   };
-  /// Near features of a patch, as ranges of their lists.
-  struct NearPatch {
-    std::size_t patch = 0;
-    IndexRange particles, edges, triangles;
-  };
-  /// A plane with a convex feature of an object below it.
-  struct Barrier {
-    Vec3<Real> normal = Vec3<Real>::UnitY();  ///< out of the object
-    double top = 0;                           ///< normal.x of the feature's highest point [m]
-    Real distance = 0;                        ///< of the cloth's feature from it [m]
-    Real keep = 0;                            ///< height that particles keep besides [m]
-  };
   /// Who is inside what, when the rows are built: number of the collider.
   static constexpr Index kOutside = -1, kInsideSeveral = -2;
-  /// What is to be done about features of the cloth and a mesh that could meet.
-  struct Look {
-    Real reach = 0;        ///< that none of the cloth's particles goes beyond [m]
-    bool carried = false;  ///< particles alone keep the cloth off: it is only certified
-  };
   static constexpr int kChunks = 8;
   /// A particle that is pushed out may go so much farther than its reach; more than a push does
   /// [part of the thickness].
   static constexpr double kRoomForPush = 0.125;
-  /// A gap this much wider than the thickness still counts as touching, so that rounding of
-  /// positions does not let a resting particle fall for a substep, and its friction with it [m].
-  static constexpr double kTouchSlack = 2e-5;
   /// Push-out: part of the lack taken each substep, and its largest speed [m/s].
   static constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
 

@@ -20,6 +20,7 @@ export function launch_browser() {
       '--disable-sync',
       '--no-first-run',
       '--disable-quic',
+      '--host-resolver-rules=MAP weft.example 127.0.0.1',
     ],
   });
 }
@@ -32,7 +33,11 @@ export function launch_browser() {
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '' } = options;
-  const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch });
+  const context = await browser.newContext({
+    viewport: { width, height },
+    hasTouch: touch,
+    ignoreHTTPSErrors: true, // of a certificate that a test has made
+  });
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
