@@ -227,6 +227,18 @@ class DevScript(unittest.TestCase):
         self.assertEqual(len(self.calls("ctest")), 6)
         self.assertEqual(out.splitlines()[-1], "steps: 2 passed, 6 failed")
 
+    def test_the_fuzz_has_sanitizers_unless_told_not_to_and_its_status_is_the_scripts(self):
+        for options, folder in ((["90", "--seed", "3"], "build-sanitize"), (["--no-sanitize"], "build")):
+            (self.tree / folder).mkdir(exist_ok=True)
+            executable(self.tree / folder / "weft_fuzz", RECORD + "exit 5\n")
+            status, _, error = self.dev("fuzz", *options)
+            self.assertEqual(status, 5, error)
+            lines = (self.machine / "calls").read_text().splitlines()
+            self.assertEqual([line for line in lines if "-DWEFT_SANITIZE=address,undefined" in line] != [],
+                             folder == "build-sanitize")
+            (call,) = self.calls("weft_fuzz")
+            self.assertTrue(call.endswith(" " + " ".join(options)), call)
+
     def test_a_second_build_is_not_configured_again_unless_the_tree_moved(self):
         self.dev("build")
         self.assertEqual(len(self.calls("cmake")), 1)

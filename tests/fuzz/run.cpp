@@ -1,0 +1,397 @@
+#include "tests/fuzz/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <sys/time.h>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/world/crossing_counter.h"
+#include "proto/frame.h"
+#include "server/room.h"
+
+namespace weft::fuzz {
+namespace {
+
+using nlohmann::json;
+
+constexpr proto::ViewerId kAuditor = 1000;  // the viewer that asks what every run is asked
+constexpr int kPatience = 400;              // turns until an `advance` is ended by its viewer
+constexpr int kSettling = 30;               // turns until everything has been told and answered
+
+template <std::size_t N>
+void put(char (&out)[N], const std::string& text) {
+  std::snprintf(out, N, "%s", text.c_str());
+}
+
+double cpu_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Lets SIGPROF come after so much CPU time of the process; 0: never.
+void set_alarm(double seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 1e6);
+  ::setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+bool all_finite(const auto& numbers) {
+  for (const auto number : numbers)
+    if (!std::isfinite(number)) return false;
+  return true;
+}
+
+/// Listens to a room: counts answers and looks at each frame.
+class Listener : public server::RoomOutput {
+ public:
+  explicit Listener(Outcome& outcome) : outcome_(outcome) {}
+
+  void send(proto::ViewerId viewer, server::Message message) override {
+    if (!message.binary) hear(viewer, message);
+    if (message.topic == server::Topic::frame) look(message.bytes);
+  }
+  void broadcast(server::Message message) override { hear(0, message); }
+  void set_frame_rate(double) override {}
+  void offer_mesh(std::uint64_t, server::SharedBytes) override {}
+  void welcome_done(proto::ViewerId) override {}
+  bool wants_frames() const override { return true; }
+  bool wants_forces() const override { return forces; }
+  void offer_frame(server::Frame frame) override {
+    look(frame.bytes);
+    if (frame.with_forces) look(frame.with_forces);
+  }
+
+  void problem(const std::string& what) {
+    if (outcome_.problems++ == 0) put(outcome_.problem, what + " (" + outcome_.doing + ")");
+  }
+
+  bool forces = false;
+  std::map<std::pair<proto::ViewerId, json>, int> answers;  ///< so many of each id
+  std::uint64_t recoveries_told = 0, halts_told = 0;
+  json last_answer;
+
+ private:
+  void hear(proto::ViewerId viewer, const server::Message& message) {
+    const json text =
+        json::parse(static_cast<const char*>(message.bytes.data()),
+                    static_cast<const char*>(message.bytes.data()) + message.bytes.size());
+    const std::string op = text["op"];
+    if (op == "notice" && text["code"] == "recovered") ++recoveries_told;
+    if (op == "notice" && text["code"] == "halted") ++halts_told;
+    if (op == "state" && !all_finite_numbers(text["energy"]))
+      problem("a state tells an energy that is not finite");
+    if (op != "result" && op != "error") return;
+    last_answer = text;
+    if (text.contains("id")) ++answers[{viewer, text["id"]}];
+    if (op == "result") return;
+    ++outcome_.errors;
+    if (text["code"] != "internal") return;
+    ++outcome_.internal_errors;
+    problem("internal error: " + text.value("message", ""));
+  }
+
+  static bool all_finite_numbers(const json& object) {
+    for (const auto& [key, value] : object.items())
+      if (value.is_null()) return false;  // which is how JSON tells them
+    return true;
+  }
+
+  void look(const server::SharedBytes& bytes) {
+    const auto frame =
+        proto::decode_frame({static_cast<const std::byte*>(bytes.data()), bytes.size()});
+    bool finite = static_cast<bool>(frame);
+    if (frame) {
+      finite = all_finite(frame->positions) && std::isfinite(frame->header.time);
+      for (const auto& grab : frame->grabs)
+        finite =
+            finite && all_finite(grab.held) && all_finite(grab.target) && std::isfinite(grab.force);
+      for (const auto& pose : frame->poses)
+        finite = finite && all_finite(pose.position) && all_finite(pose.rotation);
+      for (const auto& contact : frame->contacts)
+        finite = finite && all_finite(contact.point) && all_finite(contact.normal) &&
+                 std::isfinite(contact.gap) && std::isfinite(contact.normal_force) &&
+                 all_finite(contact.friction);
+      for (const auto& reaction : frame->reactions) finite = finite && all_finite(reaction.force);
+    }
+    if (finite) return;
+    ++outcome_.not_finite_frames;
+    problem(frame ? "a frame is not finite" : "a frame is refused: " + frame.error().message);
+  }
+
+  Outcome& outcome_;
+};
+
+/// One script in one room.
+class Run {
+ public:
+  Run(const Script& script, const server::SceneLibrary& library, const Limits& limits,
+      Outcome& outcome)
+      : script_(script), library_(library), limits_(limits), outcome_(outcome), listener_(outcome),
+        limit_(limits.tick), watch_(limit_) {}
+
+  void go(std::uint64_t most_steps) {
+    if (!build()) return;
+    outcome_.begun = true;
+    join(kAuditor);
+    for (const Step& step : script_.steps) {
+      if (outcome_.steps >= most_steps || outcome_.cpu > limits_.scene) break;
+      ++outcome_.steps;
+      follow(step);
+    }
+    settle();
+    audit();
+    count_halts();
+    count_answers();
+    outcome_.hash = room_->world().hash();
+    outcome_.ended = true;
+  }
+
+ private:
+  /// False if the scene is refused.
+  bool build() {
+    server::RoomOptions options;
+    try {
+      options.limit = &limit_;
+      options.build_limit = limits_.build;
+      // A thread of its own, as in the server; but waited for, so that each run is the same.
+      options.beside = [](std::function<void()> job) { std::thread(std::move(job)).join(); };
+      measured("reading the scene", Kind::build, [&] {
+        options.scene_def = library_.from_client(script_.scene);
+        options.read_scene = [this](const std::string& text) { return library_.from_client(text); };
+        const auto named = [this](const std::string& name) { return library_.named(name); };
+        room_ = std::make_unique<server::Room>(options, named, listener_, clock(), metrics_);
+      });
+      limit_.signal().attend = [this] {
+        limit_.signal().lower();
+        return room_->gives_up();
+      };
+      return true;
+    } catch (const DefinitionError& error) {
+      put(outcome_.refused, error.what());
+      outcome_.bare_refusal = error.field.empty() || error.limit.empty();
+      return false;
+    }
+  }
+
+  /// A clock whose time passes by ticks and a little by each look, the same in each run.
+  server::Clock clock() {
+    return [this] { return now_ += looks_++ % 50 == 0 ? 4e-3 : 1e-4; };
+  }
+
+  enum class Kind { tick, wait, build };
+
+  /// Does something and counts the CPU time that it takes: as a tick, as what ticks wait for, or as
+  /// the building of the first scene.
+  template <class Work>
+  void measured(const std::string& what, Kind kind, Work&& work) {
+    put(outcome_.doing, "step " + std::to_string(outcome_.steps) + ": " + what);
+    set_alarm(limits_.hang);
+    const double start = cpu_seconds();
+    work();
+    const double seconds = cpu_seconds() - start;
+    set_alarm(0);
+    outcome_.cpu += seconds;
+    if (kind == Kind::build) {
+      outcome_.longest_build = std::max(outcome_.longest_build, seconds);
+    } else if (kind == Kind::tick) {
+      outcome_.longest_tick = std::max(outcome_.longest_tick, seconds);
+      outcome_.ticks_over += seconds > limits_.tick + limits_.grace;
+    } else {
+      outcome_.waits_over += seconds > limits_.wait;
+      if (seconds <= outcome_.longest_wait) return;
+      outcome_.longest_wait = seconds;
+      put(outcome_.longest_wait_in, what.substr(0, what.find('{')));
+    }
+  }
+
+  void take(server::Inbound item, const std::string& what) {
+    measured(what, Kind::wait, [&] {
+      room_->take(std::move(item));
+      room_->finish_turn();
+    });
+  }
+
+  void follow(const Step& step) {
+    switch (step.kind) {
+      case Step::Kind::ticks:
+        for (int k = 0; k < step.ticks && outcome_.cpu <= limits_.scene; ++k) tick();
+        break;
+      case Step::Kind::join:
+        join(step.viewer);
+        break;
+      case Step::Kind::leave:
+        leave(step.viewer);
+        break;
+      case Step::Kind::say:
+        say(step.viewer, step.text);
+        break;
+    }
+  }
+
+  void join(proto::ViewerId viewer) {
+    here_.insert(viewer);
+    take({viewer, 0, server::Join{}}, "join");
+  }
+
+  /// What it has not been answered yet, it need not be any more.
+  void leave(proto::ViewerId viewer) {
+    here_.erase(viewer);
+    std::erase_if(asked_, [&](const auto& asked) {
+      return asked.first == viewer && !listener_.answers.contains(asked);
+    });
+    take({viewer, 0, server::Leave{}}, "leave");
+  }
+
+  void tick() {
+    if (room_->ticking()) {
+      now_ += room_->tick_interval();
+      one_tick("", [this] { room_->tick(); });
+    }
+    measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+    finish_advance();
+  }
+
+  template <class Work>
+  void one_tick(const std::string& of_what, Work&& work) {
+    const std::uint64_t before = room_->world().tick();
+    measured("tick " + std::to_string(before + 1) + of_what, Kind::tick, work);
+    if (room_->world().tick() == before) return;  // it was given up
+    ++outcome_.ticks;
+    const TickReport& report = room_->world().report();
+    if (report.divergence && !report.rested) ++outcome_.recoveries;
+    if (!std::isfinite(report.energies.total())) {
+      ++outcome_.not_finite_energy;
+      listener_.problem("the energy is not finite");
+    }
+  }
+
+  void say(proto::ViewerId viewer, const std::string& text) {
+    const auto request = proto::parse_request(text);
+    if (!request) return listener_.problem("not legal: " + request.error().message);
+    ++outcome_.commands;
+    const std::string name = proto::name_of(request->command);
+    server::Inbound item{viewer, ++number_, *request};
+    // The session answers these, and the room hears of their number alone.
+    const auto* view = std::get_if<proto::View>(&request->command);
+    if (view && view->forces) listener_.forces = *view->forces;
+    if (view || std::holds_alternative<proto::Ping>(request->command))
+      item.what = server::Noted{view != nullptr, view ? view->forces : std::nullopt};
+    else if (request->id)
+      asked_.emplace_back(viewer, json::parse(text)["id"]);
+    take(std::move(item), name + " " + text);
+    finish_advance();
+  }
+
+  /// Runs an `advance` tick by tick; one that takes too long is ended as its viewer leaves.
+  void finish_advance() {
+    for (int turn = 0; room_->advancing(); ++turn) {
+      if (turn == kPatience || outcome_.cpu > limits_.scene) {
+        for (const proto::ViewerId viewer : std::set(here_)) {
+          leave(viewer);
+          join(viewer);
+        }
+        if (room_->advancing()) listener_.problem("an advance goes on after its viewer has left");
+        return;
+      }
+      one_tick(" of advance", [this] { room_->advance_until(now_); });
+      measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+    }
+  }
+
+  /// Lets so much time pass without ticks that all that waits for its turn has it.
+  void settle() {
+    for (int turn = 0; turn < kSettling; ++turn) {
+      now_ += 0.1;
+      measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+      finish_advance();
+    }
+  }
+
+  /// Whether what is promised is so: nothing that the guarantee covers crosses while it holds.
+  void audit() {
+    CrossingCounter<float> counter;
+    const WorldCrossings crossings = counter.count(room_->world());
+    const json state = ask("state");
+    if (!state.is_object()) return listener_.problem("the state is not told");
+    const json& guarantee = state["guarantee"];
+    if (guarantee["state"] != "held") return;
+    for (const json& covered : guarantee["covers"]) {
+      const std::size_t count =
+          covered == "cloth" ? crossings.cloths.all() : crossings.objects.all();
+      if (count == 0) continue;
+      ++outcome_.false_promises;
+      listener_.problem("the guarantee is held and covers " + covered.get<std::string>() +
+                        ", of which so many cross: " + std::to_string(count));
+    }
+  }
+
+  json ask(const std::string& what) {
+    listener_.last_answer = nullptr;
+    const std::string text =
+        R"({"op":"query","id":"audit )" + what + R"(","what":")" + what + "\"}";
+    take({kAuditor, ++number_, *proto::parse_request(text)}, "query " + text);
+    return listener_.last_answer.is_object() ? listener_.last_answer.value("data", json()) : json();
+  }
+
+  /// Each command with an id of a viewer that is here is answered once.
+  void count_answers() {
+    for (const auto& [viewer, id] : asked_) {
+      const auto found = listener_.answers.find({viewer, id});
+      const int count = found == listener_.answers.end() ? 0 : found->second;
+      if (count == 1 || !here_.contains(viewer)) continue;
+      listener_.problem("command " + id.dump() + " of viewer " + std::to_string(viewer) + " has " +
+                        std::to_string(count) + " answers");
+    }
+    if (outcome_.recoveries > 0 && listener_.recoveries_told == 0)
+      listener_.problem("no viewer was told of " + std::to_string(outcome_.recoveries) +
+                        " blow-ups");
+    if (outcome_.halts > 0 && listener_.halts_told == 0)
+      listener_.problem("no viewer was told of " + std::to_string(outcome_.halts) + " halts");
+  }
+
+  /// Ticks that were given up stand in the log as commands.
+  void count_halts() {
+    for (const server::LogEntry& entry : room_->log().entries()) {
+      if (std::string_view(proto::name_of(entry.command)) != "halt") continue;
+      ++outcome_.halts;
+      put(outcome_.halt, proto::encode_request({std::nullopt, entry.command}));
+    }
+  }
+
+  const Script& script_;
+  const server::SceneLibrary& library_;
+  const Limits& limits_;
+  Outcome& outcome_;
+  Listener listener_;
+  server::Metrics metrics_;
+  server::WorkLimit limit_;
+  server::LimitWatch watch_;
+  std::unique_ptr<server::Room> room_;
+  double now_ = 100;
+  std::uint64_t looks_ = 0;
+  std::uint32_t number_ = 0;
+  std::set<proto::ViewerId> here_;
+  std::vector<std::pair<proto::ViewerId, json>> asked_;
+};
+
+}  // namespace
+
+void run_script(const Script& script, const server::SceneLibrary& library, const Limits& limits,
+                std::uint64_t most_steps, Outcome& outcome) {
+  Run(script, library, limits, outcome).go(most_steps);
+}
+
+}  // namespace weft::fuzz
