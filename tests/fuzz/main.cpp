@@ -200,7 +200,8 @@ int run(int argc, char** argv) {
   app.add_flag("--print", options.print, "print what is run as one line of JSON");
   app.add_option("--found", options.found, "file with cases to run first");
   app.add_option("--script", options.script, "file with one case to run alone");
-  app.add_flag("--no-sanitize", "for ./dev, which chooses the build by it");
+  bool for_dev = false;
+  app.add_flag("--no-sanitize", for_dev, "for ./dev, which chooses the build by it");
   CLI11_PARSE(app, argc, argv);
   if (seed->empty()) options.seed = static_cast<std::uint64_t>(std::time(nullptr));
   return Driver(options).run();
