@@ -38,8 +38,8 @@ Examples:
   weft scenes                                     what there is
   weft scenes --json flag                         one as a file to start from
 
-Exit codes: 0 done, 1 failed, 2 what was asked for is refused, 3 something crossed in simulate,
-4 output could not be written
+Exit codes: 0 done, 1 failed, 2 what was asked for is refused; simulate: 3 something crossed, 4 a
+tick took too long; 5 output could not be written
 )";
 
 /// Splits "key=value"; the key may not be empty.

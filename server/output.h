@@ -7,7 +7,7 @@
 namespace weft::server {
 
 /// Exit code where output could not be written.
-inline constexpr int kOutputFailed = 4;
+inline constexpr int kOutputFailed = 5;
 
 /// Output that could not be written; what() names the place and the system's reason.
 struct OutputError : std::runtime_error {

@@ -285,15 +285,14 @@ class Wall(SocketTest):
     async def test_a_drag_of_50_n_through_a_wall_leaves_the_cloth_on_its_side(self):
         a = await self.viewer()
         particle = 15 * 25 + 12
-        answer = await a.ask("drag", phase="start", particle=particle, max_force=50,
-                             stiffness=1000)
+        answer = await a.ask("drag", phase="start", particle=particle, max_force=50)
         x, y, _ = answer["target"]
         for target in ([x, y, -1], [x, y - 0.3, -3], [x + 0.5, y, -0.6]):
             await a.ask("drag", phase="move", target=target)
             await a.ask("advance", n=120)
             grab = (await a.ask("query", what="grabs"))["data"][0]
             force = sum(c * c for c in grab["force"]) ** 0.5
-            self.assertGreater(force, 20, "the hand pulls hard")
+            self.assertGreater(force, 10, "the hand pulls hard")
             self.assertLessEqual(force, 50.01)
             # The wall is the box z <= 0, |x| <= 1.2, y <= 1.8; the cloth starts at z > 0.
             behind = [p for p in await a.positions()
