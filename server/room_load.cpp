@@ -28,6 +28,8 @@ WorldDef Room::definition_of(const std::string& name, const std::string& json) c
     WorldDef def = options_.read_scene(json);
     if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
     return def;
+  } catch (const CostError&) {
+    throw;  // is told as it is
   } catch (const DefinitionError& error) {
     const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
     throw DefinitionError(field, error.value, error.limit, error.hint);

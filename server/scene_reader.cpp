@@ -266,6 +266,7 @@ std::string file_path(const std::string& field) {
 
 /// What only the whole scene can tell.
 void check_whole(const WorldDef& def) {
+  check_size(def);  // before what takes long
   try {
     WorldDef repaired = def;  // whoever makes a world of it repairs it again, and says so
     repair_objects(repaired);
