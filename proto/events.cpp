@@ -80,14 +80,18 @@ Json json_of_collider(const ColliderInfo& collider) {
 }
 
 Json json_of_guarantee(const Guarantee& guarantee) {
-  static constexpr std::array kStates = {"held", "bad_start", "void", "none"};
-  return {{"state", kStates[static_cast<std::size_t>(guarantee.state)]},
+  return {{"state", name_of(guarantee.state)},
           {"covers", guarantee.covers},
           {"pairs", guarantee.pairs},
           {"reasons", guarantee.reasons}};
 }
 
 }  // namespace
+
+const char* name_of(GuaranteeState state) {
+  static constexpr std::array kStates = {"held", "bad_start", "void", "none"};
+  return kStates[static_cast<std::size_t>(state)];
+}
 
 Json json_of(const Strain& strain) {
   return {{"largest", strain.largest}, {"p99", strain.p99}};

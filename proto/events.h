@@ -112,6 +112,9 @@ enum class GuaranteeState : std::uint8_t {
   none,       ///< the contact promises nothing
 };
 
+/// As the wire has it.
+const char* name_of(GuaranteeState state);
+
 struct Guarantee {
   GuaranteeState state = GuaranteeState::held;
   std::vector<std::string> covers;   ///< of "objects" and "cloth" what cloth is kept apart from

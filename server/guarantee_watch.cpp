@@ -9,17 +9,22 @@ namespace {
 constexpr double kCountShare = 0.01;  // of the time may go into counting
 constexpr double kCountPatience = 1;  // what a count is taken to need that was given up [s]
 
+/// Ticks between two counts while something that crosses is named, so that it is soon told when it
+/// is out, also where nothing is counted else.
+constexpr std::uint32_t kPauseWhileThrough = 10;
+
 bool contains(const std::vector<std::string>& list, const std::string& text) {
   return std::find(list.begin(), list.end(), text) != list.end();
 }
 
 }  // namespace
 
-void GuaranteeWatch::start(const ServedWorld& world, BadStarts bad_starts) {
+void GuaranteeWatch::start(const ServedWorld& world, ComingStarts starts) {
   counter_ = {};
   crossings_.reset();
   crossings_at_start_.reset();
-  bad_starts_at_start_ = std::move(bad_starts);
+  began_ = false;
+  starts_ = std::move(starts);
   if (pause_ > 0) crossings_at_start_ = count(world);
   restart();
 }
@@ -30,11 +35,14 @@ void GuaranteeWatch::restart() {
   bad_starts_ = {};
   voided_.clear();
   news_.clear();
-  tell_bad_starts(bad_starts_at_start_, false);
+  began_ = late_ = false;
+  meetings_ = starts_.meetings;
+  tell_bad_starts(starts_);
 }
 
 void GuaranteeWatch::note_tick(const ServedWorld& world) {
   ++uncounted_;
+  began_ = true;
   std::vector<std::string> voided = voiding_colliders(world);
   for (const std::string& name : voided) {
     if (contains(voided_, name)) continue;
@@ -43,17 +51,28 @@ void GuaranteeWatch::note_tick(const ServedWorld& world) {
          name + " was forced through the cloth: that nothing crosses is no longer promised"});
   }
   voided_ = std::move(voided);
-  tell_bad_starts({world.bad_starts(), world.open_pairs()}, !voided_.empty());
+  look(world);
+}
+
+/// What is wrong now, as contact knows it, and as was counted last.
+void GuaranteeWatch::look(const ServedWorld& world) {
+  BadStarts found{world.bad_starts(), world.open_pairs()};
+  const std::size_t known = found.what.size();
+  if (bad_starts_.what.empty()) late_ = true;
+  add_meetings(world, meetings_, late_ ? "passes through" : "started through", bad_starts_.what,
+               found);
+  late_ = late_ && known < found.what.size();
+  tell_bad_starts(std::move(found));
 }
 
 /// Says once what started where nothing can be promised about it, and when all is clear.
-void GuaranteeWatch::tell_bad_starts(BadStarts found, bool voided) {
+void GuaranteeWatch::tell_bad_starts(BadStarts found) {
   for (const std::string& what : found.what) {
     if (contains(bad_starts_.what, what)) continue;
     news_.push_back({proto::NoticeLevel::warning, "guarantee_void",
                      what + ": until it is out, that nothing crosses is not promised there"});
   }
-  if (found.what.empty() && !bad_starts_.what.empty() && !voided)
+  if (found.what.empty() && !bad_starts_.what.empty() && voided_.empty())
     news_.push_back({proto::NoticeLevel::info, "guarantee_back",
                      "what started inside is out: nothing crosses from now on"});
   bad_starts_ = std::move(found);
@@ -64,15 +83,25 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   const double start = clock_();
   // Where it takes too long it is tried again as late as if it had been done.
   next_count_ = start + kCountPatience / kCountShare;
-  crossings_ = crossings_of(world, counter_);
-  const double end = clock_();
+  std::vector<Meeting> meetings;
+  const proto::Crossings counted = crossings_of(world, counter_, meetings);
+  if (began_ && !bad_starts_.what.empty()) counter_.find_in_rounds(world, meetings);
+  crossings_ = counted;
   uncounted_ = 0;
+  // Before the first tick the look ahead knows more.
+  if (began_) {
+    meetings_ = std::move(meetings);
+    look(world);
+  }
+  const double end = clock_();
   next_count_ = end + (end - start) / kCountShare;
   return *crossings_;
 }
 
 bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
-  if (pause_ == 0 || uncounted_ < pause_ || clock_() < next_count_) return false;
+  const std::uint32_t pause =
+      bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
+  if (pause == 0 || uncounted_ < pause || clock_() < next_count_) return false;
   const std::uint64_t before = crossings_ ? crossings_->count : 0;
   return count(world).count != before;
 }
@@ -81,6 +110,20 @@ bool GuaranteeWatch::count_if_stale(const ServedWorld& world) {
   if (pause_ == 0 || uncounted_ == 0) return false;
   count(world);
   return true;
+}
+
+proto::Guarantee GuaranteeWatch::guarantee(const ServedWorld& world) const {
+  proto::Guarantee guarantee = guarantee_of(world, bad_starts_);
+  if (guarantee.state == proto::GuaranteeState::bad_start && late_)
+    guarantee.state = proto::GuaranteeState::broken;
+  if (guarantee.state != proto::GuaranteeState::held || !crossings_ || crossings_->count == 0)
+    return guarantee;
+  guarantee.state = proto::GuaranteeState::broken;
+  guarantee.pairs = crossings_->count;
+  guarantee.reasons.emplace_back(
+      has_guard(world.def()) ? "edges pass through triangles, as was counted"
+                             : "cloth passes through cloth, from which nothing keeps it here");
+  return guarantee;
 }
 
 std::vector<GuaranteeWatch::News> GuaranteeWatch::take_news() {

@@ -28,8 +28,8 @@ class GuaranteeWatch {
   GuaranteeWatch(std::uint32_t pause, Clock clock) : pause_(pause), clock_(std::move(clock)) {}
 
   /// Another world, at its start.
-  /// @param bad_starts  what its first tick will find where it should not be
-  void start(const ServedWorld& world, BadStarts bad_starts);
+  /// @param starts  what its first tick will find where it should not be
+  void start(const ServedWorld& world, ComingStarts starts);
   /// The same world is back at its start.
   void restart();
 
@@ -47,23 +47,27 @@ class GuaranteeWatch {
 
   /// As counted last, if it ever was.
   const std::optional<proto::Crossings>& crossings() const { return crossings_; }
-  proto::Guarantee guarantee(const ServedWorld& world) const {
-    return guarantee_of(world, bad_starts_);
-  }
+  /// Not held while anything crosses that was counted last.
+  proto::Guarantee guarantee(const ServedWorld& world) const;
 
   /// What has happened since this was asked.
   std::vector<News> take_news();
 
  private:
-  void tell_bad_starts(BadStarts found, bool voided);
+  void look(const ServedWorld& world);
+  void tell_bad_starts(BadStarts found);
 
   std::uint32_t pause_;
   Clock clock_;
   ServedCrossings counter_;
   std::optional<proto::Crossings> crossings_, crossings_at_start_;
-  std::uint32_t uncounted_ = 0;  ///< ticks since the last count
-  double next_count_ = 0;        ///< not before this [s]
-  BadStarts bad_starts_, bad_starts_at_start_;
+  std::uint32_t uncounted_ = 0;      ///< ticks since the last count
+  double next_count_ = 0;            ///< not before this [s]
+  ComingStarts starts_;              ///< as the look ahead found
+  BadStarts bad_starts_;             ///< that were told, and what else crosses
+  std::vector<Meeting> meetings_;    ///< who crosses whom, as counted last or at the start
+  bool began_ = false;               ///< there was a tick since the start
+  bool late_ = false;                ///< what crosses did not start so
   std::vector<std::string> voided_;  ///< objects that were told of
   std::vector<News> news_;
 };

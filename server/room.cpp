@@ -160,6 +160,7 @@ std::optional<double> Room::step_world() {
                                      : guarantee_.count_if_due(*world_))
       state_changed_ = true;
   });
+  if (report.rested) tell_guarantee();
   if (report.rested) return seconds;
   tell_guarantee();
   tell_pins();
@@ -200,6 +201,7 @@ void Room::finish_turn() {
     within_limit([this] {
       if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
     });
+    tell_guarantee();
   }
   tell_changes_if_due(now);
   if (now >= next_frame()) publish(now);

@@ -105,6 +105,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
     case proto::QueryWhat::crossings:
       if (!within_limit([&] { guarantee_.count(*world_); })) throw Stopped();
       reply.data = guarantee_.count(*world_);
+      tell_guarantee();
       break;
     case proto::QueryWhat::grippers:
       reply.data = grippers_of(*world_);

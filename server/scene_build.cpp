@@ -7,10 +7,8 @@
 #include "core/world/object_repair.h"
 
 namespace weft::server {
-namespace {
 
-/// What the first tick of a world will find, if it can be told within the limit.
-BadStarts look_ahead(const ServedWorld& world, double tick_limit) {
+ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
   WorkLimit limit(tick_limit);
   // The thread's own signal still ends it, without an answer.
   StopSignal* const outer = current_stop_signal();
@@ -24,8 +22,6 @@ BadStarts look_ahead(const ServedWorld& world, double tick_limit) {
     return {};
   }
 }
-
-}  // namespace
 
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
   const SerialScope serial;

@@ -13,13 +13,18 @@
 
 namespace weft::server {
 
+/// What is or comes where it should not be until the first tick of a world is done, if it can be
+/// told within the limit.
+/// @param tick_limit  CPU time [s]
+ComingStarts look_ahead(const ServedWorld& world, double tick_limit);
+
 /// Everything about a scene that takes long to make and may fail: what is left when it takes the
 /// place of another one cannot.
 struct BuiltScene {
   std::unique_ptr<ServedWorld> world;
   proto::MeshAnnouncement mesh;  ///< but for its epoch
   SharedBytes mesh_bytes;
-  BadStarts bad_starts;              ///< that its first tick finds
+  ComingStarts bad_starts;           ///< that its first tick finds
   std::vector<std::string> repairs;  ///< of its objects' meshes, a sentence each
 };
 

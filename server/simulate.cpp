@@ -19,8 +19,10 @@
 #include "core/world/verdict.h"
 #include "core/world/world.h"
 #include "server/clock.h"
+#include "server/guarantee_watch.h"
 #include "server/options.h"
 #include "server/output.h"
+#include "server/scene_build.h"
 #include "server/scene_library.h"
 #include "server/scene_schema.h"
 #include "server/thread_pool.h"
@@ -59,6 +61,7 @@ struct Measurement {
   std::size_t late_crossings = 0;            ///< after the time in which the scene may have some
   std::size_t broken_promises = 0;           ///< those of them that its contact rules out
   Verdict<float> verdict;                    // of a hard case
+  proto::Guarantee guarantee;                ///< at the end
 };
 
 /// @returns false if the tick took more than its limit; nothing has changed then
@@ -115,11 +118,16 @@ std::optional<Measurement> run(World<float>& world, const SimulateOptions& optio
   m.ticks.reserve(static_cast<std::size_t>(options.ticks));
   CrossingCounter<float> counter;
   const bool judged = world.def().verdict.strain > 0;
+  GuaranteeWatch promise(0, &process_seconds);
+  promise.start(world, look_ahead(world, options.tick_limit));
   for (int i = 1; i <= options.ticks; ++i) {
     if (!measure_tick(world, limit, m)) return std::nullopt;
+    promise.note_tick(world);
     if (judged) m.verdict.look(world);
     if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
+  promise.count(world);
+  m.guarantee = promise.guarantee(world);
   std::sort(m.ticks.begin(), m.ticks.end());
   return m;
 }
@@ -215,6 +223,11 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
         {"ticks_looked_at", m.checks},
         {"ticks_with_any", m.crossed_ticks},
         {"first_tick", m.first_crossed > 0 ? Json(m.first_crossed) : Json()}}},
+      {"guarantee",
+       {{"state", proto::name_of(m.guarantee.state)},
+        {"covers", m.guarantee.covers},
+        {"pairs", m.guarantee.pairs},
+        {"reasons", m.guarantee.reasons}}},
       {"guard", guard_summary(world)},
       {"verdict", verdict_summary(world, m.verdict)},
       {"hash", proto::hash_text(world.hash())},

@@ -4,9 +4,10 @@
 
 namespace weft::server {
 
-proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter) {
+proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
+                              std::vector<Meeting>& meetings) {
   proto::Crossings found;
-  found.count = counter.count(world).total();
+  found.count = counter.count(world, &meetings).total();
   found.tick = world.tick();
   const double gap = smallest_gap(world);
   if (std::isfinite(gap)) found.smallest_gap = gap;

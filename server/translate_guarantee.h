@@ -13,8 +13,10 @@ namespace weft::server {
 using ServedCrossings = CrossingCounter<float>;
 
 /// Counts in the present state.
-/// @param counter  of this world
-proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter);
+/// @param counter   of this world
+/// @param meetings  gets who crosses whom
+proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
+                              std::vector<Meeting>& meetings);
 
 /// Objects that were forced through the cloth since the start.
 std::vector<std::string> voiding_colliders(const ServedWorld& world);

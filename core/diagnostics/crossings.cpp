@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/math/exact_sign.h"
-#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -22,12 +21,6 @@ Positions in_double(const Vec3Array<Real>& x) {
   return result;
 }
 
-bool share_vertex(const Edge& edge, const Triangle& t) {
-  for (const Index i : edge)
-    if (i == t[0] || i == t[1] || i == t[2]) return true;
-  return false;
-}
-
 /// Boxes around triangles, which keep their room.
 void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
                std::vector<Aabb<double>>& boxes) {
@@ -39,27 +32,12 @@ void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
   }
 }
 
-/// Adds all pairs of an edge over x and a triangle over y.
-/// @param one_cloth  both belong to the same particles, so pairs that share one are left out
-/// @param tree       over the triangles where they are
-void add_crossings(const Positions& x, const std::vector<Edge>& edges, const Positions& y,
-                   const std::vector<Triangle>& triangles, bool one_cloth, const Bvh<double>& tree,
-                   Crossings& sum) {
-  std::size_t looked = 0;
-  for (const Edge& edge : edges) {
-    stop_point(looked++);
-    const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
-    Aabb<double> box;
-    box.add(p);
-    box.add(q);
-    tree.for_each_overlap(box, [&](Index k) {
-      const Triangle& t = triangles[static_cast<std::size_t>(k)];
-      if (one_cloth && share_vertex(edge, t)) return;
-      const Crossings found = crossing_of(p, q, at(y, t[0]), at(y, t[1]), at(y, t[2]));
-      sum.proper += found.proper;
-      sum.touching += found.touching;
-    });
-  }
+/// What adds up crossings.
+auto adding_to(Crossings& sum) {
+  return [&sum](const Edge&, const Triangle&, const Crossings& how) {
+    sum.proper += how.proper;
+    sum.touching += how.touching;
+  };
 }
 
 std::vector<Edge> pairs_of(const std::vector<MeshEdge>& edges) {
@@ -85,6 +63,12 @@ Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3
   return proper ? Crossings{1, 0} : Crossings{0, 1};
 }
 
+bool share_vertex(const Edge& edge, const Triangle& t) {
+  for (const Index i : edge)
+    if (i == t[0] || i == t[1] || i == t[2]) return true;
+  return false;
+}
+
 CrossingSurface::CrossingSurface(std::vector<Edge> edges, std::vector<Triangle> triangles)
     : edges_(std::move(edges)), triangles_(std::move(triangles)) {}
 
@@ -99,19 +83,14 @@ void CrossingSurface::fit() {
 
 Crossings count_self_crossings(const CrossingSurface& cloth) {
   Crossings sum;
-  add_crossings(cloth.positions(), cloth.edges(), cloth.positions(), cloth.triangles(), true,
-                cloth.tree(), sum);
+  for_each_crossing(cloth, cloth, true, adding_to(sum));
   return sum;
 }
 
 Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object) {
   Crossings sum;
-  const auto add = [&sum](const CrossingSurface& a, const CrossingSurface& b) {
-    if (b.triangles().empty()) return;
-    add_crossings(a.positions(), a.edges(), b.positions(), b.triangles(), false, b.tree(), sum);
-  };
-  add(cloth, object);
-  add(object, cloth);
+  for_each_crossing(cloth, object, false, adding_to(sum));
+  for_each_crossing(object, cloth, false, adding_to(sum));
   return sum;
 }
 
@@ -123,7 +102,7 @@ Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>
   std::vector<Aabb<double>> boxes;
   fit_boxes(positions, triangles, boxes);
   tree.empty() ? tree.build(boxes) : tree.refit(boxes);
-  add_crossings(positions, edges, positions, triangles, true, tree, sum);
+  for_each_crossing(positions, edges, positions, triangles, true, tree, adding_to(sum));
   return sum;
 }
 

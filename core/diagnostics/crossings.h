@@ -5,6 +5,7 @@
 
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_mesh.h"
+#include "core/stop_signal.h"
 #include "core/types.h"
 
 // Counts where edges pass through triangles, exactly, and without any code of the contact that it
@@ -23,6 +24,9 @@ struct Crossings {
 /// Whether and how edge pq and triangle abc meet, exactly. Coplanar ones count as neither.
 Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b,
                       const Vec3d& c);
+
+/// Whether an edge and a triangle of one surface have a vertex in common.
+bool share_vertex(const Edge& edge, const Triangle& t);
 
 /// Edges and triangles of cloth or of an object, for those who count again and again: it keeps its
 /// arrays and its tree, so that nothing is allocated from the second placing on.
@@ -56,6 +60,41 @@ class CrossingSurface {
   std::vector<Aabb<double>> boxes_;
   Bvh<double> tree_;
 };
+
+/// Calls see(edge, triangle, how) for each edge over x that meets a triangle over y.
+/// @param one_cloth  both belong to the same vertices: pairs with a common one are left out
+/// @param tree       over the triangles where they are
+template <class See>
+void for_each_crossing(const std::vector<Vec3d>& x, const std::vector<Edge>& edges,
+                       const std::vector<Vec3d>& y, const std::vector<Triangle>& triangles,
+                       bool one_cloth, const Bvh<double>& tree, See&& see) {
+  const auto at = [](const std::vector<Vec3d>& of, Index i) -> const Vec3d& {
+    return of[static_cast<std::size_t>(i)];
+  };
+  std::size_t looked = 0;
+  for (const Edge& edge : edges) {
+    stop_point(looked++);
+    const Vec3d &p = at(x, edge[0]), &q = at(x, edge[1]);
+    Aabb<double> box;
+    box.add(p);
+    box.add(q);
+    tree.for_each_overlap(box, [&](Index k) {
+      const Triangle& t = triangles[static_cast<std::size_t>(k)];
+      if (one_cloth && share_vertex(edge, t)) return;
+      const Crossings how = crossing_of(p, q, at(y, t[0]), at(y, t[1]), at(y, t[2]));
+      if (how.all() > 0) see(edge, t, how);
+    });
+  }
+}
+
+/// The same for surfaces that have been placed.
+template <class See>
+void for_each_crossing(const CrossingSurface& edges, const CrossingSurface& triangles,
+                       bool one_cloth, See&& see) {
+  if (triangles.triangles().empty()) return;
+  for_each_crossing(edges.positions(), edges.edges(), triangles.positions(), triangles.triangles(),
+                    one_cloth, triangles.tree(), see);
+}
 
 /// Edges through triangles that share no vertex with them. It has been placed.
 Crossings count_self_crossings(const CrossingSurface& cloth);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "core/geometry/distance.h"
 
@@ -16,9 +17,37 @@ TriangleMesh mesh_of(const ShapeDef& shape) {
   return {};
 }
 
-void add(const Crossings& found, Crossings& sum) {
-  sum.proper += found.proper;
-  sum.touching += found.touching;
+/// What is deeper than this part of the radius is inside a round object; contact in float keeps no
+/// finer distance.
+constexpr double kInRound = 1e-5;
+
+void note(const Meeting& meeting, std::vector<Meeting>& list) {
+  const auto known = std::find_if(list.begin(), list.end(),
+                                  [&meeting](const Meeting& m) { return m.is_of(meeting); });
+  if (known == list.end())
+    list.push_back(meeting);
+  else
+    known->count += meeting.count;
+}
+
+/// Number of the cloth that a particle belongs to.
+template <class Real>
+Index cloth_of(const ClothModel<Real>& model, Index particle) {
+  Index cloth = 0;
+  while (!model.parts[static_cast<std::size_t>(cloth)].particles.contains(particle)) ++cloth;
+  return cloth;
+}
+
+double distance_of(const std::array<Vec3d, 3>& t, const Vec3d& a, const Vec3d& b) {
+  const auto from = [&t](const Vec3d& p) {
+    return (closest_on_triangle(p, t[0], t[1], t[2]).point - p).norm();
+  };
+  double least = std::min(from(a), from(b));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SegmentPoints<double> nearest = closest_of_segments(t[k], t[(k + 1) % 3], a, b);
+    least = std::min(least, (nearest.p - nearest.q).norm());
+  }
+  return least;
 }
 
 /// Distance of two features of cloths where they are now [m]: the normals of rows are from when
@@ -51,12 +80,28 @@ void CrossingCounter<Real>::list_surfaces(const World<Real>& world) {
 }
 
 template <class Real>
-WorldCrossings CrossingCounter<Real>::count(const World<Real>& world) {
+WorldCrossings CrossingCounter<Real>::count(const World<Real>& world,
+                                            std::vector<Meeting>* meetings) {
   if (!cloth_) list_surfaces(world);
   const Vec3Array<Real>& x = world.state().x;
   cloth_->place(x.size(), [&x](std::size_t i) -> Vec3d { return x[i].template cast<double>(); });
   WorldCrossings found;
-  found.cloths = count_self_crossings(*cloth_);
+  const auto see = [&](Crossings& sum, Index one, Meeting meeting, const Crossings& how) {
+    sum.proper += how.proper;
+    sum.touching += how.touching;
+    if (!meetings) return;
+    meeting.cloth = cloth_of(world.model(), one);
+    if (meeting.other != kNone) {
+      meeting.other = cloth_of(world.model(), meeting.other);
+      if (meeting.other < meeting.cloth) std::swap(meeting.cloth, meeting.other);
+    }
+    meeting.count = how.all();
+    note(meeting, *meetings);
+  };
+  for_each_crossing(*cloth_, *cloth_, true,
+                    [&](const Edge& edge, const Triangle& t, const Crossings& how) {
+                      see(found.cloths, edge[0], {0, t[0], kNone, 0}, how);
+                    });
   for (Object& object : objects_) {
     const Pose& pose = world.colliders()[object.collider].pose;
     if (!object.pose || !(*object.pose == pose)) {
@@ -69,9 +114,78 @@ WorldCrossings CrossingCounter<Real>::count(const World<Real>& world) {
       });
       object.pose = pose;
     }
-    add(count_crossings(*cloth_, object.surface), found.objects);
+    const Meeting with{0, kNone, static_cast<Index>(object.collider), 0};
+    for_each_crossing(*cloth_, object.surface, false,
+                      [&](const Edge& edge, const Triangle&, const Crossings& how) {
+                        see(found.objects, edge[0], with, how);
+                      });
+    for_each_crossing(object.surface, *cloth_, false,
+                      [&](const Edge&, const Triangle& t, const Crossings& how) {
+                        see(found.objects, t[0], with, how);
+                      });
   }
   return found;
+}
+
+/// Triangles nearer to the centre of a ball or the axis of a rod than its radius. The cloth has
+/// been placed.
+template <class Real>
+void CrossingCounter<Real>::find_in_rounds(const World<Real>& world,
+                                           std::vector<Meeting>& meetings) const {
+  for (std::size_t k = 0; k < world.colliders().size(); ++k) {
+    const ShapeDef& shape = world.def().colliders[k].shape;
+    const auto* ball = std::get_if<SphereDef>(&shape);
+    const auto* rod = std::get_if<CapsuleDef>(&shape);
+    if (!ball && !rod) continue;
+    const Pose& pose = world.colliders()[k].pose;
+    const Vec3d pivot = pivot_of(shape);
+    const auto placed = [&](const Vec3d& p) -> Vec3d {
+      return pose.position + pose.rotation * (p - pivot);
+    };
+    const Vec3d a = placed(ball ? ball->centre : rod->a), b = ball ? a : placed(rod->b);
+    const double radius = (ball ? ball->radius : rod->radius) * (1 - kInRound);
+    Aabb<double> box;
+    for (const Vec3d& end : {a, b}) {
+      box.add((end.array() - radius).matrix());
+      box.add((end.array() + radius).matrix());
+    }
+    cloth_->tree().for_each_overlap(box, [&](Index number) {
+      const Triangle& t = cloth_->triangles()[static_cast<std::size_t>(number)];
+      std::array<Vec3d, 3> corners;
+      for (std::size_t n = 0; n < 3; ++n)
+        corners[n] = cloth_->positions()[static_cast<std::size_t>(t[n])];
+      if (distance_of(corners, a, b) < radius)
+        note({cloth_of(world.model(), t[0]), kNone, static_cast<Index>(k), 1}, meetings);
+    });
+  }
+}
+
+template <class Real>
+void add_meetings(const World<Real>& world, const std::vector<Meeting>& meetings,
+                  const std::string& verb, const std::vector<std::string>& known, BadStarts& to) {
+  const WorldDef& def = world.def();
+  const auto has = [](const std::vector<std::string>& list, const std::string& text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+  };
+  if (contact_of(def) != ContactModel::weft) return;
+  for (const Meeting& m : meetings) {
+    const bool object = m.collider != kNone;
+    if (!object && !has_guard(def)) continue;
+    std::string through = cloth_name(def, m.cloth) + " " + verb + " ";
+    if (object) {
+      const auto k = static_cast<std::size_t>(m.collider);
+      if (world.colliders()[k].voided) continue;  // it was forced there
+      const std::string inside =
+          cloth_name(def, m.cloth) + " started inside " + def.colliders[k].name;
+      if (has(to.what, inside)) continue;
+      through = has(known, inside) ? inside : through + def.colliders[k].name;
+    } else {
+      through += m.other == m.cloth ? "itself" : cloth_name(def, m.other);
+    }
+    if (has(to.what, through)) continue;
+    to.what.push_back(through);
+    to.pairs += m.count;
+  }
 }
 
 template <class Real>
@@ -89,6 +203,10 @@ double smallest_gap(const World<Real>& world) {
   return smallest;
 }
 
+template void add_meetings(const World<float>&, const std::vector<Meeting>&, const std::string&,
+                           const std::vector<std::string>&, BadStarts&);
+template void add_meetings(const World<double>&, const std::vector<Meeting>&, const std::string&,
+                           const std::vector<std::string>&, BadStarts&);
 template class CrossingCounter<float>;
 template class CrossingCounter<double>;
 template double smallest_gap(const World<float>&);

@@ -27,7 +27,12 @@ class CrossingCounter {
  public:
   /// Of the present state, with objects where they are now.
   /// @param world  always the same one; its positions finite
-  WorldCrossings count(const World<Real>& world);
+  /// @param meetings  gets who crosses whom; may be null
+  WorldCrossings count(const World<Real>& world, std::vector<Meeting>* meetings = nullptr);
+
+  /// Adds triangles in balls and rods, which have no edges to cross, after a count of the same
+  /// state.
+  void find_in_rounds(const World<Real>& world, std::vector<Meeting>& meetings) const;
 
  private:
   /// An object with triangles or an axis, where it was last.
@@ -43,6 +48,14 @@ class CrossingCounter {
   std::optional<CrossingSurface> cloth_;
   std::vector<Object> objects_;
 };
+
+/// Adds to what nothing is promised about those that meet although contact promises that they do
+/// not, unless they are there already.
+/// @param verb   "started through" or "passes through"
+/// @param known  what was told before: who is there as inside an object stays so
+template <class Real>
+void add_meetings(const World<Real>& world, const std::vector<Meeting>& meetings,
+                  const std::string& verb, const std::vector<std::string>& known, BadStarts& to);
 
 /// Smallest distance between features that the world's contact holds apart now, or is about to [m];
 /// negative inside an object that it shall leave, infinity if nothing is near, or where the contact

@@ -15,6 +15,7 @@
 #include "core/solver/relaxation.h"
 #include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
+#include "core/world/bad_starts.h"
 #include "core/world/cost.h"
 #include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
@@ -79,16 +80,6 @@ struct ClothHit {
   std::array<double, 3> barycentric = {};
   Vec3d position = Vec3d::Zero();
   Index nearest_particle = kNone;  ///< the corner nearest to the hit
-};
-
-/// What nothing is promised about, because it started where it should not be.
-struct BadStarts {
-  std::vector<std::string> what;  ///< in words, e.g. "sheet started inside ball"
-  /// Particles inside objects, and pairs of features of cloths that cross or touch, with those
-  /// around them.
-  std::size_t pairs = 0;
-
-  bool operator==(const BadStarts&) const = default;
 };
 
 /// What the world takes from outside. Neither changes any result.
@@ -177,7 +168,7 @@ class World {
   /// Those that the coming tick would find and leave, if nothing were changed until then: in a
   /// world at its start nobody has looked yet. Works on a copy, as `coming_reactions` does, and may
   /// throw the same.
-  BadStarts coming_bad_starts() const;
+  ComingStarts coming_bad_starts() const;
 
   /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
   void measure_forces(bool wanted);

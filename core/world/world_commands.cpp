@@ -187,10 +187,7 @@ double World<Real>::deepest_penetration() const {
 template <class Real>
 std::vector<std::string> World<Real>::bad_starts() const {
   std::vector<std::string> list;
-  const auto name_of = [&](Index k) {
-    const std::string& name = def_.cloths[static_cast<std::size_t>(k)].name;
-    return name.empty() ? "cloth " + std::to_string(k) : name;
-  };
+  const auto name_of = [this](Index k) { return cloth_name(def_, k); };
   for (const BadStart<Real>& start : contact_.bad_starts()) {
     if (colliders_[start.collider].voided) continue;  // it was forced there
     list.push_back(name_of(start.cloth) + " started inside " + def_.colliders[start.collider].name);

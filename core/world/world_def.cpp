@@ -52,6 +52,11 @@ ContactModel contact_of(const WorldDef& def) {
   return def.model == Model::seed ? ContactModel::seed : ContactModel::weft;
 }
 
+std::string cloth_name(const WorldDef& def, Index cloth) {
+  const std::string& name = def.cloths[static_cast<std::size_t>(cloth)].name;
+  return name.empty() ? "cloth " + std::to_string(cloth) : name;
+}
+
 bool has_guard(const WorldDef& def) {
   const SelfContact self = def.contact.seed.self;
   return contact_of(def) == ContactModel::weft &&

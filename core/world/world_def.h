@@ -107,6 +107,9 @@ SolverKind solver_of(const WorldDef& def);
 /// The contact that the definition asks for: weft or seed.
 ContactModel contact_of(const WorldDef& def);
 
+/// Name of a cloth as people are told it; by number if it has none.
+std::string cloth_name(const WorldDef& def, Index cloth);
+
 /// Whether the definition asks for the guard of cloths against themselves and each other.
 bool has_guard(const WorldDef& def);
 

@@ -1,7 +1,10 @@
 // What holds the cloth, and with which forces: nothing is measured unless somebody asks.
 
+#include <algorithm>
+
 #include "core/contact/guard/guard_contacts.h"
 #include "core/stop_signal.h"
+#include "core/world/crossing_counter.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -67,10 +70,27 @@ Reactions World<Real>::coming_reactions() const {
 }
 
 template <class Real>
-BadStarts World<Real>::coming_bad_starts() const {
+ComingStarts World<Real>::coming_bad_starts() const {
+  CrossingCounter<Real> counter;
+  const auto meetings_of = [&counter](const World& world) {
+    std::vector<Meeting> meetings;
+    counter.count(world, &meetings);
+    counter.find_in_rounds(world, meetings);
+    return meetings;
+  };
+  ComingStarts found;
+  found.meetings = meetings_of(*this);
   World trial = copy();
   if (trial.step().halted) throw Stopped();
-  return {trial.bad_starts(), trial.open_pairs()};
+  found.what = trial.bad_starts();
+  found.pairs = trial.open_pairs();
+  for (const Meeting& m : meetings_of(trial)) {
+    if (std::none_of(found.meetings.begin(), found.meetings.end(),
+                     [&m](const Meeting& known) { return known.is_of(m); }))
+      found.meetings.push_back(m);
+  }
+  add_meetings(trial, found.meetings, "started through", {}, found);
+  return found;
 }
 
 #define WEFT_INSTANTIATE(Real)                              \
@@ -79,7 +99,7 @@ BadStarts World<Real>::coming_bad_starts() const {
   template void World<Real>::take_reactions();              \
   template World<Real> World<Real>::copy() const;           \
   template Reactions World<Real>::coming_reactions() const; \
-  template BadStarts World<Real>::coming_bad_starts() const;
+  template ComingStarts World<Real>::coming_bad_starts() const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE
