@@ -11,7 +11,8 @@ namespace weft::server {
 
 void LogSink::sink_it_(const spdlog::details::log_msg& message) {
   if (lost_ > 0 && takes_a_line()) {
-    const std::string told = std::to_string(lost_) + " lines were lost, as nobody read them";
+    const std::string told =
+        std::to_string(lost_) + " lines were lost, because standard error took none";
     spdlog::details::log_msg note(message.logger_name, spdlog::level::warn, told);
     format_and_write(note);
     lost_ = 0;

@@ -106,17 +106,17 @@ bool OriginRules::host_allowed(const Authority& host) const {
                      [&](const Origin& origin) { return origin.authority.host == host.host; });
 }
 
-bool OriginRules::origin_allowed(std::string_view text, const Authority& host) const {
-  const std::optional<Origin> origin = parse_origin(text);
-  if (!origin) return false;
+bool OriginRules::origin_allowed(std::string_view origin, const Authority& host) const {
+  const std::optional<Origin> page = parse_origin(origin);
+  if (!page) return false;
   const auto same = [&](const Origin& other) {
-    return other.scheme == origin->scheme &&
-           same_place(other.authority, origin->authority, origin->scheme);
+    return other.scheme == page->scheme &&
+           same_place(other.authority, page->authority, page->scheme);
   };
   if (std::any_of(allowed_.begin(), allowed_.end(), same)) return true;
-  if (same_place(origin->authority, host, origin->scheme)) return true;
-  return is_loopback_host(origin->authority.host) && is_loopback_host(host.host) &&
-         port_of(origin->authority, origin->scheme) == port_;
+  if (same_place(page->authority, host, page->scheme)) return true;
+  return is_loopback_host(page->authority.host) && is_loopback_host(host.host) &&
+         port_of(page->authority, page->scheme) == port_;
 }
 
 std::vector<std::string> OriginRules::allowed_hosts() const {

@@ -91,7 +91,7 @@ class Unread(unittest.TestCase):
             code = server.end()
         self.assertEqual(code, 0)
         told = self.read_all()
-        self.assertRegex(told, r"\[warning\] \d+ lines were lost, as nobody read them\n")
+        self.assertRegex(told, r"\[warning\] \d+ lines were lost, because standard error took none\n")
         self.assertTrue(told.rstrip().endswith("stopping: asked to stop"), told)
 
     def test_a_server_whose_lines_nobody_ever_reads_ends_when_it_is_asked_to(self):
