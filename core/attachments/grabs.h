@@ -25,8 +25,9 @@ inline constexpr double kSlingSeconds = 0.1;
 /// more than the cloth can follow in a tick at this speed. A target that jumps by metres is
 /// approached at v_max, as if the hand pulled less. Otherwise a strong hand would throw the few
 /// grams that it holds about at thousands of metres a second, and contact would have to look for
-/// what they meet all over the scene. People fling a mouse at some 10 m/s; robots stay below.
-inline constexpr double kFastestHeld = 10;
+/// what they meet all over the scene. People fling a mouse at some 10 m/s, and robots stay below;
+/// the rest lets a hand of the usual stiffness press with the usual 50 N.
+inline constexpr double kFastestHeld = 30;
 
 /// Shortest tick for which the lead is counted [s]: hands are no weaker where ticks are shorter.
 inline constexpr double kLeadSeconds = 1.0 / 60;

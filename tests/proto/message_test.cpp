@@ -211,6 +211,12 @@ std::vector<std::string> http_bodies() {
       encode_http_error({"not_found", "no such path: /foo", "see /api/v1/scenes", "", {}}),
       encode_http_error(
           {"unknown_protocol", "this server speaks weft.v1", "", "weft.v7", {"weft.v1"}}),
+      encode_http_error({"not_allowed",
+                         "this server does not answer to the name evil.example",
+                         "open one of those, or start the server with --allow-origin "
+                         "http://evil.example (https:// behind a proxy with TLS)",
+                         "evil.example",
+                         {"localhost", "weft.example", "any IP address"}}),
   };
 }
 

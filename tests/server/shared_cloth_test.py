@@ -292,7 +292,7 @@ class Wall(SocketTest):
             await a.ask("advance", n=120)
             grab = (await a.ask("query", what="grabs"))["data"][0]
             force = sum(c * c for c in grab["force"]) ** 0.5
-            self.assertGreater(force, 10, "the hand pulls hard")
+            self.assertGreater(force, 20, "the hand pulls hard")
             self.assertLessEqual(force, 50.01)
             # The wall is the box z <= 0, |x| <= 1.2, y <= 1.8; the cloth starts at z > 0.
             behind = [p for p in await a.positions()

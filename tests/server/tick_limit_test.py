@@ -68,7 +68,8 @@ class NoLimit(SocketTest):
             error = await viewer.ask("load", scene=scene)
             self.assertEqual(error["code"], "too_costly", error)
             self.assertIn("particles", error["message"])
-        await viewer.ask("load", scene={**HEAVY, "solver": {"min_substeps": 1}})
+        large = {**HEAVY["cloths"][0], "rows": 160, "columns": 160}
+        await viewer.ask("load", scene={**HEAVY, "cloths": [large], "solver": {"min_substeps": 1}})
         error = await viewer.ask("set", gravity=[0, -1000, 0], wind=[100, 100, 100],
                                  air_density=1000, drag=0)
         self.assertEqual(error["code"], "too_costly", error)
