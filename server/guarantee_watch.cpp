@@ -35,7 +35,7 @@ void GuaranteeWatch::restart() {
   bad_starts_ = {};
   voided_.clear();
   news_.clear();
-  began_ = late_ = false;
+  began_ = late_ = displaced_ = false;
   meetings_ = starts_.meetings;
   tell_bad_starts(starts_);
 }
@@ -43,6 +43,7 @@ void GuaranteeWatch::restart() {
 void GuaranteeWatch::note_tick(const ServedWorld& world) {
   ++uncounted_;
   began_ = true;
+  displaced_ = displaced_ || world.report().brought != 0;
   std::vector<std::string> voided = voiding_colliders(world);
   for (const std::string& name : voided) {
     if (contains(voided_, name)) continue;
@@ -88,6 +89,7 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   if (began_ && !bad_starts_.what.empty()) counter_.find_in_rounds(world, meetings);
   crossings_ = counted;
   uncounted_ = 0;
+  displaced_ = false;
   // Before the first tick the look ahead knows more.
   if (began_) {
     meetings_ = std::move(meetings);
@@ -101,7 +103,9 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
 bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
   const std::uint32_t pause =
       bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
-  if (pause == 0 || uncounted_ < pause || clock_() < next_count_) return false;
+  const bool due = pause != 0 && uncounted_ >= pause && clock_() >= next_count_;
+  // What the scene puts elsewhere goes past contact, which then knows of no start.
+  if (!due && !displaced_) return false;
   const std::uint64_t before = crossings_ ? crossings_->count : 0;
   return count(world).count != before;
 }

@@ -67,6 +67,7 @@ class GuaranteeWatch {
   BadStarts bad_starts_;             ///< that were told, and what else crosses
   std::vector<Meeting> meetings_;    ///< who crosses whom, as counted last or at the start
   bool began_ = false;               ///< there was a tick since the start
+  bool displaced_ = false;           ///< the scene put particles elsewhere since the last count
   bool late_ = false;                ///< what crosses did not start so
   std::vector<std::string> voided_;  ///< objects that were told of
   std::vector<News> news_;

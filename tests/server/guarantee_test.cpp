@@ -28,8 +28,16 @@ WorldDef scarf() {
 /// "post" and "bead": a box and a ball start through the cells of a coarse cloth.
 /// "inside": a scarf starts inside a ball, and a block stands far off. "through": a scarf and
 /// another pass through each other, and no contact of cloth with cloth keeps them apart.
+/// "gathered": the scene throws its scarf through itself.
 WorldDef bad_scene(const std::string& name) {
   WorldDef def = scarf();
+  if (name == "gathered") {
+    InsultDef gather;
+    gather.time = 0.05;
+    gather.gather = 7;
+    def.insults = {gather};
+    return def;
+  }
   if (name == "post" || name == "bead") {
     ClothDef& cloth = def.cloths[0];
     cloth.rows = cloth.columns = 4;
@@ -58,7 +66,7 @@ struct BadRoom : TestRoom {
   explicit BadRoom(const std::string& scene, std::uint32_t count_pause = 60) {
     RoomOptions options;
     options.scene = scene;
-    options.scene_names = {"bead", "inside", "post", "through"};
+    options.scene_names = {"bead", "gathered", "inside", "post", "through"};
     options.paused = true;
     options.count_pause = count_pause;
     room = std::make_unique<Room>(options, bad_scene, output, clock.clock(), metrics);
@@ -84,6 +92,23 @@ struct BadRoom : TestRoom {
 
 const json kHeld = json::parse(R"({"state":"held","covers":["objects","cloth"],"pairs":0,
                                    "reasons":[]})");
+
+TEST_CASE("what the scene itself throws through itself is counted in that tick") {
+  const std::uint32_t pause = GENERATE(0u, 60u);
+  BadRoom t("gathered", pause);
+  t.join(1);
+  bool crossed = false;
+  for (int tick = 1; tick <= 8; ++tick) {
+    INFO("tick " << tick << ", pause " << pause);
+    t.say(1, R"({"op":"advance","n":1})");
+    const json state = t.say(1, R"({"op":"query","id":1,"what":"state"})")["data"];
+    const json found = t.say(1, R"({"op":"query","id":2,"what":"crossings"})")["data"];
+    if (found["count"] == 0) continue;
+    crossed = true;
+    CHECK(state["guarantee"]["state"] != "held");
+  }
+  CHECK(crossed);
+}
 
 TEST_CASE("who joins a room whose cloth starts inside an object is told so by the state") {
   BadRoom t("inside");
