@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <iterator>
 #include <utility>
+#include <variant>
 
 #include "proto/commands.h"
 
@@ -36,6 +39,20 @@ class CommandLog {
            proto::Command command) {
     entries_.push_back({tick, next_index_++, viewer, origin, std::move(command)});
     if (entries_.size() > most_entries_) entries_.pop_front();
+  }
+
+  /// The last `advance` ended when so many of its ticks were left: it counts as one of those made,
+  /// and not at all if there were none.
+  void shorten_advance(std::uint32_t left) {
+    const auto last = std::find_if(entries_.rbegin(), entries_.rend(), [](const LogEntry& entry) {
+      return std::holds_alternative<proto::Advance>(entry.command);
+    });
+    if (left == 0 || last == entries_.rend()) return;
+    auto& advance = std::get<proto::Advance>(last->command);
+    if (advance.n > left)
+      advance.n -= left;
+    else
+      entries_.erase(std::next(last).base());
   }
 
   /// Oldest first. The history is complete if the first has index 0.

@@ -67,6 +67,7 @@ proto::Error Room::stalled_error() const {
 void Room::finish_advance(const std::optional<proto::Error>& error) {
   const Advance done = *advance_;
   advance_.reset();
+  log_.shorten_advance(done.left);
   if (error)
     output_.send(done.viewer, text_message(proto::encode_error(*error)));
   else

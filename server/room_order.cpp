@@ -92,7 +92,10 @@ void Room::work_off() {
 /// Ends all that a viewer who has gone wanted. What only it would have heard is not done any more;
 /// what it changed while it was here, it changed.
 void Room::let_go(proto::ViewerId viewer) {
-  if (advance_ && advance_->viewer == viewer) advance_.reset();
+  if (advance_ && advance_->viewer == viewer) {
+    log_.shorten_advance(advance_->left);
+    advance_.reset();
+  }
   if (const auto found = viewers_.find(viewer); found != viewers_.end())
     found->second.next_turn = 0;
   std::deque<Inbound> left;

@@ -11,6 +11,7 @@
 #include "server/scene_json.h"
 #include "server/simulation_loop.h"
 #include "tests/server/fakes.h"
+#include "tests/support/targets.h"
 #include "tests/support/two_threads.h"
 
 namespace weft::server {
@@ -112,7 +113,7 @@ TEST_CASE("a tick beyond its limit is given up, told with its cause, logged, and
   CHECK(t.get().world().tick() == 15);
 }
 
-TEST_CASE("a log that holds halts replays to the same hash, with one thread and with two") {
+TEST_CASE("a log that holds halts replays to the same hash, for any threads and instruction set") {
   HaltingRoom t;
   t.room->join(1);
   t.room->say(1, R"({"op":"drag","phase":"start","drag":5,"particle":38,"target":[0.3,1,0.4]})");
@@ -128,6 +129,10 @@ TEST_CASE("a log that holds halts replays to the same hash, with one thread and 
   const std::uint64_t ticks = t.get().world().tick();
   CHECK(replayed(t.get(), ticks, nullptr) == hash_of(t.get()));
   CHECK(replayed(t.get(), ticks, &threads) == hash_of(t.get()));
+  test::for_each_target([&] {
+    CHECK(replayed(t.get(), ticks, nullptr) == hash_of(t.get()));
+    CHECK(replayed(t.get(), ticks, &threads) == hash_of(t.get()));
+  });
 }
 
 TEST_CASE("an advance whose tick is given up ends with an error that names the tick") {
@@ -138,7 +143,11 @@ TEST_CASE("an advance whose tick is given up ends with an error that names the t
   CHECK(error["op"] == "error");
   CHECK(error["code"] == "halted");
   CHECK(error["command"] == "advance");
-  CHECK(t.get().world().tick() < 500);
+  const std::uint64_t made = t.get().world().tick();
+  CHECK(made < 500);
+  // In the log are the ticks that it made, and a halt behind them.
+  const LogEntry& logged = t.get().log().entries().front();
+  if (made > 0) CHECK(std::get<proto::Advance>(logged.command).n == made);
   CHECK(t.room->say(1, R"({"op":"advance","id":8,"n":2})")["op"] == "result");
 }
 

@@ -127,15 +127,6 @@ TEST_CASE("the log gives every accepted command one place, and refused ones none
   CHECK(entries[3].tick == 3);
 }
 
-TEST_CASE("the log keeps its newest entries and says by the index that older ones are gone") {
-  CommandLog log(10);
-  for (std::uint64_t i = 0; i < 25; ++i)
-    log.add(i, 1, CommandOrigin::viewer, proto::Command(proto::Pause{}));
-  CHECK(log.entries().size() == 10);
-  CHECK(log.entries().front().index == 15);
-  CHECK(log.entries().back().index == 24);
-}
-
 TEST_CASE("a drag without a message for 2 s ends by a command in the log, and its viewer is told") {
   TestRoom t(false);
   t.join(1);
