@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
+#include <vector>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -54,13 +56,34 @@ void feed(XXH64_state_t& hash, const Pin& pin) {
   feed(hash, rest.data(), rest.size());
 }
 
+/// All numbers of an environment, those of its fans at the end.
+std::vector<double> numbers_of(const EnvironmentDef& environment) {
+  std::vector<double> numbers;
+  const auto note = [&numbers](const FieldInfo&, const auto& value) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>)
+      numbers.push_back(static_cast<double>(value));
+    else
+      numbers.insert(numbers.end(), value.data(), value.data() + value.size());
+  };
+  visit_fields_of_environment(environment, note);
+  for (const FanDef& fan : environment.fans) visit_fields_of_fan(fan, note);
+  return numbers;
+}
+
+/// Conditions that are as defined add nothing.
+void feed(XXH64_state_t& hash, const Conditions& conditions) {
+  const std::vector<double> present = numbers_of(conditions.present);
+  if (present != numbers_of(conditions.defined)) feed(hash, present.data(), present.size());
+  if (conditions.softness != 1) feed(hash, &conditions.softness, 1);
+}
+
 }  // namespace
 
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
                          const std::vector<ColliderDef>& defs, const ColliderStates& colliders,
                          const std::vector<Gripper>& grippers, const std::vector<char>& asleep,
-                         std::uint64_t tick) {
+                         const Conditions& conditions, std::uint64_t tick) {
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(Real), "positions are hashed as plain numbers");
   XXH64_state_t hash;
   XXH64_reset(&hash, 0);
@@ -88,16 +111,17 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
   }
   for (std::size_t k = 0; k < colliders.size(); ++k) feed(hash, k, defs[k], colliders[k]);
   for (const Gripper& gripper : grippers) feed(hash, gripper);
+  feed(hash, conditions);
   return XXH64_digest(&hash);
 }
 
 template std::uint64_t state_hash(const ClothState<float>&, const Pins&, const Grabs<float>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
                                   const std::vector<Gripper>&, const std::vector<char>&,
-                                  std::uint64_t);
+                                  const Conditions&, std::uint64_t);
 template std::uint64_t state_hash(const ClothState<double>&, const Pins&, const Grabs<double>&,
                                   const std::vector<ColliderDef>&, const ColliderStates&,
                                   const std::vector<Gripper>&, const std::vector<char>&,
-                                  std::uint64_t);
+                                  const Conditions&, std::uint64_t);
 
 }  // namespace weft

@@ -152,8 +152,8 @@ class World {
   /// Throws DefinitionError if the ray is not finite or has no direction.
   std::optional<ClothHit> pick(const Vec3d& origin, const Vec3d& direction) const;
 
-  /// Hash of all that decides the future: positions, velocities, pins, grabs, poses of colliders
-  /// that move, tick.
+  /// Hash of all that decides the future beside the definition: positions, velocities, pins, grabs,
+  /// poses of colliders that move, environment and softness where they were set, tick.
   /// While all cloths sleep the tick is not part of it.
   std::uint64_t hash() const;
 

@@ -176,7 +176,7 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 template <class Real>
 std::uint64_t World<Real>::hash() const {
   return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, sleep_.asleep(),
-                    tick_);
+                    {environment_, def_.environment, softness_}, tick_);
 }
 
 template <class Real>

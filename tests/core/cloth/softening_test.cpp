@@ -34,7 +34,8 @@ TEST_CASE("a cloth softened to a quarter moves bit for bit as one woven so, in h
   }
   CHECK(softened.report().substeps == woven.report().substeps);
   CHECK(softened.report().substeps == Approx(0.5 * full).margin(1));
-  CHECK(softened.hash() == woven.hash());
+  CHECK(softened.state().x == woven.state().x);
+  CHECK(softened.state().v == woven.state().v);
   CHECK(softened.report().energies.stretch == woven.report().energies.stretch);
 }
 

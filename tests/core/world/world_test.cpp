@@ -54,6 +54,28 @@ TEST_CASE("the hash sees one bit of one velocity, a pin, a hand and its target")
   CHECK(world.hash() != held);
 }
 
+TEST_CASE("the hash sees an environment, a fan and a softness that are not the scene's own") {
+  World<float> world(hung_cloth());
+  const EnvironmentDef own = world.environment();
+  const std::uint64_t start = world.hash();
+  EnvironmentDef other = own;
+  other.drag += 0.125;
+  world.set_environment(other);
+  const std::uint64_t dragged = world.hash();
+  CHECK(dragged != start);
+  other = own;
+  other.fans.emplace_back();
+  world.set_environment(other);
+  CHECK(world.hash() != start);
+  CHECK(world.hash() != dragged);
+  world.set_environment(own);
+  CHECK(world.hash() == start);
+  world.set_softness(0.5);
+  CHECK(world.hash() != start);
+  world.set_softness(1);
+  CHECK(world.hash() == start);
+}
+
 TEST_CASE("what a hand of 1e5 N/m holds comes after a jump of metres at 30 m/s, and it says so") {
   World<float> world(hung_cloth());
   const GrabId hand = world.grab({50, {0.2, 0.3, 0.5}, 0.05, 1e5, 1e6, Vec3d(0, 0, 0)});
