@@ -48,8 +48,9 @@ WorldDef Room::definition_of(const std::string& scene) const {
 /// Puts a scene in the place of the present one; nothing of it can fail.
 void Room::start_world(BuiltScene&& scene) {
   world_ = std::move(scene.world);
-  repairs_ = std::move(scene.repairs);
-  for (const std::string& what : repairs_) spdlog::warn("scene {}: {}", world_->def().name, what);
+  scene_notices_ = std::move(scene.notices);
+  for (const SceneNotice& notice : scene_notices_)
+    spdlog::warn("scene {}: {}", world_->def().name, notice.message);
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
@@ -112,7 +113,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
   output_.send(id, text_message(proto::encode_roster(roster()), Topic::roster));
   output_.send(id, text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins));
   output_.send(id, text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs));
-  for (const std::string& what : repairs_) output_.send(id, repair_notice(what));
+  for (const SceneNotice& notice : scene_notices_) output_.send(id, message_of(notice));
   output_.welcome_done(id);
   viewer.wants_frame = true;
   if (!in_tick_) show_to(id);
@@ -248,11 +249,11 @@ void Room::tell_slow_motion(double now) {
          "the cloth is too heavy for its tick rate and moves in slow motion", 0, {}, factor);
 }
 
-Message Room::repair_notice(const std::string& what) const {
+Message Room::message_of(const SceneNotice& what) const {
   proto::Notice notice;
   notice.level = proto::NoticeLevel::warning;
-  notice.code = "mesh_repaired";
-  notice.message = what;
+  notice.code = what.code;
+  notice.message = what.message;
   notice.tick = world_->tick();
   return text_message(proto::encode_notice(notice));
 }

@@ -182,7 +182,7 @@ class Room {
   void tell_loaded(proto::ViewerId viewer);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
-  Message repair_notice(const std::string& what) const;
+  Message message_of(const SceneNotice& notice) const;
   proto::State state() const;
   std::vector<proto::ViewerInfo> roster() const;
   std::vector<proto::PinInfo> pins() const;
@@ -312,7 +312,7 @@ class Room {
   std::vector<PinId> pins_on_way_;   // as told
   std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as told
   GuaranteeWatch guarantee_;
-  std::vector<std::string> repairs_;  // of the scene's objects
+  std::vector<SceneNotice> scene_notices_;
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };

@@ -61,8 +61,8 @@ void Room::tell_loaded(ViewerId viewer) {
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
-  for (const std::string& what : repairs_)
-    notify(proto::NoticeLevel::warning, "mesh_repaired", what);
+  for (const SceneNotice& notice : scene_notices_)
+    notify(proto::NoticeLevel::warning, notice.code, notice.message);
   tell_guarantee();
   tell_changes();
 }

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/world/cost.h"
 #include "core/world/object_repair.h"
+#include "core/world/spring_hold.h"
 
 namespace weft::server {
 
@@ -23,6 +24,15 @@ ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
   }
 }
 
+std::vector<SceneNotice> notices_of(const ServedWorld& world,
+                                    const std::vector<std::string>& repairs) {
+  std::vector<SceneNotice> notices;
+  for (const std::string& repair : repairs) notices.push_back({"mesh_repaired", repair});
+  for (const SlackSprings& slack : slack_springs(world))
+    notices.push_back({"springs_slack", describe(slack)});
+  return notices;
+}
+
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
   const SerialScope serial;
   check_size(def);
@@ -31,9 +41,10 @@ BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limi
   runtime.clock = &process_seconds;
   BuiltScene built;
   WorldDef repaired = def;
-  built.repairs = repair_objects(repaired);
+  const std::vector<std::string> repairs = repair_objects(repaired);
   built.world = std::make_unique<ServedWorld>(repaired, runtime);
   check_cost(built.world->cost_in(def.environment), "scene", def.name);
+  built.notices = notices_of(*built.world, repairs);
   stop_point();
   proto::Bytes bytes = proto::encode_mesh_data(scene_mesh(*built.world));
   built.mesh = mesh_announcement(*built.world);

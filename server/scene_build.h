@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/executor.h"
 #include "server/message.h"
@@ -18,6 +20,12 @@ namespace weft::server {
 /// @param tick_limit  CPU time [s]
 ComingStarts look_ahead(const ServedWorld& world, double tick_limit);
 
+/// What people should know of a scene as it was built.
+struct SceneNotice {
+  const char* code;  ///< of the notice
+  std::string message;
+};
+
 /// Everything about a scene that takes long to make and may fail: what is left when it takes the
 /// place of another one cannot.
 struct BuiltScene {
@@ -25,8 +33,12 @@ struct BuiltScene {
   proto::MeshAnnouncement mesh;  ///< but for its epoch
   SharedBytes mesh_bytes;
   ComingStarts bad_starts;           ///< that its first tick finds
-  std::vector<std::string> repairs;  ///< of its objects' meshes, a sentence each
+  std::vector<SceneNotice> notices;  ///< for people, of its start
 };
+
+/// Whatever is to be said of a world at its start beside `repairs` of its objects.
+std::vector<SceneNotice> notices_of(const ServedWorld& world,
+                                    const std::vector<std::string>& repairs);
 
 /// Builds a scene, and looks one tick ahead for what starts where it should not be. Throws
 /// DefinitionError where it cannot be built or would cost too much, and Stopped where a stop signal

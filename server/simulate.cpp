@@ -300,10 +300,14 @@ int simulate(const SimulateOptions& options) {
   check_out(options.out);
   WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
-  const std::vector<std::string> notices = repair_objects(def);
-  for (const std::string& notice : notices) std::fprintf(stderr, "weft: %s\n", notice.c_str());
+  const std::vector<std::string> repairs = repair_objects(def);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  std::vector<std::string> notices;
+  for (const SceneNotice& notice : notices_of(world, repairs)) {
+    notices.push_back(notice.message);
+    std::fprintf(stderr, "weft: %s\n", notice.message.c_str());
+  }
   const std::optional<Measurement> measured = run(world, options);
   if (!measured) {
     std::fprintf(stderr,
