@@ -8,6 +8,7 @@ namespace weft::fuzz {
 namespace {
 
 constexpr std::size_t kMostListed = 40;
+constexpr double kMostHalted = 0.02;  // of all scenes may meet the tick limit
 
 /// A text without its numbers, so that what differs in them alone is one kind.
 std::string kind_of(const std::string& text) {
@@ -83,7 +84,11 @@ void Table::add(const std::string& name, const Outcome& outcome, const Ending& e
   waits_over_ += outcome.waits_over;
   recoveries_ += outcome.recoveries;
   halts_ += outcome.halts;
-  if (outcome.halts > 0) ++halted_runs_, ++halt_causes_[kind_of(outcome.halt)];
+  if (outcome.halts > 0) {
+    ++halted_runs_;
+    ++halt_causes_[kind_of(outcome.halt)];
+    halted_.push_back(name);
+  }
   not_finite_ += outcome.not_finite_energy + outcome.not_finite_frames;
   false_promises_ += outcome.false_promises;
   internal_ += outcome.internal_errors;
@@ -107,6 +112,11 @@ void Table::add(const std::string& name, const Outcome& outcome, const Ending& e
   slow_.push_back(line + repeat);
 }
 
+bool Table::good() const {
+  return failures_.empty() && slow_.empty() &&
+         static_cast<double>(halted_runs_) <= kMostHalted * static_cast<double>(runs_) + 1;
+}
+
 std::string Table::text() const {
   std::string out;
   for (const std::string& failure : failures_) out += "FAILED  " + failure;
@@ -114,6 +124,7 @@ std::string Table::text() const {
     out += "SLOW    " + slow_[k];
   if (refused_ > 0) out += "refused, by kind:\n" + kinds_text(refusals_);
   if (halts_ > 0) out += "halts, by cause:\n" + kinds_text(halt_causes_);
+  for (const std::string& name : halted_) out += "halted  ./dev fuzz " + name + "\n";
   out += count_line("scenes", runs_) + count_line("  refused", refused_) +
          count_line("  refused without field or limit", bare_refusals_) +
          count_line("commands", commands_) + count_line("  answered by an error", errors_) +

@@ -19,8 +19,9 @@ class Table {
   /// So many words on each failure, and the sums.
   std::string text() const;
 
-  /// Whether nothing crashed, hung, failed within or told something that is not finite.
-  bool good() const { return failures_.empty(); }
+  /// Whether nothing crashed, hung, failed within, told something that is not finite or took longer
+  /// than it may, and at most one scene in fifty met the tick limit.
+  bool good() const;
 
   std::uint64_t runs() const { return runs_; }
 
@@ -41,7 +42,7 @@ class Table {
   double cpu_ = 0;
   Longest tick_, wait_, build_;
   std::map<std::string, int> refusals_, halt_causes_;  ///< by kind
-  std::vector<std::string> failures_, slow_;
+  std::vector<std::string> failures_, slow_, halted_;
 };
 
 }  // namespace weft::fuzz
