@@ -7,7 +7,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/solver/substep_rule.h"
+#include "core/cloth/stability_bound.h"
 
 namespace weft {
 

@@ -105,7 +105,7 @@ struct IndexRange {
 };
 
 /// Bounds of the highest squared frequency of the membrane and of bending [1/s^2], and the matching
-/// bounds of damping rates [1/s]; see solver/substep_rule.h.
+/// bounds of damping rates [1/s]; see stability_bound.h.
 struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
   double membrane_damping_rate = 0, bending_damping_rate = 0;

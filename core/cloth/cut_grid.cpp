@@ -6,7 +6,7 @@
 #include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/grid_springs.h"
-#include "core/solver/substep_rule.h"
+#include "core/cloth/stability_bound.h"
 
 namespace weft {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "core/cloth/bending_stencil.h"
 #include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_springs.h"
-#include "core/forces/bending_stencil.h"
-#include "core/solver/substep_rule.h"
+#include "core/cloth/stability_bound.h"
 
 namespace weft {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/forces/hinge.h"
+#include "core/geometry/hinge_angle.h"
 #include "core/geometry/triangle_sides.h"
 
 namespace weft {

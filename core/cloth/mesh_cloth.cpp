@@ -6,9 +6,9 @@
 
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
+#include "core/cloth/stability_bound.h"
 #include "core/error.h"
-#include "core/forces/hinge.h"
-#include "core/solver/substep_rule.h"
+#include "core/geometry/hinge_angle.h"
 
 namespace weft {
 namespace {

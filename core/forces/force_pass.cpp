@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/forces/air.h"
-#include "core/forces/bending_stencil.h"
+#include "core/cloth/bending_stencil.h"
+#include "core/forces/air/air_force.h"
 #include "core/forces/hinge.h"
 #include "core/forces/spring.h"
+#include "core/geometry/hinge_angle.h"
 
 namespace weft {
 namespace {

@@ -6,7 +6,7 @@
 #define WEFT_GRID_AIR_INL_H
 #endif
 
-#include "core/forces/air.h"
+#include "core/forces/air/air_force.h"
 #include "core/forces/grid_layout-inl.h"
 #include "core/math/lanes-inl.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/forces/bending_stencil.h"
+#include "core/cloth/bending_stencil.h"
 #include "core/forces/grid_kernels.h"
 
 namespace weft {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/forces/bending_stencil.h"
+#include "core/cloth/bending_stencil.h"
 #include "core/forces/mesh_kernels.h"
 
 namespace weft {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/forces/bending_stencil.h"
+#include "core/cloth/bending_stencil.h"
 
 namespace weft {
 namespace {

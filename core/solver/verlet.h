@@ -5,15 +5,15 @@
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collision.h"
+#include "core/cloth/stability_bound.h"
 #include "core/definition.h"
 #include "core/diagnostics/energies.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/forces/mesh_pass.h"
+#include "core/profile.h"
 #include "core/solver/blow_up.h"
-#include "core/solver/substep_rule.h"
-#include "core/world/profile.h"
+#include "core/solver/collision.h"
 
 namespace weft {
 
@@ -108,7 +108,7 @@ struct VerletWorkspace {
 /// a dt/2). Contact corrects the velocities between each kick and drift, the
 /// seed's also positions after it.
 ///
-/// @param dt        substep [s], stable by substep_rule.h
+/// @param dt        substep [s], stable by stability_bound.h
 /// @param substeps  at least 1
 template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,

@@ -7,7 +7,7 @@
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/colliders/collider_state.h"
-#include "core/world/environment.h"
+#include "core/forces/air/environment.h"
 
 namespace weft {
 

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/forces/air/wind.h"
 #include "core/geometry/ray_cast.h"
 #include "core/stop_signal.h"
-#include "core/world/wind.h"
 
 namespace weft {
 namespace {

@@ -9,11 +9,11 @@
 #include "core/contact/colliders/collider.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/diagnostics/measurements.h"
+#include "core/forces/air/environment.h"
 #include "core/solver/implicit/implicit.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
 #include "core/world/budget.h"
-#include "core/world/environment.h"
 #include "core/world/script.h"
 #include "core/world/sleep.h"
 

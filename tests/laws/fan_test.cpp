@@ -1,4 +1,4 @@
-#include "core/world/fan.h"
+#include "core/forces/air/fan.h"
 
 #include <catch2/catch.hpp>
 

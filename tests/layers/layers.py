@@ -37,6 +37,9 @@ ROOMS = {
     "tests/laws": (("core", "tests"), re.compile(r"(boost/.*|nlohmann/.*)$")),
     "tests/proto": (("proto", "tests"), re.compile(r"(boost/.*|Eigen/.*)$")),
 }
+# Folders of core, the lowest first; files beside the folders are below all of them.
+FLOORS = ("math", "geometry", "cloth", "forces", "contact", "attachments", "diagnostics", "solver", "world",
+          "scenes")
 CLOCK_USE = re.compile(r"std::chrono|\b(clock_gettime|gettimeofday|random_device)\b")
 
 IMPORT = re.compile(
@@ -69,6 +72,12 @@ def cpp_problems(name, text):
             flag = header == "atomic" and str(name) == RAISED_FROM_OTHER_THREADS
             if forbidden.match(header) and not flag:
                 yield f"{room} must not include <{header}>"
+    if room == "core":
+        if len(name.parts) > 2 and name.parts[1] not in FLOORS:
+            yield f"core/{name.parts[1]} is no floor of core"
+        for quote, header in headers:
+            if quote == '"' and header.startswith("core/") and floor_of(header) > floor_of(name):
+                yield f"{header} is on a floor above this file"
     for quote, header in headers:
         if quote == '"' and not is_from_root(header):
             yield f"{header} is not included from the root"
@@ -82,6 +91,12 @@ def cpp_problems(name, text):
             yield "only server/translate joins core and proto"
     if name.suffix == ".h" and not name.stem.endswith("-inl") and "#pragma once" not in text:
         yield "has no #pragma once"
+
+
+def floor_of(name):
+    """The height of a file of core; -1 beside the folders."""
+    folders = PurePosixPath(name).parts[1:-1]
+    return FLOORS.index(folders[0]) if folders and folders[0] in FLOORS else -1
 
 
 def is_from_root(header):

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/forces/hinge.h"
+#include "core/geometry/hinge_angle.h"
 #include "core/world/world.h"
 
 namespace weft::test {

@@ -19,7 +19,7 @@
 #include "core/contact/guard/row_deals.h"
 #include "core/contact/tangles/cloth_tangles.h"
 #include "core/executor.h"
-#include "core/world/profile.h"
+#include "core/profile.h"
 
 namespace weft {
 

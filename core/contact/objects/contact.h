@@ -20,7 +20,7 @@
 #include "core/contact/objects/lone_rows.h"
 #include "core/contact/objects/mesh_shape.h"
 #include "core/executor.h"
-#include "core/world/profile.h"
+#include "core/profile.h"
 
 namespace weft {
 

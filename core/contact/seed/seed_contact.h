@@ -10,7 +10,7 @@
 #include "core/contact/seed/seed_equations.h"
 #include "core/contact/seed/seed_shape.h"
 #include "core/geometry/cloth_trees.h"
-#include "core/world/profile.h"
+#include "core/profile.h"
 
 namespace weft {
 

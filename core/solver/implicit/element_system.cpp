@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "core/forces/bending_stencil.h"
+#include "core/cloth/bending_stencil.h"
 #include "core/forces/hinge.h"
+#include "core/geometry/hinge_angle.h"
 
 namespace weft {
 namespace {

@@ -6,14 +6,14 @@
 #include "core/attachments/grabs.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
-#include "core/contact/collision.h"
+#include "core/cloth/stability_bound.h"
 #include "core/definition.h"
 #include "core/forces/energy_pass.h"
+#include "core/profile.h"
+#include "core/solver/collision.h"
 #include "core/solver/implicit/element_system.h"
 #include "core/solver/implicit/grid_system.h"
-#include "core/solver/substep_rule.h"
 #include "core/solver/verlet.h"
-#include "core/world/profile.h"
 
 namespace weft {
 

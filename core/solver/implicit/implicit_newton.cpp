@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/forces/air.h"
+#include "core/forces/air/air_force.h"
 #include "core/solver/implicit/conjugate_gradients.h"
 #include "core/solver/implicit/implicit_step.h"
 #include "core/stop_signal.h"

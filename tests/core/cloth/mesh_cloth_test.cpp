@@ -5,10 +5,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/cloth/bending_stencil.h"
 #include "core/error.h"
-#include "core/forces/bending_stencil.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/hinge.h"
+#include "core/geometry/hinge_angle.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
 #include "tests/support/seeded_random.h"

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/forces/air.h"
+#include "core/forces/air/air_force.h"
 #include "core/forces/energy_pass.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"

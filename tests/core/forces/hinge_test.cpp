@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/geometry/hinge_angle.h"
 #include "tests/support/random.h"
 
 using namespace weft;

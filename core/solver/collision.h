@@ -5,7 +5,7 @@
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/contact.h"
 #include "core/contact/seed/seed_contact.h"
-#include "core/world/profile.h"
+#include "core/profile.h"
 
 namespace weft {
 

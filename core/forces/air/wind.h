@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/forces/air/environment.h"
 #include "core/types.h"
-#include "core/world/environment.h"
 
 namespace weft {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/definition.h"
-#include "core/world/fan.h"
+#include "core/forces/air/fan.h"
 
 namespace weft {
 

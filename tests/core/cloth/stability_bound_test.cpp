@@ -1,4 +1,4 @@
-#include "core/solver/substep_rule.h"
+#include "core/cloth/stability_bound.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,11 @@
-#include "core/solver/substep_rule.h"
+#include "core/cloth/stability_bound.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/forces/bending_stencil.h"
-#include "core/forces/hinge.h"
+#include "core/cloth/bending_stencil.h"
+#include "core/geometry/hinge_angle.h"
 
 namespace weft {
 namespace {

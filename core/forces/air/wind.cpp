@@ -1,8 +1,8 @@
-#include "core/world/wind.h"
+#include "core/forces/air/wind.h"
 
 #include <algorithm>
 
-#include "core/forces/gust.h"
+#include "core/forces/air/gust.h"
 
 namespace weft {
 namespace {
