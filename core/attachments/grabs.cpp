@@ -201,9 +201,8 @@ template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs) {
   validate(def, model.triangles.size());
-  const std::size_t busy = grabs.list.size() + grabs.shots.size();
-  if (busy >= kMostGrabs)
-    throw DefinitionError("drag", std::to_string(busy + 1),
+  if (!has_room(grabs))
+    throw DefinitionError("drag", std::to_string(kMostGrabs + 1),
                           "at most " + std::to_string(kMostGrabs) + " at once",
                           "release one first");
   Grab<Real> grab;

@@ -89,6 +89,12 @@ bool idle(const Grabs<Real>& grabs) {
 
 inline constexpr std::size_t kMostGrabs = 256;  ///< of hands and shots together
 
+/// Whether one more hand may take hold.
+template <class Real>
+bool has_room(const Grabs<Real>& grabs) {
+  return grabs.list.size() + grabs.shots.size() < kMostGrabs;
+}
+
 /// Takes hold. The target starts where the point is unless `def.target` says otherwise.
 /// Throws DefinitionError if a field is out of range or there are too many grabs.
 template <class Real>

@@ -15,12 +15,16 @@ using PinId = std::uint32_t;
 
 inline constexpr double kLeastPinSpeed = 1e-3, kMostPinSpeed = 20;  ///< [m/s]
 
+/// Farthest that a pin may be sent along an axis [m].
+inline constexpr double kFarthestPinTarget = 1e4;
+
 /// Where a pin is to go. It goes there in a straight line and is a target that lags when blocked:
 /// its particles follow as fast as the bound of its force and what is in their way let them.
 struct PinMove {
-  Vec3d target = Vec3d::Zero();  ///< of its middle particle [m], components within 1e4
-  double speed = 2;              ///< at most [m/s], 0.001 to 20
-  double max_force = 50;         ///< of the pin on the cloth while it is on its way [N], 0 to 1e6
+  Vec3d target =
+      Vec3d::Zero();      ///< of its middle particle [m], components within kFarthestPinTarget
+  double speed = 2;       ///< at most [m/s], 0.001 to 20
+  double max_force = 50;  ///< of the pin on the cloth while it is on its way [N], 0 to 1e6
 };
 
 /// The way of a pin until it has arrived. See pin_drive.h.
@@ -90,7 +94,9 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
 /// Describes each field of a move to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_pin_move(Def& move, Visitor&& visit) {
-  visit(FieldInfo{"position", -1e4, 1e4, "m", "where the middle of the pin goes"}, move.target);
+  visit(FieldInfo{"position", -kFarthestPinTarget, kFarthestPinTarget, "m",
+                  "where the middle of the pin goes"},
+        move.target);
   visit(FieldInfo{"speed", kLeastPinSpeed, kMostPinSpeed, "m/s", "of the pin, at most"},
         move.speed);
   visit(FieldInfo{"max_force", 0, 1e6, "N", "of the pin on its way; beyond it the pin lags"},

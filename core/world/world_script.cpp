@@ -72,7 +72,9 @@ void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
     PinMove move;
     move.target = pin.path ? pin.path->move.target
                            : state_.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
-    move.target += insult.pinned;
+    // Pins that are led on and on stop where a command may send them at most.
+    move.target =
+        (move.target + insult.pinned).cwiseMax(-kFarthestPinTarget).cwiseMin(kFarthestPinTarget);
     move.speed = insult.pin_speed;
     move_pin(pin.id, move);
   }
@@ -94,7 +96,7 @@ void World<Real>::run_script() {
   for (std::size_t k = 0; k < def_.hands.size(); ++k) {
     const HandDef& hand = def_.hands[k];
     SceneHand& held = scene_hands_[k];
-    if (tick_of(hand.path.front().time) == tick_ && grabs_.list.size() < kMostGrabs) {
+    if (tick_of(hand.path.front().time) == tick_ && has_room(grabs_)) {
       GrabDef def = hold_of(model_, hand);
       for (std::size_t c = 0; c < 3; ++c) {
         const Index corner = model_.triangles[static_cast<std::size_t>(def.triangle)][c];

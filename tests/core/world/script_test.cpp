@@ -86,3 +86,35 @@ TEST_CASE("winds and insults out of range are refused by name, and winds out of 
   def.insults[0].pin_speed = 21;
   CHECK(refused(def) == "insults[0].pin_speed");
 }
+
+TEST_CASE("pins that a scene leads on and on stop where commands may send them") {
+  WorldDef def = hanging();
+  def.cloths[0].origin = Vec3d(10, 0, 0);
+  InsultDef insult;
+  insult.pinned = Vec3d(100, -100, 100);
+  def.insults.assign(kMostInsults, insult);
+  World<float> world(def);
+  REQUIRE_NOTHROW(world.step());
+  for (const Pin& pin : world.pins().list) {
+    REQUIRE(pin.path);
+    CHECK(pin.path->move.target.cwiseAbs().maxCoeff() <= kFarthestPinTarget);
+    CHECK(pin.path->move.target.x() > 9900);
+  }
+}
+
+TEST_CASE("a hand of the scene takes hold as long as there is room beside all others and shots") {
+  const std::size_t free = GENERATE(0u, 1u, 2u);
+  WorldDef def = hanging();
+  HandDef hand;
+  hand.path = {{0.05, Vec3d::Zero()}, {1, Vec3d(0, 0, 0.1)}};
+  def.hands = {hand, hand};
+  World<float> world(def);
+  GrabDef sling;
+  sling.mode = GrabMode::sling;
+  sling.target = Vec3d(0, 0, 0.1);
+  REQUIRE(world.fire(world.grab(sling)));
+  for (std::size_t k = 0; k + 1 + free < kMostGrabs; ++k) world.grab(GrabDef{});
+  while (world.report().time < 0.06) REQUIRE_NOTHROW(world.step());
+  REQUIRE(world.grabs().shots.size() == 1);
+  CHECK(world.grabs().list.size() == kMostGrabs - 1);
+}
