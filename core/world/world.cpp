@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/forces/air/wind.h"
+#include "core/forces/air/air.h"
 #include "core/geometry/ray_cast.h"
 #include "core/stop_signal.h"
 
@@ -176,7 +176,7 @@ void World<Real>::prepare_solver() {
 /// Arrays for air and shots, as soon as there are any: no tick allocates.
 template <class Real>
 void World<Real>::make_room() {
-  const bool air = has_air(environment_) || !def_.winds.empty();
+  const bool air = !is_calm(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
   if (solver_of(def_) != SolverKind::relaxation)
     verlet_.make_room(model_, air, !grabs_.shots.empty());
@@ -196,12 +196,11 @@ void World<Real>::blow_wind() {
   surroundings_.gravity = environment_.gravity.template cast<Real>();
   surroundings_.drag = environment_.drag;
   surroundings_.air_density = environment_.air_density;
-  surroundings_.air = has_air(environment_);
+  surroundings_.air = !is_calm(environment_);
   if (!surroundings_.air) return;
   const StageTimer timer(report_.profile, Stage::air, 0);
   const double time = static_cast<double>(tick_) / def_.tick_rate;
-  report_.profile[Stage::fans].work +=
-      sample_wind(environment_, time, state_.x, surroundings_.wind);
+  report_.profile[Stage::fans].work += sample_air(environment_, time, state_.x, surroundings_.wind);
 }
 
 template <class Real>

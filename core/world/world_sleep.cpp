@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/forces/air/air.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -64,7 +65,7 @@ void World<Real>::rouse_sleepers() {
     if (pin.path) disturb(pin.centre);
   }
   // A wind that does not change leaves cloth that has come to rest in it at rest.
-  if (has_air(environment_) && environment_.gust_speed > 0) sleep_.disturb_all();
+  if (changes_by_itself(environment_)) sleep_.disturb_all();
   for (const BadStart<Real>& start : contact_.bad_starts())
     sleep_.disturb(static_cast<std::size_t>(start.cloth));
   if (guard_ && guard_->open_pairs() > 0) sleep_.disturb_all();

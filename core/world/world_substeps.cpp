@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/forces/air/air.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -64,19 +65,12 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
     bound.omega2 += part.bounds.membrane_omega2;
     bound.damping_rate += part.bounds.membrane_damping_rate;
   }
-  if (!has_air(environment)) return bound;
-  // Air damps at rate rho C_n |u| / sigma; u is bounded by the wind and the fastest particle.
-  double fastest = environment.wind.norm() + 2 * environment.gust_speed;
-  for (const FanDef& fan : environment.fans) fastest += fan.speed;
+  if (is_calm(environment)) return bound;
   double speed2 = 0;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
     speed2 =
         std::max(speed2, static_cast<double>(state_.v[static_cast<std::size_t>(i)].squaredNorm()));
-  fastest += std::sqrt(speed2);
-  const FabricDef& fabric = part.fabric;
-  bound.damping_rate +=
-      (environment.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
-      fabric.areal_density;
+  bound.damping_rate += air_damping_rate(environment, part.fabric, std::sqrt(speed2));
   return bound;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/forces/air/air.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
 #include "tests/bench/measures.h"
@@ -30,7 +31,7 @@ std::vector<Variant> variants(const WorldDef& def) {
   const auto any = [&](auto&& test) {
     return std::any_of(def.cloths.begin(), def.cloths.end(), test);
   };
-  without("wind", has_air(def.environment), [](WorldDef& d) {
+  without("wind", !is_calm(def.environment), [](WorldDef& d) {
     d.environment.wind.setZero();
     d.environment.gust_speed = 0;
     d.environment.still_air = false;

@@ -19,13 +19,6 @@ struct EnvironmentDef {
   std::vector<FanDef> fans;            ///< local winds, at most kMostFans
 };
 
-/// True if the air forces must be evaluated: something blows, or still air was asked for.
-inline bool has_air(const EnvironmentDef& e) {
-  bool blows = e.still_air || e.gust_speed > 0 || !e.wind.isZero(0);
-  for (const FanDef& fan : e.fans) blows = blows || fan.speed > 0;
-  return e.air_density > 0 && blows;
-}
-
 /// Describes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_environment(Def& e, Visitor&& visit) {

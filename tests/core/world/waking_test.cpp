@@ -188,3 +188,27 @@ TEST_CASE("a cloth that comes wakes its neighbour before they touch; they rest a
   world.grab(touch(world, world.model().parts[1].triangles.first, 0.1));
   CHECK_FALSE(world.sleep().any_asleep());
 }
+
+TEST_CASE("a sleeper is awake before what comes is nearer than its thickness, at any speed") {
+  const double speed = GENERATE(0.01, 0.1, 1.0);
+  ClothDef sheet = curtain("one", 0);
+  sheet.fabric.thickness = 0.02;
+  WorldDef def = hanging({sheet});
+  const double radius = 0.1;
+  def.colliders = {{"ball", SphereDef{Vec3d(-0.5, 0.75, 0.25), radius}}};
+  World<double> world(def);
+  REQUIRE(run_to_sleep(world) > 0);
+  MoveDef move;
+  move.target.position = Vec3d(0.5, 0.75, 0.25);
+  move.speed = speed;
+  world.move_collider(0, move);
+  double gap = 1;
+  while (world.sleep().all_asleep() && gap > 0) {
+    gap = 1;
+    for (const Vec3d& x : world.state().x)
+      gap = std::min(gap, (x - world.colliders()[0].pose.position).norm() - radius);
+    world.step();
+  }
+  // As it was at the start of the tick in which it woke.
+  CHECK(gap >= sheet.fabric.thickness);
+}

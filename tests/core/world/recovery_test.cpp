@@ -1,0 +1,58 @@
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/worlds.h"
+
+// What is left of a tick that was taken back.
+
+using namespace weft;
+
+namespace {
+
+/// A cloth that lies on a ball and on itself.
+WorldDef draped(SolverKind solver, int substeps) {
+  ClothDef cloth = test::flat_cloth(17, 17);
+  cloth.width = cloth.height = 0.6;
+  cloth.origin = Vec3d(-0.3, 0.32, -0.3);
+  cloth.v = Vec3d::UnitZ();
+  WorldDef def = test::empty_world(cloth);
+  def.contact.seed.self = SelfContact::automatic;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.drag = 2;
+  def.colliders = {{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.1}},
+                   {"ground", PlaneDef{Vec3d::Zero(), Vec3d::UnitY()}}};
+  def.solver.kind = solver;
+  def.solver.min_substeps = def.relaxation.substeps = substeps;
+  return def;
+}
+
+}  // namespace
+
+TEST_CASE("a tick that is done again begins like that of a world put there, contact included") {
+  const SolverKind solver = GENERATE(SolverKind::verlet, SolverKind::relaxation);
+  World<float> world(draped(solver, 20));
+  test::advance(world, 0.7);
+  const Vec3Array<float> x = world.state().x, v = world.state().v;
+  world.state().v[40][1] = std::numeric_limits<float>::quiet_NaN();
+  world.step();
+  REQUIRE(world.report().divergence);
+  REQUIRE(world.report().divergence->cause == DivergenceCause::not_finite);
+  REQUIRE(world.report().divergence->remedy == DivergenceRemedy::more_substeps);
+
+  World<float> other(draped(solver, world.report().substeps));
+  other.state().x = x;
+  other.state().v = v;
+  other.accept_state();
+  for (int tick = 0; tick < 3; ++tick) {
+    if (tick > 0) {  // the coming ticks of the first have its usual substeps again
+      world.state().v[40][1] = std::numeric_limits<float>::quiet_NaN();
+      world.step();
+      other.accept_state();
+    }
+    other.step();
+    REQUIRE(world.report().substeps == other.report().substeps);
+    REQUIRE(world.state().x == other.state().x);
+    REQUIRE(world.state().v == other.state().v);
+  }
+}
