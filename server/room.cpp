@@ -139,8 +139,13 @@ std::optional<double> Room::step_world() {
   const double start = clock_();
   gives_up_ = over_limit_ = false;
   in_tick_ = true;
+  tick_failure_.clear();
   // A tick that is ended throws nothing: its report tells.
-  within_limit([this] { world_->step(); });
+  try {
+    within_limit([this] { world_->step(); });
+  } catch (const std::exception& error) {
+    tick_failure_ = error.what();
+  }
   in_tick_ = false;
   const TickReport& report = world_->report();
   last_tick_done_ = clock_();

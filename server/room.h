@@ -274,9 +274,10 @@ class Room {
   std::optional<Advance> advance_;
   std::optional<Building> building_;
   std::deque<Inbound> waiting_;
-  bool in_tick_ = false;     ///< a tick passes
-  bool gives_up_ = false;    ///< it is to be ended for a command that replaces the state
-  bool over_limit_ = false;  ///< it is to be ended because it takes too long
+  bool in_tick_ = false;      ///< a tick passes
+  bool gives_up_ = false;     ///< it is to be ended for a command that replaces the state
+  std::string tick_failure_;  ///< what the tick under way threw; empty: nothing
+  bool over_limit_ = false;   ///< it is to be ended because it takes too long
 
   std::map<proto::ViewerId, Viewer> viewers_;
   std::vector<Hand> hands_;

@@ -133,11 +133,12 @@ void Room::charge(proto::ViewerId viewer, double cost) {
 /// Says that a tick was given up: it is in the log, so that a replay does the same.
 void Room::note_halt() {
   const std::string cause =
-      over_limit_
+      !tick_failure_.empty() ? "the server failed at it: " + tick_failure_
+      : over_limit_
           ? "it took more than " + proto::number_text(options_.limit->seconds()) + " s of CPU"
           : "a command that replaces the state came";
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Halt{cause});
-  if (!over_limit_) return;
+  if (!over_limit_ && tick_failure_.empty()) return;
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Pause{});
   paused_ = state_changed_ = frame_wanted_ = true;
   steps_left_ = 0;

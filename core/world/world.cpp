@@ -124,6 +124,9 @@ const TickReport& World<Real>::step() {
     step_in_order();
   } catch (const Stopped&) {
     go_back();
+  } catch (...) {
+    go_back();
+    throw;
   }
   return report_;
 }

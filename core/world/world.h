@@ -97,7 +97,8 @@ class World {
   explicit World(const WorldDef& def, const Runtime& runtime = {});
 
   /// Advances by one tick of 1 / tick_rate seconds. A stop signal of the calling thread ends it in
-  /// the midst of its work, with the same result as `halt`.
+  /// the midst of its work, with the same result as `halt`; so does what is thrown in it, which no
+  /// legal scene does, and which is thrown on.
   const TickReport& step();
 
   /// What a tick that was given up leaves: the state at its start, contact that has to look for

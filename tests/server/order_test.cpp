@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,28 @@ TEST_CASE("a tick beyond its limit is given up, told with its cause, logged, and
   CHECK(std::holds_alternative<proto::Pause>(entries[1].command));
   CHECK(entries[0].tick == 10);
   CHECK(entries[0].origin == CommandOrigin::limit);
+  t.room->say(1, R"({"op":"resume"})");
+  t.room->tick(5);
+  CHECK(t.get().world().tick() == 15);
+}
+
+TEST_CASE("a tick that fails is taken back, told and logged, and the room lives on, paused") {
+  HaltingRoom t;
+  t.room->join(1);
+  t.room->tick(10);
+  const std::string before = hash_of(t.get());
+  t.at_stop = [] { throw std::runtime_error("a planted failure"); };
+  t.room->tick(1);
+  t.at_stop = nullptr;
+  CHECK(t.get().world().tick() == 10);
+  CHECK(hash_of(t.get()) == before);
+  CHECK(t.get().paused());
+  t.room->clock.now += 1;
+  t.get().finish_turn();
+  const json notice = t.room->output.last("notice");
+  CHECK(notice["code"] == "halted");
+  CHECK(notice["message"].get<std::string>().find("a planted failure") != std::string::npos);
+  CHECK(std::holds_alternative<proto::Halt>(t.get().log().entries().front().command));
   t.room->say(1, R"({"op":"resume"})");
   t.room->tick(5);
   CHECK(t.get().world().tick() == 15);
