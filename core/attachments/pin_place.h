@@ -31,7 +31,7 @@ struct MaterialPoint {
 using PinPlace = std::variant<Index, Corner, EdgeStrip, MaterialPoint>;
 
 /// Fixes a piece of the fabric where it is. A single particle is a point singularity whose strain
-/// grows with resolution; a disc of fixed physical radius is not (PHYSICS.md section 2).
+/// grows with resolution; a disc of fixed physical radius is not.
 struct PinDef {
   PinPlace place = Index(0);
   double radius = 0;       ///< of the disc in the fabric [m], 0 to 100; 0 fixes the particle alone.

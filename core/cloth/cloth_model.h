@@ -57,8 +57,8 @@ struct GridSprings {
   Real damping_per_stiffness = 0;                     ///< beta = c/k [s]
 };
 
-/// Bending of a grid that is flat at rest, as a quadratic form with a constant Hessian
-/// (PHYSICS.md section 2): energy density 1/2 (B_w |x_uu|^2 + B_f |x_vv|^2 + (B_w + B_f) |x_uv|^2).
+/// Bending of a grid that is flat at rest, as a quadratic form with a constant Hessian:
+/// energy density 1/2 (B_w |x_uu|^2 + B_f |x_vv|^2 + (B_w + B_f) |x_uv|^2).
 /// All zero if the cloth bends by hinges or not at all.
 template <class Real>
 struct QuadraticBending {
@@ -149,11 +149,10 @@ struct ClothModel {
 
 /// Builds one cloth, as a model of one part.
 ///
-/// A grid as in PHYSICS.md section 2: structural and shear springs whose continuum limit is the
-/// fabric's tensor, hinges over alternating diagonals whose bending rigidity is B in every
-/// direction. A mesh as in mesh_cloth.h. Throws DefinitionError if a field is out of range, a
-/// spring would have negative stiffness (shear too large for the cell's shape) or a mesh is
-/// degenerate.
+/// A grid has structural and shear springs whose continuum limit is the fabric's tensor, and hinges
+/// over both ways to split its cells, half of each, whose bending rigidity is B in every direction.
+/// A mesh as in mesh_cloth.h. Throws DefinitionError if a field is out of range, a spring would
+/// have negative stiffness (shear too large for the cell's shape) or a mesh is degenerate.
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def);
 

@@ -111,7 +111,8 @@ template void finish_grid(const ClothDef&, ClothModel<float>&);
 template void finish_grid(const ClothDef&, ClothModel<double>&);
 
 // An edge along v bends with curvature along u. The diagonals resist twist alone, so their weight
-// is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean (PHYSICS.md section 2).
+// is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean: so every direction
+// has the rigidity of the fabric (tests/laws/bending_test.cpp).
 double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
   constexpr double kAlongAxis = 1e-9;
   if (du < kAlongAxis) return fabric.bending_warp;

@@ -34,7 +34,7 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
 
 /// Gives every spring of a part of the model the dashpot c = beta k with beta = 2 zeta / omega of
 /// the membrane's highest mode. Without it a shaken cloth keeps its high modes hot for ever
-/// (NUMERICS.md d).
+/// (tests/laws/shaking_test.cpp).
 template <class Real>
 void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio);
 

@@ -11,9 +11,9 @@
 
 namespace weft {
 
-/// Springs, dashpots and quadratic bending of one part of the model by gathering (NUMERICS.md a):
-/// each particle adds up what pulls it to those that come later, and takes what earlier ones have
-/// found. No order of particles matters, so the part need not be a grid.
+/// Springs, dashpots and quadratic bending of one part of the model by gathering: each particle
+/// adds up what pulls it to those that come later, and takes what earlier ones have found. No order
+/// of particles matters, so the part need not be a grid.
 template <class Real>
 class MeshPass {
  public:

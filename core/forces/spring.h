@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Keeps divisions by the squared length finite when both ends coincide [m^2]. The dashpot divides
-/// by it twice, so it must not be too small for float (NUMERICS.md a).
+/// Keeps divisions by the squared length finite when both ends coincide [m^2]. The elastic force
+/// divides by the root of it alone, the dashpot by it, so it must not be too small for float.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
 /// Force on end i of a spring from x_i to x_j (the opposite acts on j) [N]:

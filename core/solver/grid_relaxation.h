@@ -63,7 +63,7 @@ void move_grid(const SweepView<double>& grid);
 /// sweeps of relaxation.h, coloured within each row and in vector code chosen for the processor
 /// when the program runs. Only + - * / and square roots in a fixed order, so the choice does not
 /// change a bit. The variable is the way x' - x: positions of two steps agree in all but their
-/// last bits, and their difference loses float precision at small substeps (NUMERICS.md c).
+/// last bits, and their difference loses float precision at small substeps.
 template <class Real>
 class GridRelaxation {
  public:

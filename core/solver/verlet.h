@@ -102,8 +102,8 @@ struct VerletWorkspace {
   std::size_t bytes() const;
 };
 
-/// Leapfrog over one tick (NUMERICS.md a), started and ended with half a kick, so that positions
-/// and velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet
+/// Leapfrog over one tick (Verlet 1967), started and ended with half a kick, so that positions and
+/// velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet
 /// loses float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 +
 /// a dt/2). Contact corrects the velocities between each kick and drift, the
 /// seed's also positions after it.

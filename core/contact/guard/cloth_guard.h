@@ -24,7 +24,7 @@
 namespace weft {
 
 /// Contact of cloths with themselves and each other, with the promise that no particle passes a
-/// triangle and no edge another one (PHYSICS.md section 4).
+/// triangle and no edge another one; section 4 of core/README.md is an overview.
 ///
 /// Two nested regions keep the work small. All particles stay in balls of `reach` around a
 /// predicted straight path: pairs of features whose balls never meet are not looked at. Of the
@@ -38,7 +38,7 @@ namespace weft {
 ///
 /// A contact solver keeps gaps open, so that the regions seldom have to: rows of near pairs, frozen
 /// for some substeps, projected Gauss-Seidel on velocities with Coulomb friction that sticks to
-/// anchors (CONTACT.md).
+/// anchors.
 template <class Real>
 class ClothGuard {
  public:

@@ -27,7 +27,7 @@ namespace weft {
 template <class Real>
 class ClothGuard;
 
-/// Contact of cloths with objects, at rest or moving (CONTACT.md's recipe for objects).
+/// Contact of cloths with objects, at rest or moving; section 4 of core/README.md is an overview.
 ///
 /// Three nested lists keep the work small, each valid while no particle has moved farther than its
 /// allowance, which is checked with the coming motion before every drift:

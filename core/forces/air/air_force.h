@@ -9,7 +9,7 @@ namespace weft {
 /// Keeps the division by the length of a normal finite where a triangle has no area [m^4].
 inline constexpr double kSmallestSquaredNormal = 1e-30;
 
-/// Force of the air on a triangle [N] (PHYSICS.md section 2):
+/// Force of the air on a triangle [N], the drag of a plate and skin friction:
 /// 1/2 rho C_n A |u_n| u_n n + c_t A u_t, with u the wind relative to the triangle.
 ///
 /// @param doubled_normal  (b - a) x (c - a), twice the area vector [m^2]

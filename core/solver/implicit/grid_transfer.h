@@ -39,7 +39,7 @@ void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const doubl
 
 /// Each coarse spring is the sum of the parallel fine ones about it, by their bilinear weight
 /// across it and by the squared part of its length that they cover: what is compressed in wrinkles
-/// does not make the coarse cloth soft (NUMERICS.md b).
+/// does not make the coarse cloth soft, as springs made anew from every second position would.
 void coarsen_springs(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
                      TransferLines<float>& lines);
 void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,

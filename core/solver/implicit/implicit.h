@@ -82,7 +82,7 @@ struct ImplicitWorkspace {
 };
 
 /// One tick of the implicit solver: BDF2 with a few Newton iterations and conjugate gradients,
-/// on grids after multigrid (NUMERICS.md b),
+/// on grids with multigrid as preconditioner (multigrid.h),
 ///   v' = (3x' - 4x + x_before) / 2h,   M (3v' - 4v + v_before) / 2h = f(x', v') - alpha M v',
 /// or backward Euler where the substep before does not count: at the start, for who was stopped or
 /// pushed by contact, pins or anybody between ticks, and after a change of the substep. Springs,

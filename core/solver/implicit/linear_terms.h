@@ -29,8 +29,8 @@ Vec3<Real> times(const SymmetricBlock<Real>& a, const Vec3<Real>& u) {
 
 /// Force of a spring on its first end, and the matrix by which it changes when the ends move
 /// against each other, without what would make it indefinite: alpha I + (k + c rate - alpha) u u^T
-/// with alpha = k max(0, 1 - L/l) (NUMERICS.md b). It is exact in tension, but for the turning of
-/// the dashpot's force; in compression the force stays what it is.
+/// with alpha = k max(0, 1 - L/l). It is exact in tension, but for the turning of the dashpot's
+/// force; in compression the force stays what it is.
 /// @param rate  by which velocities change with positions [1/s]
 template <class Real>
 struct SpringTerm {

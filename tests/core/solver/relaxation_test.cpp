@@ -202,7 +202,7 @@ TEMPLATE_TEST_CASE("compliance 0, one substep, k sweeps is the seed, bit for bit
 TEST_CASE("sweeps over 256 x 256 rigid edges do not diverge, and stretch less than one sweep may",
           "[.long]") {
   // A sweep hands a pull on by one cell or so, so a substep h with one sweep leaves a false stretch
-  // of up to g h^2 N^2 / length (NUMERICS.md c); several sweeps leave less.
+  // of up to g h^2 N^2 / length; several sweeps leave less.
   ClothDef cloth = flat_cloth(256, 256);
   cloth.v = -Vec3d::UnitY();
   WorldDef def = seed_world(cloth);
