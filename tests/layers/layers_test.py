@@ -61,7 +61,7 @@ VIOLATIONS = [
     ("core/a.cpp", "\n" * 401, "401 lines"),
     ("dev", "\n" * 401, "401 lines"),
     ("stuff/a.cpp", "\n", "top level"),
-    ("notes.md", "\n", "top level"),
+    ("notes.m" "d", "\n", "top level"),
     ("web/package-lock.json", '"resolved": "https://registry.invalid/x.tgz"\n', "download"),
 ]
 
