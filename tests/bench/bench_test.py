@@ -269,6 +269,7 @@ class Bench(unittest.TestCase):
                          "32², 64² of swing at commit b, medians of up to 5 runs; "
                          "64² of drape at commit c, medians of up to 4 runs; "
                          "256² at commit a, medians of up to 3 runs.")
+        self.assertEqual(tables.sizes_taken([cell("a", 256, 1)]), "256² at commit a, one run each.")
 
     def test_a_commit_is_not_taken_for_a_number(self):
         self.assertEqual([tables.number(text) for text in ("5311e71", "1.5e-05", "3e+20", "-2", "yes")],

@@ -98,7 +98,7 @@ def why_not(cells):
 
 
 def cost_of_accuracy(cells, scene="swing"):
-    """What 10 %, 1 % and 0.1 % cost at each N: the table of the README."""
+    """What 10 %, 1 % and 0.1 % cost at each N."""
     rows = []
     for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
         for fabric in FABRICS:
@@ -279,8 +279,8 @@ def sizes_taken(cells):
     def part(commit):
         all_there = {cell["scene"] for cell in cells if cell["n"] in sizes[commit]}
         of = "" if scenes[commit] == all_there else f" of {', '.join(sorted(scenes[commit]))}"
-        return (f"{', '.join(f'{n}²' for n in sorted(sizes[commit]))}{of} at commit {commit}, medians of up to "
-                f"{runs[commit]} runs")
+        times = "one run each" if runs[commit] == 1 else f"medians of up to {runs[commit]} runs"
+        return f"{', '.join(f'{n}²' for n in sorted(sizes[commit]))}{of} at commit {commit}, {times}"
 
     return "; ".join(part(commit) for commit in sorted(sizes, key=lambda c: min(sizes[c]))) + "."
 
