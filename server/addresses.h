@@ -11,9 +11,9 @@ namespace weft::server {
 /// IPv6 link-local ones, which a browser cannot open.
 std::vector<boost::asio::ip::address> interface_addresses();
 
-/// Hosts, as URLs have them, under which a server that listens on `bind` can be opened: the address
-/// itself, or where it stands for all (0.0.0.0 or ::) each of `interfaces` that it includes, IPv4
-/// first. Never empty: without any interface it is the loopback address.
+/// Hosts, in URL form, under which a server that listens on `bind` can be opened: the address
+/// itself, or for a wildcard (0.0.0.0 or ::) each of `interfaces` that it covers, IPv4 first. Never
+/// empty: without any interface it is the loopback address.
 std::vector<std::string> hosts_to_open(const std::string& bind,
                                        const std::vector<boost::asio::ip::address>& interfaces);
 

@@ -11,24 +11,24 @@
 
 namespace weft::server {
 
-/// Watches what ticks take and says what to change so that they keep to a budget: the part of the
-/// wanted speed at which time may pass, and the softness of the springs. It decides by the median
-/// of a stretch of ticks, so that one slow tick changes nothing, and leaves a margin both ways, so
-/// that it does not swing.
+/// Watches tick times and decides how to keep to a budget: the fraction of the wanted speed at
+/// which time passes, and the softness of the springs. It decides by the median of a window of
+/// ticks, so that one slow tick changes nothing, and leaves a margin in both directions, so that it
+/// does not oscillate.
 class BudgetKeeper {
  public:
   static constexpr std::size_t kStretch = 30;  ///< ticks between two decisions
 
-  /// What holds for the ticks to come.
+  /// Applies to the coming ticks.
   struct Setting {
-    double pace = 1;      ///< part of the wanted speed, kLeastPace to 1
+    double pace = 1;      ///< fraction of the wanted speed, kLeastPace to 1
     double softness = 1;  ///< of the springs, kLeastSoftness to 1
     bool operator==(const Setting&) const = default;
   };
   static constexpr double kLeastPace = 0.01;
 
-  /// Starts anew, from what holds now.
-  /// @param most_softness  that was asked for; the way back ends there
+  /// Starts afresh from the current setting.
+  /// @param most_softness  requested softness; recovery stops there
   void restart(const BudgetDef& budget, const Setting& setting, double most_softness = 1) {
     budget_ = budget;
     setting_ = setting;
@@ -39,9 +39,9 @@ class BudgetKeeper {
   const BudgetDef& budget() const { return budget_; }
   const Setting& setting() const { return setting_; }
 
-  /// @param seconds  that a tick took
-  /// @param may_soften  whether fewer substeps would follow
-  /// @returns the new setting, if it is another one
+  /// @param seconds  duration of a tick
+  /// @param may_soften  whether softer springs would reduce the number of substeps
+  /// @returns the new setting, if it differs
   std::optional<Setting> add(double seconds, bool may_soften) {
     if (budget_.milliseconds <= 0) return std::nullopt;
     times_[count_++] = seconds;
@@ -56,13 +56,13 @@ class BudgetKeeper {
   }
 
  private:
-  // A change of less is not worth one; a way back is only taken when there is room for it.
+  // Smaller changes are not worth a command; the budget is given back only with room to spare.
   static constexpr double kSlack = 0.05, kRoom = 0.7, kAim = 0.9;
-  static constexpr double kFastestSoftening = 0.25;  // in one decision; the way back likewise
+  static constexpr double kFastestSoftening = 0.25;  // in one decision, and likewise in recovery
 
-  /// Two digits, so that people can read what holds.
+  /// Two significant digits, so that a person can read the setting.
   static double rounded(double value) {
-    // Divided and not multiplied: 70 / 1000 is 0.07, and 70 * 0.001 is not.
+    // A division, not a product: 70 / 1000 is 0.07, and 70 * 0.001 is not.
     const double per_unit = std::pow(10.0, 1 - std::floor(std::log10(value)));
     return std::floor(value * per_unit + 1e-9) / per_unit;
   }
@@ -71,7 +71,7 @@ class BudgetKeeper {
     Setting next = setting_;
     const double part = budget_.milliseconds / milliseconds;
     if (budget_.remedy == OverBudget::soften && may_soften && setting_.pace >= 1) {
-      // Substeps, and with them the time, go with the root of the stiffness.
+      // The substeps, and with them the time, scale with the root of the stiffness.
       const double wanted = setting_.softness * kAim * part * kAim * part;
       if (part < 1 - kSlack && setting_.softness > kLeastSoftness) {
         next.softness =

@@ -5,16 +5,17 @@
 
 namespace weft::server {
 
-/// Monotonic time [s]. A parameter wherever time decides something, so that tests bring their own.
+/// Monotonic time [s]. A parameter wherever time decides something, so that tests can replace it.
 using Clock = std::function<double()>;
 
-/// The clock of the process: seconds since its first use. Frames, `welcome` and `ping` speak of it.
+/// The clock of the process: seconds since its first use. Times in frames, `welcome` and `ping` are
+/// on this clock.
 inline double process_seconds() {
   static const auto start = std::chrono::steady_clock::now();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The moment of the process clock as a time point of the standard library, for waiting.
+/// Converts a process time to a time point of the standard library, for waiting.
 inline std::chrono::steady_clock::time_point time_point_of(double seconds) {
   const auto left = std::chrono::duration<double>(seconds - process_seconds());
   return std::chrono::steady_clock::now() +

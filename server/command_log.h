@@ -11,26 +11,26 @@
 
 namespace weft::server {
 
-/// Who decided that a command enters the order.
+/// Why a command entered the order.
 enum class CommandOrigin : std::uint8_t {
-  viewer,  ///< a client sent it
-  lease,   ///< a drag was not heard of for too long
-  leave,   ///< its viewer has gone
-  budget,  ///< ticks took more time than they may, or less again
-  limit,   ///< a tick took more CPU than it may, or became worthless, and was given up
+  viewer,  ///< sent by a client
+  lease,   ///< a drag received no target for too long
+  leave,   ///< its viewer left
+  budget,  ///< ticks exceeded the time budget, or fit it again
+  limit,   ///< a tick exceeded its CPU limit, or became worthless, and was given up
 };
 
-/// One accepted command at its place: after state `tick` and before the next one.
+/// One accepted command in its place: after state `tick` and before the next one.
 struct LogEntry {
   std::uint64_t tick = 0;
-  std::uint64_t index = 0;  ///< counts all commands of the room; never goes back
+  std::uint64_t index = 0;  ///< counts all commands of the room; never decreases
   proto::ViewerId viewer = 0;
   CommandOrigin origin = CommandOrigin::viewer;
   proto::Command command;
 };
 
-/// The total order of a room's commands. Scene and log are the whole history: whatever depends on
-/// wall time is in it as a command. Keeps the newest entries up to a bound.
+/// The total order of a room's commands. Scene and log are the whole history, because everything
+/// that depends on wall time is logged as a command. Keeps the newest entries up to a bound.
 class CommandLog {
  public:
   explicit CommandLog(std::size_t most_entries = 1 << 16) : most_entries_(most_entries) {}

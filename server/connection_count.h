@@ -7,10 +7,10 @@
 
 namespace weft::server {
 
-/// Counts open sockets, all and by address. Lives on the network thread.
+/// Counts open sockets, in total and per address. Lives on the network thread.
 class ConnectionCount {
  public:
-  /// Keeps a socket counted as long as it lives.
+  /// Counts one socket for as long as it exists.
   class Place {
    public:
     Place(ConnectionCount& count, std::string address)

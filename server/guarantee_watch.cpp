@@ -6,11 +6,11 @@
 namespace weft::server {
 namespace {
 
-constexpr double kCountShare = 0.01;  // of the time may go into counting
-constexpr double kCountPatience = 1;  // what a count is taken to need that was given up [s]
+constexpr double kCountShare = 0.01;  // share of the time that counting may take
+constexpr double kCountPatience = 1;  // assumed duration of a count that was given up [s]
 
-/// Ticks between two counts while something that crosses is named, so that it is soon told when it
-/// is out, also where nothing is counted else.
+/// Ticks between two counts while a named crossing lasts, so that its end is announced soon, even
+/// where no regular counts are made.
 constexpr std::uint32_t kPauseWhileThrough = 10;
 
 bool contains(const std::vector<std::string>& list, const std::string& text) {
@@ -49,13 +49,13 @@ void GuaranteeWatch::note_tick(const ServedWorld& world) {
     if (contains(voided_, name)) continue;
     news_.push_back(
         {proto::NoticeLevel::warning, "guarantee_void",
-         name + " was forced through the cloth: that nothing crosses is no longer promised"});
+         name + " was forced through the cloth: it is no longer promised that nothing crosses"});
   }
   voided_ = std::move(voided);
   look(world);
 }
 
-/// What is wrong now, as contact knows it, and as was counted last.
+/// Compares what contact knows now with the last count.
 void GuaranteeWatch::look(const ServedWorld& world) {
   BadStarts found{world.bad_starts(), world.open_pairs()};
   const std::size_t known = found.what.size();
@@ -66,12 +66,12 @@ void GuaranteeWatch::look(const ServedWorld& world) {
   tell_bad_starts(std::move(found));
 }
 
-/// Says once what started where nothing can be promised about it, and when all is clear.
+/// Announces once each start about which nothing can be promised, and when all are clear.
 void GuaranteeWatch::tell_bad_starts(BadStarts found) {
   for (const std::string& what : found.what) {
     if (contains(bad_starts_.what, what)) continue;
     news_.push_back({proto::NoticeLevel::warning, "guarantee_void",
-                     what + ": until it is out, that nothing crosses is not promised there"});
+                     what + ": until it is out, it is not promised that nothing crosses there"});
   }
   if (found.what.empty() && !bad_starts_.what.empty() && voided_.empty())
     news_.push_back({proto::NoticeLevel::info, "guarantee_back",
@@ -82,7 +82,7 @@ void GuaranteeWatch::tell_bad_starts(BadStarts found) {
 const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   if (crossings_ && uncounted_ == 0) return *crossings_;
   const double start = clock_();
-  // Where it takes too long it is tried again as late as if it had been done.
+  // A count that takes too long is retried as late as if it had finished.
   next_count_ = start + kCountPatience / kCountShare;
   std::vector<Meeting> meetings;
   const proto::Crossings counted = crossings_of(world, counter_, meetings);
@@ -90,7 +90,7 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   crossings_ = counted;
   uncounted_ = 0;
   displaced_ = false;
-  // Before the first tick the look ahead knows more.
+  // Before the first tick the look-ahead knows more.
   if (began_) {
     meetings_ = std::move(meetings);
     look(world);
@@ -124,9 +124,9 @@ proto::Guarantee GuaranteeWatch::guarantee(const ServedWorld& world) const {
     return guarantee;
   guarantee.state = proto::GuaranteeState::broken;
   guarantee.pairs = crossings_->count;
-  guarantee.reasons.emplace_back(
-      has_guard(world.def()) ? "edges pass through triangles, as was counted"
-                             : "cloth passes through cloth, from which nothing keeps it here");
+  guarantee.reasons.emplace_back(has_guard(world.def())
+                                     ? "edges pass through triangles, as counted"
+                                     : "cloth passes through cloth, which nothing prevents here");
   return guarantee;
 }
 

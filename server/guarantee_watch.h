@@ -10,47 +10,46 @@
 
 namespace weft::server {
 
-/// Watches a world's promise that nothing crosses: counts crossings from time to time, and knows
-/// when the promise ends and is back. Looks only, and so changes no bit of the motion.
+/// Watches a world's promise that nothing crosses: counts crossings from time to time, and reports
+/// when the promise ends or is restored. It only observes, so it changes no bit of the motion.
 class GuaranteeWatch {
  public:
-  /// Something that people shall be told.
+  /// Something that viewers should be told.
   struct News {
     proto::NoticeLevel level = proto::NoticeLevel::info;
     const char* code = "";
     std::string message;
   };
 
-  /// @param pause  ticks between two counts; 0: counts only when it is asked. They are also at
-  ///               least a hundred times as far apart as one takes, so that a large cloth does not
-  ///               stop for them.
-  /// @param clock  [s], for that alone
+  /// @param pause  ticks between two counts; 0: counts only on request. Counts are also at least a
+  ///               hundred times as far apart as one takes, so that a large cloth does not stall.
+  /// @param clock  [s], for spacing the counts
   GuaranteeWatch(std::uint32_t pause, Clock clock) : pause_(pause), clock_(std::move(clock)) {}
 
-  /// Another world, at its start.
-  /// @param starts  what its first tick will find where it should not be
+  /// Takes another world, at its start.
+  /// @param starts  faults that its first tick will find
   void start(const ServedWorld& world, ComingStarts starts);
   /// The same world is back at its start.
   void restart();
 
-  /// After a tick that changed the cloth or an object.
+  /// Call after a tick that changed the cloth or an object.
   void note_tick(const ServedWorld& world);
   /// Counts if a count is due.
   /// @returns whether the number of crossings has changed
   bool count_if_due(const ServedWorld& world);
-  /// Counts if the state has changed since it was counted, as one that stays does once.
-  /// @returns whether it did
+  /// Counts if the state has changed since the last count.
+  /// @returns whether it counted
   bool count_if_stale(const ServedWorld& world);
 
-  /// Of the present state: counted now, unless it was.
+  /// Crossings of the present state: counted now unless the count is up to date.
   const proto::Crossings& count(const ServedWorld& world);
 
-  /// As counted last, if it ever was.
+  /// The last count, if there was one.
   const std::optional<proto::Crossings>& crossings() const { return crossings_; }
-  /// Not held while anything crosses that was counted last.
+  /// Not held while anything crosses in the last count.
   proto::Guarantee guarantee(const ServedWorld& world) const;
 
-  /// What has happened since this was asked.
+  /// News since the last call.
   std::vector<News> take_news();
 
  private:
@@ -62,14 +61,14 @@ class GuaranteeWatch {
   ServedCrossings counter_;
   std::optional<proto::Crossings> crossings_, crossings_at_start_;
   std::uint32_t uncounted_ = 0;      ///< ticks since the last count
-  double next_count_ = 0;            ///< not before this [s]
-  ComingStarts starts_;              ///< as the look ahead found
-  BadStarts bad_starts_;             ///< that were told, and what else crosses
-  std::vector<Meeting> meetings_;    ///< who crosses whom, as counted last or at the start
-  bool began_ = false;               ///< there was a tick since the start
-  bool displaced_ = false;           ///< the scene put particles elsewhere since the last count
-  bool late_ = false;                ///< what crosses did not start so
-  std::vector<std::string> voided_;  ///< objects that were told of
+  double next_count_ = 0;            ///< earliest time of the next one [s]
+  ComingStarts starts_;              ///< found by the look-ahead
+  BadStarts bad_starts_;             ///< announced starts, and other crossings
+  std::vector<Meeting> meetings_;    ///< which pairs cross, as last counted or at the start
+  bool began_ = false;               ///< at least one tick since the start
+  bool displaced_ = false;           ///< the scene has moved particles since the last count
+  bool late_ = false;                ///< the crossings appeared after the start
+  std::vector<std::string> voided_;  ///< objects already announced
   std::vector<News> news_;
 };
 

@@ -20,10 +20,10 @@ namespace http = boost::beast::http;
 constexpr const char* kJson = "application/json";
 constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kMeshPath = "/api/v1/mesh/";
-/// A room that has not turned over for so long does not come back by itself [s].
+/// A room that has made no turn for this long does not recover by itself [s].
 constexpr double kDeadSeconds = 30;
 constexpr const char* kConnectPath = "/api/v1/connect";
-constexpr std::size_t kToldBytes = 80;  // of what a request said, in an error
+constexpr std::size_t kToldBytes = 80;  // of the request's text, in an error
 
 std::string_view view_of(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -110,9 +110,9 @@ HttpResponse foreign_host(const HttpRequest& request, const OriginRules& rules,
   return error_response(request, http::status::forbidden, error);
 }
 
-/// Brings the target `http://host/path` into the form `/path`, and its host into the place of that
-/// of the field Host (RFC 9112 section 3.2.2). A target of another form stays.
-/// @return false if its host is none
+/// Rewrites the target `http://host/path` to `/path`, and puts its host in place of the Host field
+/// (RFC 9112 section 3.2.2). Other forms of target stay.
+/// @return false if its host is invalid
 bool take_absolute_target(HttpRequest& request) {
   const std::string target(request.target());
   const std::size_t slashes = target.find("://");
@@ -126,7 +126,7 @@ bool take_absolute_target(HttpRequest& request) {
   return true;
 }
 
-/// Why a page of this origin may not open the socket; status 101 if it may.
+/// Reason why a page of this origin may not open the socket; status 101 if it may.
 HttpResponse check_origin(const ServiceContext& context, const HttpRequest& request,
                           std::string_view origin) {
   const auto host = parse_authority(view_of(request[http::field::host])).value_or(Authority{});
@@ -142,7 +142,7 @@ HttpResponse check_origin(const ServiceContext& context, const HttpRequest& requ
   return {http::status::switching_protocols, request.version()};
 }
 
-/// Why there is no room for another viewer; status 101 if there is.
+/// Reason why no further viewer is admitted; status 101 if one is.
 HttpResponse check_capacity(const ServiceContext& context, const HttpRequest& request) {
   const auto viewers = static_cast<std::size_t>(context.options.limits.viewers);
   if (context.hub.viewers() >= viewers || context.stopping) {
@@ -156,7 +156,7 @@ HttpResponse check_capacity(const ServiceContext& context, const HttpRequest& re
   return {http::status::switching_protocols, request.version()};
 }
 
-/// What the query `origin=` says; the target's own text, as an origin needs no escapes.
+/// Value of the query `origin=`, unescaped: an origin needs no escapes.
 std::string_view asked_origin(std::string_view target) {
   constexpr std::string_view kName = "origin=";
   for (std::size_t at = target.find('?'); at != std::string_view::npos; at = target.find('&', at)) {
@@ -166,7 +166,7 @@ std::string_view asked_origin(std::string_view target) {
   return {};
 }
 
-/// Tells a page in words what its refused socket does not: browsers hide the answer to an upgrade.
+/// Tells a page the reason of its refused socket, because browsers hide the answer to an upgrade.
 HttpResponse connect_response(const ServiceContext& context, const HttpRequest& request) {
   const std::string_view origin = asked_origin(view_of(request.target()));
   if (!origin.empty()) {
@@ -203,7 +203,7 @@ HttpResponse error_response(const HttpRequest& request, http::status status,
 HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request) {
   if (path_of(request) != "/ws") return not_found(request, path_of(request));
   const auto origin = request.find(http::field::origin);
-  if (origin != request.end()) {  // a browser
+  if (origin != request.end()) {  // sent by a browser
     HttpResponse refusal = check_origin(context, request, view_of(origin->value()));
     if (refusal.result() != http::status::switching_protocols) return refusal;
   }
@@ -226,7 +226,7 @@ std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpReque
   if (!take_absolute_target(request))
     return bad_request(request, "the target's host is none", view_of(request.target()));
   const auto field = request.find(http::field::host);
-  if (field == request.end()) return std::nullopt;  // HTTP/1.0: no browser
+  if (field == request.end()) return std::nullopt;  // HTTP/1.0: not a browser
   const std::optional<Authority> host = parse_authority(view_of(field->value()));
   if (!host) return bad_request(request, "Host is no host", view_of(field->value()));
   const OriginRules rules = rules_of(context);
@@ -248,7 +248,7 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
     const double stalled = context.readiness().stalled;
     if (stalled < kDeadSeconds) return response(request, http::status::ok, kText, "ok");
     return response(request, http::status::service_unavailable, kText,
-                    "the room has stood for " + std::to_string(std::lround(stalled)) + " s");
+                    "the room has made no turn for " + std::to_string(std::lround(stalled)) + " s");
   }
   if (path == "/readyz") {
     const proto::Readiness readiness = context.readiness();

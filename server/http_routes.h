@@ -19,17 +19,18 @@ std::string path_of(const HttpRequest& request);
 /// Whether the request wants to become a WebSocket connection.
 bool wants_upgrade(const HttpRequest& request);
 
-/// Why the host that a request is for is not answered to (origin.h): 400 where it names none, or
-/// several; nothing if it is. Brings a target in absolute form into origin form.
+/// Refuses a request for a host that this server does not serve (origin.h), and answers 400 if it
+/// names none or several; nothing if the host is accepted. Rewrites a target in absolute form to
+/// origin form.
 std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpRequest& request);
 
-/// Why this upgrade to a WebSocket is refused; status 101 if it is not.
+/// Reason why this upgrade to a WebSocket is refused; status 101 if it is accepted.
 HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request);
 
-/// The answer to a plain request. The body is left out for HEAD, with its length told.
+/// The answer to a plain request. HEAD gets no body, only its length.
 HttpResponse answer_request(const ServiceContext& context, const HttpRequest& request);
 
-/// An error with a JSON body, README.md section 2 of proto.
+/// An error with a JSON body, proto/README.md section 2.
 HttpResponse error_response(const HttpRequest& request, boost::beast::http::status status,
                             const proto::HttpError& error);
 

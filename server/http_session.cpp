@@ -27,8 +27,8 @@ using beast::error_code;
 constexpr std::size_t kMostHeaderBytes = 16 * 1024;
 constexpr std::string_view kHeaderEnd = "\r\n\r\n";
 
-/// Reads headers by itself and parses them when they are whole, so that not a byte of what a client
-/// sends behind its upgrade request is lost.
+/// Reads headers itself and parses them once they are complete, so that no byte that a client sends
+/// after its upgrade request is lost.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(ServiceContext& context, asio::ip::tcp::socket socket,
@@ -39,7 +39,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void start() {
-    // The first request has less time than later ones: whoever connects wants something.
+    // The first request has a shorter deadline than later ones: a new connection has a request to
+    // send.
     expire_after(context_.options.limits.handshake_seconds);
     take_request();
   }
@@ -119,7 +120,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       self->take_request();
     };
     if (request_.method() == http::verb::head || response_.result() == http::status::not_modified) {
-      // The length told is that of the body which is left out.
+      // The announced length is that of the omitted body.
       header_only_.emplace(response_);
       http::async_write_header(stream_, *header_only_, done);
       return;
@@ -127,7 +128,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::async_write(stream_, response_, done);
   }
 
-  // The connection counts until it is gone, so that its bounds bound all of them.
+  // The connection counts until it is closed, so that the limits cover closing ones too.
   void end() {
     async_lingering_close(stream_, [self = shared_from_this()](error_code) {});
   }

@@ -126,7 +126,7 @@ void Hub::tell_dropped(Viewer& viewer) {
   proto::Notice notice;
   notice.level = proto::NoticeLevel::warning;
   notice.code = "frames_dropped";
-  notice.message = std::to_string(dropped) + " frames were left out for this viewer";
+  notice.message = std::to_string(dropped) + " frames were dropped for this viewer";
   notice.count = dropped;
   viewer.channel->send(text_message(proto::encode_notice(notice)));
 }

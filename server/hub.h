@@ -14,8 +14,8 @@
 
 namespace weft::server {
 
-/// Hands what a room says to the channels of its viewers. Lives on the network thread; only
-/// `wants_frames` and `wants_forces` may be asked from elsewhere.
+/// Distributes a room's output to the channels of its viewers. Lives on the network thread; only
+/// `wants_frames` and `wants_forces` may be called from other threads.
 class Hub {
  public:
   Hub(Clock clock, double frame_rate, const ChannelLimits& limits, Metrics& metrics);
@@ -25,7 +25,7 @@ class Hub {
   void remove(proto::ViewerId viewer);
 
   void send(proto::ViewerId viewer, Message message);
-  /// To every viewer that was welcomed.
+  /// To every welcomed viewer.
   void broadcast(const Message& message);
   void welcome_done(proto::ViewerId viewer);
   void offer_mesh(std::uint64_t hash, SharedBytes bytes);
@@ -34,18 +34,18 @@ class Hub {
   void set_most_frames(proto::ViewerId viewer, double hz);
   void want_forces(proto::ViewerId viewer, bool wanted);
 
-  /// Sends what has become due, tells viewers of dropped frames, counts. Every 10 to 50 ms.
+  /// Sends what has become due, tells viewers of dropped frames, counts. Call every 10 to 50 ms.
   void poll();
 
-  /// Says `last` to everybody and closes.
+  /// Sends `last` to all viewers and closes their connections.
   void close_all(std::uint16_t code, const std::string& reason, const Message& last);
 
-  /// A mesh message by its hash: the present one or one of the last few.
+  /// Finds a mesh message by its hash: the present one or one of the last few.
   SharedBytes find_mesh(std::uint64_t hash) const;
 
   /// Whether any viewer takes frames; no frame needs to be encoded otherwise.
   bool wants_frames() const { return frame_takers_.load(std::memory_order_relaxed) > 0; }
-  /// Whether any of them takes contacts and reactions with them.
+  /// Whether any viewer takes contacts and reactions with its frames.
   bool wants_forces() const { return force_takers_.load(std::memory_order_relaxed) > 0; }
   std::size_t viewers() const { return viewers_.size(); }
   const Clock& clock() const { return clock_; }
@@ -66,7 +66,7 @@ class Hub {
   double frame_rate_;
   ChannelLimits limits_;
   Metrics& metrics_;
-  // Ordered, so that everybody is served in the same order in every run.
+  // Ordered, so that viewers are served in the same order in every run.
   std::map<proto::ViewerId, Viewer> viewers_;
   std::deque<std::pair<std::uint64_t, SharedBytes>> meshes_;
   std::atomic<int> frame_takers_{0}, force_takers_{0};

@@ -8,22 +8,22 @@
 
 namespace weft::server {
 
-/// A viewer has connected and waits for its `welcome`.
+/// A viewer has connected and awaits its `welcome`.
 struct Join {
   bool mesh_over_http = false;  ///< it fetches the binary mesh message itself
 };
 
-/// A viewer is gone.
+/// A viewer has left.
 struct Leave {};
 
 /// A text message that needed nothing of the room: refused, or answered by the session. Only its
-/// number matters, so that frames can tell that it is behind them.
+/// number matters, so that frames can report it as applied.
 struct Noted {
-  bool wants_frame = false;    ///< the viewer lacks what a frame would tell it, and wants one
-  std::optional<bool> forces;  ///< it wants them in its frames from now on, or no longer
+  bool wants_frame = false;    ///< the viewer lacks part of the present state, and wants a frame
+  std::optional<bool> forces;  ///< whether it wants them in its frames from now on
 };
 
-/// What reaches a room from its viewers, in the order of arrival.
+/// A room's input from its viewers, in order of arrival.
 struct Inbound {
   proto::ViewerId viewer = 0;
   std::uint32_t number = 0;  ///< of the text message within its connection, from 1

@@ -12,11 +12,11 @@
 
 namespace weft::server {
 
-// What a closing connection may still cost.
+// Time and bytes that a closing connection may still cost.
 inline constexpr std::chrono::seconds kLingerTime{5};
 inline constexpr std::size_t kLingerBytes = 64 << 20;
 
-/// Ends the sending half, then reads and throws away until the peer has ended its own.
+/// Ends the sending half, then reads and discards until the peer has ended its own.
 struct LingeringClose {
   using Part = std::array<char, 16 * 1024>;
 
@@ -28,7 +28,7 @@ struct LingeringClose {
   template <class Self>
   void operator()(Self& self, boost::beast::error_code error = {}, std::size_t bytes = 0) {
     if (!std::exchange(begun, true)) {
-      boost::beast::error_code ignored;  // a connection that is broken is noticed by reading
+      boost::beast::error_code ignored;  // reading notices a broken connection
       stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
       stream.expires_after(kLingerTime);
     }
@@ -42,13 +42,13 @@ struct LingeringClose {
   }
 };
 
-/// Closes a connection so that the peer gets what was sent last, also when it is still sending
-/// itself: a socket closed over unread bytes resets its connection, and the peer's system then
-/// throws away what the peer has not read yet (RFC 9112 section 9.6, RFC 1122 section 4.2.2.13).
-/// Bounded in time and bytes; beyond them the connection is reset.
-/// @param stream  nothing may be read or written on it; it has to live until the handler is called
-/// @param handler  called with no error if the peer closed, else with why it was cut; the stream is
-///                 closed in either case
+/// Closes a connection so that the last message reaches the peer even if that is still sending: a
+/// socket closed over unread bytes resets its connection, and the peer's system then discards what
+/// the peer has not read yet (RFC 9112 section 9.6, RFC 1122 section 4.2.2.13). Bounded in time and
+/// bytes; beyond them the connection is reset.
+/// @param stream  no read or write may be pending; it must live until the handler is called
+/// @param handler  called without error if the peer closed, else with the reason for the reset; the
+///                 stream is closed in either case
 template <class Handler>
 auto async_lingering_close(boost::beast::tcp_stream& stream, Handler&& handler) {
   return boost::asio::async_compose<Handler, void(boost::beast::error_code)>(LingeringClose{stream},

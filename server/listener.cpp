@@ -15,7 +15,7 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-// Sockets beyond the limit that are told so; more are closed without a word.
+// Sockets beyond the limit that get a refusal; further ones are closed without one.
 constexpr int kMostRefusals = 32;
 constexpr auto kComplaintPause = std::chrono::seconds(30);
 
@@ -27,7 +27,7 @@ Listener::Listener(asio::io_context& io, ServiceContext& context)
                                static_cast<unsigned short>(context.options.port));
   acceptor_.open(endpoint.protocol());
   acceptor_.set_option(asio::socket_base::reuse_address(true));
-  // Whatever the system's default, :: stands for every address, IPv4 too.
+  // On every system :: accepts IPv4 too, whatever its default.
   if (endpoint.address().is_v6()) acceptor_.set_option(asio::ip::v6_only(false));
   acceptor_.bind(endpoint);
   acceptor_.listen();
@@ -43,7 +43,7 @@ void Listener::accept() {
   acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
     if (error) {
-      // Most likely out of file descriptors: others have to end first.
+      // Most likely out of file descriptors: other connections have to end first.
       complain(error.message());
       pause_.expires_after(std::chrono::milliseconds(100));
       pause_.async_wait([this](boost::system::error_code stopped) {
@@ -61,15 +61,16 @@ void Listener::complain(const std::string& why) {
   ++failures_;
   if (now < next_complaint_) return;
   next_complaint_ = now + kComplaintPause;
-  spdlog::warn("no connection can be accepted: {} (failed attempts since this was last told: {})",
-               why, failures_);
+  spdlog::warn(
+      "no connection can be accepted: {} (failed attempts since the last such message: {})", why,
+      failures_);
   failures_ = 0;
 }
 
 void Listener::welcome(tcp::socket socket) {
   boost::system::error_code error;
   const tcp::endpoint remote = socket.remote_endpoint(error);
-  if (error) return;  // gone already
+  if (error) return;  // already closed
   const std::string address = remote.address().to_string();
   const ConnectionLimits& limits = context_.options.limits;
   const bool full = context_.connections.total() >= limits.connections ||

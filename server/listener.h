@@ -15,7 +15,7 @@ namespace weft::server {
 /// Accepts connections and counts them.
 class Listener {
  public:
-  /// Throws boost::system::system_error if the address cannot be listened on.
+  /// Throws boost::system::system_error if it cannot listen on the address.
   Listener(boost::asio::io_context& io, ServiceContext& context);
 
   int port() const { return acceptor_.local_endpoint().port(); }
@@ -31,7 +31,7 @@ class Listener {
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer pause_;
   std::chrono::steady_clock::time_point next_complaint_{};
-  std::uint64_t failures_ = 0;  ///< to accept, since the last complaint
+  std::uint64_t failures_ = 0;  ///< failed accepts since the last complaint
 };
 
 }  // namespace weft::server

@@ -39,7 +39,8 @@ void LogSink::format_and_write(const spdlog::details::log_msg& message) {
 }
 
 void LogSink::write(std::string_view line) const {
-  // Whole or not at all, as a pipe takes so many bytes; an error has nowhere to be told.
+  // Written whole or not at all, since the line fits a pipe's atomic write; an error cannot be
+  // reported anywhere.
   [[maybe_unused]] const ssize_t written = ::write(descriptor_, line.data(), line.size());
 }
 

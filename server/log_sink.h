@@ -8,12 +8,13 @@
 
 namespace weft::server {
 
-/// Writes log lines to a descriptor and never waits for it, so that a reader of standard error that
-/// stands still does not stop the physics. A line that a full pipe does not take is lost; once it
-/// takes lines again, one says how many were. Longer lines than a pipe takes whole are cut.
+/// Writes log lines to a descriptor without ever blocking, so that a stalled reader of standard
+/// error does not stop the physics. A line that does not fit into a full pipe is lost; the next
+/// line that fits is preceded by the number of lost ones. Lines longer than a pipe's atomic write
+/// are cut.
 ///
-/// It asks before it writes. Another process that writes to the same pipe may get in between, and
-/// then a line waits as it would have without this.
+/// It polls before it writes. If another process fills the same pipe in between, the write blocks
+/// after all.
 class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit LogSink(int descriptor) : descriptor_(descriptor) {}
@@ -27,7 +28,7 @@ class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
   void format_and_write(const spdlog::details::log_msg& message);
 
   int descriptor_;
-  std::uint64_t lost_ = 0;  ///< lines since the last one that was written
+  std::uint64_t lost_ = 0;  ///< lines since the last one written
 };
 
 }  // namespace weft::server

@@ -11,30 +11,30 @@
 
 namespace weft::server {
 
-/// The one place where the network thread hands something to the simulation thread.
+/// The only hand-over from the network thread to the simulation thread.
 class Mailbox {
  public:
   /// @param most_commands  of one viewer that may wait at a time
   explicit Mailbox(std::size_t most_commands) : most_commands_(most_commands) {}
 
-  /// Called whenever something was added or the mailbox was stopped or woken, on the thread that
-  /// did so. Set before the first of these.
+  /// Called whenever an item was added or the mailbox was stopped or woken, on the thread that did
+  /// so. Set it before the first of these.
   std::function<void()> on_arrival = [] {};
 
-  /// Adds at the end and wakes the reader. False, with nothing added, if the viewer has too many
-  /// commands waiting; everything but commands is always taken.
+  /// Appends and wakes the reader. False, with nothing added, if the viewer has too many commands
+  /// waiting; items other than commands are always accepted.
   bool put(Inbound item);
 
-  /// All that has come since the last call, in order.
+  /// Everything that has arrived since the last call, in order.
   std::vector<Inbound> take_all();
 
-  /// Tells that a command taken earlier is done with and counts no longer as waiting.
+  /// Tells that a command taken earlier is finished and no longer counts as waiting.
   void finished(proto::ViewerId viewer);
 
-  /// Sleeps until something is there, `stop` was called, or the process clock reads `deadline`.
+  /// Blocks until an item is there, `stop` was called, or the process clock reads `deadline`.
   void wait(double deadline);
 
-  /// Ends a `wait` although nothing has come.
+  /// Ends a `wait` without an item.
   void wake();
 
   void stop();

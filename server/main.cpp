@@ -42,7 +42,7 @@ Exit codes: 0 done, 1 failed, 2 what was asked for is refused; simulate: 3 somet
 tick took too long; 5 output could not be written
 )";
 
-/// Splits "key=value"; the key may not be empty.
+/// Splits "key=value"; the key must not be empty.
 std::pair<std::string, std::string> split_setting(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -56,8 +56,8 @@ std::string version_text() {
          version.simd + ")";
 }
 
-/// Adds an option whose value is read by us, because the library takes "" for 0 and does not say
-/// what is allowed.
+/// Adds an option whose value this program parses, because the library takes "" for 0 and does not
+/// name the allowed range.
 template <class Number>
 void add_number(CLI::App& command, const char* name, Number& value, const OptionRange& range,
                 const std::string& description) {
@@ -81,7 +81,7 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   serve.add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
   add_number(serve, "--port", o.port, kPorts, "Port (8080); 0 picks a free one");
   add_switch(serve, "--open", o.open,
-             "Let other machines in (needed for other addresses than loopback)");
+             "Let other machines in (needed for any address but loopback)");
   serve.add_option("--scene", o.scene, "Built-in scene, or a file that ends in .json")
       ->capture_default_str();
   serve.add_option("--scenes", o.scenes, "Directory of scenes and meshes that clients may name");
@@ -95,9 +95,10 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_number(serve, "--tick-limit", o.tick_limit, kTickLimits,
              "Seconds of CPU after which a tick is given up and the room pauses (2; 0: never)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
-  serve.add_option("--allow-origin", o.allowed_origins,
-                   "Origin whose pages may connect, and whose host is answered to, e.g. "
-                   "https://weft.example of a proxy, or http://localhost:3000; may be repeated");
+  serve.add_option(
+      "--allow-origin", o.allowed_origins,
+      "Origin whose pages may connect and whose host is accepted, e.g. "
+      "https://weft.example behind a proxy, or http://localhost:3000; may be repeated");
   add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (64)");
   add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (256)");
   add_number(serve, "--max-connections-per-address", l.connections_per_address, kSocketCounts,
@@ -105,16 +106,16 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_number(serve, "--max-messages-per-second", l.messages_per_second, kMessageRates,
              "Most messages a second of one viewer (1000)");
   add_number(serve, "--pong-seconds", l.pong_seconds, kPongSeconds,
-             "Close a viewer that gives no sign of life for so long (20)");
+             "Seconds without a sign of life after which a viewer is closed (20)");
   add_number(serve, "--max-seconds", o.max_seconds, kRunSeconds,
-             "Stop by itself after this (0: never)");
+             "Seconds after which the server stops by itself (0: never)");
   serve.add_option("--log-level", o.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
 }
 
 void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& settings) {
   CLI::App& simulate =
-      *app.add_subcommand("simulate", "Run a scene as fast as possible and sum up");
+      *app.add_subcommand("simulate", "Run a scene as fast as possible and print a summary");
   simulate.add_option("--scene", o.scene, "Built-in scene, or a file that ends in .json")
       ->capture_default_str();
   simulate.add_option("--scenes", o.scenes, "Directory of further scenes and their meshes");
@@ -126,10 +127,10 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,
              "Seconds of CPU after which a tick is given up, with exit code 4 (2; 0: never)");
   add_number(simulate, "--check-every", o.check_every, kTickCounts,
-             "Count crossings after every so many ticks (1); exit code 3 if there are any");
+             "Ticks between two counts of crossings (1); exit code 3 if there are any");
 }
 
-/// What is wrong with an option that is known: no value, two, or one where none belongs.
+/// Describes the misuse of a known option: no value, two, or one for a switch.
 std::string describe_mismatch(const CLI::App& command, const std::string& wrong) {
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();
@@ -147,13 +148,12 @@ std::string describe_mismatch(const CLI::App& command, const std::string& wrong)
 
 void add_scenes(CLI::App& app, ScenesOptions& o) {
   CLI::App& scenes = *app.add_subcommand("scenes", "List the built-in scenes");
-  scenes.add_option("NAME", o.name,
-                    "With --json: this scene, or file, with all that it leaves to defaults");
+  scenes.add_option("NAME", o.name, "With --json: this scene or file, with all defaults filled in");
   add_switch(scenes, "--json", o.json, "Print JSON");
   add_switch(scenes, "--schema", o.schema, "Print the JSON Schema of scene files");
 }
 
-/// One line that names what was wrong and what is allowed there.
+/// One line that names the error and the allowed values.
 std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string allowed;
   const auto chosen = app.get_subcommands();
@@ -170,7 +170,7 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc
   if (rest.empty()) return describe_mismatch(command, error.what());
   for (const CLI::Option* option : command.get_options())
     allowed += (allowed.empty() ? "" : ", ") + option->get_name();
-  // The library lists what it did not understand from behind; the first one is the cause.
+  // The library lists unknown arguments from the last to the first; the first one is the cause.
   const auto unknown = [&rest](const char* argument) {
     return std::find(rest.begin(), rest.end(), argument) != rest.end();
   };
@@ -179,7 +179,7 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc
          "; allowed: " + allowed;
 }
 
-/// Prints an error as one line, whatever bytes the arguments had.
+/// Prints an error as one line, whatever bytes the arguments contain.
 void complain(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';

@@ -25,7 +25,7 @@ constexpr rlim_t kMostProcessorSeconds = 5;
 constexpr rlim_t kMostMemory = rlim_t{1} << 30;
 constexpr char kGood = 'M', kRefused = 'E';
 
-/// Closes what it holds.
+/// Owns a file descriptor.
 struct Descriptor {
   int number = -1;
   explicit Descriptor(int given) : number(given) {}
@@ -47,7 +47,7 @@ void put(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Takes numbers from the front of what the child wrote; false once there are too few.
+/// Takes values from the front of the child's output; false once too few bytes are left.
 class Take {
  public:
   explicit Take(std::string_view bytes) : rest_(bytes) {}
@@ -113,7 +113,7 @@ pid_t spawn_child(const std::string& path, int input, int output) {
   return error == 0 ? child : -1;
 }
 
-/// Reads until the end, at most `most` bytes and until the deadline.
+/// Reads to the end of the stream, at most `most` bytes and until the deadline.
 /// @return whether the end came in time
 bool read_all(int from, std::size_t most, std::string& bytes) {
   const double deadline = process_seconds() + kMostWallSeconds;
@@ -202,7 +202,7 @@ int run_mesh_child(const std::string& name) {
     return 1;
   }
   const bool written = write_all(answer);
-  // Nothing of the library runs any more, whatever state the file left it in.
+  // Skips the library's destructors, whatever state the file left it in.
   _exit(written ? 0 : 1);
 }
 

@@ -9,17 +9,17 @@ namespace weft::server {
 /// The name of the subcommand that parses one mesh; for `read_mesh_apart` alone.
 inline constexpr const char* kMeshChildCommand = "mesh-child";
 
-/// What a mesh file in a folder may hold, so that neither its parsing nor its contact takes long.
+/// Limits of a mesh file in a folder, so that neither parsing nor contact takes long.
 inline constexpr MeshFileLimits kFolderMeshLimits = {32 << 20, 200'000, 400'000};
 
-/// Parses a mesh file in a process of its own, because the library that knows the formats hangs on
-/// some files and reads past the end of others. The child gets nothing but the file on its standard
-/// input: no environment, 5 s of processor time, 1 GiB of memory, no file to write, and from the
-/// moment it starts to parse no system call but those for memory, reading and writing (Linux on
-/// x86-64 and ARM; elsewhere the other limits hold). What it answers is checked like the file.
+/// Parses a mesh file in a separate process, because the library that knows the formats hangs on
+/// some files and reads past the end of others. The child gets only the file on its standard input:
+/// no environment, 5 s of processor time, 1 GiB of memory, no file to write, and from the moment it
+/// starts to parse no system calls but those for memory, reading and writing (Linux on x86-64 and
+/// ARM; elsewhere the other limits hold). Its output is checked like the file.
 ///
-/// A parser for a few formats of our own would be smaller, but GLB and the many kinds of PLY are
-/// what such libraries are for.
+/// A parser of our own would be smaller, but GLB and the many variants of PLY are what such
+/// libraries are for.
 ///
 /// @param path  a regular file
 /// Throws DefinitionError on field "mesh" if there is no such file or the child refuses it or

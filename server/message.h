@@ -10,7 +10,7 @@
 
 namespace weft::server {
 
-/// Bytes that many viewers share and nobody changes.
+/// Immutable bytes that many viewers share.
 class SharedBytes {
  public:
   SharedBytes() = default;
@@ -34,18 +34,17 @@ class SharedBytes {
   std::size_t size_ = 0;
 };
 
-/// What a message tells, as far as that decides what becomes of it in a queue. All but the first
-/// and the last tell how something is as a whole, so that a newer one replaces an older one that
-/// waits.
+/// The subject of a message, as far as that decides its fate in a queue. All but the first and the
+/// last describe a complete state, so that a newer one replaces an older one that waits.
 enum class Topic : std::uint8_t {
   none,  ///< must arrive
   state,
   roster,
   pins,
   grabs,
-  mesh,       ///< its announcement; `mesh_data`, `state`, `pins` and `grabs` of the mesh before go
+  mesh,       ///< its announcement; drops waiting `mesh_data`, `state`, `pins`, `grabs` of the last
   mesh_data,  ///< of any size
-  frame,      ///< one that must arrive; its sender bounds how many are on their way
+  frame,      ///< one that must arrive; its sender bounds how many are in flight
 };
 
 /// One WebSocket message.
@@ -53,7 +52,7 @@ struct Message {
   SharedBytes bytes;
   bool binary = false;
   Topic topic = Topic::none;
-  /// Kept until the message has been written, so that its sender can count those on their way.
+  /// Held until the message has been written, so that its sender can count those in flight.
   std::shared_ptr<const void> ticket = {};
 };
 
@@ -66,14 +65,14 @@ Message binary_message(Container bytes) {
   return {SharedBytes(std::move(bytes)), true};
 }
 
-/// An encoded frame; the same bytes for all viewers that ask for the same.
+/// An encoded frame; all viewers with the same wishes share the bytes.
 struct Frame {
   SharedBytes bytes;
   std::uint32_t sequence = 0;
-  SharedBytes with_forces = {};  ///< the same with contacts and reactions; empty if none were asked
-  bool at_once = false;          ///< not to be kept back for the viewer's `hz`
-  proto::ViewerId only_to = 0;   ///< 0: to everybody
-  proto::ViewerId not_to = 0;    ///< 0: none is left out
+  SharedBytes with_forces = {};  ///< the same with contacts and reactions; empty if not wanted
+  bool at_once = false;          ///< not delayed for the viewer's `hz`
+  proto::ViewerId only_to = 0;   ///< 0: to all viewers
+  proto::ViewerId not_to = 0;    ///< 0: excludes none
 };
 
 }  // namespace weft::server

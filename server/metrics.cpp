@@ -51,8 +51,8 @@ std::string Metrics::text() const {
          rested_ticks_.load());
   single(out, "ticks_halted_total", "counter", "Ticks that took too long and were given up.",
          halts_.load());
-  single(out, "cloths_asleep", "gauge", "Cloths that sleep.", asleep_.load());
-  head(out, "tick_seconds", "histogram", "Time that a tick took.");
+  single(out, "cloths_asleep", "gauge", "Sleeping cloths.", asleep_.load());
+  head(out, "tick_seconds", "histogram", "Duration of a tick.");
   std::uint64_t below = 0;
   for (std::size_t i = 0; i < kTickBounds.size(); ++i) {
     below += tick_counts_[i];
@@ -62,7 +62,8 @@ std::string Metrics::text() const {
   out << "weft_tick_seconds_bucket{le=\"+Inf\"} " << below << '\n'
       << "weft_tick_seconds_sum " << static_cast<double>(tick_nanoseconds_) * 1e-9 << '\n'
       << "weft_tick_seconds_count " << below << '\n';
-  single(out, "real_time_factor", "gauge", "Simulated per real time.", real_time_factor_.load());
+  single(out, "real_time_factor", "gauge", "Simulated time per real time.",
+         real_time_factor_.load());
   single(out, "viewers", "gauge", "Connected viewers.", viewers_.load());
   single(out, "frames_sent_total", "counter", "Frames handed to viewers.", frames_sent_.load());
   single(out, "frames_dropped_total", "counter", "Frames replaced by newer ones before sending.",

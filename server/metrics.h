@@ -9,14 +9,14 @@
 
 namespace weft::server {
 
-/// What the service counts about itself, for Prometheus. Safe from both threads.
+/// The service's counters about itself, for Prometheus. Safe from both threads.
 class Metrics {
  public:
   /// Upper bounds of the histogram of tick times [s].
   static constexpr std::array<double, 11> kTickBounds = {
       0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25};
 
-  /// @param rested  whether everything slept, so that the tick computed nothing
+  /// @param rested  whether all cloth slept, so that the tick computed nothing
   void count_tick(double seconds, bool rested = false);
   void count_command(const std::string& op) { count(commands_, op); }
   void count_error(const std::string& code) { count(errors_, code); }
@@ -27,7 +27,7 @@ class Metrics {
   void set_viewers(int viewers) { viewers_ = viewers; }
   void set_real_time_factor(double factor) { real_time_factor_ = factor; }
 
-  /// The text exposition format.
+  /// In Prometheus' text exposition format.
   std::string text() const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace weft::server {
 
-/// Carries what the room says over to the network thread, in order.
+/// Passes the room's output to the network thread, in order.
 class NetworkOutput : public RoomOutput {
  public:
   NetworkOutput(boost::asio::io_context& io, Hub& hub) : io_(io), hub_(hub) {}

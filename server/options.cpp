@@ -39,7 +39,7 @@ std::string OptionRange::text() const {
 }
 
 void check_range(const char* field, double value, const OptionRange& range) {
-  // Written so that NaN fails as well.
+  // Written so that NaN fails too.
   if (!(value >= range.minimum && value <= range.maximum))
     throw OptionError(field, text_of(value), range.text());
 }

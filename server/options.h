@@ -9,14 +9,14 @@
 
 namespace weft::server {
 
-/// An option that cannot be accepted; what() names field, value and what is allowed.
+/// An option that cannot be accepted; what() names field, value and allowed values.
 struct OptionError : std::runtime_error {
   OptionError(const std::string& field, const std::string& value, const std::string& allowed)
       : std::runtime_error(field + " = " + (value.empty() ? "(nothing)" : value) + ": allowed is " +
                            allowed) {}
 };
 
-/// What a number may be, ends included.
+/// Range of a number, ends included.
 struct OptionRange {
   double minimum, maximum;
   std::string text() const;  ///< e.g. "0 to 65535"
@@ -37,13 +37,13 @@ inline constexpr OptionRange kPongSeconds{0.1, 3600};  // [s]
 /// Throws OptionError if the value is NaN or out of range.
 void check_range(const char* field, double value, const OptionRange& range);
 
-/// Reads a decimal number; nothing may stand before or behind it. Throws OptionError if the text is
-/// none, or out of range.
+/// Parses a decimal number; no other characters may precede or follow it. Throws OptionError if the
+/// text is not a number or out of range.
 /// @param field  as the error names it, e.g. "--port"
 int parse_whole_number(const char* field, const std::string& text, const OptionRange& range);
 double parse_number(const char* field, const std::string& text, const OptionRange& range);
 
-/// What protects the server from its viewers.
+/// Limits that protect the server from its viewers.
 struct ConnectionLimits {
   int viewers = 64;                     ///< WebSocket connections
   int connections = 256;                ///< sockets of any kind
@@ -51,20 +51,20 @@ struct ConnectionLimits {
   double messages_per_second = 1000;    ///< text messages of one viewer; also the longest burst
   double handshake_seconds = 5;         ///< for a request to be complete
   double idle_seconds = 30;             ///< HTTP connection without a request
-  double pong_seconds = 20;             ///< WebSocket without any sign of life
+  double pong_seconds = 20;             ///< WebSocket without a sign of life
   std::size_t queued_messages = 4096;   ///< messages waiting for one viewer
-  std::size_t queued_bytes = 8 << 20;   ///< the same in bytes, but for the largest and the mesh
+  std::size_t queued_bytes = 8 << 20;   ///< the same in bytes, except the largest and the mesh
   std::size_t waiting_commands = 1024;  ///< commands of one viewer that wait for the room
 };
 
-/// CPU time after which a tick is given up [s]: a hundred times what a tick of a large scene takes.
+/// CPU time after which a tick is given up [s]: a hundred times that of a large scene's tick.
 inline constexpr double kUsualTickLimit = 2;
 
-/// Threads for the physics where nobody says how many: two where there are two cores, as contact
-/// has work for them in many a tick, and no more. They never change a bit of the motion.
+/// Default number of threads for the physics: two where there are two cores, because contact keeps
+/// two busy in many ticks, and no more. The number never changes a bit of the motion.
 int usual_threads();
 
-/// Everything that `weft serve` can be told.
+/// All options of `weft serve`.
 struct ServerOptions {
   std::string bind = "127.0.0.1";       ///< address; others than loopback need `open`
   int port = 8080;                      ///< 0 to 65535; 0 lets the system choose

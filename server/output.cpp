@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kPrintedBytes = 1 << 20;
 
-/// Closes what it holds, and takes an unfinished file away.
+/// Owns a file descriptor, and deletes an unfinished file.
 class OpenFile {
  public:
-  /// @param flags  of open(2), beside those for writing
+  /// @param flags  of open(2), besides those for writing
   OpenFile(std::string path, int flags, mode_t mode)
       : path_(std::move(path)),
         descriptor_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC | flags, mode)) {}
@@ -45,7 +45,7 @@ class OpenFile {
     return true;
   }
   bool set_mode(mode_t mode) { return ::fchmod(descriptor_, mode) == 0; }
-  /// Some file systems tell only now that the disk is full.
+  /// Some file systems report a full disk only now.
   bool finish() {
     const bool written = ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS;
     const bool closed = ::close(descriptor_) == 0;
@@ -68,7 +68,7 @@ void write_in_place(const std::string& path, std::string_view bytes) {
   if (!file.is_open() || !file.write(bytes)) throw failed(path);
 }
 
-/// @param target  the file that shall be replaced, behind any symbolic link
+/// @param target  the file to replace, with symbolic links resolved
 void replace(const std::string& path, const fs::path& target, std::string_view bytes) {
   OpenFile file(target.string() + "." + std::to_string(::getpid()) + ".part", O_CREAT | O_EXCL,
                 0666);
@@ -85,14 +85,14 @@ void replace(const std::string& path, const fs::path& target, std::string_view b
 }  // namespace
 
 void prepare_standard_streams() {
-  // All that a command prints goes out at once, so that the reason of a failure is known.
+  // All output of a command is written at once, so that errno of a failure is known.
   static std::array<char, kPrintedBytes> printed;
   std::setvbuf(stdout, printed.data(), _IOFBF, printed.size());
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // The lowest free number is this one. Opened the wrong way round, it refuses every use.
+    // The lowest free number is this one. Opened in the wrong direction, it fails every use.
     if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
   }
 }

@@ -6,7 +6,7 @@
 
 namespace weft::server {
 
-/// Exit code where output could not be written.
+/// Exit code if output could not be written.
 inline constexpr int kOutputFailed = 5;
 
 /// Output that could not be written; what() names the place and the system's reason.
@@ -15,17 +15,17 @@ struct OutputError : std::runtime_error {
       : std::runtime_error(place + ": cannot be written (" + reason + ")") {}
 };
 
-/// Makes sure that a write to standard output fails where it is closed, and does not go into
-/// whatever file or socket is opened next under its number; and that a reader who is gone is an
-/// error of the write and not the end of the program.
+/// Makes a write to a closed standard output fail, instead of ending up in the file or socket that
+/// is opened next under its number; and turns a vanished reader into a write error instead of the
+/// end of the program.
 void prepare_standard_streams();
 
-/// Sends off what was printed. Throws OutputError if any of it did not arrive, since the last call.
+/// Flushes standard output. Throws OutputError if any output since the last call was lost.
 void flush_standard_output();
 
-/// Writes a file in one piece: into a new one beside it, which then takes its place. Where that
-/// fails, the file is what it was. What is no regular file, as a pipe with a name, is written as it
-/// is. Throws OutputError.
+/// Writes a file atomically: into a new one beside it, which then replaces it. On failure the file
+/// stays as it was. Anything but a regular file, such as a named pipe, is written directly. Throws
+/// OutputError.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace weft::server

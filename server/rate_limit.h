@@ -4,7 +4,7 @@
 
 namespace weft::server {
 
-/// A bucket that fills at a rate and is emptied by messages.
+/// A token bucket: fills at a rate, and each message takes one token.
 class RateLimit {
  public:
   /// @param rate   messages a second
@@ -20,7 +20,7 @@ class RateLimit {
     return true;
   }
 
-  /// Allows one more, beyond rate and burst.
+  /// Adds one token, beyond rate and burst.
   void allow_one() { tokens_ += 1; }
 
  private:

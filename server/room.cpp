@@ -14,10 +14,10 @@
 namespace weft::server {
 namespace {
 
-constexpr double kStandingPause = 0.25;  // after its last tick a room counts crossings once [s]
+constexpr double kStandingPause = 0.25;  // idle time after which a room counts crossings once [s]
 constexpr double kLongestSleep = 0.25;   // [s]
 constexpr std::size_t kTickTimes = 120;  // for the median
-constexpr double kSlow = 0.9;            // part of the wanted speed that counts as slow motion
+constexpr double kSlow = 0.9;            // fraction of the wanted speed that counts as slow motion
 constexpr double kSlowPatience = 2;      // [s]
 constexpr double kSlowNoticePause = 10;  // [s]
 
@@ -45,7 +45,7 @@ WorldDef Room::definition_of(const std::string& scene) const {
   return def;
 }
 
-/// Puts a scene in the place of the present one; nothing of it can fail.
+/// Replaces the present scene; no part of it can fail.
 void Room::start_world(BuiltScene&& scene) {
   world_ = std::move(scene.world);
   scene_notices_ = std::move(scene.notices);
@@ -133,14 +133,14 @@ void Room::leave(proto::ViewerId viewer) {
   roster_changed_ = true;
 }
 
-/// @returns what it took [s]; nothing if the tick was given up
+/// @returns its duration [s]; nothing if the tick was given up
 std::optional<double> Room::step_world() {
   measure_forces();
   const double start = clock_();
   gives_up_ = over_limit_ = false;
   in_tick_ = true;
   tick_failure_.clear();
-  // A tick that is ended throws nothing: its report tells.
+  // A halted tick does not throw: its report says so.
   try {
     within_limit([this] { world_->step(); });
   } catch (const std::exception& error) {
@@ -159,7 +159,7 @@ std::optional<double> Room::step_world() {
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
   if (!report.rested) guarantee_.note_tick(*world_);
-  // What rests is counted once: nothing will change it.
+  // A resting state is counted once, since nothing will change it.
   const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();
   within_limit([&] {
     if (report.rested || fell_asleep ? guarantee_.count_if_stale(*world_)
@@ -227,7 +227,7 @@ double Room::next_wake() const {
 void Room::end_leases() {
   const double now = clock_();
   for (std::size_t i = hands_.size(); i-- > 0;) {
-    // Lock-step and standing still do not count against a hand.
+    // A hand does not time out in lock-step or while the room is paused.
     if (paused_ || advance_) hands_[i].heard = now;
     if (now - hands_[i].heard < options_.limits.lease_seconds) continue;
     char seconds[32];

@@ -34,81 +34,82 @@ using SceneSource = std::function<WorldDef(const std::string&)>;
 
 struct RoomOptions {
   std::string scene = "default";      ///< name of the first scene
-  std::optional<WorldDef> scene_def;  ///< the first scene itself, where no name leads to it
+  std::optional<WorldDef> scene_def;  ///< the first scene itself, if no name leads to it
   double tick_rate = 0;               ///< [1/s]; 0: as each scene says
   std::vector<std::pair<std::string, std::string>>
       settings;                          ///< of the first scene; core's set_field
-  std::vector<std::string> scene_names;  ///< for people who mistype one
-  /// Reads a scene that a client sends as JSON; throws DefinitionError. Without it none is taken.
+  std::vector<std::string> scene_names;  ///< suggested for mistyped names
+  /// Reads a scene that a client sends as JSON; throws DefinitionError. Null: no client may send
+  /// one.
   std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
   std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
   std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
-  /// Bounds a tick, and what else looks one tick ahead; outlives the room. Null: no bound.
+  /// Bounds a tick, and queries that look one tick ahead; outlives the room. Null: no bound.
   WorkLimit* limit = nullptr;
   double build_limit = 0;  ///< of CPU for building a scene [s]; 0: no bound
-  /// CPU time of the room's thread, by which dear commands let their viewers wait [s]; the default
-  /// never does.
+  /// CPU time of the room's thread, by which viewers of expensive commands are made to wait [s];
+  /// the default makes none wait.
   Clock cpu_clock = [] { return 0.0; };
-  /// Runs a job beside the room, on another thread; the default runs it at once. The room looks for
-  /// its end in each turn.
+  /// Runs a job on another thread; the default runs it at once. The room checks for its end in each
+  /// turn.
   std::function<void(std::function<void()>)> beside = [](const std::function<void()>& job) {
     job();
   };
 };
 
-/// One shared cloth with its clock, its hands and its order of commands. All of it happens on the
-/// simulation thread; the outside talks to it through `take` and hears from it through RoomOutput.
-/// State changes only between ticks, by a command that is in the log.
+/// One shared cloth with its clock, its hands and its order of commands. Everything happens on the
+/// simulation thread; input arrives through `take` and output leaves through RoomOutput. The state
+/// changes only between ticks, by commands in the log.
 class Room {
  public:
   /// Throws DefinitionError if the scene cannot be built.
   Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock, Metrics& metrics,
        Executor* executor = nullptr);
 
-  /// Called when a command that was taken is done with.
+  /// Called when a taken command is finished.
   std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
 
-  /// Takes what came from a viewer, between two ticks, and does all that has its turn. While an
-  /// `advance` runs, the other commands of its viewer wait for its end; those of others are done
+  /// Takes an item of a viewer, between two ticks, and runs everything whose turn it is. While an
+  /// `advance` runs, other commands of its viewer wait for its end; those of other viewers run
   /// between its ticks.
   void take(Inbound item);
 
-  /// The same while a tick passes: does at once what is beside the cloth, and lets the rest wait.
+  /// The same during a tick: runs at once what does not touch the cloth, and queues the rest.
   void take_meanwhile(Inbound item);
-  /// Whether the work in hand shall end, because it takes too long or for a command that makes it
-  /// worthless. The stop signal's owner asks.
+  /// Whether the current work should end, because it exceeds its limit or a command has made it
+  /// worthless. Polled by the owner of the stop signal.
   bool gives_up();
-  /// The signal that ends the work in hand; null where nothing does.
+  /// The signal that ends the current work; null if nothing can.
   StopSignal* stop_signal() { return options_.limit ? &options_.limit->signal() : nullptr; }
 
-  /// Ends the building of a scene that a `load` wanted, at the end of the room.
+  /// Cancels the scene that a `load` is building, before the room is destroyed.
   void cancel_build() {
     if (building_) building_->build->cancel();
   }
 
   bool advancing() const { return advance_.has_value(); }
-  /// Runs ticks of the present `advance` until it is done or the clock has passed `deadline`.
+  /// Runs ticks of the current `advance` until it is done or the clock passes `deadline`.
   void advance_until(double deadline);
 
-  /// Whether ticks shall pass by the clock: it runs, or `step` asked for some.
+  /// Whether ticks follow the clock: the room runs, or `step` asked for some.
   bool ticking() const { return !advance_ && (!paused_ || steps_left_ > 0); }
   double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
-  /// Whether `advance_until` would do nothing now, as its viewer has not yet taken its frames.
+  /// Whether `advance_until` would do nothing now, because its viewer has not yet taken its frames.
   bool advance_waits() const;
 
-  /// After ticks and commands: ends leases, tells what has changed, sends the newest frame.
+  /// Call after ticks and commands: ends leases, announces changes, sends the newest frame.
   void finish_turn();
-  /// When `finish_turn` is wanted even if nothing happens [s].
+  /// Latest time of the next `finish_turn`, even if nothing happens [s].
   double next_wake() const;
 
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return log_; }
   bool paused() const { return paused_; }
-  /// Simulated per real time: what is asked for, less if a budget of time does not allow it.
+  /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
   double speed() const { return wanted_speed_ * budget_.setting().pace; }
   double real_time_factor() const;
   std::uint32_t epoch() const { return epoch_; }
@@ -120,14 +121,14 @@ class Room {
     bool mesh_over_http = false;
     bool wants_frame = false;   ///< it lacks the present one
     bool wants_forces = false;  ///< in its frames
-    std::uint32_t applied = 0;  ///< number of the last text message that was taken
-    /// Each frame of its own `advance` that is on its way to it has a copy.
+    std::uint32_t applied = 0;  ///< number of its last text message that was taken
+    /// Every frame of its own `advance` that is in flight holds a copy.
     std::shared_ptr<const int> ticket = std::make_shared<int>();
     bool stalled = false;  ///< it took none for too long, and has not taken one since
-    double next_turn = 0;  ///< its commands wait until then, as one of them was dear [s]
+    double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
   };
 
-  /// A hand: who holds, under which number of its own, and when it was heard of last.
+  /// A hand: its viewer, that viewer's number for it, and when it last sent a target.
   struct Hand {
     GrabId grab = 0;
     proto::ViewerId viewer = 0;
@@ -139,8 +140,8 @@ class Room {
     proto::ViewerId viewer = 0;
     std::optional<proto::Id> id;
     std::uint32_t left = 0;
-    std::optional<proto::AdvanceFrames> frames;  ///< those that its viewer gets whatever its `hz`
-    double taken = 0;                            ///< when it last could go on [s]
+    std::optional<proto::AdvanceFrames> frames;  ///< for its viewer, regardless of its `hz`
+    double taken = 0;                            ///< when it was last free to continue [s]
   };
 
   /// A `load` under way.
@@ -152,7 +153,7 @@ class Room {
 
   using Outcome = proto::Result<proto::Reply>;
 
-  // room_order.cpp: whose turn it is
+  // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
   void work_off();
   void let_go(proto::ViewerId viewer);
@@ -165,7 +166,7 @@ class Room {
   template <class Work>
   bool within_limit(Work&& work);
 
-  // room.cpp: coming, going and ticks
+  // room.cpp: viewers that come and go, and ticks
   void join(proto::ViewerId id, const Join& join);
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
@@ -197,7 +198,7 @@ class Room {
   proto::Error stalled_error() const;
   void finish_advance(const std::optional<proto::Error>& error = {});
 
-  // room_telling.cpp: frames, and what has changed
+  // room_telling.cpp: frames and announcements
   bool has_news() const;
   void tell_changes();
   void tell_changes_if_due(double now);
@@ -212,7 +213,7 @@ class Room {
   void show_to(proto::ViewerId viewer);
   void show_to_those_who_lack(double now);
 
-  // room_commands.cpp: one function a command
+  // room_commands.cpp: one function per command
   void handle(proto::ViewerId viewer, const proto::Request& request);
   void answer(proto::ViewerId viewer, const std::optional<proto::Id>& id,
               const proto::Reply& reply);
@@ -274,10 +275,10 @@ class Room {
   std::optional<Advance> advance_;
   std::optional<Building> building_;
   std::deque<Inbound> waiting_;
-  bool in_tick_ = false;      ///< a tick passes
-  bool gives_up_ = false;     ///< it is to be ended for a command that replaces the state
-  std::string tick_failure_;  ///< what the tick under way threw; empty: nothing
-  bool over_limit_ = false;   ///< it is to be ended because it takes too long
+  bool in_tick_ = false;      ///< a tick is running
+  bool gives_up_ = false;     ///< a command that replaces the state ends it
+  bool over_limit_ = false;   ///< it exceeds its limit
+  std::string tick_failure_;  ///< what it threw; empty: nothing
 
   std::map<proto::ViewerId, Viewer> viewers_;
   std::vector<Hand> hands_;
@@ -285,40 +286,40 @@ class Room {
   CommandLog log_;
 
   RealTimeMeter meter_;
-  std::vector<double> tick_times_;  // ring of the last ones [s]
+  std::vector<double> tick_times_;  // ring of the latest [s]
   std::size_t next_tick_time_ = 0;
   double next_state_ = 0, next_slow_notice_ = 0, slow_since_ = -1;
   double last_tick_done_ = 0;  // [s]
 
-  // What has not been told yet, and since the last frame to all what was changed by commands, moved
-  // by ticks of the clock or of `advance`, or replaced as a whole.
+  // Changes not yet announced, and the causes of change since the last frame to all: commands,
+  // ticks of the clock, ticks of `advance`, or a replaced state.
   bool state_changed_ = false, roster_changed_ = false, pins_changed_ = false;
   bool grabs_changed_ = false;
   std::vector<proto::Notice> notices_;
   double next_telling_ = 0;  // [s]
   bool frame_wanted_ = false, ticked_ = false, advanced_ = false, jumped_ = false;
-  double next_idle_frame_ = 0;       // that no tick of the clock makes [s]
-  double next_jump_ = 0;             // that need not wait for any of them [s]
-  proto::ViewerId advance_for_ = 0;  // has what `advance` made, or does not want it
+  double next_idle_frame_ = 0;       // earliest one without a tick of the clock [s]
+  double next_jump_ = 0;             // earliest one that may precede those [s]
+  proto::ViewerId advance_for_ = 0;  // its viewer has the frames of `advance`, or declined them
   std::uint32_t sequence_ = 0;
   std::uint64_t frames_encoded_ = 0;
   std::uint32_t transfers_ = 0;
-  std::vector<float> box_values_;     // of the present answer, lowest and highest corners
-  std::optional<Message> follow_up_;  // binary message that belongs behind the present answer
+  std::vector<float> box_values_;     // of the current answer, lowest and highest corners
+  std::optional<Message> follow_up_;  // binary message that follows the current answer
   std::vector<proto::GrabSample> grab_samples_;
   std::vector<proto::PoseSample> pose_samples_;
   std::vector<proto::AppliedCommand> applied_;
-  bool measures_forces_ = false;     // the world does
-  std::vector<char> asleep_;         // of each cloth, as told
-  std::vector<PinId> pins_on_way_;   // as told
-  std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as told
+  bool measures_forces_ = false;     // whether the world measures them
+  std::vector<char> asleep_;         // of each cloth, as last announced
+  std::vector<PinId> pins_on_way_;   // as last announced
+  std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as last announced
   GuaranteeWatch guarantee_;
   std::vector<SceneNotice> scene_notices_;
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };
 
-/// Does work that the limit may end.
+/// Runs work that the limit may end.
 /// @returns false if it did
 template <class Work>
 bool Room::within_limit(Work&& work) {

@@ -2,13 +2,13 @@
 
 #include "server/room.h"
 
-// Ticks that a viewer asks for, without a clock.
+// Ticks that a viewer requests, without a clock.
 
 namespace weft::server {
 namespace {
 
-constexpr long kFramesOnWay = 4;  // that the viewer has not taken
-constexpr double kStalled = 2;    // without taking any it does not read [s]
+constexpr long kFramesOnWay = 4;  // frames in flight that the viewer has not taken
+constexpr double kStalled = 2;    // time without a taken frame that counts as not reading [s]
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void Room::advance_until(double deadline) {
     }
     advance_->taken = clock_();
     const bool shown = shows_next_tick();
-    if (!step_world()) return;  // it was told, and the advance ended if nothing replaces it
+    if (!step_world()) return;  // announced, and the advance ended if nothing replaces it
     --advance_->left;
     advanced_ = advanced_ || !world_->report().rested;
     if (shown) show_advanced();
@@ -30,12 +30,12 @@ void Room::advance_until(double deadline) {
   if (advance_ && advance_->left == 0) finish_advance();
 }
 
-/// Whether as many frames of its own `advance` as may be are on their way to a viewer.
+/// Whether the most frames of its own `advance` are in flight to a viewer.
 bool Room::frames_wait(const Viewer& viewer) const {
   return viewer.ticket.use_count() > kFramesOnWay;
 }
 
-/// Whether the viewer that advances asked for the frame of the coming tick.
+/// Whether the viewer of the advance asked for the frame of the coming tick.
 bool Room::shows_next_tick() const {
   return advance_->frames == proto::AdvanceFrames::all ||
          (advance_->frames == proto::AdvanceFrames::last && advance_->left == 1);
@@ -53,7 +53,7 @@ void Room::show_advanced() {
                {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
 }
 
-/// An `advance` whose viewer takes no frame of it does not hold up the room.
+/// Ends an `advance` whose viewer takes none of its frames, so that it does not hold up the room.
 proto::Error Room::stalled_error() const {
   proto::Error error = proto::make_error(
       proto::ErrorCode::stalled,

@@ -1,4 +1,4 @@
-// A room that keeps to its budget of time.
+// Keeps a room within its time budget.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace weft::server {
 
-/// Changes what the budget asks for, as commands of the room's own. Ticks of `advance` pass without
-/// a clock and are not counted.
+/// Applies the keeper's decisions as commands of the room itself. Ticks of `advance` have no clock
+/// and do not count.
 void Room::keep_budget(double seconds) {
   const BudgetKeeper::Setting before = budget_.setting();
   const auto next = budget_.add(seconds, solver_of(world_->def()) == SolverKind::verlet);
@@ -34,14 +34,14 @@ void Room::keep_budget(double seconds) {
          softened ? next->softness : next->pace);
 }
 
-/// From now on; what an earlier budget has taken is given back.
+/// Sets a budget, and undoes the restrictions of the previous one.
 void Room::ask_for_budget(const BudgetDef& budget) {
   if (world_->softness() != wanted_softness_) world_->set_softness(wanted_softness_);
   budget_.restart(budget, {1, wanted_softness_}, wanted_softness_);
   follow_speed();
 }
 
-/// Time passes at another speed from now on.
+/// Applies a changed speed.
 void Room::follow_speed() {
   meter_.restart(clock_());
   output_.set_frame_rate(world_->def().tick_rate * speed());

@@ -9,8 +9,8 @@
 #include "server/translate.h"
 #include "server/translate_holds.h"
 
-// What each command does. A function either applies its command and returns the reply, or returns
-// the error and has changed nothing.
+// What each command does. A function either applies its command and returns the reply, or changes
+// nothing and returns the error.
 
 namespace weft::server {
 namespace {
@@ -37,7 +37,7 @@ proto::Error too_many(const char* what, std::size_t limit) {
 }
 
 proto::Error unknown_pin(std::uint32_t pin) {
-  return field_error(ErrorCode::unknown_pin, "there is no pin of this id", "pin", pin,
+  return field_error(ErrorCode::unknown_pin, "there is no pin with this id", "pin", pin,
                      "the message pins lists them");
 }
 
@@ -60,12 +60,12 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
         std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
     if (!outcome) return refuse(viewer, request, outcome.error());
     if (std::holds_alternative<proto::Load>(request.command)) {
-      building_->request = request;  // it is in the log and answered when it is done
+      building_->request = request;  // it is already logged, and answered when finished
       return finish_build();
     }
     log_.add(tick, viewer, CommandOrigin::viewer, request.command);
     if (std::holds_alternative<proto::Advance>(request.command)) {
-      advance_->id = request.id;  // it is answered when it is done
+      advance_->id = request.id;  // answered when it is done
       return;
     }
     answer(viewer, request.id, *outcome);
@@ -74,7 +74,7 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
   } catch (const Stopped&) {
     refuse(viewer, request,
            make_error(ErrorCode::too_costly,
-                      "the tick that this looks ahead to takes more than the limit of CPU time",
+                      "looking one tick ahead takes more than the limit of CPU time",
                       "ask when less of the cloth is in contact"));
   } catch (const std::exception& error) {
     spdlog::error("command {}: {}", proto::name_of(request.command), error.what());
@@ -120,7 +120,7 @@ std::optional<proto::Error> Room::check_new_hand(ViewerId viewer, std::uint32_t 
     if (hand.viewer != viewer) continue;
     ++own;
     if (hand.drag == drag)
-      return field_error(ErrorCode::drag_exists, "this viewer has a drag of this number already",
+      return field_error(ErrorCode::drag_exists, "this viewer already has a drag with this number",
                          "drag", drag, "end it or use another number");
   }
   if (own >= options_.limits.drags_per_viewer)
@@ -159,8 +159,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
   const auto hand = find_hand(viewer, command.drag);
   if (hand == hands_.end())
-    return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
-                       command.drag, "start it; it may have ended by its lease");
+    return field_error(ErrorCode::unknown_drag, "this viewer has no drag with this number", "drag",
+                       command.drag, "start it; its lease may have ended it");
   const Vec3d target = from_wire(command.target);
   const auto& grabs = world_->grabs().list;
   const auto grab = std::find_if(grabs.begin(), grabs.end(),
@@ -175,7 +175,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
   const auto hand = find_hand(viewer, command.drag);
   if (hand == hands_.end())
-    return field_error(ErrorCode::unknown_drag, "this viewer has no drag of this number", "drag",
+    return field_error(ErrorCode::unknown_drag, "this viewer has no drag with this number", "drag",
                        command.drag);
   proto::DragReply reply{world_->tick(), command.drag, hand->grab, {}, {}};
   if (const auto impulse = command.fire ? world_->fire(hand->grab) : std::nullopt)
@@ -348,7 +348,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   if (command.softness || command.budget_ms || command.over_budget)
     ask_for_budget(with_settings(budget_.budget(), command));
   state_changed_ = true;
-  if (measures_forces_) frame_wanted_ = true;  // those of the coming tick are others now
+  if (measures_forces_) frame_wanted_ = true;  // the forces of the coming tick have changed
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }
 
@@ -361,7 +361,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   caller.stalled = caller.stalled && frames_wait(caller);
   if (caller.stalled && command.frames) return stalled_error();
   advance_ = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
-  // What commands before it have changed is shown with what its ticks change.
+  // Changes by earlier commands are shown together with those of its ticks.
   advanced_ = advanced_ || frame_wanted_;
   frame_wanted_ = false;
   advance_for_ = command.frames ? viewer : 0;
@@ -372,7 +372,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
   return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
 }
 
-/// Of the room's own; only a log that is replayed has it.
+/// Sent by the room itself; only a replayed log contains it.
 Room::Outcome Room::apply(ViewerId, const proto::Halt&) {
   world_->halt();
   return proto::Reply(proto::DoneReply{"halt", world_->tick()});

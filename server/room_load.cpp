@@ -1,4 +1,4 @@
-// How a room comes by another scene: it is built beside the running one.
+// How a room loads another scene: it is built beside the running one.
 
 #include <algorithm>
 #include <exception>
@@ -16,12 +16,12 @@ using proto::ErrorCode;
 using proto::make_error;
 using proto::ViewerId;
 
-/// So long a viewer waits after its `load`, which is sent to all [s].
+/// A viewer waits this long after its `load`, because the new scene is sent to all [s].
 constexpr double kPauseAfterLoad = 0.25;
 
 }  // namespace
 
-/// The scene that a `load` asks for. Called beside the room: looks at nothing that changes.
+/// The scene that a `load` asks for. Runs on another thread: reads nothing that changes.
 WorldDef Room::definition_of(const std::string& name, const std::string& json) const {
   if (json.empty()) return definition_of(name);
   try {
@@ -29,17 +29,17 @@ WorldDef Room::definition_of(const std::string& name, const std::string& json) c
     if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
     return def;
   } catch (const CostError&) {
-    throw;  // is told as it is
+    throw;  // is reported as it is
   } catch (const DefinitionError& error) {
     const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
     throw DefinitionError(field, error.value, error.limit, error.hint);
   }
 }
 
-/// The scene before it goes on until the new one is ready.
+/// The previous scene runs on until the new one is ready.
 Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   if (!command.definition.empty() && !options_.read_scene)
-    return make_error(ErrorCode::not_supported, "this server takes scenes by name alone");
+    return make_error(ErrorCode::not_supported, "this server takes scenes by name only");
   const auto& names = options_.scene_names;
   if (command.definition.empty() &&
       std::find(names.begin(), names.end(), command.scene) == names.end()) {
@@ -53,7 +53,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   return proto::Reply(proto::LoadReply{});
 }
 
-/// Tells all that the scene is another one.
+/// Announces the new scene to all viewers.
 void Room::tell_loaded(ViewerId viewer) {
   if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
   steps_left_ = 0;
@@ -79,7 +79,7 @@ void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definit
   options_.beside([build = building_->build] { build->run(); });
 }
 
-/// Puts a scene that has been built in the place of the present one.
+/// Replaces the present scene by one that has been built.
 void Room::finish_build() {
   if (!building_ || !building_->build->done()) return;
   const Building done = std::move(*building_);
@@ -98,14 +98,14 @@ void Room::finish_build() {
   } catch (const Stopped&) {
     refuse(done.viewer, done.request,
            proto::make_error(proto::ErrorCode::too_costly,
-                             "to build this scene takes more than " +
+                             "building this scene takes more than " +
                                  proto::number_text(options_.build_limit) + " s of CPU",
                              "take fewer particles or triangles"));
   } catch (const std::exception& error) {
     spdlog::error("load: {}", error.what());
     refuse(done.viewer, done.request,
            proto::make_error(proto::ErrorCode::internal, "the server failed at this command",
-                             "the scene before it goes on"));
+                             "the previous scene keeps running"));
   }
 }
 

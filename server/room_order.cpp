@@ -1,4 +1,4 @@
-// In which order a room does what its viewers ask for, and what waits.
+// The order in which a room runs its viewers' commands, and which of them wait.
 
 #include <algorithm>
 #include <exception>
@@ -12,11 +12,11 @@
 namespace weft::server {
 namespace {
 
-/// Commands of one turn may take so long; then a tick gets its turn [s].
+/// Commands of one turn may take this long before the next tick [s].
 constexpr double kOrderSlice = 0.1;
 
-/// A command below this is for nothing [s of CPU]. The viewer of a dearer one waits for
-/// kWaitPerCost times as long before its next, if there are others.
+/// A cheaper command than this costs its viewer nothing [s of CPU]. After a more expensive one its
+/// viewer waits kWaitPerCost times as long before its next, if other viewers are present.
 constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
 
 template <class Command>
@@ -25,7 +25,7 @@ bool is(const Inbound& item) {
   return request && std::holds_alternative<Command>(request->command);
 }
 
-/// Whether it neither looks at the cloth nor changes it, so that it may come while a tick passes.
+/// Whether it neither reads nor changes the cloth, so that it may run during a tick.
 bool is_beside_the_cloth(const Inbound& item) {
   return std::holds_alternative<Noted>(item.what) || is<proto::Hello>(item) ||
          is<proto::Camera>(item) || is<proto::Pause>(item) || is<proto::Resume>(item) ||
@@ -54,8 +54,8 @@ bool Room::gives_up() {
   return over_limit_ || (in_tick_ && (gives_up_ || (building_ && building_->build->done())));
 }
 
-/// Whether it is not its turn. An `advance` and a `load` hold up their own viewer alone, whose
-/// other commands come behind them; everything else is done between the ticks of an `advance`.
+/// Whether it has to wait. An `advance` and a `load` hold up only the later commands of their own
+/// viewer; all other commands run between the ticks of an `advance`.
 bool Room::must_wait(const Inbound& item) const {
   const auto viewer = viewers_.find(item.viewer);
   if (viewer == viewers_.end()) return false;
@@ -64,7 +64,7 @@ bool Room::must_wait(const Inbound& item) const {
   return viewer->second.next_turn > clock_();
 }
 
-/// Does what has come, in order; of each viewer nothing before what came earlier from it.
+/// Runs the waiting items in order; those of one viewer never overtake each other.
 void Room::work_off() {
   finish_build();
   const double start = clock_();
@@ -73,7 +73,7 @@ void Room::work_off() {
     Inbound& item = waiting_[k];
     if (std::holds_alternative<Leave>(item.what)) {
       let_go(item.viewer);
-      k = 0;  // what it still wanted is gone
+      k = 0;  // its other waiting commands are gone
       held.clear();
       continue;
     }
@@ -89,8 +89,8 @@ void Room::work_off() {
   }
 }
 
-/// Ends all that a viewer who has gone wanted. What only it would have heard is not done any more;
-/// what it changed while it was here, it changed.
+/// Drops the waiting commands of a viewer that has left: those whose answer only it would have
+/// received. Changes that it has already made stay.
 void Room::let_go(proto::ViewerId viewer) {
   if (advance_ && advance_->viewer == viewer) {
     log_.shorten_advance(advance_->left);
@@ -112,7 +112,7 @@ void Room::let_go(proto::ViewerId viewer) {
   }
 }
 
-/// When something that waits has its turn [s].
+/// Earliest turn of a waiting command [s].
 double Room::next_turn() const {
   double next = clock_() + 1;
   for (const Inbound& item : waiting_) {
@@ -122,7 +122,7 @@ double Room::next_turn() const {
   return next;
 }
 
-/// Lets a viewer wait after a command that has cost others their time.
+/// Makes a viewer wait after a command that has cost others their time.
 /// @param cost  of CPU [s]
 void Room::charge(proto::ViewerId viewer, double cost) {
   const auto found = viewers_.find(viewer);
@@ -130,13 +130,13 @@ void Room::charge(proto::ViewerId viewer, double cost) {
   found->second.next_turn = clock_() + cost * kWaitPerCost;
 }
 
-/// Says that a tick was given up: it is in the log, so that a replay does the same.
+/// Announces a tick that was given up, and logs it, so that a replay does the same.
 void Room::note_halt() {
   const std::string cause =
       !tick_failure_.empty() ? "the server failed at it: " + tick_failure_
       : over_limit_
           ? "it took more than " + proto::number_text(options_.limit->seconds()) + " s of CPU"
-          : "a command that replaces the state came";
+          : "a command that replaces the state arrived";
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Halt{cause});
   if (!over_limit_ && tick_failure_.empty()) return;
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Pause{});
@@ -150,7 +150,7 @@ void Room::note_halt() {
   if (advance_) end_advance(proto::ErrorCode::halted, what, "reset, or take a lighter scene");
 }
 
-/// Ends an `advance` before it is done.
+/// Ends an `advance` early.
 void Room::end_advance(proto::ErrorCode code, const std::string& why, const char* hint) {
   proto::Error error = proto::make_error(
       code, "the advance ended at tick " + std::to_string(world_->tick()) + ": " + why, hint);

@@ -7,34 +7,34 @@
 
 namespace weft::server {
 
-/// Where a room's words and frames go. The room calls it from the simulation thread.
+/// Takes a room's messages and frames. The room calls it from the simulation thread.
 class RoomOutput {
  public:
   virtual ~RoomOutput() = default;
 
-  /// To one viewer, in order with everything else it is sent; nothing happens if it is gone.
+  /// To one viewer, in order with its other messages; does nothing if the viewer has left.
   virtual void send(proto::ViewerId viewer, Message message) = 0;
 
-  /// Frames a second that the room makes; changes by `load` and `speed`.
+  /// Frames a second that the room makes; changed by `load` and `speed`.
   virtual void set_frame_rate(double frame_rate) = 0;
 
-  /// To all viewers that the room has welcomed.
+  /// To all welcomed viewers.
   virtual void broadcast(Message message) = 0;
 
-  /// A binary mesh message that becomes available under its content hash. Frames offered before it
-  /// belong to an older mesh and are no longer sent.
+  /// Makes a binary mesh message available under its content hash. Frames offered earlier belong to
+  /// an older mesh and are no longer sent.
   virtual void offer_mesh(std::uint64_t hash, SharedBytes bytes) = 0;
 
-  /// Tells that the viewer has been sent all that comes before frames.
+  /// Tells that the viewer has been sent everything that precedes frames.
   virtual void welcome_done(proto::ViewerId viewer) = 0;
 
-  /// Whether anybody wants to see a frame at all.
+  /// Whether any viewer takes frames.
   virtual bool wants_frames() const = 0;
 
-  /// Whether somebody wants to see contacts and reactions in frames.
+  /// Whether any viewer takes contacts and reactions with its frames.
   virtual bool wants_forces() const = 0;
 
-  /// The newest frame, for everybody.
+  /// The newest frame, for all viewers.
   virtual void offer_frame(Frame frame) = 0;
 };
 

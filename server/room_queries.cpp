@@ -7,7 +7,7 @@
 #include "server/translate.h"
 #include "server/translate_forces.h"
 
-// What a room tells of its cloth when it is asked.
+// Answers of a room to queries about its cloth.
 
 namespace weft::server {
 
@@ -16,8 +16,9 @@ using proto::ViewerId;
 namespace {
 
 proto::Error unknown_viewer(ViewerId viewer) {
-  proto::Error error = proto::make_error(proto::ErrorCode::unknown_viewer, "nobody has this number",
-                                         "the message roster lists who is here");
+  proto::Error error =
+      proto::make_error(proto::ErrorCode::unknown_viewer, "no viewer has this number",
+                        "the message roster lists the viewers");
   error.field = "viewer";
   error.value = std::to_string(viewer);
   return error;
@@ -128,14 +129,14 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   return proto::Reply(std::move(reply));
 }
 
-/// Looks one tick ahead, within the limit of a tick. Throws Stopped beyond it.
+/// Looks one tick ahead, within a tick's limit. Throws Stopped beyond it.
 Reactions Room::coming_reactions() {
   Reactions found;
   if (!within_limit([&] { found = world_->coming_reactions(); })) throw Stopped();
   return found;
 }
 
-/// Which cloths sleep is told when it changes.
+/// Announces which cloths sleep, when that changes.
 /// @returns whether it did
 bool Room::tell_sleep() {
   const std::vector<char>& asleep = world_->sleep().asleep();
@@ -146,7 +147,7 @@ bool Room::tell_sleep() {
   return true;
 }
 
-/// Says when the promise that nothing crosses has ended or is back.
+/// Announces that the promise of no crossings has ended or is restored.
 void Room::tell_guarantee() {
   for (GuaranteeWatch::News& news : guarantee_.take_news()) {
     notify(news.level, news.code, std::move(news.message));
@@ -154,7 +155,7 @@ void Room::tell_guarantee() {
   }
 }
 
-/// Tells the pins again when one has set out, by the scene itself, or has arrived.
+/// Announces the pins again when one has set out, by the scene itself, or has arrived.
 void Room::tell_pins() {
   std::vector<PinId> on_way;
   for (const Pin& pin : world_->pins().list)
@@ -164,7 +165,7 @@ void Room::tell_pins() {
   pins_changed_ = true;
 }
 
-/// Tells the hands again when one of the scene's own has taken hold or let go.
+/// Announces the hands again when one of the scene's own has taken hold or let go.
 void Room::tell_grabs() {
   std::vector<GrabId> held;
   for (const Grab<float>& grab : world_->grabs().list)

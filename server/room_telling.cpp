@@ -7,18 +7,18 @@
 #include "server/translate_forces.h"
 #include "server/translate_holds.h"
 
-// When a room sends frames and tells what has changed, and what is in them.
+// When a room sends frames and announces changes, and what they contain.
 
 namespace weft::server {
 namespace {
 
 constexpr double kStatePause = 0.25;            // between two `state` while ticks pass [s]
-constexpr double kShortestTelling = 1.0 / 240;  // between two of what has changed [s]
-constexpr double kTellingRate = 2e6;            // of one viewer, in the long run [bytes/s]
+constexpr double kShortestTelling = 1.0 / 240;  // between two announcements of changes [s]
+constexpr double kTellingRate = 2e6;            // sustained rate to one viewer [bytes/s]
 
 }  // namespace
 
-/// Measures them as long as a viewer wants them.
+/// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
   bool wanted = output_.wants_forces();
   if (advance_ &&
@@ -39,14 +39,14 @@ void Room::show_to_those_who_lack(double now) {
   }
 }
 
-/// Whether ticks make no frames now: none pass by the clock, or all cloth sleeps.
+/// Whether ticks make no frames now: the clock makes no ticks, or all cloth sleeps.
 bool Room::frames_stand() const {
   return !ticking() || world_->report().rested;
 }
 
-/// When a frame to all is due [s]; infinity if nothing that frames show has changed. Ticks of the
-/// clock make one each, whatever commands come between them. What else changes it has at most one
-/// in a tick's time, but for the first after the state was replaced.
+/// When a frame to all is due [s]; infinity if nothing visible has changed. Each tick of the clock
+/// makes one, whatever commands come between ticks. Other changes make at most one per tick's time,
+/// except the first after the state was replaced.
 double Room::next_frame() const {
   double next = std::numeric_limits<double>::infinity();
   if (!output_.wants_frames()) return next;
@@ -61,8 +61,8 @@ bool Room::has_news() const {
   return state_changed_ || roster_changed_ || pins_changed_ || grabs_changed_ || !notices_.empty();
 }
 
-/// Whatever changes is told together, at most once in a tick's time, so that no viewer can flood
-/// the others by changing it. Long lists of pins are told less often.
+/// Changes are announced together, at most once per tick's time, so that no viewer can flood the
+/// others by changing something. Long lists of pins are announced less often.
 void Room::tell_changes_if_due(double now) {
   if (has_news() && now >= next_telling_) tell_changes();
 }
@@ -88,11 +88,11 @@ void Room::tell_changes() {
                                   static_cast<double>(bytes) / kTellingRate});
 }
 
-/// The newest frame, to all whom it tells something.
+/// Sends the newest frame to all viewers for which it is news.
 void Room::publish(double now) {
   Frame frame = encode_frame();
   frame.at_once = jumped_;
-  // What `advance` made is its viewer's by what it asked for, until something else changes.
+  // The result of `advance` goes to its viewer as it requested, until something else changes.
   if (!frame_wanted_ && !ticked_) frame.not_to = advance_for_;
   if (jumped_) next_jump_ = now + world_->tick_seconds();
   next_idle_frame_ = now + world_->tick_seconds();
@@ -103,7 +103,7 @@ void Room::publish(double now) {
   output_.offer_frame(std::move(frame));
 }
 
-/// A frame to a viewer that lacks the present one.
+/// Sends a frame to a viewer that lacks the present one.
 void Room::show_to(proto::ViewerId viewer) {
   Frame frame = encode_frame();
   frame.at_once = true;
@@ -165,7 +165,7 @@ void Room::notify(proto::NoticeLevel level, const char* code, std::string messag
   if (viewer != 0) notice.viewer = viewer;
   notice.drag = drag;
   notice.value = value;
-  // Once, and the newest, however often the same thing happens before it is told.
+  // Keeps only the newest of equal notices that wait.
   std::erase_if(notices_, [&notice](const proto::Notice& told) {
     return told.code == notice.code && told.message == notice.message &&
            told.viewer == notice.viewer && told.drag == notice.drag;

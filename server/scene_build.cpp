@@ -11,7 +11,7 @@ namespace weft::server {
 
 ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
   WorkLimit limit(tick_limit);
-  // The thread's own signal still ends it, without an answer.
+  // The thread's own signal still ends the build, without an answer.
   StopSignal* const outer = current_stop_signal();
   limit.signal().attend = [&limit, outer] { return limit.is_over() || (outer && outer->raised()); };
   limit.signal().raise();

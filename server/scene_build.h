@@ -15,54 +15,53 @@
 
 namespace weft::server {
 
-/// What is or comes where it should not be until the first tick of a world is done, if it can be
-/// told within the limit.
+/// Finds crossings and penetrations that exist at the start or arise in the first tick of a world,
+/// if that takes no longer than the limit.
 /// @param tick_limit  CPU time [s]
 ComingStarts look_ahead(const ServedWorld& world, double tick_limit);
 
-/// What people should know of a scene as it was built.
+/// A remark on a scene as built, for viewers.
 struct SceneNotice {
   const char* code;  ///< of the notice
   std::string message;
 };
 
-/// Everything about a scene that takes long to make and may fail: what is left when it takes the
-/// place of another one cannot.
+/// Everything about a scene that takes long to make and may fail; the replacement of the old scene
+/// that remains cannot fail.
 struct BuiltScene {
   std::unique_ptr<ServedWorld> world;
-  proto::MeshAnnouncement mesh;  ///< but for its epoch
+  proto::MeshAnnouncement mesh;  ///< without its epoch
   SharedBytes mesh_bytes;
-  ComingStarts bad_starts;           ///< that its first tick finds
-  std::vector<SceneNotice> notices;  ///< for people, of its start
+  ComingStarts bad_starts;           ///< found by its first tick
+  std::vector<SceneNotice> notices;  ///< of its start
 };
 
-/// Whatever is to be said of a world at its start beside `repairs` of its objects.
+/// All remarks on a world at its start, besides the `repairs` of its objects.
 std::vector<SceneNotice> notices_of(const ServedWorld& world,
                                     const std::vector<std::string>& repairs);
 
-/// Builds a scene, and looks one tick ahead for what starts where it should not be. Throws
-/// DefinitionError where it cannot be built or would cost too much, and Stopped where a stop signal
-/// of the thread ended it.
-/// @param executor    that its world will use; not used meanwhile
-/// @param tick_limit  of CPU for the tick ahead, beyond which nothing is known of it [s]; 0: none
+/// Builds a scene, and looks one tick ahead for bad starts. Throws DefinitionError if it cannot be
+/// built or would cost too much, and Stopped if a stop signal of the thread ended it.
+/// @param executor    for its world; idle in the meantime
+/// @param tick_limit  CPU time of the look-ahead, beyond which nothing is known of it [s]; 0: none
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit);
 
-/// A scene that is being built, on whatever thread. Its maker keeps it until it is `done`.
+/// A scene under construction, on any thread. Its maker keeps it until it is `done`.
 class SceneBuild {
  public:
   /// @param make     called once, by `run`
-  /// @param seconds  of CPU that it may take [s]; 0: no bound
+  /// @param seconds  most CPU time [s]; 0: no bound
   SceneBuild(std::function<BuiltScene()> make, double seconds)
       : make_(std::move(make)), limit_(seconds) {}
 
-  /// Builds. Keeps what is thrown.
+  /// Builds the scene. Stores an exception.
   void run();
-  /// Makes `run` end soon. From any thread.
+  /// Makes `run` end soon. Callable from any thread.
   void cancel();
 
   bool done() const { return done_.load(std::memory_order_acquire); }
   bool cancelled() const { return cancelled_.load(std::memory_order_acquire); }
-  /// What was built, once it is done. Throws what building threw.
+  /// The result, once it is done. Throws what building threw.
   BuiltScene take();
 
  private:

@@ -8,9 +8,9 @@
 #include "core/geometry/mesh_file.h"
 #include "core/world/world_def.h"
 
-// What a scene file is made of, told once. The reader, the writer and the JSON Schema walk the same
-// description, and the ranges in it are those of the definitions themselves, so they cannot
-// disagree. Each walker `Io` has
+// The format of a scene file, described once. The reader, the writer and the JSON Schema walk this
+// description, and its ranges are those of the definitions themselves, so they cannot disagree.
+// Each walker `Io` has
 //
 //   fields(walk)                         numbers, vectors, flags, words: walk(visit) calls
 //                                        visit(FieldInfo, value&) for each
@@ -30,7 +30,7 @@ namespace weft::server {
 struct TextInfo {
   const char* name;
   std::size_t least, most;  ///< characters
-  bool plain;               ///< letters, digits, `.`, `_`, `-` alone, not beginning with a dot
+  bool plain;               ///< only letters, digits, `.`, `_`, `-`, not beginning with a dot
   bool required;
   const char* meaning;
 };
@@ -43,7 +43,7 @@ struct ListInfo {
 
 struct TagInfo {
   FieldInfo choice;
-  bool required;  ///< false: without it the first word holds
+  bool required;  ///< false: the default is the first word
 };
 
 inline constexpr std::size_t kMostColliders = 64;
@@ -67,7 +67,7 @@ void describe_placement(Io& io, MeshPlacement& placement) {
   io.orientation("orientation", "how it is turned", placement.orientation);
 }
 
-/// A fabric measured by ASTM D1388 may tell its bending lengths in place of its rigidities.
+/// A fabric measured by ASTM D1388 may give its bending lengths in place of its rigidities.
 struct BendingLength {
   FieldInfo info;
   const char* instead_of;
@@ -145,8 +145,8 @@ void describe_shape(Io& io, Shape& shape) {
 template <class Io>
 void describe_motion(Io& io, MotionDef& motion) {
   io.fields([&](auto&& visit) { visit_fields_of_motion(motion, visit); });
-  io.list(ListInfo{"keyframes", 1, kMostKeyframes, "where it is when, in the order of their times"},
-          motion.keyframes, [](Io& in, Keyframe& keyframe) {
+  io.list(ListInfo{"keyframes", 1, kMostKeyframes, "its poses, in order of time"}, motion.keyframes,
+          [](Io& in, Keyframe& keyframe) {
             in.fields([&](auto&& visit) { visit_fields_of_keyframe(keyframe, visit); });
             in.orientation("rotation", "turn about the pivot from how it is defined",
                            keyframe.rotation);
@@ -155,7 +155,7 @@ void describe_motion(Io& io, MotionDef& motion) {
 
 template <class Io>
 void describe_collider(Io& io, ColliderDef& collider) {
-  io.text({"name", 1, 64, true, false, "commands and people call it so"}, collider.name);
+  io.text({"name", 1, 64, true, false, "commands name it by this"}, collider.name);
   io.fields([&](auto&& visit) { visit_fields_of_collider(collider, visit); });
   std::optional<MotionDef> motion;
   if (!collider.motion.keyframes.empty()) motion = collider.motion;
@@ -173,7 +173,7 @@ template <class Io>
 void describe_hand(Io& io, HandDef& hand) {
   io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, hand.cloth);
   io.fields([&](auto&& visit) { visit_fields_of_hand(hand, visit); });
-  io.list(ListInfo{"path", 1, kMostHandKeys, "where it pulls to, in order of time"}, hand.path,
+  io.list(ListInfo{"path", 1, kMostHandKeys, "targets of its pull, in order of time"}, hand.path,
           [](Io& in, HandKey& key) {
             in.fields([&](auto&& visit) { visit_fields_of_hand_key(key, visit); });
           });
@@ -186,7 +186,7 @@ void describe_gripper(Io& io, GripperDef& gripper) {
   io.fields([&](auto&& visit) { visit_fields_of_gripper(gripper, visit); });
   io.orientation("orientation", "how it is turned; its jaws close along its x axis",
                  gripper.orientation);
-  io.list(ListInfo{"steps", 0, kMostGripperSteps, "what it does by itself, in order of time"},
+  io.list(ListInfo{"steps", 0, kMostGripperSteps, "its scheduled actions, in order of time"},
           gripper.steps, [](Io& in, GripperStep& step) {
             in.fields([&](auto&& visit) { visit_fields_of_gripper_step(step, visit); });
             in.orientation("rotation", "turn about its middle from how it is defined",
@@ -214,7 +214,7 @@ void describe_pin(Io& io, PinDef& pin) {
             });
 }
 
-/// What an object of fields is about, by its path.
+/// Describes an object of fields, by its path.
 inline const char* meaning_of_group(const std::string& path) {
   if (path == "environment.") return "gravity and air";
   if (path == "solver.") return "how the cloths are moved from tick to tick";

@@ -66,7 +66,7 @@ void SceneLibrary::read_folder(const std::string& directory) {
     std::sort(files->begin(), files->end());
     if (files->size() <= kMostFolderFiles) continue;
     problems_.push_back("only the first " + std::to_string(kMostFolderFiles) + " of " +
-                        std::to_string(files->size()) + " files of a kind are taken");
+                        std::to_string(files->size()) + " files of each kind are taken");
     files->resize(kMostFolderFiles);
   }
   const auto attempt = [this](const fs::path& path, auto&& read) {
@@ -95,7 +95,7 @@ MeshFile SceneLibrary::mesh_of_folder(const std::string& name) const {
   for (const std::string& each : built_in_mesh_names()) names += each + ", ";
   for (const auto& [each, mesh] : meshes_) names += each + ", ";
   throw DefinitionError("mesh", name, "one of " + names.substr(0, names.size() - 2),
-                        "a scene from outside names meshes and never a path");
+                        "a scene from a client names meshes, never a path");
 }
 
 WorldDef SceneLibrary::named(const std::string& name) const {

@@ -12,12 +12,12 @@
 
 namespace weft::server {
 
-/// All scenes that a server can load: the built-in ones, those of its folder, files that whoever
-/// starts it names, and what clients send.
+/// All scenes that a server can load: the built-in ones, those of its folder, files named on its
+/// command line, and those that clients send.
 ///
-/// The folder is read once, at the start: its meshes are parsed then, each in a process of its own,
-/// and its scenes checked. So a client's `load` never opens a file, and no path reaches the disk.
-/// What is wrong in the folder is left out and told in `problems`.
+/// The folder is read once, at the start: its meshes are parsed then, each in a separate process,
+/// and its scenes checked. So a client's `load` never opens a file, and no path from a client
+/// reaches the disk. Invalid files of the folder are left out and listed in `problems`.
 class SceneLibrary {
  public:
   /// @param mesh_directory   of the built-in meshes that are files
@@ -27,15 +27,16 @@ class SceneLibrary {
   /// A built-in scene or one of the folder. Throws DefinitionError on an unknown name.
   WorldDef named(const std::string& name) const;
 
-  /// What `--scene` names: a name, or a path that ends in .json, whose meshes are built-in ones or
-  /// files beside it. Throws DefinitionError.
+  /// Opens the argument of `--scene`: a name, or a path that ends in .json, whose meshes are
+  /// built-in ones or files beside it. Throws DefinitionError.
   WorldDef opened(const std::string& name_or_path) const;
 
-  /// A scene as JSON from a client: its meshes are built-in ones or plain names of the folder.
+  /// Reads a scene that a client sent as JSON: its meshes are built-in ones or plain names of the
+  /// folder. Throws DefinitionError.
   /// Throws DefinitionError.
   WorldDef from_client(std::string_view json) const;
 
-  /// Names and descriptions of all that `named` takes.
+  /// Names and descriptions of all scenes that `named` accepts.
   std::vector<SceneInfo> list() const;
 
   const std::vector<std::string>& problems() const { return problems_; }

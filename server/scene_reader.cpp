@@ -35,13 +35,13 @@ bool is_plain(const std::string& text) {
   });
 }
 
-/// UTF-8 characters, as the schema counts them.
+/// Number of UTF-8 characters, as the schema counts them.
 std::size_t length_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char x) { return (x & 0xC0) != 0x80; }));
 }
 
-/// Reads one object. The first thing that is wrong is thrown.
+/// Reads one object. Throws the first error.
 class Reader {
  public:
   Reader(const Json& node, std::string path, const MeshSource& meshes)
@@ -159,7 +159,7 @@ class Reader {
     }
   }
 
-  /// Refuses keys that nothing asked for.
+  /// Refuses unknown keys.
   void finish() const {
     for (const auto& [key, value] : node_.items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
@@ -257,18 +257,18 @@ class Reader {
   std::vector<std::string> known_;
 };
 
-/// The path in a file of a field that the physics refused.
+/// Path in the file of a field that the physics refused.
 std::string file_path(const std::string& field) {
   if (field.starts_with("cloth.")) return "cloths[0]." + field.substr(6);
   if (field == "fabric" || field.starts_with("fabric.")) return "cloths[0]." + field;
   return field;
 }
 
-/// What only the whole scene can tell.
+/// Checks what only the whole scene can show.
 void check_whole(const WorldDef& def) {
-  check_size(def);  // before what takes long
+  check_size(def);  // before slower checks
   try {
-    WorldDef repaired = def;  // whoever makes a world of it repairs it again, and says so
+    WorldDef repaired = def;  // the world's maker repairs it again, and reports it
     repair_objects(repaired);
     const World<float> world(repaired);
   } catch (const DefinitionError& error) {

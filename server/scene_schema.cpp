@@ -24,7 +24,7 @@ Json words_of(const FieldInfo& info) {
   return words;
 }
 
-/// Whole numbers are told as such, so that both ends read as people write them.
+/// Whole numbers are written as integers, so that both ends of a range read naturally.
 Json bound(double value) {
   constexpr double kExact = 1e15;
   if (value == static_cast<double>(static_cast<std::int64_t>(value)) && std::abs(value) < kExact)
@@ -180,8 +180,8 @@ std::string scene_schema() {
   describe_scene(schema, def);
   Json out = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "A scene of Weft"}};
   out.update(
-      schema.take("Cloths, what they meet and what holds them. Units are SI, y is up; what "
-                  "is not told has its default"));
+      schema.take("Cloths, what they meet and what holds them. Units are SI, y is up; values "
+                  "left out have their defaults"));
   return out.dump(2) + "\n";
 }
 

@@ -4,10 +4,10 @@
 
 namespace weft::server {
 
-/// Where the schema is served.
+/// Path that serves the schema.
 inline constexpr const char* kSceneSchemaPath = "/api/v1/scene-schema";
 
-/// The JSON Schema (draft 7) of scene files; server/scene.schema.json holds the same.
+/// The JSON Schema (draft 7) of scene files, equal to server/scene.schema.json.
 std::string scene_schema();
 
 }  // namespace weft::server

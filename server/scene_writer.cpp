@@ -22,7 +22,7 @@ class Writer {
     if (!value.empty()) out_[info.name] = value;
     if (value.empty() && info.required)
       throw DefinitionError(info.name, "nothing", "a name",
-                            "a mesh that was made by code cannot be written");
+                            "a mesh made by code cannot be written");
   }
   void orientation(const char* name, const char*, const Eigen::Quaterniond& q) {
     out_[name] = {q.x(), q.y(), q.z(), q.w()};
@@ -85,7 +85,7 @@ class Writer {
 }  // namespace
 
 std::string write_scene(const WorldDef& def) {
-  WorldDef copy = def;  // the description takes what it may change, and changes nothing here
+  WorldDef copy = def;  // the shared description takes a mutable scene, but writing changes nothing
   Writer writer;
   describe_scene(writer, copy);
   return writer.take().dump(2) + "\n";

@@ -33,13 +33,13 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kPollPause = std::chrono::milliseconds(10);  // of the hub
-constexpr auto kGoodbye = std::chrono::seconds(1);          // for viewers to close
-constexpr auto kLastWork = std::chrono::milliseconds(500);  // for what is under way to end
+constexpr auto kGoodbye = std::chrono::seconds(1);          // time for viewers to close
+constexpr auto kLastWork = std::chrono::milliseconds(500);  // time for running work to end
 constexpr double kReadinessPause = 0.1;                     // [s]
-constexpr double kStallSeconds = 1;   // without a turn of the room that are worth telling [s]
-constexpr double kBuildSeconds = 30;  // of CPU for a scene that is loaded [s]
+constexpr double kStallSeconds = 1;   // time without a turn of the room that is worth a warning [s]
+constexpr double kBuildSeconds = 30;  // limit of building a loaded scene [s of CPU]
 
-/// What the network thread may know of the room, as of a moment ago.
+/// A recent copy of the room's status for the network thread.
 class Bulletin {
  public:
   void post(const Room& room) {
@@ -49,9 +49,9 @@ class Bulletin {
     readiness_.real_time_factor = room.real_time_factor();
     readiness_.ready = !room.ticking() || readiness_.real_time_factor >= 0.9 * room.speed();
   }
-  /// The room has turned over.
+  /// Marks that the room has made a turn.
   void beat() { last_turn_.store(process_seconds(), std::memory_order_relaxed); }
-  /// Tells too where the room stands in the midst of something and posts nothing.
+  /// Also tells when the room is stuck and posts nothing.
   proto::Readiness read() const {
     const std::lock_guard lock(mutex_);
     proto::Readiness readiness = readiness_;
@@ -69,7 +69,7 @@ class Bulletin {
   proto::Readiness readiness_;
 };
 
-/// The room as the loop runs it, with its bulletin kept up to date.
+/// The room as the loop runs it, which keeps its bulletin up to date.
 class PostedRoom {
  public:
   PostedRoom(Room& room, Bulletin& bulletin) : room_(room), bulletin_(bulletin) {
@@ -101,13 +101,13 @@ class PostedRoom {
   double next_post_ = 0;
 };
 
-/// A thread beside the room, for one job at a time.
+/// A helper thread for the room, one job at a time.
 class Beside {
  public:
   explicit Beside(Mailbox& mailbox) : mailbox_(mailbox) {}
 
   void start(std::function<void()> job) {
-    if (thread_.joinable()) thread_.join();  // it is done: the room gives no second job before
+    if (thread_.joinable()) thread_.join();  // finished: the room starts no second job before
     running_ = true;
     thread_ = std::jthread([this, job = std::move(job)] {
       job();
@@ -123,14 +123,14 @@ class Beside {
   std::jthread thread_;
 };
 
-/// Waits for the end of work that was told to end. Where it does not hear that, the process ends
-/// without it: nothing is kept that could be lost.
+/// Waits for work that was told to end. If it does not respond, the process exits without it: there
+/// is no state that could be lost.
 template <class Done>
 void end_or_exit(Done&& done) {
   const auto last = std::chrono::steady_clock::now() + kLastWork;
   while (!done()) {
     if (std::chrono::steady_clock::now() > last) {
-      spdlog::warn("stopped in the midst of work");
+      spdlog::warn("stopped in the middle of work");
       spdlog::shutdown();
       std::_Exit(0);
     }
@@ -176,11 +176,11 @@ void print_addresses(const ServerOptions& options, int port) {
   try {
     flush_standard_output();
   } catch (const OutputError& error) {
-    spdlog::warn("the addresses could not be told: {}; port {}", error.what(), port);
+    spdlog::warn("the addresses could not be printed: {}; port {}", error.what(), port);
   }
 }
 
-/// The network thread with its timers and its end.
+/// The network thread with its timers and its shutdown.
 class Network {
  public:
   Network(asio::io_context& io, ServiceContext& context)
@@ -198,7 +198,7 @@ class Network {
       end_.expires_after(
           std::chrono::milliseconds(static_cast<long long>(context_.options.max_seconds * 1000)));
       end_.async_wait([this](boost::system::error_code error) {
-        if (!error) stop("its time is over");
+        if (!error) stop("--max-seconds is over");
       });
     }
     poll();
@@ -220,7 +220,7 @@ class Network {
   void stop(const char* why) {
     spdlog::info("stopping: {}", why);
     context_.stopping = true;
-    context_.mailbox.stop();  // ends the tick under way, too
+    context_.mailbox.stop();  // also ends the running tick
     last_ = std::chrono::steady_clock::now() + kGoodbye;
     listener_.stop();
     signals_.cancel();
@@ -237,7 +237,7 @@ class Network {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// Makes the network listen. Throws OptionError where it cannot.
+/// Starts to listen. Throws OptionError if it cannot.
 void listen(std::optional<Network>& network, asio::io_context& io, ServiceContext& context) {
   const ServerOptions& options = context.options;
   try {
@@ -261,7 +261,7 @@ int serve(const ServerOptions& options) {
   if (!options.web.empty() && !files.find("/"))
     throw OptionError("--web", options.web, "a directory with the page's index.html");
   Bulletin bulletin;
-  // Reads its folder in processes of its own, so before any thread is there.
+  // Forks to parse the folder's meshes, so it precedes all threads.
   const SceneLibrary library(beside_program("meshes"), options.scenes);
   for (const std::string& problem : library.problems()) spdlog::warn("scene folder: {}", problem);
 
@@ -282,7 +282,7 @@ int serve(const ServerOptions& options) {
                          false};
   for (const SceneInfo& scene : library.list())
     context.scenes.push_back({scene.name, scene.description});
-  // Destroyed before what the sessions use, because handlers that it still holds own them.
+  // Destroyed before the objects that sessions use, because pending handlers own sessions.
   asio::io_context io(1);
   NetworkOutput output(io, hub);
   ThreadPool pool(options.threads);
@@ -306,7 +306,7 @@ int serve(const ServerOptions& options) {
     spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind,
                  context.port);
   if (!files.find("/"))
-    spdlog::warn("no page in {}; scripts can connect all the same", page_directory(options));
+    spdlog::warn("no page in {}; scripts can connect nevertheless", page_directory(options));
 
   PostedRoom posted(room, bulletin);
   SimulationLoop<PostedRoom, Mailbox> loop(posted, mailbox, process_seconds);

@@ -15,7 +15,7 @@
 
 namespace weft::server {
 
-/// What every connection can reach. Lives on the network thread and outlives all connections.
+/// Shared state of all connections. Lives on the network thread and outlives all connections.
 struct ServiceContext {
   const ServerOptions& options;
   Hub& hub;
@@ -28,7 +28,7 @@ struct ServiceContext {
   std::function<proto::Readiness()> readiness;
   ConnectionCount connections;
   proto::ViewerId next_viewer = 1;
-  int port = 0;  ///< that is listened on
+  int port = 0;  ///< the port that the server listens on
   bool stopping = false;
 };
 

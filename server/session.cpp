@@ -18,8 +18,8 @@
 
 namespace boost::beast {
 
-// Beast closes a stream through these; its buffered stream has none of its own. That of a socket,
-// in Boost 1.74, closes after the first read even if there is more to read.
+// Beast closes a stream through these; its buffered stream has no overloads. The overload for a
+// socket, in Boost 1.74, closes after the first read even if there is more to read.
 template <class Buffer, class Handler>
 void async_teardown(role_type, buffered_read_stream<tcp_stream, Buffer>& stream,
                     Handler&& handler) {
@@ -41,11 +41,11 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using beast::error_code;
 
-// Longer text than the wire allows is still read up to here, so that it gets its error by name.
+// Text beyond the wire's limit is still read up to here, so that its sender gets the proper error.
 constexpr std::size_t kMostReadBytes = 4 * proto::kMostMessageBytes;
 constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel keeps of one viewer
 constexpr double kAcksPerSecond = 4000;
-constexpr double kFlood = 2;         // so many times the limit of messages ends the connection
+constexpr double kFlood = 2;         // this many times the limit of messages ends the connection
 constexpr double kCloseSeconds = 5;  // for the closing handshake
 
 std::chrono::steady_clock::duration duration_of(double seconds) {
@@ -101,7 +101,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   RateLimit messages_, flood_, acks_;
   asio::steady_timer watch_, cut_;
   proto::ViewerId viewer_;
-  ViewerChannel* channel_ = nullptr;  // of the hub; null before and after
+  ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
   std::uint32_t number_ = 0;          // of the last text message
   double alive_ = 0;
   bool pinging_ = false, finished_ = false, cutting_ = false;
@@ -111,7 +111,7 @@ void Session::start() {
   error_code ignored;
   auto& socket = beast::get_lowest_layer(ws_).socket();
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
-  // A small backlog in the kernel keeps the newest frame new.
+  // A small backlog in the kernel keeps frames fresh.
   ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kNotSentLowWater,
                sizeof kNotSentLowWater);
   websocket::stream_base::timeout timeout{};
@@ -205,7 +205,7 @@ void Session::on_view(const std::optional<proto::Id>& id, const proto::View& vie
   if (view.forces) context_.hub.want_forces(viewer_, *view.forces);
   answer(id,
          proto::ViewReply{channel_->most_frames(), proto::Codec::f32, channel_->asked_forces()});
-  // What was not sent before is missing now; nothing else that a viewer wants makes a frame.
+  // Anything not sent before is missing now; no other wish of a viewer makes a frame.
   Noted noted;
   noted.wants_frame =
       (channel_->wants_frames() && !had_frames) || (channel_->wants_forces() && !had_forces);
@@ -213,7 +213,7 @@ void Session::on_view(const std::optional<proto::Id>& id, const proto::View& vie
   context_.mailbox.put({viewer_, number_, noted});
 }
 
-/// A message that is not read is answered all the same: its sender may wait for that.
+/// A dropped message gets an answer too: its sender may wait for one.
 void Session::on_excess(std::string_view text) {
   proto::Error error = proto::make_error(proto::ErrorCode::rate_limited,
                                          "too many messages a second; this one was dropped",
@@ -239,14 +239,14 @@ void Session::note() {
 }
 
 void Session::write(const Message& message) {
-  if (message.topic == Topic::frame) acks_.allow_one();  // each frame is answered by one
+  if (message.topic == Topic::frame) acks_.allow_one();  // one ack per frame
   outgoing_ = message;
   ws_.binary(message.binary);
   ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),
                   [self = shared_from_this()](error_code error, std::size_t bytes) {
                     self->context_.metrics.count_bytes(bytes);
                     self->outgoing_ = {};
-                    // Reading notices the broken connection as well, and finishes.
+                    // Reading notices the broken connection too, and finishes.
                     if (!error && self->channel_) self->channel_->on_written();
                   });
 }

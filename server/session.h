@@ -13,9 +13,9 @@ namespace weft::server {
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
-/// Makes a viewer out of a connection whose upgrade request was read and found acceptable. The
-/// session keeps itself alive until the connection ends.
-/// @param early  bytes that came behind the request; they belong to the first messages
+/// Turns a connection whose upgrade request was accepted into a viewer. The session keeps itself
+/// alive until the connection ends.
+/// @param early  bytes that followed the request; they belong to the first messages
 void start_session(ServiceContext& context, boost::asio::ip::tcp::socket socket,
                    UpgradeRequest request, const std::string& early,
                    std::shared_ptr<ConnectionCount::Place> place);

@@ -34,9 +34,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Exit code where something crossed.
+/// Exit code if anything crossed.
 constexpr int kCrossed = 3;
-/// And where a tick took more than its limit.
+/// Exit code if a tick exceeded its limit.
 constexpr int kHalted = 4;
 
 double cpu_seconds() {
@@ -50,21 +50,21 @@ struct Measurement {
   std::vector<double> ticks;  ///< [s], sorted
   Profile stages;             ///< summed
   double deepest = 0;         ///< [m]
-  int checks = 0;             ///< ticks that were looked at for penetrations and crossings
+  int checks = 0;             ///< ticks checked for penetrations and crossings
   int divergences = 0;
   int least_substeps = 0, most_substeps = 0;
   double largest_strain = 0;  ///< over the whole run
   std::size_t cloth_crossings =
       0;  ///< of the cloths with themselves and each other, over all checks
   std::size_t object_crossings = 0;          ///< of cloths with objects, over all checks
-  int crossed_ticks = 0, first_crossed = 0;  ///< the first one's number; 0: none
-  std::size_t late_crossings = 0;            ///< after the time in which the scene may have some
-  std::size_t broken_promises = 0;           ///< those of them that its contact rules out
+  int crossed_ticks = 0, first_crossed = 0;  ///< number of the first one; 0: none
+  std::size_t late_crossings = 0;            ///< after the scene's grace time for crossings
+  std::size_t broken_promises = 0;           ///< those that its contact rules out
   Verdict<float> verdict;                    // of a hard case
   proto::Guarantee guarantee;                ///< at the end
 };
 
-/// @returns false if the tick took more than its limit; nothing has changed then
+/// @returns false if the tick exceeded its limit; the state is then unchanged
 bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
   const double cpu = cpu_seconds(), wall = process_seconds();
   const TickReport& report = [&]() -> const TickReport& {
@@ -88,14 +88,14 @@ bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
   return true;
 }
 
-/// Whether the scene's contact promises that nothing crosses: that of the seed does not, and
-/// without self-contact cloths pass through each other as they like.
+/// Crossings that break the scene's promise: contact of the seed promises nothing, and without
+/// self-contact cloths may pass through each other.
 std::size_t broken_promises(const World<float>& world, const WorldCrossings& found) {
   if (contact_of(world.def()) != ContactModel::weft) return 0;
   return found.objects.all() + (has_guard(world.def()) ? found.cloths.all() : 0);
 }
 
-/// Looks for penetrations and counts crossings.
+/// Checks for penetrations and counts crossings.
 void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Measurement& m) {
   ++m.checks;
   m.deepest = std::max(m.deepest, world.deepest_penetration());
@@ -136,7 +136,7 @@ double percentile(const std::vector<double>& sorted, std::size_t percent) {
   return sorted[std::min(sorted.size() - 1, sorted.size() * percent / 100)];
 }
 
-/// What the guard did; null without one.
+/// Counters of the guard; null without one.
 Json guard_summary(const World<float>& world) {
   if (!world.guard()) return nullptr;
   const GuardCounts& counts = world.guard()->counts();
@@ -150,7 +150,7 @@ Json guard_summary(const World<float>& world) {
           {"open_pairs", world.guard()->open_pairs()}};
 }
 
-/// What a hard case has come to; null for other scenes.
+/// Result of a hard case; null for other scenes.
 Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
   if (!(world.def().verdict.strain > 0)) return nullptr;
   const std::vector<std::string> failures = verdict.failures(world.def().verdict);
@@ -263,8 +263,8 @@ TriangleMesh cloth_mesh(const World<float>& world) {
   return mesh;
 }
 
-/// Says so where something crossed.
-/// @return exit code: that of failure if it did after the time in which the scene may
+/// Reports crossings on standard error.
+/// @return exit code: failure if any came after the scene's grace time
 int warn_of_crossings(const Measurement& m) {
   if (m.crossed_ticks == 0) return 0;
   std::fprintf(stderr,
@@ -272,12 +272,12 @@ int warn_of_crossings(const Measurement& m) {
                "from tick %d on%s\n",
                m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
                m.broken_promises > 0  ? ""
-               : m.late_crossings > 0 ? ", of which its contact promises nothing"
-                                      : ", none after the time that the scene has for them");
+               : m.late_crossings > 0 ? ", about which its contact promises nothing"
+                                      : ", none after the scene's grace time");
   return m.broken_promises > 0 ? kCrossed : 0;
 }
 
-/// Tells what is wrong before minutes are spent.
+/// Checks the output path before minutes are spent.
 void check_out(const std::string& out) {
   if (out.empty()) return;
   if (!out.ends_with(".obj") && !out.ends_with(".ply"))
@@ -323,7 +323,7 @@ int simulate(const SimulateOptions& options) {
     std::printf("%s\n", result.dump(2).c_str());
   else
     print_table(result, "");
-  // What was found is told even where the file cannot be written.
+  // The summary is printed even if the file cannot be written.
   if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
   return warn_of_crossings(measurement);
 }

@@ -8,7 +8,7 @@
 
 namespace weft::server {
 
-/// What `weft simulate` can be told.
+/// All options of `weft simulate`.
 struct SimulateOptions {
   std::string scene = "default";  ///< a name, or a file that ends in .json
   std::string scenes;             ///< directory with further scenes and meshes; empty: none
@@ -17,26 +17,25 @@ struct SimulateOptions {
   std::string out;    ///< file for the cloth at the end, .obj or .ply; empty: none
   bool json = false;  ///< summary as one JSON object instead of a table
   int threads = 1;    ///< 1 to 64
-  /// Crossings are counted and penetrations looked for after every so many ticks, and after the
-  /// last, 1 to 10,000,000. They cost time, which the figures leave out, and take the place in the
-  /// caches of what the next step needs.
+  /// Crossings and penetrations are checked every so many ticks, and after the last, 1 to
+  /// 10,000,000. The times exclude the checks, but a check evicts the next step's data from the
+  /// caches.
   int check_every = 1;
   double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
 };
 
 /// Runs a scene without a clock and prints a summary.
-/// @return exit code: 3 if something crossed after the time that the scene has for it (its
-/// verdict's
-///         `clear_after`), 4 if a tick took more than its limit and was given up; both are told on
+/// @return exit code: 3 if anything crossed after the scene's grace time (its verdict's
+///         `clear_after`), 4 if a tick exceeded its limit and was given up; both are reported on
 ///         standard error too; else 0
-/// Throws OptionError or DefinitionError if something cannot be accepted, OutputError if the file
-/// cannot be written.
+/// Throws OptionError or DefinitionError if an input is invalid, OutputError if the file cannot be
+/// written.
 int simulate(const SimulateOptions& options);
 
-/// What `weft scenes` can be told.
+/// All options of `weft scenes`.
 struct ScenesOptions {
   std::string name;     ///< with `json`: this scene as a file; empty: the list
-  bool json = false;    ///< for programs
+  bool json = false;    ///< machine-readable
   bool schema = false;  ///< the JSON Schema of scene files
 };
 

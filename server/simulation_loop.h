@@ -10,11 +10,11 @@
 namespace weft::server {
 
 /// Runs a room at its rate by a given clock: commands between ticks, at most one tick a turn, then
-/// what is to be told. A room that cannot keep up runs in slow motion and still hears commands
-/// between any two ticks.
+/// announcements. A room that cannot keep up runs in slow motion and still takes commands between
+/// any two ticks.
 ///
-/// What comes while a tick passes is heard at its next stop point, if the inbox raises the room's
-/// stop signal.
+/// Input that arrives during a tick is handled at the tick's next stop point, if the inbox raises
+/// the room's stop signal.
 ///
 /// @tparam Room   take, take_meanwhile, gives_up, stop_signal, advancing, advance_until,
 /// advance_waits, ticking, tick_interval, tick, finish_turn, next_wake
@@ -32,7 +32,7 @@ class SimulationLoop {
     }
   }
 
-  /// Until the inbox is stopped.
+  /// Runs until the inbox is stopped.
   void run() {
     while (!inbox_.stopped()) {
       const double wake = turn();
@@ -40,12 +40,12 @@ class SimulationLoop {
     }
   }
 
-  /// One turn; returns when the next one is due unless something arrives before.
+  /// One turn; returns when the next one is due unless input arrives before.
   double turn() {
     for (auto& item : inbox_.take_all()) room_.take(std::move(item));
     const double now = clock_();
     if (room_.advancing()) {
-      // In slices, so that joins, the end of its viewer and the end of the server are heard.
+      // In slices, so that joins, the loss of its viewer and the server's end are noticed.
       room_.advance_until(now + kAdvanceSlice);
       was_ticking_ = false;
       room_.finish_turn();
@@ -60,8 +60,8 @@ class SimulationLoop {
   }
 
  private:
-  /// In the midst of a tick: hears what has come.
-  /// @returns whether the tick shall be given up
+  /// During a tick: handles what has arrived.
+  /// @returns whether to give up the tick
   bool attend() {
     if (inbox_.stopped()) return true;
     for (auto& item : inbox_.take_all()) room_.take_meanwhile(std::move(item));
@@ -69,7 +69,7 @@ class SimulationLoop {
   }
 
   static constexpr double kAdvanceSlice = 0.01;   // [s]
-  static constexpr double kAdvancePause = 0.001;  // while its viewer does not take its frames [s]
+  static constexpr double kAdvancePause = 0.001;  // while its viewer takes no frames [s]
 
   Room& room_;
   Inbox& inbox_;

@@ -12,17 +12,17 @@ struct StaticFile {
   std::string etag;  ///< quoted
 };
 
-/// The page's files, read once at the start: a request chooses among them by name and never reaches
-/// the file system.
+/// The page's files, read once at the start: a request selects one by name and never reaches the
+/// file system.
 class StaticFiles {
  public:
   StaticFiles() = default;
 
-  /// Reads the directory with its folders. Links, hidden files and files above 32 MiB are left out.
-  /// An unreadable directory gives no files.
+  /// Reads the directory and its subdirectories. Links, hidden files and files above 32 MiB are
+  /// left out. An unreadable directory gives no files.
   explicit StaticFiles(const std::string& directory);
 
-  /// @param path  as in the request's target without query, e.g. "/" or "/main.js"
+  /// @param path  of the request's target without query, e.g. "/" or "/main.js"
   /// @return null if there is no such file
   const StaticFile* find(const std::string& path) const;
 

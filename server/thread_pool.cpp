@@ -3,7 +3,7 @@
 namespace weft::server {
 namespace {
 
-/// Looks out for something so many times, some hundred microseconds.
+/// Polls before blocking: some hundred microseconds.
 constexpr int kLooks = 20000;
 
 template <class Predicate>
@@ -15,8 +15,8 @@ void look_out_for(Predicate&& happened) {
   }
 }
 
-// A ticket: 32 bits for the number of the job, and the chunks that are left from a first one, in 16
-// bits, to before an end.
+// A ticket: the number of the job in 32 bits, then the first chunk left and the end of the chunks
+// left in 16 bits each.
 constexpr std::uint64_t make_ticket(std::uint32_t job, int chunks) {
   return std::uint64_t{job} << 32 | static_cast<std::uint64_t>(chunks);
 }

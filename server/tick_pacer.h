@@ -2,8 +2,8 @@
 
 namespace weft::server {
 
-/// Decides when the next tick is due. A late tick is caught up with, but only a few: beyond that
-/// the backlog is dropped, simulated time slows down, and the loop never spirals.
+/// Decides when the next tick is due. A few late ticks are caught up; beyond that the backlog is
+/// dropped, simulated time slows down, and the loop never spirals.
 class TickPacer {
  public:
   static constexpr int kMostLateTicks = 4;
@@ -11,7 +11,7 @@ class TickPacer {
   /// The next tick is due now.
   void restart(double now) { next_ = now; }
 
-  /// Whether a tick is due; if so the next is due one interval after it was.
+  /// Whether a tick is due; if so, the next one is due one interval later.
   /// @param interval  real time between ticks [s]
   bool take_due(double now, double interval) {
     if (now < next_) return false;
@@ -27,7 +27,7 @@ class TickPacer {
   double next_ = 0;
 };
 
-/// How fast simulated time passes, over the last one to two seconds.
+/// Simulated per real time, over the last one to two seconds.
 class RealTimeMeter {
  public:
   void restart(double now) {
@@ -36,7 +36,7 @@ class RealTimeMeter {
     started_ = false;
   }
 
-  /// A tick is done. Time counts from the first one on, which therefore adds nothing itself.
+  /// A tick is done. Time counts from the first one, which therefore adds nothing itself.
   void add(double simulated, double now) {
     if (!started_) {
       restart(now);
@@ -51,7 +51,7 @@ class RealTimeMeter {
     current_start_ = now;
   }
 
-  /// @param expected  the answer while there is too little to judge by
+  /// @param expected  returned while there is too little to judge by
   double factor(double now, double expected) const {
     const double elapsed = now - before_start_;
     return !started_ || elapsed < kPeriod / 2 ? expected : (before_ + current_) / elapsed;

@@ -12,7 +12,7 @@
 namespace weft::server {
 namespace {
 
-// Positions go out as they lie in memory.
+// Positions are sent as they lie in memory.
 static_assert(sizeof(Vec3f) == 3 * sizeof(float));
 
 std::vector<float> floats_copied(const std::vector<Vec3d>& vectors) {
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> indices_of(const std::vector<Triangle>& triangles) {
   return out;
 }
 
-/// Fabric coordinates of each cloth scaled to 0..1 in each direction.
+/// Fabric coordinates of each cloth, scaled to 0..1 in each direction.
 std::vector<float> uv_of(const ClothModel<float>& model) {
   std::vector<float> out;
   out.reserve(model.material.size() * 2);
@@ -51,7 +51,7 @@ std::vector<float> uv_of(const ClothModel<float>& model) {
   return out;
 }
 
-/// The fabrics of all cloths, each name once.
+/// Names of all cloths' fabrics, without duplicates.
 std::string fabric_names(const std::vector<ClothDef>& cloths) {
   std::vector<std::string> names;
   std::string text;
@@ -111,7 +111,7 @@ proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const 
     if (point->triangle >= model.triangles.size())
       return index_error("triangle", point->triangle, model.triangles.size());
     proto::SurfacePoint exact = *point;
-    // The wire allows a rounded sum; the physics wants weights that make a point of the triangle.
+    // The wire allows a rounded sum; the physics needs weights that sum to one.
     const double sum = exact.barycentric[0] + exact.barycentric[1] + exact.barycentric[2];
     for (double& weight : exact.barycentric) weight /= sum;
     return exact;

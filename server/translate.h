@@ -15,55 +15,55 @@
 #include "proto/mesh.h"
 #include "proto/replies.h"
 
-// The only place where the wire's types meet those of the physics.
+// The only place where the types of the wire meet those of the physics.
 
 namespace weft::server {
 
-/// The world that is served.
+/// The type of world that the server runs.
 using ServedWorld = World<float>;
 
 proto::Vec3 to_wire(const Vec3d& v);
 proto::Vec3f to_wire_float(const Vec3f& v);
 Vec3d from_wire(const proto::Vec3& v);
 
-/// Three numbers a vertex, without copying.
+/// Three numbers per vertex, without copying.
 std::span<const float> floats_of(const Vec3Array<float>& vectors);
 
-/// Checks that the index exists and gives the triangle with weights (for a particle: one of its
+/// Checks that the index exists and returns the triangle with weights (for a particle: one of its
 /// triangles with all weight on it).
 proto::Result<proto::SurfacePoint> resolve_hold(const ServedWorld& world, const proto::Hold& hold);
 
-/// The corner with the greatest weight.
+/// The corner with the largest weight.
 Index nearest_corner(const ServedWorld& world, const proto::SurfacePoint& point);
 
-/// @param target  where to pull; absent: where the point is now
+/// @param target  of the pull; absent: the present position of the point
 GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
                  const proto::SurfacePoint& point);
 
-/// The environment with what the command sets.
+/// The environment with the command's settings.
 EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set);
 
-/// The budget with what the command sets.
+/// The budget with the command's settings.
 BudgetDef with_settings(BudgetDef budget, const proto::Set& set);
 proto::OverBudget to_wire(OverBudget remedy);
 
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
 proto::Energy to_wire(const Energies& energies);
-proto::State state_of(const ServedWorld& world);  ///< without what only the room knows
+proto::State state_of(const ServedWorld& world);  ///< without the room's own values
 std::vector<proto::StageWork> work_of(const ServedWorld& world);
 std::vector<proto::TreeInfo> trees_of(ServedWorld& world);
 
-/// What the scene's test measures, e.g. the drape coefficient.
+/// Measurements of the scene's test, e.g. the drape coefficient.
 proto::Measurements measurements_of(const ServedWorld& world);
 
-/// Colliders that are not as they were told; replaces what is in `samples`.
+/// Colliders that differ from their last announced pose; overwrites `samples`.
 void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samples);
 std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world);
 
 /// The first collider of this name.
 proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::string& name);
 
-/// The command in full: what it does not tell stays as it is.
+/// The command in full: omitted values stay as they are.
 MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move);
 
 /// The gripper of this name.
@@ -75,7 +75,7 @@ proto::SceneMesh scene_mesh(const ServedWorld& world);
 /// Without epoch, hash and bytes.
 proto::MeshAnnouncement mesh_announcement(const ServedWorld& world);
 
-/// A refused definition, as the wire tells it.
+/// A refused definition as an error of the wire.
 proto::Error to_wire(const DefinitionError& error);
 
 }  // namespace weft::server

@@ -6,7 +6,7 @@
 namespace weft::server {
 namespace {
 
-/// The particle of the first side that has most to do with a contact.
+/// The particle of the first side with the largest weight in a contact.
 std::uint32_t heaviest(const ContactPoint& contact) {
   const auto end = contact.weight.begin() + contact.first_side;
   const auto place = std::max_element(contact.weight.begin(), end) - contact.weight.begin();

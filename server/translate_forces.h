@@ -7,16 +7,16 @@
 #include "proto/replies.h"
 #include "server/translate.h"
 
-// Contacts and forces of the cloth, as the wire tells them.
+// Contacts and forces of the cloth, in types of the wire.
 
 namespace weft::server {
 
 std::vector<proto::ContactInfo> contacts_of(const ServedWorld& world, const Reactions& reactions);
 
-/// Without hands, whose owners the room knows.
+/// Without hands, because only the room knows their owners.
 proto::ReactionInfo reactions_of(const ServedWorld& world, const Reactions& reactions);
 
-/// Those that the world measured in its last tick.
+/// As measured in the world's last tick.
 std::vector<proto::ContactSample> contact_samples(const ServedWorld& world);
 std::vector<proto::ReactionSample> reaction_samples(const ServedWorld& world);
 

@@ -6,22 +6,22 @@
 #include "proto/events.h"
 #include "server/translate.h"
 
-// Whether nothing crosses, as counted and as promised, as the wire tells it.
+// Whether nothing crosses, as counted and as promised, in types of the wire.
 
 namespace weft::server {
 
 using ServedCrossings = CrossingCounter<float>;
 
-/// Counts in the present state.
+/// Counts crossings in the present state.
 /// @param counter   of this world
-/// @param meetings  gets who crosses whom
+/// @param meetings  receives which pairs cross
 proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
                               std::vector<Meeting>& meetings);
 
 /// Objects that were forced through the cloth since the start.
 std::vector<std::string> voiding_colliders(const ServedWorld& world);
 
-/// @param bad_starts  that hold now
+/// @param bad_starts  those still in force
 proto::Guarantee guarantee_of(const ServedWorld& world, const BadStarts& bad_starts);
 
 }  // namespace weft::server

@@ -2,7 +2,7 @@
 
 #include "server/translate.h"
 
-// What holds the cloth, pins and hands, between the wire's types and those of the physics.
+// Pins and hands, translated between the wire and the physics.
 
 namespace weft::server {
 
@@ -11,7 +11,7 @@ proto::PinInfo pin_info(const ServedWorld& world, const Pin& pin, proto::ViewerI
 /// The pin of this id; null if there is none.
 const Pin* find_pin(const ServedWorld& world, PinId id);
 
-/// The command for a pin; an error if it cannot be there in the time that it is given.
+/// The command for a pin; an error if the pin cannot arrive in the given time.
 proto::Result<PinMove> pin_move(const ServedWorld& world, const Pin& pin,
                                 const proto::MovePin& command);
 

@@ -9,9 +9,9 @@
 namespace weft::server {
 namespace {
 
-// Parts of the time between two frames by which one may come early, and by which one that came late
-// does not delay the next. Together they are less than one, so that in no second more than `hz` + 1
-// frames are sent, and ticks that come unevenly at that rate are all seen.
+// Fractions of the frame interval: how early a frame may be sent, and how late one may come without
+// delaying the next. Their sum is less than one, so that no second has more than `hz` + 1 frames,
+// and ticks that come unevenly at that rate are all shown.
 constexpr double kEarly = 0.25, kLate = 0.5;
 
 /// Whether it counts towards the bound of bytes.
@@ -19,7 +19,7 @@ bool counts(const Message& message) {
   return message.topic != Topic::mesh_data && message.topic != Topic::frame;
 }
 
-/// Whether it tells nothing of interest any more when a mesh is announced.
+/// Whether an announced mesh makes it obsolete.
 bool is_of_mesh(const Message& message) {
   return message.topic == Topic::mesh || message.topic == Topic::mesh_data ||
          message.topic == Topic::state || message.topic == Topic::pins ||
@@ -45,7 +45,7 @@ void ViewerChannel::send(Message message) {
   pump();
 }
 
-/// At the place of one that it replaces, for it may not wait the longer the more often it changes.
+/// In the place of the one that it replaces: frequent changes must not delay it.
 void ViewerChannel::enqueue(Message message) {
   if (counts(message)) queued_bytes_ += message.bytes.size();
   const bool must_arrive = message.topic == Topic::none || message.topic == Topic::frame;
@@ -70,7 +70,7 @@ void ViewerChannel::drop_queued(Predicate&& is_old) {
 bool ViewerChannel::overflows() const {
   if (queue_.size() > limits_.queued_messages) return true;
   if (queued_bytes_ <= limits_.queued_bytes) return false;
-  // One may be of any size: the positions of a large cloth as text, for instance.
+  // One may be of any size, such as the positions of a large cloth as text.
   std::size_t largest = 0;
   for (const Message& message : queue_)
     if (counts(message)) largest = std::max(largest, message.bytes.size());
@@ -84,7 +84,7 @@ void ViewerChannel::welcome_done() {
 
 void ViewerChannel::offer_frame(const Frame& frame) {
   if (!wants_frames()) return;
-  // A frame left out because the viewer asked for fewer is not a dropped one.
+  // A frame left out because of the viewer's `hz` does not count as dropped.
   if (waiting_frame_ && (writing_ || !window_.has_room())) ++frames_dropped_;
   const bool at_once = frame.at_once || (waiting_frame_ && waiting_frame_->at_once);
   waiting_frame_ = frame;
@@ -124,7 +124,7 @@ void ViewerChannel::close(std::uint16_t code, const std::string& reason,
   close_code_ = code;
   close_reason_ = reason;
   waiting_frame_.reset();
-  // A viewer that does not read would keep its queue and the write in flight for ever.
+  // A viewer that does not read would hold its queue and the pending write forever.
   if (code == kCloseViewerDoesNotRead || code == kCloseNoPong) {
     queue_.clear();
     closed_ = true;

@@ -18,25 +18,25 @@ class ViewerStream {
  public:
   virtual ~ViewerStream() = default;
 
-  /// Starts to write; the stream calls `ViewerChannel::on_written` when it is done. The channel
-  /// never starts a second write before.
+  /// Starts a write; the stream calls `ViewerChannel::on_written` when it is done. The channel
+  /// starts no second write before that.
   virtual void write(const Message& message) = 0;
 
-  /// Starts to close; nothing is written after it.
+  /// Starts to close; no write follows.
   virtual void close(std::uint16_t code, const std::string& reason) = 0;
 
-  /// The viewer has been told all that comes before frames; its own messages may be read now.
+  /// The viewer has been sent everything that precedes frames; its own messages may be read now.
   virtual void on_welcomed() {}
 };
 
 struct ChannelLimits {
-  std::size_t queued_messages = 4096;  ///< more than its own commands can bring at once
+  std::size_t queued_messages = 4096;  ///< more than its own commands can cause at once
   std::size_t queued_bytes = 8 << 20;  ///< without the largest, and without meshes and kept frames
 };
 
-/// What waits for one viewer: a bounded queue of messages in order, and one slot for the newest
-/// frame. A slow viewer sees fewer frames, never older ones, and delays no other. What tells how
-/// something is (`Topic`) waits once at most, so that only a viewer's own answers can overflow its
+/// The output queue of one viewer: a bounded queue of messages in order, and one slot for the
+/// newest frame. A slow viewer gets fewer frames, never older ones, and delays no other viewer. A
+/// state message (`Topic`) waits at most once, so that only a viewer's own answers can overflow its
 /// queue. Lives on the network thread.
 class ViewerChannel {
  public:
@@ -44,43 +44,43 @@ class ViewerChannel {
   ViewerChannel(ViewerStream& stream, const Clock& clock, double frame_rate,
                 const ChannelLimits& limits);
 
-  /// Queues a message, in place of one of its topic that waits. If the viewer does not read and the
-  /// queue overflows, closes with 4000.
+  /// Queues a message, in place of a waiting one of its topic. Closes with 4000 if the viewer does
+  /// not read and the queue overflows.
   void send(Message message);
 
-  /// The viewer was told all that comes before frames; until then `offer_frame` does nothing.
+  /// The viewer was sent everything that precedes frames; until then `offer_frame` does nothing.
   void welcome_done();
 
-  /// Replaces the frame that waits.
+  /// Replaces the waiting frame.
   void offer_frame(const Frame& frame);
 
-  /// Forgets the frame that waits; it belongs to an older mesh.
+  /// Drops the waiting frame; it belongs to an older mesh.
   void drop_frame() { waiting_frame_.reset(); }
 
-  /// The client has decoded a frame.
+  /// The viewer has decoded a frame.
   void on_acknowledged(std::uint32_t sequence);
 
-  /// The write that was started last is done.
+  /// The pending write is done.
   void on_written();
 
-  /// Sends what has become due with time; called a few times a second or more.
+  /// Sends what has become due; call a few times a second or more.
   void poll() { pump(); }
 
-  /// @param hz  most frames a second of real time, 0 to 240; 0: none
+  /// @param hz  most frames per second of real time, 0 to 240; 0: none
   void set_most_frames(double hz);
-  /// The `hz` in force [1/s]; the most that may be asked for, if none was.
+  /// The `hz` in force [1/s]; the highest allowed, if none was set.
   double most_frames() const { return most_frames_; }
-  /// Whether its frames shall tell contacts and reactions.
+  /// Whether its frames include contacts and reactions.
   void want_forces(bool wanted) { with_forces_ = wanted; }
   bool wants_forces() const { return with_forces_ && wants_frames(); }
   bool asked_forces() const { return with_forces_; }
   bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
 
-  /// The room's rate of frames has changed [1/s].
+  /// The room's frame rate has changed [1/s].
   void set_frame_rate(double frame_rate);
 
-  /// Sends what is queued, says `last`, and closes. Frames are dropped, and for a viewer that does
-  /// not read (4000, 4001) everything is.
+  /// Sends the queued messages and `last`, then closes. Frames are dropped; a viewer that does not
+  /// read (4000, 4001) gets nothing more.
   void close(std::uint16_t code, const std::string& reason, std::optional<Message> last = {});
 
   bool closing() const { return closing_; }
@@ -114,10 +114,10 @@ class ViewerChannel {
   std::uint16_t close_code_ = 0;
   std::string close_reason_;
   std::deque<Message> queue_;
-  std::size_t queued_bytes_ = 0;  // of those that count
+  std::size_t queued_bytes_ = 0;  // of the messages that count
   std::optional<Frame> waiting_frame_;
-  double next_frame_time_ = 0;    // by `most_frames_`, if all came evenly [s]
-  double next_urgent_frame_ = 0;  // that may come before it [s]
+  double next_frame_time_ = 0;    // by `most_frames_`, at even spacing [s]
+  double next_urgent_frame_ = 0;  // earliest that may precede it [s]
   std::uint64_t frames_sent_ = 0, frames_dropped_ = 0, dropped_told_ = 0;
 };
 

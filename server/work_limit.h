@@ -9,13 +9,13 @@
 
 namespace weft::server {
 
-/// Bounds the CPU time of one piece of work, such as a tick: time that passes while the thread
-/// waits or other programs run does not count, and so a busy machine ends nothing. The time is that
-/// of the thread that works; what other threads do for it meanwhile is not counted.
+/// Bounds the CPU time of one piece of work, such as a tick: time in which the thread waits or
+/// other programs run does not count, so a busy machine ends nothing. Only the working thread is
+/// measured; helping threads do not count.
 class WorkLimit {
  public:
-  /// @param seconds  of CPU that one piece of work may take [s]; 0: no bound
-  /// @param clock    CPU time [s], for tests; null: that of the thread that works
+  /// @param seconds  most CPU time of one piece of work [s]; 0: no bound
+  /// @param clock    CPU time [s], for tests; null: that of the working thread
   explicit WorkLimit(double seconds, Clock clock = {})
       : seconds_(seconds), clock_(std::move(clock)) {
     signal_.attend = [this] {
@@ -25,11 +25,11 @@ class WorkLimit {
   }
 
   double seconds() const { return seconds_; }
-  /// Raised when the bound is passed. The owner may raise it for reasons of its own and attend to
-  /// it in another way; then `is_over` tells of this one.
+  /// Raised when the bound is exceeded. The owner may raise it for other reasons and attend to it;
+  /// `is_over` tells these apart.
   StopSignal& signal() { return signal_; }
 
-  /// Bounds what is done on this thread while it lives.
+  /// Bounds the work on this thread during its lifetime.
   class Scope {
    public:
     explicit Scope(WorkLimit& limit) : limit_(limit), stop_(&limit.signal_) { limit.begin(); }
@@ -42,13 +42,12 @@ class WorkLimit {
     StopScope stop_;
   };
 
-  /// Whether the work in hand has taken more than it may. From any thread.
+  /// Whether the current work has exceeded its bound. Callable from any thread.
   bool is_over() const;
-  /// For how long the work in hand has been going on [s of CPU]; 0 where there is none. From any
-  /// thread.
+  /// CPU time of the current work so far [s]; 0 if there is none. Callable from any thread.
   double spent() const;
 
-  /// Raises the signal if the bound is passed. From any thread.
+  /// Raises the signal if the bound is exceeded. Callable from any thread.
   void watch() {
     if (is_over()) signal_.raise();
   }
@@ -61,7 +60,7 @@ class WorkLimit {
   double seconds_;
   Clock clock_;
   StopSignal signal_;
-  std::atomic<clockid_t> thread_clock_ = CLOCK_MONOTONIC;  ///< of the thread that works
+  std::atomic<clockid_t> thread_clock_ = CLOCK_MONOTONIC;  ///< of the working thread
   std::atomic<double> begun_ = 0;
   std::atomic<bool> working_ = false;
 };

@@ -153,7 +153,7 @@ TEST_CASE("a scene that starts badly says so each time it is loaded, and a good 
   CHECK(t.guarantee()["covers"] == json{"objects"});
   CHECK(t.guarantee()["state"] == "void");
   CHECK(t.guarantee()["reasons"] ==
-        json{"cloth passes through cloth, from which nothing keeps it here"});
+        json{"cloth passes through cloth, which nothing prevents here"});
 }
 
 TEST_CASE("a post through a cloth between its particles is told from the start, and never held") {

@@ -61,7 +61,7 @@ class StandardOutput(unittest.TestCase):
         with open("/dev/full", "w", encoding="utf-8") as full:
             result = run("serve", "--port", "0", "--max-seconds", "0.5", stdout=full)
         self.assertEqual(result.returncode, 0)
-        self.assertRegex(result.stderr, r"the addresses could not be told: standard output: cannot be written "
+        self.assertRegex(result.stderr, r"the addresses could not be printed: standard output: cannot be written "
                                         r"\(No space left on device\); port \d+")
 
 
