@@ -15,7 +15,7 @@ struct Sums {
   bool operator==(const Sums&) const = default;
 };
 
-// Both sums over all words, those of the sums themselves taken as 0. The size is a multiple of 4.
+// Both sums over all words, with the sums' own words taken as 0. The size is a multiple of 4.
 Sums checksum(std::span<const std::byte> message) {
   Sums sums;
   const std::size_t words = message.size() / sizeof(std::uint32_t);
@@ -82,7 +82,7 @@ Result<BinaryHeader> read_header(std::span<const std::byte> message, BinaryType 
 Result<std::vector<Section>> read_sections(std::span<const std::byte> message, std::size_t offset,
                                            std::uint32_t count) {
   std::span<const std::byte> rest = message.subspan(offset);
-  // Bounds what is reserved by what is there.
+  // Limits the reservation by the bytes at hand.
   if (count > rest.size() / kSectionHeaderBytes) return binary_error("too many sections");
   std::vector<Section> sections;
   sections.reserve(count);
@@ -91,7 +91,7 @@ Result<std::vector<Section>> read_sections(std::span<const std::byte> message, s
     const auto header = read_at<SectionHeader>(rest, 0);
     rest = rest.subspan(kSectionHeaderBytes);
     if (header.length > rest.size()) return binary_error("a section is too long");
-    const std::size_t whole = padded(header.length);  // fits: the rest is a multiple of it
+    const std::size_t whole = padded(header.length);  // fits: the rest is a multiple of kAlignment
     if (!all_zero(rest.subspan(header.length, whole - header.length)))
       return binary_error("padding is not zero");
     sections.push_back({header.kind, header.index, rest.first(header.length)});

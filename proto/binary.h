@@ -9,7 +9,7 @@
 
 #include "proto/error.h"
 
-// What all binary messages share: the first 16 bytes, the checksum, sections. README.md section 6.
+// Common to all binary messages: the first 16 bytes, the checksum, sections. README.md section 6.
 
 namespace weft::proto {
 
@@ -69,10 +69,10 @@ std::vector<T> read_array(std::span<const std::byte> payload) {
   return items;
 }
 
-/// Appends to a message. Capacity that the buffer has is used again.
+/// Appends to a message. Reuses the buffer's capacity.
 class BinaryWriter {
  public:
-  /// Starts a message, dropping what the buffer held.
+  /// Starts a message, dropping the buffer's content.
   BinaryWriter(Bytes& out, BinaryType type, std::uint8_t codec, std::uint8_t flags);
 
   template <class T>
@@ -99,20 +99,20 @@ class BinaryWriter {
 
 /// Checks type, version, codec, length and checksum and returns the header.
 /// @param least_bytes  the size of this type's fixed part
-/// @param last_codec   the highest codec that is understood
+/// @param last_codec   the highest supported codec
 Result<BinaryHeader> read_header(std::span<const std::byte> message, BinaryType type,
                                  std::size_t least_bytes, std::uint8_t last_codec);
 
-/// Ticks stay below 2^53, so that every language can count them.
+/// Ticks stay below 2^53, so that every language can represent them.
 inline constexpr std::uint64_t kTickEnd = std::uint64_t{1} << 53U;
 
-/// Walks the sections from `offset` to the end of a message whose header is checked.
-/// Refuses any that reaches beyond it, padding that is not zero, a pair of kind and index that
-/// comes twice, and bytes left over.
+/// Walks the sections from `offset` to the end of a message whose header is checked. Refuses a
+/// section that reaches beyond the end, padding that is not zero, a repeated pair of kind and
+/// index, and surplus bytes.
 Result<std::vector<Section>> read_sections(std::span<const std::byte> message, std::size_t offset,
                                            std::uint32_t count);
 
-/// The error for bytes that are no message of this kind.
+/// The error for bytes that do not form a message of this kind.
 Error binary_error(std::string message);
 
 }  // namespace weft::proto

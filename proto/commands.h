@@ -11,7 +11,7 @@
 #include "proto/limits.h"
 #include "proto/types.h"
 
-// What a client may ask for. README.md section 5 gives the meaning of each; ranges are in limits.h.
+// The commands of a client. README.md section 5 gives their meanings; ranges are in limits.h.
 
 namespace weft::proto {
 
@@ -41,18 +41,18 @@ struct SurfacePoint {
   bool operator==(const SurfacePoint&) const = default;
 };
 
-/// Where to take hold of the cloth. Whether the index exists is for the receiver to check.
+/// Where to hold the cloth. The receiver checks that the index exists.
 using Hold = std::variant<Particle, SurfacePoint>;
 
 enum class DragMode : std::uint8_t { live, sling };
 
-inline constexpr double kLiveStiffness = 150;  ///< if none is asked for [N/m]
-inline constexpr double kSlingStiffness = 20;  ///< if none is asked for [N/m]
+inline constexpr double kLiveStiffness = 150;  ///< by default [N/m]
+inline constexpr double kSlingStiffness = 20;  ///< by default [N/m]
 
 struct DragStart {
-  std::uint32_t drag = 0;  ///< the viewer's own number of it
+  std::uint32_t drag = 0;  ///< the viewer's own number for it
   Hold hold;
-  std::optional<Vec3> target;         ///< [m]; absent: where the held point is
+  std::optional<Vec3> target;         ///< [m]; absent: the present position of the held point
   double radius = 0.03;               ///< of the held disc in the fabric [m]
   double stiffness = kLiveStiffness;  ///< [N/m]
   double max_force = 50;              ///< [N]
@@ -74,7 +74,7 @@ struct DragEnd {
 
 struct Pin {
   Hold hold;
-  double radius = 0;  ///< of the fixed disc in the fabric [m]; 0: the particle alone
+  double radius = 0;  ///< of the fixed disc in the fabric [m]; 0: only the particle
   bool operator==(const Pin&) const = default;
 };
 
@@ -121,7 +121,7 @@ struct Speed {
   bool operator==(const Speed&) const = default;
 };
 
-/// A local wind; the meaning of its numbers is in README.md section 5.
+/// A local wind; README.md section 5 defines its numbers.
 struct Fan {
   Vec3 position{};       ///< [m]
   Vec3 direction{};      ///< with a component of at least kLeastDirection
@@ -132,49 +132,49 @@ struct Fan {
   bool operator==(const Fan&) const = default;
 };
 
-/// Sends a collider to a pose; what is not told of it stays as it is.
+/// Sends a collider to a pose; omitted values stay as they are.
 struct Move {
   std::string collider;          ///< its name, 1 to 64 bytes
-  std::optional<Vec3> position;  ///< where its pivot goes [m]
-  std::optional<Quat> rotation;  ///< from how the mesh message tells it
+  std::optional<Vec3> position;  ///< target of its pivot [m]
+  std::optional<Quat> rotation;  ///< relative to the mesh message
   double speed = 0.5;            ///< at most [m/s]
   double turn_speed = 2;         ///< at most [rad/s]
-  bool force = false;            ///< go on where cloth cannot give way
+  bool force = false;            ///< go on even if cloth cannot yield
   bool operator==(const Move&) const = default;
 };
 
-/// Gives a collider back to its keyframes; one without stays where it is.
+/// Returns a collider to its keyframes; one without keyframes stays where it is.
 struct MoveEnd {
   std::string collider;
   bool operator==(const MoveEnd&) const = default;
 };
 
-/// Sends a pin to a place, no faster than `speed` or, if they are told, within `seconds`.
+/// Sends a pin to a place, no faster than `speed` or, if given, within `seconds`.
 struct MovePin {
   std::uint32_t pin = 0;
-  Vec3 position{};                ///< where its middle particle goes [m]
+  Vec3 position{};                ///< target of its middle particle [m]
   double speed = 2;               ///< at most [m/s]
-  std::optional<double> seconds;  ///< within which it shall be there, in place of a speed [s]
-  double max_force = 50;          ///< on the cloth while it is on its way [N]
+  std::optional<double> seconds;  ///< duration, in place of a speed [s]
+  double max_force = 50;          ///< on the cloth during the motion [N]
   bool operator==(const MovePin&) const = default;
 };
 
-/// Fixes a pin that is on its way where it is.
+/// Stops a moving pin and fixes it where it is.
 struct StopPin {
   std::uint32_t pin = 0;
   bool operator==(const StopPin&) const = default;
 };
 
-/// What a room does whose ticks take more time than they may.
+/// The room's remedy if ticks exceed their time budget.
 enum class OverBudget : std::uint8_t { slow, soften };
 
-/// What a gripper shall do; what is not told stays as it is. At least one of them is set.
+/// Commands a gripper; omitted values stay as they are. At least one is set.
 struct Gripper {
   std::string gripper;               ///< its name, 1 to 56 bytes
-  std::optional<double> opening;     ///< between its jaws [m]; 0 closes on what is there
-  std::optional<double> force;       ///< with which each jaw presses [N]
-  std::optional<Vec3> position;      ///< where its middle goes [m]
-  std::optional<Quat> rotation;      ///< from how it is defined
+  std::optional<double> opening;     ///< between its jaws [m]; 0 closes on the cloth between
+  std::optional<double> force;       ///< of each jaw [N]
+  std::optional<Vec3> position;      ///< target of its middle [m]
+  std::optional<Quat> rotation;      ///< relative to its definition
   std::optional<double> speed;       ///< at most [m/s]
   std::optional<double> turn_speed;  ///< at most [rad/s]
   bool operator==(const Gripper&) const = default;
@@ -190,18 +190,18 @@ struct Set {
   std::optional<bool> still_air;
   std::optional<double> drag;            ///< [1/s]
   std::optional<std::vector<Fan>> fans;  ///< all of them, at most kMostFans
-  std::optional<double> softness;        ///< part of the springs' stiffness
-  std::optional<double> budget_ms;       ///< time for each tick that is due [ms]; 0: no bound
+  std::optional<double> softness;        ///< fraction of the springs' stiffness
+  std::optional<double> budget_ms;       ///< for each due tick [ms]; 0: no bound
   std::optional<OverBudget> over_budget;
   bool operator==(const Set&) const = default;
 };
 
-/// Which frames of an `advance` its viewer gets, whatever the rate that it asked for.
+/// The frames of an `advance` that its viewer gets, regardless of its `hz`.
 enum class AdvanceFrames : std::uint8_t { none, last, all };
 
 struct Advance {
   std::uint32_t n = 1;                  ///< ticks
-  std::optional<AdvanceFrames> frames;  ///< absent: those that `view` allows
+  std::optional<AdvanceFrames> frames;  ///< absent: as `view` allows
   bool operator==(const Advance&) const = default;
 };
 
@@ -227,8 +227,8 @@ enum class QueryWhat : std::uint8_t {
 };
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 
-/// A binary format comes with positions, velocities and boxes alone, a viewer with camera alone, a
-/// tree and a level with boxes alone, which need a tree.
+/// A binary format is only for positions, velocities and boxes, a viewer only for camera, a tree
+/// and a level only for boxes, which need a tree.
 struct Query {
   QueryWhat what = QueryWhat::positions;
   QueryFormat format = QueryFormat::json;
@@ -249,7 +249,7 @@ struct Ping {
 
 struct Load {
   std::string scene;       ///< 1 to 64 of a-z A-Z 0-9 . _ -, not beginning with a dot
-  std::string definition;  ///< JSON text of a scene instead, not checked yet; empty: by name
+  std::string definition;  ///< JSON text of a scene instead, not checked yet; empty: use the name
   bool operator==(const Load&) const = default;
 };
 
@@ -262,9 +262,9 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-/// The room took back the tick under way. Of logs alone: no client can send it.
+/// The room took back the running tick. Occurs only in logs: no client can send it.
 struct Halt {
-  std::string cause;  ///< for people
+  std::string cause;  ///< for people to read
   bool operator==(const Halt&) const = default;
 };
 
@@ -282,20 +282,20 @@ const char* name_of(Codec codec);
 const char* name_of(OverBudget remedy);
 const char* name_of(AdvanceFrames frames);
 
-/// A command with its sender's id, if it had one.
+/// A command with the id that its sender gave, if any.
 struct Request {
   std::optional<Id> id;
   Command command;
   bool operator==(const Request&) const = default;
 };
 
-/// Reads one text message. Never throws on what it says. An error carries the command's id and name
-/// as far as they could be read, ready to be encoded as answer.
+/// Parses one text message. Never throws on its content. An error carries the command's id and name
+/// as far as they could be read, and can be encoded as the answer.
 Result<Request> parse_request(std::string_view text);
 
-/// The id that `parse_request` would answer with, found without reading the rest: for a message
-/// that is refused unread. Takes any bytes, of any length and depth, in one pass without building
-/// anything. Empty if the text is no object, does not end with it, or has no id or two.
+/// Finds the id that `parse_request` would answer with, without parsing the rest, for messages that
+/// are refused unread. Takes any bytes, of any length and depth, in one pass and without
+/// allocating. Empty if the text is not an object, does not end with it, or has no id or two.
 std::optional<Id> find_id(std::string_view text);
 
 /// The JSON text that parses to the same request; for logs and clients.

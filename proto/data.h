@@ -17,7 +17,7 @@ namespace weft::proto {
 struct DataHeader {
   std::uint64_t tick = 0;
   std::uint32_t transfer = 0;    ///< as in the result
-  std::uint32_t components = 3;  ///< values a row, 1 to 16
+  std::uint32_t components = 3;  ///< values per row, 1 to 16
   bool operator==(const DataHeader&) const = default;
 };
 
@@ -39,10 +39,10 @@ std::size_t data_message_bytes(QueryFormat format, std::size_t count, std::size_
 
 inline constexpr std::size_t kAckBytes = 8;
 
-/// @param sequence  of the frame that was decoded
+/// @param sequence  of the decoded frame
 Bytes encode_ack(std::uint32_t sequence);
 
-/// The sequence that a client's binary message acknowledges.
+/// The sequence acknowledged by a client's binary message.
 Result<std::uint32_t> decode_ack(std::span<const std::byte> message);
 
 }  // namespace weft::proto

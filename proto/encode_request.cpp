@@ -22,7 +22,7 @@ void put_hold(Json& out, const Hold& hold) {
   }
 }
 
-// Writes the fields of each command; the ones without fields are met by the last.
+// Writes the fields of each command; the last overload takes commands without fields.
 struct FieldWriter {
   Json& out;
 

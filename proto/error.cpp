@@ -81,7 +81,7 @@ std::string number_text(double value) {
   std::array<char, 32> buffer;
   char* const first = buffer.data();
   char* const last = first + buffer.size();
-  // The shortest form of 100000 is 1e+05, which people do not like to read.
+  // The shortest form of 100000 is 1e+05, which is hard to read.
   const bool plain = std::abs(value) < 1e15 && value == std::floor(value);
   const auto end = plain ? std::to_chars(first, last, value, std::chars_format::fixed)
                          : std::to_chars(first, last, value);

@@ -48,13 +48,13 @@ enum class ErrorCode : std::uint8_t {
   halted,
   too_costly,
   internal,
-  bad_binary,  ///< of the decoders alone, never on the wire
+  bad_binary,  ///< only from decoders, never on the wire
 };
 
 /// The word on the wire, e.g. "out_of_range".
 const char* name_of(ErrorCode code);
 
-/// What would have been allowed. Only what applies is set.
+/// The allowed values. Only applicable members are set.
 struct Limit {
   std::optional<double> minimum, maximum;
   std::optional<std::size_t> length;  ///< of an array, in elements
@@ -66,8 +66,8 @@ struct Limit {
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;  ///< one sentence for people
-  std::string field;    ///< path such as "target[1]"; empty if it concerns no field
-  std::string value;    ///< what was sent, as JSON text; empty if there is nothing to show
+  std::string field;    ///< path such as "target[1]"; empty if no field is concerned
+  std::string value;    ///< the sent value, as JSON text; may be empty
   std::optional<Limit> limit;
   std::string hint;      ///< what to do; may be empty
   std::string command;   ///< `op` of the refused command; empty if unknown
@@ -76,7 +76,7 @@ struct Error {
   bool operator==(const Error&) const = default;
 };
 
-/// Either a value or the reason why there is none.
+/// Either a value or the error in its place.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -107,7 +107,7 @@ Error make_error(ErrorCode code, std::string message, std::string hint = {});
 /// A number outside its range: names field, value and limit.
 Error range_error(std::string field, double value, Range range);
 
-/// A word that is not one of those allowed.
+/// A word outside the allowed list.
 Error word_error(std::string field, std::string_view value, std::vector<std::string> allowed);
 
 /// A number as short text that reads back to the same number; "null" if it is not finite.

@@ -6,7 +6,7 @@
 
 #include "proto/events.h"
 
-// Parts of events that answers to `query` repeat. Included by the encoders alone.
+// Parts of events that answers to `query` repeat. Included only by the encoders.
 
 namespace weft::proto {
 

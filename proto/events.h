@@ -9,11 +9,11 @@
 #include "proto/commands.h"
 #include "proto/types.h"
 
-// What the server tells of its own accord. README.md section 4 gives the meaning of each field.
+// Messages that the server sends unasked. README.md section 4 gives the meaning of each field.
 
 namespace weft::proto {
 
-/// Figures in force at this server.
+/// Limits in force at this server.
 struct ServerLimits {
   std::size_t message_bytes = kMostMessageBytes;
   double messages_per_second = 1000;
@@ -43,7 +43,7 @@ struct ClothInfo {
   std::string name;
   std::uint32_t first_vertex = 0, vertices = 0;
   std::uint32_t first_triangle = 0, triangles = 0;
-  std::uint32_t rows = 0, columns = 0;  ///< of a grid; 0 if it is none
+  std::uint32_t rows = 0, columns = 0;  ///< of a grid; 0 for other cloths
   double thickness = 0;                 ///< [m]
 };
 
@@ -69,7 +69,7 @@ struct MeshInfo {
 struct ColliderInfo {
   std::string name;
   std::variant<PlaneInfo, SphereInfo, CapsuleInfo, BoxInfo, MeshInfo> shape;
-  Vec3 pivot{};  ///< what a pose places and turns it about [m]
+  Vec3 pivot{};  ///< reference point of a pose [m]
 };
 
 /// The text message `mesh`; SceneMesh of mesh.h is the binary one that follows it.
@@ -91,34 +91,34 @@ struct Energy {
   double kinetic = 0, stretch = 0, bending = 0, gravity = 0, total = 0;  ///< [J]
 };
 
-/// Cloths that have come to rest and are not stepped until something acts on them.
+/// Cloths at rest, which are not stepped until something acts on them.
 struct Sleeping {
   std::uint32_t islands = 0;  ///< groups of touching cloths that sleep and wake together
   std::vector<std::string> cloths;
 };
 
-/// Edges of cloths through triangles of cloths, and of cloths and objects through each other.
+/// Intersections of cloths' edges and triangles, with each other and with objects.
 struct Crossings {
   std::uint64_t count = 0;
   std::uint64_t tick = 0;              ///< of the state in which they were counted
-  std::optional<double> smallest_gap;  ///< between what contact holds apart then [m]; nothing near
+  std::optional<double> smallest_gap;  ///< least contact distance then [m]; empty: nothing is near
 };
 
-/// Whether it holds that nothing crosses.
+/// Whether the promise of no crossings holds.
 enum class GuaranteeState : std::uint8_t {
   held,
-  bad_start,  ///< but for what started where it should not be
+  bad_start,  ///< except for features that were crossed at the start
   broken,     ///< an object was forced through the cloth; `void` on the wire
   none,       ///< the contact promises nothing
 };
 
-/// As the wire has it.
+/// The word on the wire.
 const char* name_of(GuaranteeState state);
 
 struct Guarantee {
   GuaranteeState state = GuaranteeState::held;
-  std::vector<std::string> covers;   ///< of "objects" and "cloth" what cloth is kept apart from
-  std::uint64_t pairs = 0;           ///< about so many nothing is promised
+  std::vector<std::string> covers;   ///< the words "objects" and "cloth", as far as it covers them
+  std::uint64_t pairs = 0;           ///< number of feature pairs without a promise
   std::vector<std::string> reasons;  ///< in words; none if it is held
 };
 
@@ -143,7 +143,7 @@ struct State {
   double real_time_factor = 0;
   Sleeping sleeping;
   Guarantee guarantee;
-  std::optional<Crossings> crossings;  ///< as counted last
+  std::optional<Crossings> crossings;  ///< as last counted
   Strain strain;
   Energy energy;
 };
@@ -160,15 +160,15 @@ struct PinInfo {
   std::uint32_t particle = 0;
   double radius = 0;
   Vec3 position{};
-  std::uint32_t count = 0;     ///< particles that it holds
-  std::optional<Vec3> target;  ///< where it goes, while it is on its way [m]
-  bool behind = false;         ///< its particles do not follow it there
+  std::uint32_t count = 0;     ///< number of particles held
+  std::optional<Vec3> target;  ///< target of a moving pin [m]
+  bool behind = false;         ///< its particles lag behind the target
 };
 
 struct GrabInfo {
   std::uint32_t id = 0;
-  ViewerId viewer = 0;     ///< 0: it is the scene's own
-  std::uint32_t drag = 0;  ///< the viewer's number, or the place among the scene's hands
+  ViewerId viewer = 0;     ///< 0: the scene's own
+  std::uint32_t drag = 0;  ///< the viewer's number, or the index of the scene's hand
   SurfacePoint point;
   double radius = 0, stiffness = 0, max_force = 0;
   Vec3 held{}, target{};
@@ -202,10 +202,10 @@ std::string encode_grabs(std::uint64_t tick, const std::vector<GrabInfo>& grabs)
 std::string encode_notice(const Notice& notice);
 std::string encode_bye(const Bye& bye);
 
-/// 16 hexadecimal digits, as hashes are written in messages and addresses.
+/// 16 hexadecimal digits, the form of hashes in messages and URLs.
 std::string hash_text(std::uint64_t hash);
 
-/// Where a mesh is served over HTTP, e.g. "/api/v1/mesh/4fd1c2a09b7e6d35".
+/// Path of a mesh over HTTP, e.g. "/api/v1/mesh/4fd1c2a09b7e6d35".
 std::string mesh_url(std::uint64_t hash);
 
 }  // namespace weft::proto

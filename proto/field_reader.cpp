@@ -21,8 +21,8 @@ std::string shown_value(const json& node) {
 
 namespace {
 
-/// Whether a double holds the number as it was sent. 2^53 + 1 has none, and the nearest one could
-/// be allowed where the number is not.
+/// Whether a double holds the number exactly as sent. 2^53 + 1 has none, and the nearest double
+/// could be allowed where the number is not.
 bool is_exact(const json& node) {
   constexpr auto kMost = static_cast<std::int64_t>(kLargestInteger);
   if (node.is_number_unsigned()) return node.get<std::uint64_t>() <= std::uint64_t{kMost};
@@ -67,7 +67,7 @@ void FieldReader::read_number(const std::string& path, const json& node, double&
                               Range range) {
   if (!node.is_number()) return fail_type(path, node, "a number");
   const auto number = node.get<double>();
-  // Written so that NaN, should one ever get here, is refused as well.
+  // Written so that NaN, should one ever get here, is refused too.
   if (!is_exact(node) || !(number >= range.minimum && number <= range.maximum)) {
     Error error = range_error(path, number, range);
     error.value = shown_value(node);

@@ -18,8 +18,8 @@
 namespace weft::proto {
 
 /// Reads the fields of one JSON object and keeps the first error; after it every read does nothing.
-/// So a command is read in straight lines and asked once whether all went well. An absent field and
-/// one that is null are the same.
+/// So code reads a command without branches and checks for success once. An absent field and a null
+/// are the same.
 class FieldReader {
  public:
   /// @param object  a JSON object that outlives the reader
@@ -29,7 +29,7 @@ class FieldReader {
   const std::optional<Error>& error() const { return error_; }
   bool has(const char* key) const { return find(key) != nullptr; }
 
-  // Required fields. On error `value` keeps what it had.
+  // Required fields. On error `value` is unchanged.
   void read(const char* key, bool& value);
   void read(const char* key, double& value, Range range);
   void read(const char* key, std::uint32_t& value, Range range);
@@ -37,10 +37,10 @@ class FieldReader {
   void read(const char* key, Quat& value, Range range);
   void read(const char* key, std::string& value);
 
-  /// The JSON text of a field that is an object; false, with `text` untouched, if it is none.
+  /// The JSON text of an object field; false, with `text` untouched, if the field is not an object.
   bool read_object_text(const char* key, std::string& text);
 
-  /// A word out of a list; `value` becomes the enumerator of the same place.
+  /// A word of a list; `value` becomes the enumerator at the same index.
   template <class Enum, std::size_t N>
   void read(const char* key, Enum& value, const std::array<const char*, N>& words) {
     std::string text;
@@ -68,8 +68,8 @@ class FieldReader {
     if (ok()) value = std::move(present);
   }
 
-  /// An array of at most `most` objects; `read_one` gets a reader for each. An error in one of them
-  /// names its place, as in "fans[1].speed".
+  /// An array of at most `most` objects; `read_one` gets a reader for each. Errors name the index,
+  /// as in "fans[1].speed".
   void read_objects(const char* key, std::size_t most,
                     const std::function<void(FieldReader&)>& read_one);
 
@@ -78,7 +78,7 @@ class FieldReader {
 
   /// Keeps the error if it is the first.
   void fail(Error error);
-  /// An error about one field, with the value that it has.
+  /// An error about one field, with its present value.
   void fail(ErrorCode code, const char* key, std::string message, std::string hint = {});
 
  private:
@@ -93,7 +93,7 @@ class FieldReader {
   std::optional<Error> error_;
 };
 
-/// JSON text of a value for an error: short, whatever the sender wrote.
+/// JSON text of a value for an error: always short.
 std::string shown_value(const nlohmann::json& node);
 
 }  // namespace weft::proto

@@ -16,7 +16,7 @@ constexpr const char* kSpace = " \t\n\r";
 constexpr std::size_t kMostEscapedByte = 6;  // as in \u0061
 constexpr std::size_t kMostIdText = kMostEscapedByte * kMostIdBytes + 2;
 
-/// The value as it is allowed in `id`; empty if it is none.
+/// The value if it is a legal `id`; else empty.
 std::optional<Id> read_id(std::string_view text) {
   if (text.empty() || text.size() > kMostIdText) return std::nullopt;
   json value = json::parse(text, nullptr, false);
@@ -28,7 +28,7 @@ std::optional<Id> read_id(std::string_view text) {
   return id;
 }
 
-/// Walks over the members of an object and looks at nothing but where they begin and end.
+/// Walks over the members of an object and inspects only where they begin and end.
 class MemberScanner {
  public:
   explicit MemberScanner(std::string_view text) : text_(text) {}
@@ -77,7 +77,7 @@ class MemberScanner {
     return false;
   }
 
-  /// Up to the comma or the brace behind it.
+  /// Up to the comma or brace that follows.
   bool take_value(std::string_view& value) {
     const std::size_t begin = at_;
     for (std::size_t depth = 0; at_ < text_.size();) {

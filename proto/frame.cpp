@@ -9,7 +9,7 @@
 namespace weft::proto {
 namespace {
 
-// The fixed part after the common bytes.
+// The fixed part after the common header.
 struct FrameFields {
   std::uint64_t tick;
   double time, server_time;

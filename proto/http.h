@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-// Bodies of the HTTP answers, README.md section 2.
+// Bodies of the HTTP responses, README.md section 2.
 
 namespace weft::proto {
 
@@ -21,13 +21,13 @@ struct Readiness {
   std::string scene;
   std::uint64_t tick = 0;
   double real_time_factor = 0;
-  double stalled = 0;  ///< for how long the room has not turned over [s]; below a second 0
+  double stalled = 0;  ///< time since the room's last turn [s]; 0 below a second
 };
 
 struct HttpError {
   std::string code, message, hint;
-  std::string value;                 ///< what was asked for; may be empty
-  std::vector<std::string> offered;  ///< what would be taken in its place; may be empty
+  std::string value;                 ///< as requested; may be empty
+  std::vector<std::string> offered;  ///< accepted alternatives; may be empty
 };
 
 std::string encode_version(const VersionInfo& version);

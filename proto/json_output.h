@@ -7,8 +7,7 @@
 
 #include "proto/commands.h"
 
-// Shared by the encoders, which alone include this: parts of messages that occur in several of
-// them.
+// Parts that several messages share. Included only by the encoders.
 
 namespace weft::proto {
 

@@ -28,7 +28,7 @@ inline constexpr Range kGripRange{0, 1000};                  ///< of each of its
 inline constexpr Range kUnitRange{-1, 1};                    ///< components of a unit quaternion
 inline constexpr double kUnitTolerance = 1e-3;               ///< of its norm
 inline constexpr Range kMoveSpeedRange{1e-3, 20};            ///< of a collider or pin [m/s]
-inline constexpr Range kMoveSecondsRange{1e-3, 3600};        ///< of a pin's way [s]
+inline constexpr Range kMoveSecondsRange{1e-3, 3600};        ///< duration of a pin's motion [s]
 inline constexpr Range kTurnSpeedRange{1e-3, 60};            ///< of a collider [rad/s]
 inline constexpr Range kWeightRange{0, 1};                   ///< barycentric weights
 inline constexpr double kWeightSumTolerance = 1e-3;

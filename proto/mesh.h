@@ -7,26 +7,26 @@
 #include "proto/binary.h"
 #include "proto/error.h"
 
-// The binary message `mesh`: what does not change while an epoch lasts. README.md section 7.
+// The binary message `mesh`: everything constant during an epoch. README.md section 7.
 
 namespace weft::proto {
 
 struct ColliderMesh {
-  std::uint16_t collider = 0;            ///< its place in the list of the text message
-  std::vector<float> positions;          ///< three a vertex [m]
-  std::vector<std::uint32_t> triangles;  ///< three a triangle, counter-clockwise from outside
+  std::uint16_t collider = 0;            ///< its index in the list of the text message
+  std::vector<float> positions;          ///< three per vertex [m]
+  std::vector<std::uint32_t> triangles;  ///< three per triangle, counter-clockwise from outside
   bool operator==(const ColliderMesh&) const = default;
 };
 
 struct SceneMesh {
-  std::vector<float> rest_positions;     ///< three a vertex [m]
-  std::vector<std::uint32_t> triangles;  ///< three a triangle, each below the number of vertices
-  std::vector<float> uv;                 ///< two a vertex
+  std::vector<float> rest_positions;     ///< three per vertex [m]
+  std::vector<std::uint32_t> triangles;  ///< three per triangle, each below the number of vertices
+  std::vector<float> uv;                 ///< two per vertex
   std::vector<ColliderMesh> colliders;   ///< ascending by `collider`
   bool operator==(const SceneMesh&) const = default;
 };
 
-/// The message. The mesh must be as SceneMesh says.
+/// The message. The mesh must be as described in SceneMesh.
 Bytes encode_mesh_data(const SceneMesh& mesh);
 
 /// Accepts exactly what README.md allows: all indices in range, all numbers finite. Never reads

@@ -18,8 +18,8 @@ void read_rotation(FieldReader& in, std::optional<Quat>& rotation) {
             "a unit quaternion [x, y, z, w]");
 }
 
-/// Fields that mean nothing beside another are refused, not ignored: who wrote them wanted
-/// something.
+/// Fields that mean nothing beside another are refused, not ignored, because their sender expects
+/// an effect.
 void refuse_beside(FieldReader& in, const char* other, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     if (in.ok() && in.has(key))

@@ -3,7 +3,7 @@
 #include "proto/commands.h"
 #include "proto/field_reader.h"
 
-// Commands that send something somewhere; for parse_request alone.
+// Commands that move objects, pins and grippers; only for parse_request.
 
 namespace weft::proto {
 

@@ -193,7 +193,7 @@ struct ReplyWriter {
     out["codec"] = name_of(r.codec);
     out["forces"] = r.forces;
   }
-  void operator()(const VectorsReply& r) {  // its data is appended as text
+  void operator()(const VectorsReply& r) {  // the data is appended as text
     start("query", r.tick);
     out["what"] = name_of(r.what);
   }
@@ -213,8 +213,8 @@ struct ReplyWriter {
   }
 };
 
-// Written by hand because a tree of a hundred thousand nodes costs megabytes, and because a float
-// is half as long when it is written as a float.
+// Written by hand because a tree of a hundred thousand nodes costs megabytes, and because the text
+// of a float is half as long when it is formatted as a float.
 template <class Real>
 void append_rows(std::span<const Real> values, std::size_t components, std::string& out) {
   std::array<char, 32> buffer;
@@ -224,7 +224,7 @@ void append_rows(std::span<const Real> values, std::size_t components, std::stri
     for (std::size_t k = 0; k < components; ++k) {
       out += k == 0 ? '[' : ',';
       if (!std::isfinite(values[i + k])) {
-        out += "null";  // as the library does: JSON has no word for it
+        out += "null";  // as the library does: JSON has no such number
         continue;
       }
       const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), values[i + k]);

@@ -12,11 +12,11 @@
 #include "proto/events.h"
 #include "proto/types.h"
 
-// Answers to commands that carry an id. `tick` is where the command got its place in the order.
+// Answers to commands that carry an id. `tick` is the command's place in the order.
 
 namespace weft::proto {
 
-/// Of a command that has nothing to tell: camera, reset, set.
+/// Of a command without further results: camera, reset, set.
 struct DoneReply {
   const char* command = "";
   std::uint64_t tick = 0;
@@ -114,8 +114,8 @@ struct ViewReply {
   bool forces = false;
 };
 
-/// Positions, velocities or boxes as JSON, `components` values a row. The data is read by
-/// encode_reply alone.
+/// Positions, velocities or boxes as JSON, `components` values per row. Only encode_reply reads the
+/// data.
 struct VectorsReply {
   std::uint64_t tick = 0;
   QueryWhat what = QueryWhat::positions;
@@ -148,25 +148,25 @@ struct TreeInfo {
   std::uint32_t levels = 0;
 };
 
-/// A collider as it is now.
+/// The present pose of a collider.
 struct ColliderPose {
   std::string name;
   Vec3 position{};       ///< of the pivot [m]
-  Quat rotation{};       ///< from how the mesh message tells it
+  Quat rotation{};       ///< relative to the mesh message
   Vec3 force{};          ///< of the cloth on it while it moves, mean of the last tick [N]
-  bool blocked = false;  ///< held back in the last tick by cloth that cannot give way
-  bool voided = false;   ///< has gone on through cloth since the start
+  bool blocked = false;  ///< held back in the last tick by cloth that cannot yield
+  bool voided = false;   ///< has moved on through cloth since the start
 };
 
 /// A contact of the cloth with an object, or with itself.
 struct ContactInfo {
-  std::optional<std::string> collider;   ///< absent: cloth on the other side too
+  std::optional<std::string> collider;   ///< absent: the other side is cloth too
   std::vector<std::uint32_t> particles;  ///< 1 to 3; 4 of both sides if both are cloth
   std::vector<double> weights;           ///< negative on the other side
-  Vec3 point{}, normal{};                ///< of the mid-surface [m]; unit, out of the other side
+  Vec3 point{}, normal{};                ///< on the mid-surface [m]; unit, out of the other side
   double gap = 0;                        ///< from the mid-surface to the other side [m]
   double normal_force = 0;               ///< on the cloth, along the normal [N]
-  Vec3 friction{};                       ///< on the cloth, across the normal [N]
+  Vec3 friction{};                       ///< on the cloth, tangential [N]
 };
 
 struct PinForce {
@@ -185,30 +185,30 @@ struct ColliderForce {
   Vec3 force{};  ///< of the cloth on it [N]
 };
 
-/// Forces between the cloth and what holds it.
+/// Forces between the cloth and its supports.
 struct ReactionInfo {
   std::optional<std::vector<PinForce>> pins;  ///< absent if the solver does not know them
   std::vector<GrabForce> grabs;
   std::vector<ColliderForce> colliders;
 };
 
-/// A gripper as it is now.
+/// The present state of a gripper.
 struct GripperInfo {
   std::string name;
   Vec3 position{};        ///< of its middle [m]
-  Quat rotation{};        ///< from how it is defined
+  Quat rotation{};        ///< relative to its definition
   double opening = 0;     ///< between its jaws [m]
-  double force = 0;       ///< with which each jaw may press [N]
-  bool gripping = false;  ///< stopped by what is between its jaws, and presses it
+  double force = 0;       ///< most that each jaw presses with [N]
+  bool gripping = false;  ///< the jaws are stopped by the cloth between them, and press it
   Vec3 reaction{};        ///< of the cloth on both jaws together, mean of the last tick [N]
 };
 
-/// What the scene's test measures, by names that end in their unit; empty if it is no test.
+/// Measurements of the scene's test, by names that end in their unit; empty for other scenes.
 struct Measurements {
   std::vector<std::pair<std::string, double>> values;
 };
 
-/// All other queries; the alternative decides `what`.
+/// All other queries; the alternative determines `what`.
 struct QueryReply {
   std::uint64_t tick = 0;
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,

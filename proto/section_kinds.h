@@ -4,7 +4,7 @@
 
 namespace weft::proto {
 
-/// Kinds of sections in frames and meshes; one number space for both.
+/// Kinds of sections in frames and meshes, in one number space.
 enum SectionKind : std::uint16_t {
   kPositions = 1,
   kGrabs = 2,

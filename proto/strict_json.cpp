@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// Receives the parser's events and builds the tree. The library's own builder silently keeps the
-// last of two equal keys and knows no depth limit.
+// Builds the tree from the parser's events. The library's own builder silently keeps the last of
+// two equal keys and has no depth limit.
 class StrictBuilder {
  public:
   StrictBuilder() : root_(nullptr) {}
@@ -100,7 +100,7 @@ class StrictBuilder {
     std::string text;
     for (const Level& level : levels_) {
       if (level.container->is_array()) {
-        // An element that is open is in the array already; a number that was refused is not.
+        // The array already contains an open element, but not a refused number.
         const std::size_t open = &level == &levels_.back() ? 0 : 1;
         const std::size_t index = level.container->size() - open;
         text.append("[").append(std::to_string(index)).append("]");
@@ -108,7 +108,7 @@ class StrictBuilder {
         text.append(text.empty() ? "" : ".").append(level.key);
       }
     }
-    constexpr std::size_t kMostPathCharacters = 200;  // keys are the sender's, and may be long
+    constexpr std::size_t kMostPathCharacters = 200;  // keys come from the sender, and may be long
     return text.empty() ? "message" : std::string(first_characters(text, kMostPathCharacters));
   }
 
@@ -134,7 +134,7 @@ Result<json> parse_object(std::string_view text, std::size_t most_bytes) {
     return error;
   }
   if (!is_utf8(text)) return make_error(ErrorCode::bad_utf8, "the message is not UTF-8");
-  // The parser takes a zero byte for the end of the text and would not see what follows.
+  // The parser takes a zero byte for the end of the text and would ignore the rest.
   if (text.find('\0') != std::string_view::npos)
     return make_error(ErrorCode::bad_json, "the message has a zero byte");
   StrictBuilder builder;

@@ -13,10 +13,10 @@ using Quat = std::array<double, 4>;
 using Quatf = std::array<float, 4>;
 using Vec3f = std::array<float, 3>;
 
-/// A command's id as its sender chose it: an integer from 0 to 2^53 or 1 to 64 bytes of UTF-8.
+/// A command's id, chosen by its sender: an integer from 0 to 2^53 or 1 to 64 bytes of UTF-8.
 using Id = std::variant<std::int64_t, std::string>;
 
-/// Names a viewer while the server lives; 0 is nobody (the scene itself).
+/// Identifies a viewer while the server lives; 0 is the scene itself.
 using ViewerId = std::uint32_t;
 
 }  // namespace weft::proto

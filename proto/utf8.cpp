@@ -8,8 +8,8 @@ bool is_continuation(char c) {
 }
 
 struct Lead {
-  std::size_t length;                     // of the sequence in bytes, 0 if no lead byte
-  unsigned char low = 0x80, high = 0xBF;  // allowed for the second byte
+  std::size_t length;                     // of the sequence in bytes, 0 if not a lead byte
+  unsigned char low = 0x80, high = 0xBF;  // allowed range of the second byte
 };
 
 Lead classify(unsigned char byte) {

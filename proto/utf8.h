@@ -15,7 +15,7 @@ std::size_t character_count(std::string_view text);
 /// The longest prefix of at most `count` characters.
 std::string_view first_characters(std::string_view text, std::size_t count);
 
-/// Whether a control character (U+0000 to U+001F, U+007F to U+009F) occurs in well-formed UTF-8.
+/// Whether well-formed UTF-8 contains a control character (U+0000 to U+001F, U+007F to U+009F).
 bool has_control_character(std::string_view text);
 
 }  // namespace weft::proto

@@ -1,6 +1,6 @@
-// What all binary messages of weft.v1 share (proto/README.md section 6): header, checksum, sections.
+// Common to all binary messages of weft.v1 (proto/README.md section 6): header, checksum, sections.
 
-/** Bytes that are no message of weft.v1. */
+/** Bytes that do not form a message of weft.v1. */
 export class ProtocolError extends Error {
   /** @param {string} message */
   constructor(message) {
@@ -31,7 +31,7 @@ export function demand(condition, message) {
 export const padded = (bytes) => Math.ceil(bytes / 8) * 8;
 
 /**
- * The bytes as a view that begins where typed arrays may begin; copied only if they do not.
+ * A view that starts at an offset fit for typed arrays; copies only if necessary.
  * @param {ArrayBuffer | ArrayBufferView} bytes
  */
 function alignedView(bytes) {
@@ -55,7 +55,7 @@ function checksum(view) {
 }
 
 /**
- * Checks what all messages share.
+ * Checks the parts common to all messages.
  * @param {ArrayBuffer | ArrayBufferView} bytes
  * @returns {Message}
  */
@@ -120,7 +120,7 @@ export function readSections(view, offset, count) {
 
 /** @param {Float32Array | Float64Array} values */
 export function demandFinite(values) {
-  // A sum of finite numbers may overflow, so each is looked at.
+  // A sum of finite numbers may overflow, so each is checked.
   for (let i = 0; i < values.length; ++i)
     demand(Number.isFinite(values[i]), 'a number is not finite');
   return values;

@@ -7,7 +7,7 @@ import { Session } from './session.js';
 
 const LOAD_TIMEOUT = 300_000; // [ms]
 const ADVANCE_TIMEOUT = 60_000; // [ms]
-const ADVANCE_TICK_TIMEOUT = 1000; // more for each tick [ms]
+const ADVANCE_TICK_TIMEOUT = 1000; // added for each tick [ms]
 
 /** @param {Hold} hold */
 function holdFields(hold) {
@@ -65,7 +65,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * Takes the cloth in hand. Returns at once; `started` of what it returns tells how it went.
+   * Takes hold of the cloth. Returns at once; `started` of the result tells the outcome.
    * @param {Hold} hold  a hit of `pick` will do
    * @param {import('./messages.js').DragOptions} [options]
    * @param {Call} [call]  of its start
@@ -99,7 +99,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * Stores where this viewer looks from.
+   * Stores this viewer's camera.
    * @param {Vec3} position
    * @param {Vec3} target
    * @param {{up?: Vec3, fov?: number}} [options]
@@ -141,8 +141,8 @@ export class WeftClient extends Session {
   }
 
   /**
-   * Sends a collider to a pose at bounded speed, or gives it back to its keyframes; or sends a pin
-   * to a place, at bounded speed or within some seconds, or stops it on its way.
+   * Sends a collider to a pose at bounded speed, or returns it to its keyframes; or sends a pin to
+   * a place, at bounded speed or within some seconds, or stops it.
    * @param {string | number} what  the collider's name, or the pin's id
    * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number,
    *   force?: boolean} | {release: true} |
@@ -155,7 +155,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * Opens, closes (opening 0) or moves a gripper; what is not told stays as it is.
+   * Opens, closes (opening 0) or moves a gripper; omitted values stay as they are.
    * @param {string} name
    * @param {{opening?: number, force?: number, position?: Vec3, rotation?: number[], speed?: number,
    *   turn_speed?: number}} wanted
@@ -176,7 +176,7 @@ export class WeftClient extends Session {
   /**
    * @param {number} n
    * @param {{frames?: import('./messages.js').AdvanceFrames}} [options]  which of its frames this
-   *   viewer gets, whatever its `hz`; by default those that its `hz` allows
+   *   viewer gets, regardless of its `hz`; by default those that its `hz` allows
    * @param {Call} [call]
    */
   advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {
@@ -189,7 +189,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * @param {string | object} scene  name, or a scene as the schema says
+   * @param {string | object} scene  name, or a scene that follows the schema
    * @param {Call} [call]
    */
   load(scene, call = { timeout: LOAD_TIMEOUT }) {

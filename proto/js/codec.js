@@ -1,5 +1,5 @@
-// Binary messages of weft.v1 (proto/README.md sections 6 to 8). Bytes from outside are checked
-// before use; whatever they are, a decoder returns a message or throws ProtocolError.
+// Binary messages of weft.v1 (proto/README.md sections 6 to 8). Received bytes are checked before
+// use; for any input, a decoder returns a message or throws ProtocolError.
 
 import {
   demand,

@@ -5,11 +5,11 @@ const FIRST_PAUSE = 250; // before the first new attempt [ms]
 const LONGEST_PAUSE = 8000; // [ms]
 const OPENING_LIMIT = 10000; // for the handshake [ms]
 const NORMAL_CLOSE = 1000;
-// After these the same would happen again.
+// Close codes after which a new attempt would fail alike.
 const FINAL_CODES = new Set([1002, 1003, 1007, 1008, 1009, 4003]);
 
 /**
- * @typedef {object} Timers  the world's clock, or a test's
+ * @typedef {object} Timers  the system's clock, or a test's
  * @property {() => number} now  [ms] from any origin
  * @property {(action: () => void, ms: number) => any} setTimeout
  * @property {(timer: any) => void} clearTimeout
@@ -26,7 +26,7 @@ export const systemTimers = {
 };
 
 /**
- * A WebSocket that comes back by itself.
+ * A WebSocket that reconnects by itself.
  * @extends {Emitter<{text: string, binary: ArrayBuffer, open: void, status: Status}>}
  */
 export class Connection extends Emitter {
@@ -73,12 +73,12 @@ export class Connection extends Emitter {
     };
     socket.onclose = (/** @type {{code: number, reason: string}} */ { code, reason }) =>
       this.#lost(code, reason);
-    socket.onerror = () => {}; // a close event follows, and it has the code
+    socket.onerror = () => {}; // the close event that follows has the code
     this.#socket = socket;
     this.#timer = this.#timers.setTimeout(() => this.drop(4002, 'no handshake'), OPENING_LIMIT);
   }
 
-  /** Call when the server has shown to be well; the next loss is retried soon. */
+  /** Call when the server has proved healthy; the next loss is then retried soon. */
   settled() {
     this.#attempts = 0;
   }
@@ -88,7 +88,7 @@ export class Connection extends Emitter {
     if (this.phase === 'open') this.#socket?.send(data);
   }
 
-  /** Ends for good. */
+  /** Closes for good. */
   close() {
     this.#clearTimer();
     if (this.phase === 'closed') return;
@@ -97,7 +97,7 @@ export class Connection extends Emitter {
   }
 
   /**
-   * Gives a connection up that is not well, without waiting for the other side, and tries anew.
+   * Abandons an unhealthy connection without waiting for the other side, and reconnects.
    * @param {number} code  4000 to 4999
    * @param {string} reason
    */

@@ -1,9 +1,9 @@
-const SHORTEST_INTERVAL = 1000 / 125; // between targets; what moves faster is not seen [ms]
+const SHORTEST_INTERVAL = 1000 / 125; // between targets; faster motion is not visible [ms]
 const REPEAT_INTERVAL = 400; // a target is repeated while the hand rests; the lease asks 500 [ms]
 
 /**
- * A hand that holds the cloth. Made by `WeftClient.drag`; targets that follow each other quickly are
- * thinned out, the last one is always sent, and it is repeated so that the lease does not end.
+ * A hand that holds the cloth. Made by `WeftClient.drag`; rapid targets are thinned out, the last
+ * one is always sent, and it is repeated so that the lease does not end.
  */
 export class Drag {
   #send;
@@ -20,14 +20,14 @@ export class Drag {
 
   /**
    * @param {number} number  the viewer's own
-   * @param {number[] | undefined} target  that the start asks for
+   * @param {number[] | undefined} target  of the start
    * @param {(fields: object) => void} send
    * @param {import('./connection.js').Timers} timers
    */
   constructor(number, target, send, timers) {
     this.number = number;
     this.active = true;
-    /** The room's number of it, once known. @type {number | null} */
+    /** The room's number for it, once known. @type {number | null} */
     this.grab = null;
     /** Resolves with the reason when the hand lets go. @type {Promise<string>} */
     this.ended = new Promise((resolve) => (this.#resolveEnded = resolve));
@@ -46,7 +46,7 @@ export class Drag {
     started.then(
       ({ grab, target }) => {
         this.grab = grab;
-        this.#target ??= target; // the server's choice is what is repeated
+        this.#target ??= target; // repeat the server's choice
       },
       (error) => this.finish(error.message),
     );
@@ -63,7 +63,7 @@ export class Drag {
   }
 
   /**
-   * Lets go. A target that waits is sent first.
+   * Lets go. A waiting target is sent first.
    * @param {{fire?: boolean}} [options]  fire: false lets go of a sling without its impulse
    */
   end(options = {}) {
@@ -74,7 +74,7 @@ export class Drag {
   }
 
   /**
-   * Marks it as ended without telling the server, which knows already.
+   * Marks it as ended without telling the server, which already knows.
    * @param {string} reason
    */
   finish(reason) {

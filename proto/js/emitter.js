@@ -1,6 +1,6 @@
 /**
  * Named events with listeners.
- * @template {Record<string, any>} Events  event name to the type of what is told
+ * @template {Record<string, any>} Events  event name to the type of its value
  */
 export class Emitter {
   /** @type {Map<keyof Events, Set<(value: any) => void>>} */
@@ -20,7 +20,7 @@ export class Emitter {
   }
 
   /**
-   * Resolves with what the event tells next.
+   * Resolves with the next value of the event.
    * @template {keyof Events} Name
    * @param {Name} name
    * @returns {Promise<Events[Name]>}

@@ -13,7 +13,7 @@ export class CommandError extends Error {
   }
 }
 
-/** The connection ended before the answer came, or there is none. */
+/** The connection ended before the answer arrived, or there is none. */
 export class ConnectionLost extends Error {
   /** @param {string} reason */
   constructor(reason) {
@@ -22,7 +22,7 @@ export class ConnectionLost extends Error {
   }
 }
 
-/** An answer did not come in time. The command may have been carried out, or may still be. */
+/** An answer did not arrive in time. The command may have been executed, or may still be. */
 export class CallTimeout extends Error {
   /**
    * @param {string} command

@@ -7,7 +7,7 @@ import { decodeMesh, ProtocolError } from './codec.js';
  */
 
 /**
- * Gets the binary mesh over HTTP, where it is cached by its hash.
+ * Fetches the binary mesh over HTTP, where it is cached by its hash.
  * @param {URL} socket  address of the WebSocket
  * @param {MeshAnnouncement} announcement
  * @param {typeof fetch} [get]

@@ -1,4 +1,4 @@
-// Types of the messages of weft.v1. proto/README.md says what each field means, with its unit.
+// Types of the messages of weft.v1. proto/README.md gives the meaning and unit of each field.
 
 export type Vec3 = [number, number, number];
 export type QueryWhat =
@@ -21,7 +21,7 @@ export type QueryWhat =
   | 'grippers'
   | 'crossings';
 
-/** Which frames of an `advance` its viewer gets, whatever its `hz`. */
+/** The frames of an `advance` that its viewer gets, regardless of its `hz`. */
 export type AdvanceFrames = 'none' | 'last' | 'all';
 
 /** A hierarchy of boxes. */
@@ -60,7 +60,7 @@ export interface Cloth {
   thickness: number;
 }
 
-/** `pivot` is what a pose places and turns it about [m]. */
+/** `pivot` is the reference point of a pose [m]. */
 export type Collider = { name: string; pivot: Vec3 } & (
   | { kind: 'plane'; point: Vec3; normal: Vec3 }
   | { kind: 'sphere'; center: Vec3; radius: number }
@@ -110,7 +110,7 @@ export interface Fan {
   reach?: number;
 }
 
-/** What `set` sets. */
+/** The values of `set`. */
 export interface Settings extends Environment {
   softness: number;
   budget_ms: number;
@@ -128,22 +128,22 @@ export interface Environment {
   fans: Fan[];
 }
 
-/** Whether it holds that cloth goes through nothing. */
+/** Whether the promise that cloth crosses nothing holds. */
 export interface Guarantee {
   state: 'held' | 'bad_start' | 'void' | 'none';
   covers: ('objects' | 'cloth')[];
-  /** About so many nothing is promised. */
+  /** Number of feature pairs without a promise. */
   pairs: number;
-  /** In words; none if it is held. */
+  /** In words; none if the promise holds. */
   reasons: string[];
 }
 
-/** Edges of cloths through triangles of cloths, and of cloths and objects through each other. */
+/** Intersections of cloths' edges and triangles, with each other and with objects. */
 export interface Crossings {
   count: number;
-  /** When they were counted. */
+  /** Tick of the count. */
   tick: number;
-  /** Between what contact keeps apart then [m], negative inside an object; null if nothing is near. */
+  /** Least contact distance then [m], negative inside an object; null if nothing is near. */
   smallest_gap: number | null;
 }
 
@@ -162,10 +162,10 @@ export interface State extends Settings {
   particles: number;
   step_ms: number;
   real_time_factor: number;
-  /** Cloths at rest that are not stepped; no frames come while all of them are. */
+  /** Cloths at rest, which are not stepped; no frames are sent while all of them rest. */
   sleeping: { islands: number; cloths: string[] };
   guarantee: Guarantee;
-  /** As counted last; null before. */
+  /** As last counted; null before the first count. */
   crossings: Crossings | null;
   strain: Strain;
   energy: Energy;
@@ -198,9 +198,9 @@ export interface Pin {
   radius: number;
   position: Vec3;
   count: number;
-  /** Where it goes, while it is on its way. */
+  /** Target of a moving pin. */
   target?: Vec3;
-  /** Whether its particles do not follow it there. */
+  /** Whether its particles lag behind the target. */
   behind?: boolean;
 }
 
@@ -212,9 +212,9 @@ export interface Pins {
 
 export interface Grab {
   id: number;
-  /** 0: it is the scene's own. */
+  /** 0: the scene's own. */
   viewer: number;
-  /** The viewer's number, or the place in the scene's list of hands. */
+  /** The viewer's number, or the index in the scene's list of hands. */
   drag: number;
   triangle: number;
   barycentric: Vec3;
@@ -278,7 +278,7 @@ export interface Result {
   [field: string]: any;
 }
 
-/** A point of the cloth, as `pick` answers it. */
+/** A point of the cloth, as returned by `pick`. */
 export interface Hit {
   triangle: number;
   barycentric: Vec3;
@@ -287,7 +287,7 @@ export interface Hit {
   distance: number;
 }
 
-/** Where to take hold: a point of a triangle, or else a particle. */
+/** Where to hold: a point of a triangle, or a particle. */
 export type Hold = { triangle: number; barycentric: Vec3 } | { particle: number };
 
 export interface DragOptions {
@@ -295,7 +295,7 @@ export interface DragOptions {
   radius?: number;
   stiffness?: number;
   max_force?: number;
-  /** A sling leaves the cloth alone until it is let go; then it gives its force for 0.1 s. */
+  /** A sling leaves the cloth alone until its release; then it gives its force for 0.1 s. */
   mode?: 'live' | 'sling';
 }
 
@@ -311,7 +311,7 @@ export interface GrabSample {
 export interface Frame {
   type: 'frame';
   flags: number;
-  /** The state was replaced; not to be interpolated to. */
+  /** The state was replaced; do not interpolate to it. */
   jump: boolean;
   paused: boolean;
   tick: number;
@@ -320,24 +320,24 @@ export interface Frame {
   sequence: number;
   reference: number;
   epoch: number;
-  /** Three values a vertex [m]. */
+  /** Three values per vertex [m]. */
   positions: Float32Array;
   grabs: GrabSample[];
   applied: { viewer: number; number: number }[];
-  /** Colliders that are not as the message `mesh` tells them. */
+  /** Colliders whose poses differ from the message `mesh`. */
   poses: PoseSample[];
   /** Of the cloth, if `view` asked for `forces`. */
   contacts: ContactSample[];
-  /** Forces of what holds the cloth, if `view` asked for `forces`. */
+  /** Forces on the cloth's supports, if `view` asked for `forces`. */
   reactions: ReactionSample[];
 }
 
 export interface ContactSample {
-  /** Place in `MeshAnnouncement.colliders`; null: cloth on the other side too. */
+  /** Index in `MeshAnnouncement.colliders`; null: the other side is cloth too. */
   collider: number | null;
-  /** Of the cloth, that which has most to do with it. */
+  /** The cloth particle with the largest weight. */
   particle: number;
-  /** Of the cloth's mid-surface [m]. */
+  /** On the cloth's mid-surface [m]. */
   point: number[];
   /** Unit, out of the other side. */
   normal: number[];
@@ -345,14 +345,14 @@ export interface ContactSample {
   gap: number;
   /** On the cloth, along the normal [N]. */
   normalForce: number;
-  /** On the cloth, across the normal [N]. */
+  /** On the cloth, tangential [N]. */
   friction: number[];
 }
 
 export interface ReactionSample {
-  /** A number, if this client does not know what it means. */
+  /** A number, if this client does not know its meaning. */
   of: 'pin' | 'collider' | number;
-  /** Of the pin, or the collider's place in `MeshAnnouncement.colliders`. */
+  /** Of the pin, or the collider's index in `MeshAnnouncement.colliders`. */
   id: number;
   /** Of a pin on the cloth, of the cloth on a collider [N]. */
   force: number[];
@@ -360,7 +360,7 @@ export interface ReactionSample {
 
 /** A point p of the collider is at `position` + `rotation` (p - pivot). */
 export interface PoseSample {
-  /** Place in `MeshAnnouncement.colliders`. */
+  /** Index in `MeshAnnouncement.colliders`. */
   collider: number;
   /** Of its pivot [m]. */
   position: number[];
@@ -369,7 +369,7 @@ export interface PoseSample {
 }
 
 export interface ColliderMesh {
-  /** Place in `MeshAnnouncement.colliders`. */
+  /** Index in `MeshAnnouncement.colliders`. */
   collider: number;
   positions: Float32Array;
   triangles: Uint32Array;
@@ -379,7 +379,7 @@ export interface MeshData {
   type: 'mesh';
   restPositions: Float32Array;
   triangles: Uint32Array;
-  /** Two values a vertex. */
+  /** Two values per vertex. */
   uv: Float32Array;
   colliders: ColliderMesh[];
 }

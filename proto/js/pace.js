@@ -1,10 +1,10 @@
-const RATE_PART = 0.95; // of the limit, in the long run
-const BURST = 250; // in what time as many messages as fit may go at once [ms]
-const USUAL_RATE = 1000; // messages a second, where the server names no limit
+const RATE_PART = 0.95; // of the limit, sustained
+const BURST = 250; // span whose share of messages may be sent at once [ms]
+const USUAL_RATE = 1000; // messages a second, if the server names no limit
 
 /**
- * Sends messages in their order and no faster than a limit allows: some at once after a quiet time,
- * then one after the other.
+ * Sends messages in order and no faster than a limit allows: a burst after a quiet time, then at
+ * even intervals.
  */
 export class Pace {
   #timers;
@@ -12,24 +12,24 @@ export class Pace {
   #waiting = [];
   /** @type {any} */
   #timer = null;
-  #interval = 1000 / (RATE_PART * USUAL_RATE); // between two in the long run [ms]
-  #free = 0; // when all that was sent so far is worked off [ms]
+  #interval = 1000 / (RATE_PART * USUAL_RATE); // sustained, between two messages [ms]
+  #free = 0; // when all messages sent so far are paid off [ms]
 
   /** @param {import('./connection.js').Timers} timers */
   constructor(timers) {
     this.#timers = timers;
   }
 
-  /** @param {number} [limit]  messages a second that the server allows, and as many at once */
+  /** @param {number} [limit]  messages a second that the server allows, also as a burst */
   setLimit(limit = USUAL_RATE) {
     const before = this.#interval;
     this.#interval = 1000 / (RATE_PART * limit);
-    const now = this.#timers.now(); // what was sent already counts by the new limit, too
+    const now = this.#timers.now(); // earlier messages count by the new limit too
     this.#free = now + (Math.max(0, this.#free - now) / before) * this.#interval;
   }
 
   /**
-   * Calls it now if nothing waits and the limit allows, or else in its turn.
+   * Calls it now if none waits and the limit allows, or else in its turn.
    * @param {() => void} send
    */
   push(send) {
@@ -37,7 +37,7 @@ export class Pace {
     if (this.#timer === null) this.#sendDue();
   }
 
-  /** Forgets what waits. */
+  /** Drops the waiting messages. */
   clear() {
     this.#waiting = [];
     this.#timers.clearTimeout(this.#timer);

@@ -13,7 +13,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @typedef {object} Options
  * @property {string} [name]
  * @property {string} [color]            `#rrggbb`
- * @property {'socket' | 'http'} [mesh]  where the mesh comes from; over HTTP it is cached
+ * @property {'socket' | 'http'} [mesh]  source of the mesh; over HTTP it is cached
  * @property {boolean} [reconnect]       default true
  * @property {number} [timeout]          for an answer [ms], default 30,000; Infinity: none
  * @property {any} [WebSocket]           the class; default that of the environment
@@ -35,22 +35,22 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @property {import('./messages.js').Notice} notice
  * @property {import('./messages.js').Bye} bye
  * @property {import('./connection.js').Status} status  of the connection
- * @property {CommandError} refused  a command that was sent without waiting for its answer
- * @property {Error} fault           a message that cannot be read; the connection is made anew
+ * @property {CommandError} refused  of a command sent by `post`
+ * @property {Error} fault           an unreadable message; reconnects
  */
 
 const PING_INTERVAL = 2000; // [ms]
-const FIRST_PINGS = 5; // these follow each other quickly, for a good clock from the start
+const FIRST_PINGS = 5; // sent in quick succession, for a good clock from the start
 const FIRST_PING_INTERVAL = 200; // [ms]
 const CALL_TIMEOUT = 30000; // for an answer [ms]
-const LONGEST_TIMER = 2 ** 31 - 1; // that timers know [ms]
-const SILENCE_LIMIT = 10000; // without any message the connection counts as dead [ms]
+const LONGEST_TIMER = 2 ** 31 - 1; // the most that timers take [ms]
+const SILENCE_LIMIT = 10000; // silence after which the connection counts as dead [ms]
 const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
-const MEASURED = new Set(['drag', 'pin', 'release']); // whose effect can be seen
+const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
 const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], ['wss:', 'wss:']]);
 
 /**
- * The address of a server's socket, which may be given as that of its page.
+ * The address of a server's socket; `given` may be that of its page.
  * @param {string} given
  */
 function socketAddress(given) {
@@ -70,8 +70,8 @@ function socketAddress(given) {
 }
 
 /**
- * Talks with a server: requests and their answers, events, the mesh, frames and their acks, clock
- * and latency. `WeftClient` gives it the commands.
+ * The conversation with a server: requests and answers, events, the mesh, frames and their acks,
+ * clock and latency. `WeftClient` adds the commands.
  * @extends {Emitter<Events>}
  */
 export class Session extends Emitter {
@@ -79,7 +79,7 @@ export class Session extends Emitter {
   #connection;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (e: Error) => void, timer: any}>} */
   #waiting = new Map();
-  /** Answers whose binary part is still to come. @type {Map<number, (data: any) => void>} */
+  /** Answers whose binary part has yet to arrive. @type {Map<number, (data: any) => void>} */
   #transfers = new Map();
   #nextId = 1;
   #sentMessages = 0;
@@ -97,7 +97,7 @@ export class Session extends Emitter {
   welcome = null;
   /** @type {Mesh | null} */
   mesh = null;
-  /** What `view` was asked for; asked again after a reconnection. @type {object} */
+  /** Arguments of `view`, repeated after a reconnection. @type {object} */
   wantedView = {};
 
   /**
@@ -124,7 +124,7 @@ export class Session extends Emitter {
   }
 
   /**
-   * Resolves with the first `welcome`; keeps trying, unless it must not reconnect.
+   * Resolves with the first `welcome`; keeps trying unless `reconnect` is false.
    * @returns {Promise<import('./messages.js').Welcome>}
    */
   connect() {
@@ -158,7 +158,7 @@ export class Session extends Emitter {
     return this.welcome?.viewer ?? 0;
   }
 
-  /** Least of the last round trips [s]; NaN before the first. */
+  /** Least of the recent round trips [s]; NaN before the first. */
   get roundTrip() {
     return this.#clock.roundTrip;
   }
@@ -168,14 +168,14 @@ export class Session extends Emitter {
     return this.#now() + this.#clock.offset;
   }
 
-  /** Age of the newest movement of the own hands in the last frame that shows one [s]; or NaN. */
+  /** Age of the own hands' newest movement in the last frame that shows one [s]; or NaN. */
   get latency() {
     return this.#meter.latency;
   }
 
   /**
-   * Sends a command and waits for its answer. It goes as soon as the server's limit of messages a
-   * second allows; rejects with `CallTimeout` if nothing has come in time.
+   * Sends a command and waits for its answer. It is sent as soon as the server's limit of messages
+   * a second allows; rejects with `CallTimeout` if no answer arrives in time.
    * @param {string} op
    * @param {object} [fields]
    * @param {Call} [call]
@@ -186,7 +186,7 @@ export class Session extends Emitter {
   }
 
   /**
-   * Sends a command whose answer nobody waits for. Without a connection it is dropped.
+   * Sends a command without waiting for its answer. Without a connection it is dropped.
    * @param {string} op
    * @param {object} [fields]
    */
@@ -195,12 +195,12 @@ export class Session extends Emitter {
   }
 
   /**
-   * Measures round trip and clock once; done by itself every two seconds.
+   * Measures round trip and clock once; runs by itself every two seconds.
    * @param {Call} [call]
    */
   async ping({ timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
     let t = NaN;
-    const stamp = () => ({ t: (t = this.#now()) }); // when it leaves, not when it was asked for
+    const stamp = () => ({ t: (t = this.#now()) }); // at departure, not at the call
     const { received, sent } = await this.#ask({ op: 'ping' }, stamp, timeout);
     this.#clock.add(t, this.#now(), { received, sent });
     return this.#clock.roundTrip;
@@ -263,7 +263,7 @@ export class Session extends Emitter {
     }
     if (this.connected) {
       this.#pings += 1;
-      this.ping().catch(() => {}); // a lost connection is told by the status
+      this.ping().catch(() => {}); // the status reports a lost connection
     }
     const wait = this.#pings < FIRST_PINGS ? FIRST_PING_INTERVAL : PING_INTERVAL;
     this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(), wait);
@@ -286,7 +286,7 @@ export class Session extends Emitter {
   }
 
   /**
-   * Whatever cannot be read ends this connection, for nothing after it can be trusted.
+   * Unreadable input ends this connection, because nothing after it can be trusted.
    * @param {() => void} read
    */
   #guard(read) {
@@ -294,7 +294,7 @@ export class Session extends Emitter {
     try {
       read();
     } catch (error) {
-      if (!(error instanceof ProtocolError)) throw error; // a listener's own fault
+      if (!(error instanceof ProtocolError)) throw error; // thrown by a listener
       this.#fail(error);
     }
   }
@@ -355,7 +355,7 @@ export class Session extends Emitter {
     /** @param {Result} result */
     const settle = (result) => this.#take(id)?.resolve(result);
     if (!message.binary) return settle(message);
-    // It goes on waiting for the binary part, before which the connection may end.
+    // It keeps waiting for the binary part; the connection may end before that arrives.
     this.#transfers.set(message.binary.transfer, (data) => settle({ ...message, data }));
   }
 
@@ -368,7 +368,7 @@ export class Session extends Emitter {
   }
 
   /**
-   * What waits for this answer, and no longer does.
+   * Takes the entry that waits for this answer out of the list.
    * @param {number} id
    */
   #take(id) {

@@ -1,14 +1,16 @@
 const KEPT_PINGS = 8;
 const KEPT_MARKS = 256;
 
-/** Round trip and clock offset from pings, as in NTP: the ping with the least round trip counts. */
+/**
+ * Round trip and clock offset from pings, as in NTP: the ping with the least round trip decides.
+ */
 export class ClockEstimate {
   /** @type {{roundTrip: number, offset: number}[]} */
   #samples = [];
 
   /**
-   * @param {number} sent      own clock when the ping left [s]
-   * @param {number} received  own clock when the answer came [s]
+   * @param {number} sent      own clock at departure of the ping [s]
+   * @param {number} received  own clock at arrival of the answer [s]
    * @param {{received: number, sent: number}} server  its clock at the same events [s]
    */
   add(sent, received, server) {

@@ -1,4 +1,4 @@
-"""Client of a Weft server: one shared cloth, stepped on the server, seen and held from here.
+"""Client of a Weft server: one shared cloth, simulated on the server, seen and held from here.
 
 It speaks weft.v1 (proto/README.md) over the package `websockets` (10.4) and needs nothing else but Python 3.11.
 Asynchronous:
@@ -15,13 +15,13 @@ and the same, blocking:
         cloth.pause()
         print(cloth.advance(60)["hash"])
 
-Units are SI and y is up. Vertex data has one row a vertex: a numpy array if numpy is installed, else
-`Rows`, a read-only sequence of tuples. Numbers and vectors may be given as numpy's too.
+Units are SI and y is up. Vertex data has one row per vertex: a numpy array if numpy is installed, else
+`Rows`, a read-only sequence of tuples. Arguments may be numpy's numbers and vectors too.
 
-No call waits for ever: `timeout` of `connect` and `open` bounds joining, `call_timeout` every answer (30 s), and
-each command takes a `timeout` of its own; None is no bound. What is not answered in time raises CallTimeout.
-`load` waits 300 s by default, `advance` 60 s and one more for each tick, and only `until_asleep` for ever. Commands
-are paced so that the server's limit of messages a second is kept: a loop of calls runs on, at that rate.
+No call waits forever: `timeout` of `connect` and `open` bounds joining, `call_timeout` every answer (30 s), and
+each command takes a `timeout` of its own; None: no bound. A call without an answer in time raises CallTimeout.
+`load` waits 300 s by default, `advance` 60 s and one more for each tick, and only `until_asleep` forever. Commands
+are paced to keep the server's limit of messages a second: a loop of calls simply runs at that rate.
 """
 
 from __future__ import annotations
@@ -57,12 +57,12 @@ SUBPROTOCOL = "weft.v1"
 REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.5
 MOST_MESSAGE_BYTES = 256 * 2**20
 CALL_SECONDS = 30.0  # for an answer or a frame
-LOAD_SECONDS = 300.0  # for that of `load`
-ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for that of `advance`, and more for each tick
-USUAL_RATE = 1000  # messages a second, where `welcome` names no limit
-RATE_PART, BURST_SECONDS = 0.95, 0.25  # of the limit: what is sent in the long run, and at once
+LOAD_SECONDS = 300.0  # for an answer to `load`
+ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for an answer to `advance`, and more for each tick
+USUAL_RATE = 1000  # messages a second, if `welcome` names no limit
+RATE_PART, BURST_SECONDS = 0.95, 0.25  # of the limit, sustained, and span of a burst
 FIRST_PAUSE, LONGEST_PAUSE = 0.25, 8.0  # before a new attempt to connect [s]
-FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # the same would happen again
+FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # a new attempt would fail alike
 
 # --- errors ---
 
@@ -72,11 +72,11 @@ class WeftError(Exception):
 
 
 class ProtocolError(WeftError):
-    """Bytes that are no message of weft.v1."""
+    """Bytes that do not form a message of weft.v1."""
 
 
 class ConnectionLost(WeftError):
-    """The connection ended before the answer came, or there is none."""
+    """The connection ended before the answer arrived, or there is none."""
 
     def __init__(self, code: int, reason: str):
         super().__init__(f"{code} {reason}".strip())
@@ -84,15 +84,15 @@ class ConnectionLost(WeftError):
 
 
 class CallTimeout(WeftError, TimeoutError):
-    """An answer did not come in time. The command may have been carried out, or may still be."""
+    """An answer did not arrive in time. The command may have been executed, or may still be."""
 
     def __init__(self, command: str, seconds: float):
-        super().__init__(f"{command}: nothing came within {seconds:g} s")
+        super().__init__(f"{command}: no answer within {seconds:g} s")
         self.command, self.seconds = command, seconds
 
 
 def _limit_text(limit: dict) -> str:
-    """What would have been allowed, in words."""
+    """The allowed values, in words."""
     least, most = limit.get("minimum"), limit.get("maximum")
     if "allowed" in limit:
         return "allowed: " + ", ".join(limit["allowed"])
@@ -170,7 +170,7 @@ class GrabSample:
 
 @dataclass(frozen=True)
 class Pose:
-    """A collider that is not as `mesh` tells it: p is at position + rotation (p - pivot)."""
+    """A collider whose pose differs from `mesh`: p is at position + rotation (p - pivot)."""
 
     position: tuple[float, float, float]  # of its pivot [m]
     rotation: tuple[float, float, float, float]  # unit quaternion x, y, z, w
@@ -180,7 +180,7 @@ class Pose:
 class ContactSample:
     """A contact of the cloth at the tick of a frame; forces are on the cloth [N]."""
 
-    collider: int | None  # its place in the list of the `mesh` message; None: cloth as well
+    collider: int | None  # its index in the list of the `mesh` message; None: cloth too
     particle: int
     point: tuple[float, float, float]  # of the cloth's mid-surface [m]
     normal: tuple[float, float, float]  # unit, out of the other side
@@ -194,13 +194,13 @@ class ReactionSample:
     """A force of a pin on the cloth, or of the cloth on a collider [N]."""
 
     of: str | int  # "pin" or "collider"; a number, if this client does not know it
-    id: int  # of the pin, or the collider's place in the list of the `mesh` message
+    id: int  # of the pin, or the collider's index in the list of the `mesh` message
     force: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Where the vertices are at a tick."""
+    """Positions of the vertices at a tick."""
 
     tick: int
     time: float  # simulated [s]
@@ -209,10 +209,10 @@ class Frame:
     reference: int
     epoch: int
     flags: int
-    positions: Any  # one row of 3 a vertex [m]
+    positions: Any  # one row of 3 per vertex [m]
     grabs: tuple[GrabSample, ...]
-    applied: dict[int, int]  # viewer to the number of its last message that is included
-    poses: dict[int, Pose]  # by the collider's place in the list of the `mesh` message
+    applied: dict[int, int]  # viewer to the number of its last included message
+    poses: dict[int, Pose]  # by the collider's index in the list of the `mesh` message
     contacts: tuple[ContactSample, ...]  # if `view` asked for forces
     reactions: tuple[ReactionSample, ...]  # if `view` asked for forces
 
@@ -228,18 +228,18 @@ class Frame:
 
 @dataclass(frozen=True)
 class ColliderMesh:
-    collider: int  # place in the list of the `mesh` message
-    positions: Any  # one row of 3 a vertex [m]
-    triangles: Any  # one row of 3 a triangle
+    collider: int  # index in the list of the `mesh` message
+    positions: Any  # one row of 3 per vertex [m]
+    triangles: Any  # one row of 3 per triangle
 
 
 @dataclass(frozen=True)
 class MeshData:
-    """What stays while an epoch lasts."""
+    """Everything constant during an epoch."""
 
-    rest_positions: Any  # one row of 3 a vertex [m]
-    triangles: Any  # one row of 3 a triangle
-    uv: Any  # one row of 2 a vertex
+    rest_positions: Any  # one row of 3 per vertex [m]
+    triangles: Any  # one row of 3 per triangle
+    uv: Any  # one row of 2 per vertex
     colliders: tuple[ColliderMesh, ...]
 
 
@@ -286,7 +286,7 @@ def _checksum(message: bytes) -> tuple[int, int]:
 
 
 def _read_common(message: bytes, type_: int, least: int, last_codec: int) -> tuple[int, int]:
-    """Checks what all messages share; returns codec and flags."""
+    """Checks the parts common to all messages; returns codec and flags."""
     _demand(len(message) >= _COMMON.size, "the message is too short")
     kind, version, codec, flags, length, a, b = _COMMON.unpack_from(message)
     _demand(kind == type_, "the message is of another type")
@@ -316,7 +316,7 @@ def _read_sections(message: bytes, offset: int, count: int) -> dict[tuple[int, i
 
 
 def _rows(payload: memoryview | None, format_: str, count: int, width: int):
-    """Exactly so many rows; numbers are finite."""
+    """Exactly `count` rows of finite numbers."""
     fits = payload is not None and len(payload) == count * width * struct.calcsize(format_)
     _demand(fits, "a section does not fit")
     flat = payload.cast(format_)
@@ -456,23 +456,23 @@ def encode_ack(sequence: int) -> bytes:
 # --- the client ---
 
 
-_CLIENTS = object()  # as time-out of a call: the client's
+_CLIENTS = object()  # timeout of a call that means the client's
 
 
 def _is_number(value) -> bool:
-    """Whether it is a whole number, numpy's too."""
+    """Whether it is a whole number, also one of numpy."""
     return hasattr(value, "__index__")
 
 
 def _plain(value):
-    """What JSON can say of numpy's numbers and arrays, and of all that lists itself as they do."""
+    """Converts numpy's numbers and arrays, and any type with their `tolist`, for JSON."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"a value of type {type(value).__name__} cannot be sent")
 
 
 def _hold_fields(hold) -> dict:
-    """Fields that say where to take hold: a Hit, a particle's number, or a dict with them."""
+    """Fields that tell where to hold, from a Hit, a particle's number, or a dict with them."""
     if _is_number(hold):
         return {"particle": hold}
     if isinstance(hold, Hit):
@@ -495,12 +495,12 @@ class _Pace:
     the other."""
 
     def __init__(self, limit: float = USUAL_RATE):
-        self._free = 0.0  # when all that was sent so far is worked off [s]
+        self._free = 0.0  # when all messages sent so far are paid off [s]
         self._interval = 1 / (RATE_PART * limit)
 
     def set_limit(self, limit: float, now: float) -> None:
-        """Messages a second that the server allows, and as many at once."""
-        sent = max(0.0, self._free - now) / self._interval  # counts by the new limit, too
+        """Sets the messages a second that the server allows, also as a burst."""
+        sent = max(0.0, self._free - now) / self._interval  # counts by the new limit too
         self._interval = 1 / (RATE_PART * limit)
         self._free = now + sent * self._interval
 
@@ -514,17 +514,17 @@ class _Pace:
 class Client:
     """A viewer of a Weft server. Make one with `connect`.
 
-    With `reconnect` it joins again by itself, with growing pauses, when the connection is lost; what is
-    asked meanwhile raises ConnectionLost, hands are gone, and who waits for a frame goes on waiting.
-    The event `status` tells of it: a dict with `phase` ("open", "waiting" or "closed"), and for the last
+    With `reconnect` it joins again by itself, with growing pauses, when the connection is lost; commands
+    raise ConnectionLost in the meantime, hands are lost, and a call that waits for a frame goes on waiting.
+    The event `status` reports it: a dict with `phase` ("open", "waiting" or "closed"), and for the last
     two `code` and `reason`.
 
-    Commands return the server's `result` as a dict, or what is said there. They raise CommandError if
-    the server refuses, ConnectionLost if the connection ends first and CallTimeout if no answer comes
-    within `timeout` seconds: the client's own `call_timeout` unless one is given, None for ever.
+    Commands return the server's `result` as a dict, unless they document another type. They raise CommandError if
+    the server refuses, ConnectionLost if the connection ends first and CallTimeout if no answer arrives
+    within `timeout` seconds: by default the client's `call_timeout`; None: no bound.
 
     Kept up to date: `welcome`, `mesh` (the text message), `mesh_data`, `frame` (the newest), and the
-    messages `state`, `roster`, `pins`, `grabs`; each is None until it has come.
+    messages `state`, `roster`, `pins`, `grabs`; each is None before the first.
     """
 
     def __init__(
@@ -532,9 +532,9 @@ class Client:
         call_timeout: float | None = CALL_SECONDS,
     ):  # fmt: skip
         self._socket, self._dial = socket, dial
-        self.call_timeout = call_timeout  # for an answer or a frame [s]; None: for ever
+        self.call_timeout = call_timeout  # for an answer or a frame [s]; None: no bound
         self._pace, self._turn = _Pace(), asyncio.Lock()
-        self._hello, self._view = _without_none(hello), {}  # said again after a reconnection
+        self._hello, self._view = _without_none(hello), {}  # repeated after a reconnection
         self._reconnect = reconnect
         self._redial: asyncio.Task | None = None
         self._connections = 1
@@ -545,7 +545,7 @@ class Client:
         self._next_id = self._next_drag = 1
         self._changed = asyncio.Condition()
         self._lost: WeftError | None = None  # why there is no connection now
-        self._ended = False  # and there will be none again
+        self._ended = False  # and none will follow
         self.welcome: dict | None = None
         self.mesh: dict | None = None
         self.mesh_data: MeshData | None = None
@@ -608,10 +608,10 @@ class Client:
         finally:
             self._waiting.pop(id_, None)
             if answer.done() and not answer.cancelled():
-                answer.exception()  # looked at, also where sending failed first
+                answer.exception()  # retrieved, even if sending failed first
 
     async def _in_time(self, what: str, timeout, waiting: Awaitable):
-        """What it returns, or CallTimeout."""
+        """Its result, or CallTimeout."""
         seconds = self.call_timeout if timeout is _CLIENTS else timeout
         try:
             async with asyncio.timeout(seconds) as bound:
@@ -630,12 +630,12 @@ class Client:
     async def _send(self, op: str, **fields) -> None:
         text = json.dumps({"op": op, **fields}, allow_nan=False, default=_plain)
         socket = self._socket
-        async with self._turn:  # so that none overtakes another
+        async with self._turn:  # so that no message overtakes another
             wait = self._pace.wait_before_next(asyncio.get_running_loop().time())
             if wait > 0:
                 await asyncio.sleep(wait)
-            if socket is not self._socket:  # what was said to the one before is not said to the next
-                raise self._lost or ConnectionLost(1006, "the connection was lost before it was sent")
+            if socket is not self._socket:  # a message for the previous connection is dropped
+                raise self._lost or ConnectionLost(1006, "the connection was lost before the message was sent")
             try:
                 await socket.send(text)
             except websockets.ConnectionClosed as closed:
@@ -649,7 +649,7 @@ class Client:
     async def pick(
         self, origin: Iterable[float], direction: Iterable[float], *, timeout=_CLIENTS
     ) -> Hit | None:
-        """Where a ray meets the cloth."""
+        """The point where a ray meets the cloth."""
         ray = {"origin": list(origin), "direction": list(direction)}
         hit = (await self.request("pick", timeout=timeout, **ray))["hit"]
         if hit is None:
@@ -727,7 +727,7 @@ class Client:
         self, name: str, *, opening=None, force=None, position=None, rotation=None, speed=None,
         turn_speed=None, timeout=_CLIENTS,
     ) -> dict:  # fmt: skip
-        """Opens, closes (opening=0) or moves a gripper; what is not told stays as it is."""
+        """Opens, closes (opening=0) or moves a gripper; omitted values stay as they are."""
         fields = {"opening": opening, "force": force, "speed": speed, "turn_speed": turn_speed}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
@@ -737,7 +737,7 @@ class Client:
         self, *, gravity=None, wind=None, gust_speed=None, gust_length=None, air_density=None, still_air=None,
         drag=None, fans=None, softness=None, budget_ms=None, over_budget=None, timeout=_CLIENTS,
     ) -> dict:  # fmt: skip
-        """Changes what acts on the cloth; what is not told stays as it is."""
+        """Changes forces and settings of the room; omitted values stay as they are."""
         fields = {"gravity": gravity, "wind": wind, "gust_speed": gust_speed, "gust_length": gust_length}
         fields |= {"air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans}
         fields |= {"softness": softness, "budget_ms": budget_ms, "over_budget": over_budget}
@@ -746,12 +746,12 @@ class Client:
     async def advance(self, n: int, *, frames: str | None = None, timeout=_CLIENTS) -> dict:
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
 
-        `frames` says which of its frames this viewer gets, whatever its `hz`: "all", "last" or "none";
-        by default those that its `hz` allows. They come before the result, so that `frame` is the last
-        tick's then.
+        `frames` says which of its frames this viewer gets, regardless of its `hz`: "all", "last" or "none";
+        by default those that its `hz` allows. They arrive before the result, so that `frame` is then the
+        last tick's.
         """
         if timeout is _CLIENTS:
-            ticks = n if _is_number(n) or isinstance(n, float) else 0  # the server tells what is none
+            ticks = n if _is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
         fields = _without_none({"frames": frames})
         return await self.request("advance", timeout=timeout, n=n, **fields)
@@ -787,7 +787,7 @@ class Client:
         return await self.request("view", timeout=timeout, **fields)
 
     async def ping(self, *, timeout=_CLIENTS) -> tuple[float, float]:
-        """Round trip and the server's clock minus the own one [s]."""
+        """Round trip, and the server's clock minus this client's [s]."""
         now = asyncio.get_running_loop().time
         sent = now()
         answer = await self.request("ping", timeout=timeout, t=sent)
@@ -798,7 +798,7 @@ class Client:
     # --- frames ---
 
     async def next_frame(self, *, timeout=_CLIENTS) -> Frame:
-        """The next frame that comes; none does while nothing changes: all cloths sleep, or a room stands still."""
+        """The next frame; none is sent while nothing changes: all cloths sleep, or the room is paused."""
         before = self.frame
         await self._in_time("next_frame", timeout, self._until(lambda: self.frame is not before))
         return self.frame
@@ -810,7 +810,7 @@ class Client:
         return self.frame
 
     async def frames(self) -> AsyncIterator[Frame]:
-        """Newest frames as long as the connection lasts; who is slow misses some."""
+        """Newest frames as long as the connection lasts; a slow loop misses some."""
         last = self.frame
         while True:
             try:
@@ -829,7 +829,7 @@ class Client:
             raise self._lost
 
     async def _ready(self) -> None:
-        """Waits for what a client needs to begin."""
+        """Waits for the messages that a client needs to begin."""
         await self._until(lambda: self.welcome is not None and self.mesh_data is not None)
 
     async def _read(self) -> None:
@@ -842,10 +842,10 @@ class Client:
                 await self._redial
             except asyncio.CancelledError:
                 break
-            except ProtocolError as error:  # who answers there now is no server of ours
+            except ProtocolError as error:  # another program answers there now
                 self._lost = error
                 break
-            # A dial that succeeds or fails at the moment of its cancellation may swallow that.
+            # A dial that ends at the moment of its cancellation may swallow the cancellation.
             if not self._reconnect:
                 break
         await self._socket.close()
@@ -865,7 +865,7 @@ class Client:
         return {"code": 4002, "reason": str(lost)}
 
     def _lose(self, lost: WeftError) -> None:
-        """There is no connection now."""
+        """Notes the loss of the connection."""
         self._lost, self.welcome = lost, None
         self._transfers.clear()
         for answer in self._waiting.values():
@@ -897,7 +897,7 @@ class Client:
             async for message in self._socket:
                 await self._take(message)
         except websockets.ConnectionClosed:
-            pass  # the code below tells how
+            pass  # the close code below tells why
         except ProtocolError as error:
             fault = error
         except (AttributeError, IndexError, KeyError, TypeError) as error:
@@ -922,7 +922,7 @@ class Client:
         for listener in list(self._listeners.get(name, ())):
             try:
                 listener(value)
-            except Exception as error:  # its own fault, not the connection's
+            except Exception as error:  # thrown by a listener
                 context = {"message": f"a listener of {name} failed", "exception": error}
                 asyncio.get_running_loop().call_exception_handler(context)
 
@@ -935,7 +935,7 @@ class Client:
         op = message.get("op", "")
         if op == "mesh":
             self.mesh, self.mesh_data = message, None
-            return "", None  # told when its data has come
+            return "", None  # reported when its data has arrived
         if op == "result":
             return self._answer(message)
         if op == "error":
@@ -977,7 +977,7 @@ class Client:
             return "mesh", message
         await self._socket.send(encode_ack(message.sequence))
         if self.mesh_data is None or self.mesh["epoch"] != message.epoch:
-            return "", None  # of a mesh that is gone
+            return "", None  # of an earlier mesh
         _demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")
         self.frame = message
         return "frame", message
@@ -1016,7 +1016,7 @@ class Drag:
         return self
 
     async def move(self, target: Iterable[float]) -> dict:
-        """Pulls towards another point [m]; returns when it has its place in a tick."""
+        """Pulls towards another point [m]; returns when the command has its place in a tick."""
         self._target = list(target)
         if self._is_lost():
             raise ConnectionLost(1006, "the hand was lost with its connection")
@@ -1024,7 +1024,7 @@ class Drag:
         return await self._client.request("drag", timeout=self._timeout, **fields)
 
     async def end(self, *, fire=None) -> dict | None:
-        """Lets go; a sling gives its impulse then, unless fire is False."""
+        """Lets go; a sling then gives its impulse, unless fire is False."""
         if self._repeater is None:
             return None
         self._repeater.cancel()
@@ -1062,12 +1062,12 @@ class Drag:
 
 
 def _socket_address(url: str) -> str:
-    """The address of a server's socket, which may be given as that of its page."""
+    """The address of a server's socket; the argument may be that of its page."""
     scheme = {"http": "ws", "https": "wss"}
     try:
         parts = urlsplit(url)
         known = parts.scheme in ("ws", "wss", *scheme) and parts.hostname and parts.port != 0
-    except ValueError:  # a port that is none
+    except ValueError:  # an invalid port
         known = False
     if not known:
         raise WeftError(f"{url!r} is no address of a server: give one as ws://127.0.0.1:8080/ws, or that of its page")
@@ -1076,7 +1076,7 @@ def _socket_address(url: str) -> str:
 
 
 class _Connecting:
-    """What `connect` returns: awaited it is a client, with `async with` one that closes itself."""
+    """Result of `connect`: gives a client if awaited, and one that closes itself in `async with`."""
 
     def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool, call_timeout: float | None):
         self._url, self._hello, self._timeout, self._reconnect = _socket_address(url), hello, timeout, reconnect
@@ -1141,7 +1141,7 @@ def connect(
     """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
 
     `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
-    `timeout` [s] is for joining, `call_timeout` for each answer of a call that gives none; None: for ever.
+    `timeout` [s] bounds joining, `call_timeout` each answer by default; None: no bound.
     """
     return _Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout)
 
@@ -1177,7 +1177,7 @@ class SyncDrag:
 
 
 class SyncClient:
-    """A client whose commands block; an event loop of its own runs in a thread of its own.
+    """A client whose commands block; its event loop runs in a thread of its own.
 
     It has the commands and properties of `Client`. Listeners are called in that thread.
     """
@@ -1254,7 +1254,7 @@ def open(
     url: str, *, name=None, color=None, timeout: float = 10, reconnect=False,
     call_timeout: float | None = CALL_SECONDS,
 ) -> SyncClient:  # fmt: skip
-    """Joins a server, blocking; use it with `with`. Everything is as for `connect`."""
+    """Joins a server, blocking; use it with `with`. The arguments are those of `connect`."""
     return SyncClient(
         url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
     )
