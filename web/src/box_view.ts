@@ -4,7 +4,7 @@ import type { Data, Tree } from '../../proto/js/messages.js';
 import { Boxes } from './boxes.js';
 import { element } from './panels.js';
 
-const ASK_INTERVAL = 60; // between questions for boxes that move [ms]
+const ASK_INTERVAL = 60; // between requests for boxes that move [ms]
 const OPENING_LEVEL = 4;
 
 function title_of(tree: string): string {
@@ -12,10 +12,10 @@ function title_of(tree: string): string {
   return `Cloth ${tree}`;
 }
 
-/** The boxes of one level of one of the server's hierarchies, and the panel that chooses them. */
+/** Draws the boxes of one level of a server's hierarchy, with the panel that selects them. */
 export class BoxView {
   readonly boxes = new Boxes();
-  /** Of the boxes that are shown; -1 if none are. */
+  /** Of the shown boxes; -1 if none are shown. */
   tick = -1;
   private button = element<HTMLButtonElement>('boxes');
   private panel = element('boxes-panel');
@@ -24,9 +24,9 @@ export class BoxView {
   private trees: Tree[] = [];
   private asking = false;
   private asked_at = -Infinity;
-  private stale = true; // another choice, or another cloth, than when the boxes were asked for
+  private stale = true; // the choice or the cloth has changed since the last request
 
-  /** @param changed called when other lines are to be drawn */
+  /** @param changed called when the drawn lines change */
   constructor(
     private client: WeftClient,
     private changed: () => void,
@@ -49,14 +49,14 @@ export class BoxView {
     else this.clear();
   }
 
-  /** Another cloth has come: its trees are others. */
+  /** Takes the trees of a new cloth. */
   renew(): void {
     this.clear();
     this.trees = [];
     if (this.shown) void this.ask_trees();
   }
 
-  /** Asks for boxes if those that are shown are of another tick. */
+  /** Requests boxes if the shown ones are of another tick. */
   follow(tick: number): void {
     if (!this.shown || this.asking || !this.trees.length || !this.client.connected) return;
     const now = performance.now();
@@ -81,7 +81,7 @@ export class BoxView {
     const { trees, tree, level } = this;
     const options = { tree: tree.value, level: level.valueAsNumber, format: 'f32' as const };
     const data = (await this.answer(this.client.query('boxes', options))) as Data | null;
-    // Meanwhile the panel may be closed, or another cloth or level be there.
+    // By now the panel may be closed, or the cloth or level changed.
     if (!data || !this.shown || this.trees !== trees || this.stale) return;
     this.boxes.show(data.values);
     this.tick = data.tick;

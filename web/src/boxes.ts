@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments } from 'three';
 
 const FLOATS = 6; // a box: lowest and highest corner
-// Corners of the twelve edges, two an edge; bit k of a corner chooses its coordinate k.
+// Corners of the twelve edges, two per edge; bit k of a corner chooses its coordinate k.
 const EDGES = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
 /** Axis-aligned boxes as lines along their edges. */
@@ -17,7 +17,7 @@ export class Boxes {
     this.show([]);
   }
 
-  /** @param values six numbers a box, lowest and highest corner [m] */
+  /** @param values six numbers per box, lowest and highest corner [m] */
   show(values: ArrayLike<number>): void {
     const count = values.length / FLOATS;
     if (count > this.capacity) this.reserve(count);
@@ -39,7 +39,7 @@ export class Boxes {
     this.lines.visible = count > 0;
   }
 
-  /** The drawn lines: three numbers a point, two points a line. */
+  /** The drawn lines: three numbers per point, two points per line. */
   drawn(): number[] {
     const { geometry, visible } = this.lines;
     if (!visible) return [];

@@ -3,13 +3,13 @@ import type { Box3 } from 'three';
 import type { Vec3 } from '../../proto/js/messages.js';
 
 const FIELD_OF_VIEW = 32; // vertical [degrees]
-const SMOOTHING_TIME = 0.07; // in which what remains of a movement falls to 1/e [s]
+const SMOOTHING_TIME = 0.07; // in which the rest of a movement decays to 1/e [s]
 const NEAREST = 0.15; // [m]
 const FARTHEST = 30; // [m]
 const LEAST_HEIGHT = 0.04; // above the ground [m]
 const HIGHEST_ELEVATION = 1.5; // [rad]
 
-const FRAME_MARGIN = 1.05; // by which a framed box is smaller than the view
+const FRAME_MARGIN = 1.05; // ratio of the view to a framed box
 
 interface Pose {
   target: Vector3;
@@ -22,7 +22,7 @@ function copy_pose(pose: Pose): Pose {
   return { ...pose, target: pose.target.clone() };
 }
 
-/** Unit vectors to the right, up and back of who looks. */
+/** Unit vectors to the viewer's right, up and back. */
 function axes_of({ azimuth, elevation }: Pose) {
   const level = Math.cos(elevation);
   const back = new Vector3(Math.sin(azimuth) * level, Math.sin(elevation), Math.cos(azimuth) * level);
@@ -35,7 +35,7 @@ function corners_of({ min, max }: Box3): Vector3[] {
   return Array.from({ length: 8 }, (_, k) => new Vector3(pick(k, 0).x, pick(k, 1).y, pick(k, 2).z));
 }
 
-/** Looks at a target from around it; what is asked for is reached smoothly. */
+/** Orbits around a target; approaches the requested pose smoothly. */
 export class OrbitCamera {
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.02, 120);
   private wanted: Pose = {
@@ -53,7 +53,7 @@ export class OrbitCamera {
     this.limit();
   }
 
-  /** Moves with the pointer what lies in the target's plane; dx, dy in heights of the view. */
+  /** Moves points in the target's plane with the pointer; dx, dy in heights of the view. */
   pan(dx: number, dy: number): void {
     const height = 2 * this.wanted.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const right = new Vector3().setFromMatrixColumn(this.camera.matrix, 0);
@@ -70,8 +70,8 @@ export class OrbitCamera {
   }
 
   /**
-   * Brings a box into the picture: as near as possible with all of its corners in view.
-   * @param covered parts of the view's height that panels cover at its ends
+   * Frames a box: as near as possible with all of its corners in view.
+   * @param covered fractions of the view's height that panels cover at its ends
    */
   frame(box: Box3, covered: { above: number; below: number }, at_once: boolean): void {
     const { wanted } = this;
@@ -105,7 +105,7 @@ export class OrbitCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Moves on by a time [s]; tells whether the view changed. */
+  /** Advances by a time [s]; tells whether the view changed. */
   update(elapsed: number): boolean {
     const before = this.camera.matrixWorld.clone();
     const part = 1 - Math.exp(-elapsed / SMOOTHING_TIME);
@@ -137,7 +137,7 @@ export class OrbitCamera {
     return new Vector3(...point).sub(this.camera.position).dot(forward);
   }
 
-  /** The point at a place of the view, this far along the view [m]. */
+  /** The point at a place of the view, at this distance along the view [m]. */
   point_at(ndc: Vector2, depth: number): Vec3 {
     const { origin, direction } = this.ray(ndc);
     const along = new Vector3(...direction).dot(this.camera.getWorldDirection(new Vector3()));
@@ -145,7 +145,7 @@ export class OrbitCamera {
     return [0, 1, 2].map((axis) => origin[axis] + direction[axis] * length) as Vec3;
   }
 
-  /** Where the view is looked at from, as the wire has it. */
+  /** The camera in the fields of the wire. */
   description(): { position: Vec3; target: Vec3; fov: number } {
     return {
       position: this.camera.position.toArray(),

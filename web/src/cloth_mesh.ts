@@ -3,7 +3,7 @@ import type { Cloth, MeshData } from '../../proto/js/messages.js';
 import { fabric_material } from './fabric.js';
 import { smooth_normals } from './normals.js';
 
-/** The cloths as they are shown; all share one buffer of positions and one of normals. */
+/** The drawn cloths; all share one buffer of positions and one of normals. */
 export class ClothMesh {
   readonly group = new Group();
   readonly triangles: Uint32Array;
@@ -32,7 +32,7 @@ export class ClothMesh {
     this.update(data.restPositions);
   }
 
-  /** @param positions three values a vertex [m] */
+  /** @param positions three values per vertex [m] */
   update(positions: Float32Array): void {
     this.positions.array.set(positions);
     smooth_normals(positions, this.triangles, this.normals.array as Float32Array);
@@ -50,7 +50,7 @@ export class ClothMesh {
   }
 }
 
-/** Width and height of a cloth in its plane [m]: how far its points at rest lie apart per uv. */
+/** Width and height of a cloth in its plane [m]: rest distances of its points per uv. */
 function extent(cloth: Cloth, { restPositions, triangles, uv }: MeshData): [number, number] {
   const sums = [0, 0];
   const weights = [0, 0];
@@ -63,7 +63,7 @@ function extent(cloth: Cloth, { restPositions, triangles, uv }: MeshData): [numb
     );
     const du = Math.abs(uv[a * 2] - uv[b * 2]);
     const dv = Math.abs(uv[a * 2 + 1] - uv[b * 2 + 1]);
-    // Only edges along one of the axes say how long that axis is.
+    // Only edges along an axis measure that axis.
     const axis = dv < 1e-3 * du ? 0 : du < 1e-3 * dv ? 1 : -1;
     if (axis < 0) continue;
     sums[axis] += length;

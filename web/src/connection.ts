@@ -1,11 +1,11 @@
 import { CommandError, WeftClient } from '../../proto/js/index.js';
 
 const LONGEST_NAME = 32; // of a viewer, by the wire
-const EVERY_TICK = 240; // frames a second; more than any display shows
+const EVERY_TICK = 240; // frames per second; more than any display shows
 const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
-const PATIENCE = 3; // attempts that fail before a proxy in between is suspected
+const PATIENCE = 3; // failed attempts before a proxy is suspected
 
-/** Why the server does not let the page in, and what helps. */
+/** Why the server refuses the page, and the remedy. */
 export interface Refusal {
   message: string;
   hint: string;
@@ -29,17 +29,17 @@ export function connect_client(): WeftClient {
   if (document.hidden) client.wantedView = { hz: 0 };
   window.addEventListener('pagehide', () => client.close());
   window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect());
-  client.connect().catch(() => {}); // the status tells
+  client.connect().catch(() => {}); // the status reports failures
   return client;
 }
 
 /**
- * Tells why the socket does not open, after each attempt that fails; null where nothing is known of
- * it, and once it is open. Browsers hide the answer to a refused upgrade, so a plain request asks.
+ * Reports after each failed attempt why the socket does not open; null if the reason is unknown,
+ * and once it is open. Browsers hide the answer to a refused upgrade, so a plain request asks.
  */
 export function explain_refusals(client: WeftClient, tell: (refusal: Refusal | null) => void): void {
   let failures = 0;
-  let last: string = 'connecting'; // as connect_client has left it
+  let last: string = 'connecting'; // as left by connect_client
   client.on('status', ({ phase }) => {
     const failed = last === 'connecting' && phase === 'waiting';
     last = phase;
@@ -66,13 +66,13 @@ async function ask_refusal(suspect_proxy: boolean): Promise<Refusal | null> {
     const { error } = (await answer.json()) as { error: Refusal };
     return { message: error.message, hint: error.hint ?? '' };
   } catch {
-    return null; // nobody answers, or not in the server's words
+    return null; // no answer, or not from a Weft server
   }
 }
 
 /**
- * Waits for a command in the background; what the server refuses is told, and a lost connection is
- * not, because the connection's state shows that.
+ * Awaits a command in the background. A refusal is reported; a lost connection is not, because the
+ * connection's state shows it.
  */
 export function tell_refusal(answer: Promise<unknown>, tell: (message: string) => void): void {
   answer.catch((error: unknown) => {

@@ -46,15 +46,15 @@ export function fabric_material(width: number, height: number): MeshPhysicalMate
 }
 
 /**
- * The shadow is looked up a little in front of the surface. In front is the side that is seen, which
- * may be the left side of the cloth; looked up behind it, the cloth would lie in its own shadow.
+ * The shadow is looked up slightly in front of the surface, on the visible side, which may be the
+ * left side of the cloth; behind it, the cloth would lie in its own shadow.
  */
 const SHADOW_OF_BOTH_SIDES = `
   transformedNormal = faceforward(transformedNormal, mvPosition.xyz, transformedNormal);
   #include <shadowmap_vertex>
 `;
 
-/** A hem a little darker than the cloth, with the line of its seam; the left side is paler. */
+/** A hem slightly darker than the cloth, with the line of its seam; the left side is paler. */
 const HEM_SHADE = `
   #include <color_fragment>
   vec2 from_edge = min(fabric_place, 1.0 - fabric_place) / hem;
@@ -65,7 +65,9 @@ const HEM_SHADE = `
   if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.86, 0.82, 0.84);
 `;
 
-/** Normals of a 2/2 twill: each thread goes over two and under two, one on at each row. */
+/**
+ * Normals of a 2/2 twill: each thread passes over two and under two, shifted by one in each row.
+ */
 function twill_normals(): DataTexture {
   const size = TWILL_SIZE;
   const height = new Float32Array(size * size);

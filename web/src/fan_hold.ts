@@ -5,7 +5,7 @@ import { with_handle } from './fans.js';
 import type { FanHit, Fans } from './fans.js';
 import { HandleHold } from './handle_hold.js';
 
-/** The own hand on a fan. It moves at once in the own picture; the others see it some ticks later. */
+/** The own hand on a fan. The own picture moves at once; other viewers see it some ticks later. */
 export class FanHold extends HandleHold {
   constructor(
     private hit: FanHit,

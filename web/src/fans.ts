@@ -19,18 +19,18 @@ import type { OrbitCamera } from './camera.js';
 
 const FORWARD = new Vector3(0, 0, 1);
 const SHOWN_LENGTH = 0.6; // of the jet, up to the handle that turns it [m]
-const REACH = 18; // within which a pointer means a handle [pixels]
+const REACH = 18; // of the pointer around a handle [pixels]
 const BLADES = 3;
 const TURN = 0.35; // of the blades at a speed of 1 m/s [rad a tick]
-// The protocol's defaults of what a fan may leave out.
+// The protocol's defaults for a fan's optional fields.
 const RADIUS = 0.25;
 const SPREAD = 0.2;
 const SPEED = 5;
-// A new fan stands aside of the line of sight, so that it does not hide what it blows at.
+// A new fan stands beside the line of sight, so that it does not hide its target.
 const ASIDE = 0.75; // from the line of sight [rad]
-const DISTANCE = 0.9; // from what it blows at [m]
+const DISTANCE = 0.9; // from its target [m]
 
-/** What of a fan a hand takes: its place, or where it blows. */
+/** The handle of a fan: its place, or its aim. */
 export type FanPart = 'place' | 'aim';
 
 export interface FanHit {
@@ -39,14 +39,14 @@ export interface FanHit {
   position: Vec3;
 }
 
-/** The point that a handle is at. */
+/** The position of a handle. */
 export function handle_of(fan: Fan, part: FanPart): Vec3 {
   if (part === 'place') return [...fan.position];
   const direction = new Vector3(...fan.direction).setLength(SHOWN_LENGTH);
   return new Vector3(...fan.position).add(direction).toArray();
 }
 
-/** The same fan with a handle elsewhere. */
+/** The same fan with a handle moved. */
 export function with_handle(fan: Fan, part: FanPart, to: Vec3): Fan {
   if (part === 'place') return { ...fan, position: to };
   const direction = new Vector3(...to).sub(new Vector3(...fan.position));
@@ -54,7 +54,7 @@ export function with_handle(fan: Fan, part: FanPart, to: Vec3): Fan {
   return { ...fan, direction: direction.normalize().toArray() };
 }
 
-/** The fans of the room: a ring with blades where the air leaves, its jet, and a handle to aim it. */
+/** The fans of the room: a ring with blades at the outlet, the jet, and a handle to aim it. */
 export class Fans {
   readonly group = new Group();
   list: Fan[] = [];
@@ -71,15 +71,15 @@ export class Fans {
   private unanswered = 0;
 
   /**
-   * Shows what the server says, unless it has not answered yet to what the own hand told: what it
-   * says until then is older than the picture.
+   * Shows the server's fans, unless an answer to the own hand's changes is pending: until then they
+   * are older than the picture.
    * @returns whether anything changed
    */
   receive(fans: Fan[]): boolean {
     return this.unanswered === 0 && this.show(fans);
   }
 
-  /** @param answer of the server to what it was told about the fans */
+  /** @param answer of the server to a change of the fans */
   told(answer: Promise<unknown>): void {
     const answered = () => void (this.unanswered -= 1);
     this.unanswered += 1;
@@ -97,14 +97,14 @@ export class Fans {
     return true;
   }
 
-  /** Turns the blades to where they are at a tick. */
+  /** Turns the blades to their angle at a tick. */
   spin(tick: number): void {
     this.rotors.forEach((rotor, index) => {
       rotor.rotation.z = tick * TURN * (this.list[index].speed ?? SPEED);
     });
   }
 
-  /** The handle that a pointer means. */
+  /** The handle under the pointer. */
   at(point: Vector2, { camera }: OrbitCamera, width: number, height: number): FanHit | null {
     for (const [index, fan] of this.list.entries()) {
       for (const part of ['aim', 'place'] as const) {
@@ -151,7 +151,7 @@ export class Fans {
   }
 }
 
-/** A fan aside of the line of sight that blows at what is looked at. */
+/** A fan beside the line of sight that blows at the view's target. */
 export function fan_of_view(camera: OrbitCamera): Fan {
   const { position, target } = camera.description();
   const aim = new Vector3(...target);

@@ -1,6 +1,6 @@
 import type { Crossings, Guarantee } from '../../proto/js/messages.js';
 
-/** Whether nothing passes through, as the server promises it now. */
+/** The server's present promise that nothing passes through. */
 export function guarantee_text({ state, covers, pairs, reasons }: Guarantee): string {
   const why = reasons.join('; ');
   switch (state) {
@@ -15,7 +15,7 @@ export function guarantee_text({ state, covers, pairs, reasons }: Guarantee): st
   }
 }
 
-/** What was counted, with the smallest gap in millimetres. */
+/** The last count, with the smallest gap in millimetres. */
 export function crossings_text({ count, smallest_gap }: Crossings): string {
   const crossings = `${count} ${count === 1 ? 'crossing' : 'crossings'}`;
   if (smallest_gap === null) return `${crossings}, nothing near`;

@@ -3,12 +3,14 @@ import type { Vec3 } from '../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
 import { PointerDepth } from './pointer_depth.js';
 
-const SEND_INTERVAL = 40; // between places of what moves [ms]
+const SEND_INTERVAL = 40; // between positions of a moving handle [ms]
 
-/** The own hand on something that is no cloth: it goes with the pointer, and tells so now and then. */
+/**
+ * The own hand on anything but cloth: follows the pointer and reports its position now and then.
+ */
 export abstract class HandleHold {
   private depth: PointerDepth;
-  private grip: Vec3; // from the pointer to the place that is moved [m]
+  private grip: Vec3; // from the pointer to the moved place [m]
   private timer = 0;
 
   /**
@@ -37,10 +39,10 @@ export abstract class HandleHold {
     if (this.timer) this.flush();
   }
 
-  /** Takes the thing to a place [m]; tells whether that changes anything. */
+  /** Moves the thing to a place [m]; tells whether that changes anything. */
   protected abstract put(place: Vec3): boolean;
 
-  /** Tells the server. */
+  /** Sends the place to the server. */
   protected abstract tell(): void;
 
   private flush(): void {

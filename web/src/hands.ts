@@ -5,15 +5,15 @@ import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import type { Grab, Vec3, Viewer } from '../../proto/js/messages.js';
 
-export const NO_COLOR = '#5c6068'; // of who is not known
+export const NO_COLOR = '#5c6068'; // of an unknown viewer
 const LINE_WIDTH = 2.5; // [pixels]
 const DOT_RADIUS = 4.5; // [pixels]
 const TARGET_RADIUS = 6.5; // [pixels]
 const LABEL_OFFSET = 14; // [pixels]
 
-/** A hand that holds the cloth, as it is to be drawn. */
+/** A hand that holds the cloth, as drawn. */
 export interface Hand {
-  /** Tells hands apart; the room's number, or 0 for the own hand before the server has told it. */
+  /** Identifies a hand: the room's number, or 0 for the own hand before the server has sent it. */
   id: number;
   name: string;
   color: string;
@@ -23,13 +23,13 @@ export interface Hand {
   own: boolean;
 }
 
-/** Whose hand it is that another holds the cloth with. */
+/** The owner of another viewer's hand. */
 export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
   const name = who?.name ?? (viewer ? `viewer ${viewer}` : 'scene');
   return { id, name, color: who?.color ?? NO_COLOR, own: false };
 }
 
-/** Lines from where hands hold the cloth to where they pull it, with the names of their owners. */
+/** Lines from held points to their targets, labelled with the hands' owners. */
 export class Hands {
   readonly group = new Group();
   private marks = new Map<string, HandMark>();
@@ -105,7 +105,7 @@ class HandMark {
     }
   }
 
-  /** A dot with a white rim, which keeps it visible on cloth of its own colour. */
+  /** A dot with a white rim, visible on cloth of the same colour. */
   private dot(): Group {
     const rim = new Mesh(this.sphere, this.rim_material);
     rim.renderOrder = 21;
@@ -118,7 +118,7 @@ class HandMark {
   }
 }
 
-/** Places an object and gives it the size of so many pixels. */
+/** Positions an object and scales it to a size in pixels. */
 export function scale_to_pixels(
   object: { position: Vector3; scale: Vector3 },
   place: Vec3,

@@ -5,9 +5,9 @@ import type { OrbitCamera } from './camera.js';
 import { PointerDepth } from './pointer_depth.js';
 import type { ClothHit } from './ray.js';
 
-const RADIUS = 0.03; // of the fabric in the hand [m]
+const RADIUS = 0.03; // of the held fabric [m]
 
-/** Live: the cloth follows. Sling: it is thrown when it is let go. */
+/** Live: the cloth follows. Sling: it is thrown on release. */
 export type HandMode = 'live' | 'sling';
 
 /** The own hand in the cloth. Its target stays under the pointer at a depth that the wheel sets. */
@@ -18,7 +18,7 @@ export class Hold {
   private drag: Drag;
   private depth: PointerDepth;
 
-  /** @param lost called when the hand lets go other than by `end`, with the reason */
+  /** @param lost called with the reason when the hand lets go other than by `end` */
   constructor(
     client: WeftClient,
     hit: ClothHit,
@@ -36,12 +36,12 @@ export class Hold {
     void this.drag.ended.then((reason) => reason !== 'end' && lost(reason));
   }
 
-  /** The room's number of this hand, once the server told it. */
+  /** The room's number of this hand, once the server has sent it. */
   get grab(): number | null {
     return this.drag.grab;
   }
 
-  /** Brings the target under the pointer; only what differs is sent. */
+  /** Moves the target under the pointer; only changes are sent. */
   follow(pointer: Vector2): void {
     const target = this.depth.under(pointer);
     const moved = Math.hypot(...target.map((value, axis) => value - this.target[axis]));

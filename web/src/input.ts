@@ -1,21 +1,21 @@
 import { Vector2 } from 'three';
 
 export const LONG_PRESS = 550; // [ms]
-const FINGER_WANDER = 10; // that a resting finger may make [pixels]
+const FINGER_WANDER = 10; // tolerated movement of a resting finger [pixels]
 const ORBIT_SPEED = 0.0052; // [rad per pixel]
 const ZOOM_SPEED = 0.0011; // [1 per pixel of the wheel]
 const DEPTH_SPEED = 0.0005;
-const LINE_HEIGHT = 16; // of wheels that count lines [pixels]
+const LINE_HEIGHT = 16; // for wheels that count lines [pixels]
 
-/** What the hands on mouse, screen and wheel can do. Points are in normalised device coordinates. */
+/** Actions of mouse, touch and wheel. Points are in normalised device coordinates. */
 export interface Actions {
-  /** Takes the cloth if it is at the point. */
+  /** Takes hold of the cloth if it is at the point. */
   take(point: Vector2): boolean;
-  /** Takes the object at the point, to move it. */
+  /** Takes hold of the object at the point. */
   take_object(point: Vector2): boolean;
   follow(point: Vector2): void;
   push(factor: number): void;
-  /** @param meant the pointer went up, in place of the hold being broken off */
+  /** @param meant the pointer was released, rather than the hold interrupted */
   let_go(meant: boolean): void;
   toggle_pin(point: Vector2): void;
   orbit(azimuth: number, elevation: number): void;
@@ -33,14 +33,14 @@ interface Finger {
 }
 
 /**
- * One machine for mouse and touch. Idle, it hovers; what the pointer goes down on decides whether it
- * moves the camera or holds the cloth until it goes up.
+ * One state machine for mouse and touch. When idle, it hovers; what lies under the pressed pointer
+ * decides whether it moves the camera or holds the cloth until its release.
  */
 export class Input {
   state: InputState = 'idle';
-  /** Where a mouse hovers or a hand holds; null if nowhere over the view. */
+  /** Where the mouse hovers or the hand holds; null outside the view. */
   point: Vector2 | null = null;
-  private fingers: Finger[] = []; // those that are down, in their order
+  private fingers: Finger[] = []; // pressed ones, in order
   private panning = false;
   private press_timer = 0;
   private press_start = { x: 0, y: 0 };
@@ -75,7 +75,7 @@ export class Input {
     event.preventDefault();
     this.view.focus({ preventScroll: true });
     const touch = event.pointerType === 'touch';
-    if (!touch && this.fingers.length > 0) return; // a second button changes nothing
+    if (!touch && this.fingers.length > 0) return; // further buttons are ignored
     this.view.setPointerCapture(event.pointerId);
     this.fingers.push({ id: event.pointerId, x: event.clientX, y: event.clientY });
     this.point = this.locate(event);
@@ -151,7 +151,7 @@ export class Input {
     event.preventDefault();
     const unit = [1, LINE_HEIGHT, this.view.clientHeight][event.deltaMode] ?? 1;
     const amount = Math.min(400, Math.max(-400, event.deltaY * unit));
-    // A pinch on a trackpad comes as a wheel with Ctrl, in smaller numbers.
+    // A trackpad's pinch arrives as a wheel with Ctrl, in smaller numbers.
     const speed = event.ctrlKey ? 8 : 1;
     if (this.state === 'holding') this.actions.push(Math.exp(-amount * speed * DEPTH_SPEED));
     else this.actions.zoom(Math.exp(amount * speed * ZOOM_SPEED));
@@ -161,12 +161,12 @@ export class Input {
     this.press_start = { x: event.clientX, y: event.clientY };
     const point = this.locate(event);
     this.press_timer = window.setTimeout(() => {
-      // On a busy page the finger may have moved without being heard yet; what it did comes before
+      // On a busy page the finger may have moved without an event yet; such events arrive before
       // the next picture.
       const timer = this.press_timer;
       requestAnimationFrame(() => {
         if (timer !== this.press_timer) return;
-        this.enter('idle'); // the finger is still down and does nothing until it has gone up
+        this.enter('idle'); // until it is lifted, the finger does nothing
         this.actions.toggle_pin(point);
       });
     }, LONG_PRESS);

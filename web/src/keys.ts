@@ -16,7 +16,7 @@ export interface KeyActions {
   zoom(factor: number): void;
 }
 
-/** Keys of the whole page; those that a focused control needs for itself are left to it. */
+/** Keys of the whole page, except those that a focused control uses itself. */
 export function listen_to_keys(actions: KeyActions): void {
   const anywhere: Record<string, () => void> = {
     m: () => actions.toggle_pin(),
@@ -41,7 +41,7 @@ export function listen_to_keys(actions: KeyActions): void {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const element = event.target instanceof Element ? event.target : null;
-    // A dialog is read and closed; a list takes letters itself.
+    // A dialog takes no keys but its own; a list uses letters itself.
     if (element?.closest('dialog, select')) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const free = !element?.closest('button, input');

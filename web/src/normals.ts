@@ -1,6 +1,6 @@
 /**
- * Normal of each vertex: mean of those of its triangles, weighted by area.
- * @param normals out; three values a vertex, of unit length
+ * Vertex normals: means of the triangles' normals, weighted by area.
+ * @param normals out; three values per vertex, of unit length
  */
 export function smooth_normals(
   positions: Float32Array,

@@ -6,13 +6,13 @@ import type { ObjectHit } from './objects.js';
 
 const SPEED = 2; // at which it follows the hand [m/s]
 
-/** Where an object shall go. */
+/** Target pose of an object. */
 export interface Move {
   position: Vec3;
   speed: number;
 }
 
-/** The own hand on an object. The server moves it, and it lags where cloth holds it back. */
+/** The own hand on an object. The server moves the object, which lags where cloth holds it back. */
 export class ObjectHold extends HandleHold {
   private target: Vec3;
 

@@ -16,7 +16,7 @@ import type { Collider, MeshData, PoseSample, Vec3 } from '../../proto/js/messag
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
 
-/** What the cloth can touch, apart from the ground. */
+/** The objects that cloth can touch, except the ground. */
 export class Objects {
   readonly group = new Group();
   /** Height of the ground [m], or null if there is none. */
@@ -28,12 +28,12 @@ export class Objects {
 
   /**
    * @param inset by which meshes are drawn thinner [m]. Contact keeps particles and edges outside,
-   *     but the middle of a flat triangle of cloth may dip below a curved surface a little.
+   *      but the middle of a flat triangle of cloth may dip slightly below a curved surface.
    */
   constructor(colliders: Collider[], data: MeshData, inset: number) {
     for (const [place, collider] of colliders.entries()) {
       if (collider.kind === 'plane') {
-        // A floor is drawn for level ground alone.
+        // A floor is drawn only for level ground.
         if (collider.normal[1] > 0.99) {
           this.ground = collider.point[1];
           this.ground_place = place;
@@ -54,7 +54,7 @@ export class Objects {
     this.group.updateMatrixWorld(true);
   }
 
-  /** Puts objects where they are; those that are not named are as defined. */
+  /** Moves objects to their poses; objects without one stand as defined. */
   place(poses: PoseSample[]): void {
     for (const { place, pivot, holder } of this.nodes) {
       const pose = poses.find(({ collider }) => collider === place);
@@ -69,7 +69,7 @@ export class Objects {
     this.group.updateMatrixWorld(true);
   }
 
-  /** Objects as they are drawn. */
+  /** Poses of the drawn objects. */
   poses(): { name: string; position: number[]; rotation: number[] }[] {
     return this.nodes.map(({ holder }) => ({
       name: holder.children[0].name,
@@ -78,7 +78,7 @@ export class Objects {
     }));
   }
 
-  /** Height of the ground among these poses. */
+  /** Height of the ground with these poses. */
   ground_at(poses: PoseSample[]): number | null {
     const pose = poses.find(({ collider }) => collider === this.ground_place);
     return pose ? pose.position[1] : this.ground;
@@ -94,7 +94,7 @@ export class Objects {
     return this.hit(origin, direction)?.distance ?? Infinity;
   }
 
-  /** The first object along a ray, as it stands in the picture. */
+  /** The first object along a ray, as drawn. */
   hit(origin: Vec3, direction: Vec3): ObjectHit | null {
     this.caster.set(new Vector3(...origin), new Vector3(...direction));
     const met = this.caster.intersectObjects(this.group.children, true)[0];
@@ -123,7 +123,7 @@ export interface ObjectHit {
   pivot: Vec3;
 }
 
-/** An object with its place in the list of colliders; the holder is at its pivot. */
+/** An object with its index in the list of colliders; the holder is at its pivot. */
 interface Node {
   place: number;
   pivot: Vector3;
@@ -165,7 +165,7 @@ function place_object(mesh: Mesh, collider: Collider): void {
   mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
 }
 
-/** Smooth where faces meet at small angles, sharp at edges; corners get normals of their own. */
+/** Smooth where faces meet at small angles, sharp at edges, where corners have separate normals. */
 function creased_geometry(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
   const corner = (index: number) => new Vector3().fromArray(positions, triangles[index] * 3);
   const faces: Vector3[] = []; // as long as twice the area

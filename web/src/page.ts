@@ -23,13 +23,15 @@ import { Stage } from './stage.js';
 import { Toolbar } from './toolbar.js';
 import { WorldView } from './world_view.js';
 
-const CAMERA_INTERVAL = 0.25; // between messages that tell where this viewer looks from [s]
-// The measurements show the first two, and a hand that slips tells the third itself.
+const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
+// The measurements show the first two, and the hand reports the third itself.
 const SHOWN_ELSEWHERE = new Set(['frames_dropped', 'slow_motion', 'lease_expired']);
-const STILL_TIME = 0.4; // without a change, after which the picture is drawn as finely as it can be [s]
-const PANEL_MARGIN = 12; // between panels and what is framed [pixels]
+const STILL_TIME = 0.4; // without change, before the finest picture is drawn [s]
+const PANEL_MARGIN = 12; // between panels and a framed box [pixels]
 
-/** Joins connection, input, camera, picture and panels; each knows its own work alone. */
+/**
+ * Connects input, camera, picture and panels to the client; each of them knows only its own task.
+ */
 export class Page {
   readonly canvas = element<HTMLCanvasElement>('view');
   readonly orbit = new OrbitCamera();
@@ -57,10 +59,10 @@ export class Page {
   private camera_told_at = 0;
   private camera_moved = true;
   private dirty = true;
-  private unframed = false; // a scene of which no frame was shown yet
+  private unframed = false; // no frame of this scene has been shown
   private drawn_last_time = false;
   private changed_at = 0;
-  /** Latency of a frame that came and is not drawn yet. */
+  /** Latency of a received frame that is not drawn yet. */
   private pending_latency: { came_at: number; latency: number } | null = null;
 
   constructor() {
@@ -184,7 +186,7 @@ export class Page {
     return this.viewers.find((viewer) => viewer.id === id);
   }
 
-  // ---- what hands do ------------------------------------------------------------------------
+  // ---- hands --------------------------------------------------------------------------------
 
   private pick(point: Vector2 | null): ClothHit | null {
     if (!point || !this.client.connected) return null;
@@ -200,14 +202,14 @@ export class Page {
     return true;
   }
 
-  /** Takes the handle of a fan, unless the cloth is before it. */
+  /** Takes the handle of a fan, unless cloth is in front of it. */
   private take_fan(point: Vector2, cloth: ClothHit | null): boolean {
     const hit = this.fan_at(point, cloth);
     if (!hit) return false;
     this.fan_hold = new FanHold(hit, point, this.fans, this.orbit, (fans) => {
       const answer = this.client.set({ fans });
       this.fans.told(answer);
-      answer.catch(() => this.show_fans()); // refused, they are where they were
+      answer.catch(() => this.show_fans()); // if refused, they stay where they were
       tell_refusal(answer, (text) => this.panels.tell(text));
     });
     return true;
@@ -246,12 +248,12 @@ export class Page {
     this.input.cancel();
   }
 
-  /** Fixes what is held or pointed at, or frees it if it is fixed. */
+  /** Pins the held or indicated point, or releases it if it is pinned. */
   private toggle_pin(point: Vector2 | null): void {
     if (!this.client.connected || !this.world) return;
     const held = this.hold;
     const hit = held ? null : this.pick(point);
-    // A fan is no cloth, and hides what is behind it.
+    // A fan cannot be pinned, and hides what is behind it.
     if (this.fan_hold || (!held && this.fan_at(point, hit))) return;
     const at = held ?? hit;
     const particle = at && this.nearest_corner(at);
@@ -266,7 +268,7 @@ export class Page {
     for (const answer of answers) tell_refusal(answer, (text) => this.panels.tell(text));
   }
 
-  /** The particle that the server takes for a point of a triangle. */
+  /** The particle that the server pins for a point of a triangle. */
   private nearest_corner({ triangle, barycentric }: Pick<ClothHit, 'triangle' | 'barycentric'>) {
     const corner = barycentric.indexOf(Math.max(...barycentric));
     return this.world?.triangles[triangle * 3 + corner] ?? null;
@@ -310,7 +312,7 @@ export class Page {
     if (this.world?.show(now, this.hold !== null)) {
       this.dirty = true;
       this.pins.follow(this.world.playback.positions);
-      // Who joins late finds the cloth elsewhere than at its start.
+      // A viewer that joins late finds the cloth moved from its start.
       if (this.unframed) this.frame(true);
       this.unframed = false;
     }
@@ -350,7 +352,7 @@ export class Page {
           : '';
   }
 
-  /** Own hand where the pointer is now, others where the shown frame has them. */
+  /** The own hand at the pointer, others as in the shown frame. */
   private hands_to_show(): Hand[] {
     const { world, hold, client } = this;
     if (!world) return [];

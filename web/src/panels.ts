@@ -4,7 +4,7 @@ import { crossings_text, guarantee_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
-const RATE_WINDOW = 2; // over which ticks are counted [s]
+const RATE_WINDOW = 2; // window of the tick rate [s]
 
 export type Phase = 'closed' | 'connecting' | 'open' | 'waiting';
 
@@ -31,7 +31,7 @@ export class Panels {
     element('viewers').replaceChildren();
   }
 
-  /** Shows why the server does not let the page in, for as long as it does not. */
+  /** Shows the server's reason for refusing the page while it does. */
   refused(refusal: Refusal | null): void {
     this.refusal = refusal;
     const told = element('refusal');
@@ -78,13 +78,13 @@ export class Panels {
     set_text('crossings', crossings_text(crossings));
   }
 
-  /** What is less than the scene asks for is shown as long as it is. */
+  /** Shows a reduced value as long as it is reduced. */
   private reduced(id: string, part: number): void {
     element(id).closest('div')!.hidden = part >= 1;
     set_text(id, String(part));
   }
 
-  /** Counts ticks against the server's clock [s], on which a slow page has no influence. */
+  /** Counts ticks by the server's clock [s], which a slow page does not affect. */
   tick(tick: number, time: number): void {
     const last = this.ticks.at(-1);
     if (last && tick < last.tick) this.ticks = [];
@@ -95,7 +95,7 @@ export class Panels {
     if (passed > 0.5) set_text('tick-rate', ((tick - first.tick) / passed).toFixed(0));
   }
 
-  /** @param seconds from a hand's movement to the picture; NaN if not known yet */
+  /** @param seconds from a hand's movement to the picture; NaN if unknown */
   latency(seconds: number): void {
     set_text('latency', Number.isFinite(seconds) ? (seconds * 1000).toFixed(0) : '–');
   }
@@ -129,7 +129,7 @@ function set_text(id: string, text: string): void {
   if (target.textContent !== text) target.textContent = text;
 }
 
-/** As a sentence of its own: what the server says begins small and ends without a stop. */
+/** Makes a full sentence: the server's messages start in lower case, without a final stop. */
 function sentence(text: string): string {
   if (!text) return '';
   return `${text[0].toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? '' : '.'}`;

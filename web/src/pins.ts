@@ -3,8 +3,8 @@ import type { PerspectiveCamera, Vector2 } from 'three';
 import type { Pin } from '../../proto/js/messages.js';
 
 const PIN_RADIUS = 0.009; // of a head [m]
-const SMALL_CLOTH = 1; // smaller cloths have smaller heads [m]
-const REACH = 16; // within which a pointer means a pin [pixels]
+const SMALL_CLOTH = 1; // smaller cloths get smaller heads [m]
+const REACH = 16; // of the pointer around a pin [pixels]
 const SCENE_COLOR = '#4a4e55';
 
 /** Pin heads where particles are fixed, in the colours of their owners. */
@@ -20,7 +20,7 @@ export class Pins {
     for (const head of this.group.children) head.scale.setScalar(this.scale);
   }
 
-  /** @param color of a viewer's number, or null if it has left */
+  /** @param color of a viewer's number, or null if that viewer has left */
   set(list: Pin[], color: (viewer: number) => string | null): void {
     this.list = list;
     for (const head of this.group.children as Mesh[]) {
@@ -40,7 +40,7 @@ export class Pins {
     }
   }
 
-  /** Puts the heads where the shown cloth has their particles: a pin may be on its way. */
+  /** Moves the heads to their particles in the shown cloth: a pin may be moving. */
   follow(positions: Float32Array): void {
     this.list.forEach(({ particle }, k) => {
       if (particle * 3 + 2 < positions.length)
@@ -48,7 +48,7 @@ export class Pins {
     });
   }
 
-  /** Pins that a pointer means: those near it, and those that are at a particle. */
+  /** Pins under the pointer: those near it, and those that hold a particle. */
   at(
     point: Vector2 | null,
     particle: number | null,
@@ -59,7 +59,7 @@ export class Pins {
     return this.list.filter((pin, k) => {
       if (pin.particle === particle) return true;
       if (!point) return false;
-      // Where it is fixed is known before the picture shows it.
+      // The position of a fixed pin is known before the picture shows it.
       const at = pin.target ? this.group.children[k].position : new Vector3(...pin.position);
       const place = at.clone().project(camera);
       const dx = ((place.x - point.x) / 2) * width;

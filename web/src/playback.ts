@@ -2,32 +2,32 @@ import type { Frame, GrabSample, PoseSample } from '../../proto/js/messages.js';
 
 const LONGEST_DELAY = 0.25; // [s]
 const KEPT_FRAMES = 24;
-const OFFSET_LEAK = 0.0005; // forgets an early packet within minutes, not within seconds
+const OFFSET_LEAK = 0.0005; // an early packet is forgotten within minutes, not seconds
 
 /**
- * Decides what is shown when. With a hand in the cloth the newest frame is shown at once. Who only
- * watches sees a little of the past, interpolated between two frames, so that uneven arrival does
- * not show. It never extrapolates and never goes back: where ticks stop, nothing moves.
+ * Decides which moment is shown. With a hand in the cloth the newest frame is shown at once. A
+ * viewer that only watches sees the recent past, interpolated between two frames, so that uneven
+ * arrival does not show. It never extrapolates and never goes back: when ticks stop, nothing moves.
  */
 export class Playback {
   /** Three values a vertex [m]. */
   positions: Float32Array;
   grabs: GrabSample[] = [];
-  /** Objects that are not as the mesh tells them. */
+  /** Objects whose poses differ from the mesh. */
   poses: PoseSample[] = [];
   tick = -1;
   private frames: Frame[] = [];
   private shown_time = -Infinity; // on the server's clock [s]
-  private last_sample = 0; // own clock [s]
-  private offset = Infinity; // own clock minus the server's at arrival, without delays [s]
+  private last_sample = 0; // client's clock [s]
+  private offset = Infinity; // client's clock minus the server's at arrival, without delays [s]
   private interval = 1 / 60; // between frames [s]
-  private jitter = 0; // by how much frames come late [s]
+  private jitter = 0; // by which frames arrive late [s]
 
   constructor(vertices: number) {
     this.positions = new Float32Array(vertices * 3);
   }
 
-  /** @param now own clock [s] */
+  /** @param now client's clock [s] */
   push(frame: Frame, now: number): void {
     const last = this.frames.at(-1);
     if (frame.jump || (last && frame.serverTime < last.serverTime)) this.forget();
@@ -37,7 +37,7 @@ export class Playback {
     if (this.frames.length > KEPT_FRAMES) this.frames.shift();
   }
 
-  /** Starts afresh with the next frame, as after a pause in receiving. */
+  /** Restarts with the next frame, as after a pause in receiving. */
   forget(): void {
     this.frames = [];
     this.shown_time = -Infinity;
@@ -45,8 +45,8 @@ export class Playback {
   }
 
   /**
-   * Brings positions and grabs to what is to be shown now; tells whether they changed.
-   * @param now  own clock [s]
+   * Updates positions and grabs to the moment to show; tells whether they changed.
+   * @param now  client's clock [s]
    * @param live whether the newest frame is wanted at once
    */
   sample(now: number, live: boolean): boolean {
@@ -70,7 +70,7 @@ export class Playback {
     this.offset += late * OFFSET_LEAK;
   }
 
-  /** Goes towards the wanted past at nearly its natural speed, so that no change of delay shows. */
+  /** Approaches the wanted delay at nearly natural speed, so that changes of delay do not show. */
   private follow(now: number, elapsed: number, newest: Frame): number {
     const delay = Math.min(LONGEST_DELAY, 1.2 * this.interval + this.jitter);
     const wanted = now - this.offset - delay;
@@ -103,7 +103,7 @@ export class Playback {
   }
 }
 
-/** The rotation is the shorter way round, near enough to even for so small a turn. */
+/** Takes the shorter rotation; for so small a turn the interpolation is even enough. */
 function pose_between(pose: PoseSample, later: PoseSample[], part: number): PoseSample {
   const next = later.find(({ collider }) => collider === pose.collider);
   if (!next) return pose;

@@ -2,10 +2,10 @@ import type { Vector2 } from 'three';
 import type { Vec3 } from '../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
 
-const NEAREST = 0.1; // of a hand to the eye [m]
+const NEAREST = 0.1; // distance of a hand from the eye [m]
 const FARTHEST = 20; // [m]
 
-/** The plane across the view in which a hand follows the pointer; the wheel pushes it. */
+/** The plane parallel to the view in which a hand follows the pointer; the wheel moves it. */
 export class PointerDepth {
   private depth: number;
 

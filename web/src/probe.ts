@@ -1,6 +1,6 @@
 import type { Page } from './page.js';
 
-/** What tests may read of the page; everything is a copy. */
+/** The page's state as tests may read it; all values are copies. */
 export function expose_probe(page: Page): void {
   const probe = {
     get phase() {
@@ -44,30 +44,30 @@ export function expose_probe(page: Page): void {
     get hands() {
       return structuredClone(page.hands.shown);
     },
-    /** Objects as they are drawn, with the place of their pivot [m] and their turn [x, y, z, w]. */
+    /** Objects as drawn: position of the pivot [m] and rotation [x, y, z, w]. */
     get objects() {
       return page.world?.object_poses() ?? [];
     },
     get pins() {
       return structuredClone(page.pins.list);
     },
-    /** Where the heads of the pins are drawn [m]. */
+    /** Drawn positions of the pins' heads [m]. */
     get pin_heads() {
       return page.pins.group.children.map(({ position }) => position.toArray());
     },
     get fans() {
       return structuredClone(page.fans.list);
     },
-    /** Lines of the boxes, six numbers each, and the tick that they are of. */
+    /** Lines of the boxes, six numbers each, and their tick. */
     get boxes() {
       const { boxes, tick } = page.box_view;
       return { lines: boxes.drawn(), tick };
     },
-    /** Pictures drawn so far; it stands still where nothing changes. */
+    /** Pictures drawn so far; constant while nothing changes. */
     get pictures() {
       return page.pictures;
     },
-    /** Whether the picture is drawn as finely as it can be, as it is where nothing changes. */
+    /** Whether the picture is as fine as possible, as it is while nothing changes. */
     get fine() {
       return page.fine;
     },

@@ -6,15 +6,15 @@ export interface ClothHit {
   position: Vec3;
   /** From the ray's origin, in lengths of its direction. */
   distance: number;
-  /** The corner with the greatest weight. */
+  /** The corner with the largest weight. */
   particle: number;
 }
 
 /**
- * First triangle that the ray meets, from either side (Möller and Trumbore 1997). It decides only
- * whether the pointer is on the cloth as it is shown; the server decides what is held.
- * @param positions three values a vertex [m]
- * @param triangles three vertices a triangle
+ * First triangle that the ray meets, from either side (Möller and Trumbore 1997). It only decides
+ * whether the pointer is on the drawn cloth; the server decides what is held.
+ * @param positions three values per vertex [m]
+ * @param triangles three vertices per triangle
  */
 export function cast_ray(
   origin: Vec3,

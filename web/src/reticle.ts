@@ -7,7 +7,7 @@ import type { WorldView } from './world_view.js';
 
 const RADIUS = 7; // [pixels]
 
-/** A ring on the cloth where the pointer would take it. */
+/** A ring on the cloth that shows where the pointer would hold it. */
 export class Reticle {
   readonly group = new Group();
 

@@ -6,7 +6,10 @@ interface Scene {
   description: string;
 }
 
-/** The scenes of the server, each with its sentence, in a dialog behind a button that names the one. */
+/**
+ * The server's scenes with their descriptions, in a dialog behind a button that names the current
+ * one.
+ */
 export class SceneList {
   private button = element<HTMLButtonElement>('scene');
   private dialog = element<HTMLDialogElement>('scenes');
@@ -14,7 +17,7 @@ export class SceneList {
   private scenes: Scene[] = [];
   private shown = '';
 
-  /** @param load asked for by a choice */
+  /** @param load called with a chosen scene */
   constructor(private load: (scene: string) => void) {
     this.button.addEventListener('click', () => this.open());
     this.dialog.addEventListener('click', ({ target }) => target === this.dialog && this.dialog.close());
@@ -24,14 +27,14 @@ export class SceneList {
     if (!this.button.disabled && !this.dialog.open) this.dialog.showModal();
   }
 
-  /** The scene that is on, whoever chose it. */
+  /** Marks the current scene, chosen by any viewer. */
   choose(scene: string): void {
     if (this.shown === scene) return;
     this.shown = scene;
     this.write();
   }
 
-  /** Asks the server which scenes there are. */
+  /** Requests the list of scenes from the server. */
   async fetch(): Promise<void> {
     try {
       const response = await fetch('api/v1/scenes');
@@ -39,7 +42,7 @@ export class SceneList {
       this.scenes = ((await response.json()) as { scenes: Scene[] }).scenes;
       this.write();
     } catch {
-      // The connection was lost again; its return asks anew.
+      // The connection was lost again; its return repeats the request.
     }
   }
 

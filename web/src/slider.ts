@@ -1,9 +1,9 @@
 import { element } from './panels.js';
 
-const SEND_INTERVAL = 60; // between values of a slider that moves [ms]
-const QUIET_TIME = 600; // in which a slider just moved is not set by the state [ms]
+const SEND_INTERVAL = 60; // between values of a moving slider [ms]
+const QUIET_TIME = 600; // in which the state does not set a slider just moved [ms]
 
-/** A slider of a setting that the server has, and the text of its value. */
+/** A slider for a setting of the server, and the text of its value. */
 export class Slider {
   private input: HTMLInputElement;
   private output: HTMLElement;
@@ -20,7 +20,7 @@ export class Slider {
     this.input.addEventListener('input', () => this.moved());
   }
 
-  /** What the server has now. */
+  /** Shows the server's present value. */
   show(value: number): void {
     if (performance.now() - this.moved_at < QUIET_TIME) return;
     this.input.value = String(value);

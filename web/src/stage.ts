@@ -21,11 +21,11 @@ import {
 const FLOOR_COLOR = new Color('#e6e2db');
 const SKY_COLOR = new Color('#f6f4f0');
 const GRID_COLOR = new Color('#8d877c');
-const GRID_RADIUS = 6; // where the grid has faded out [m]
+const GRID_RADIUS = 6; // at which the grid has faded out [m]
 const MOST_PIXELS_PER_UNIT = 2;
 const LEAST_PIXELS_PER_UNIT = 0.5;
 const STILL_SUPERSAMPLING = 1.5; // without multisampling
-const SLOW_PICTURE = 0.045; // that makes the next ones coarser [s]
+const SLOW_PICTURE = 0.045; // that makes the following ones coarser [s]
 const JUDGED_PICTURES = 5;
 
 /** A studio: light, a floor with a grid that fades into the distance, and the renderer. */
@@ -39,7 +39,7 @@ export class Stage {
   private sun = new DirectionalLight('#fff4e6', 2.4);
 
   constructor(canvas: HTMLCanvasElement) {
-    // Multisampling costs software renderers more than they can give, and leaves cracks there.
+    // Multisampling is too expensive for software renderers, and leaves cracks there.
     this.renderer = new WebGLRenderer({ canvas, antialias: !this.software });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
@@ -55,7 +55,7 @@ export class Stage {
     this.sun.shadow.normalBias = 0.012;
   }
 
-  /** Puts the floor at a height, or takes it away. */
+  /** Places the floor at a height, or removes it. */
   set_floor(height: number | null): void {
     this.scene.getObjectByName('floor')?.removeFromParent();
     if (height !== null) this.scene.add(floor(height));
@@ -67,7 +67,7 @@ export class Stage {
     if (floor) floor.position.y = height;
   }
 
-  /** Aims the light's shadow at what can move; the finer the smaller the box [m]. */
+  /** Fits the light's shadow to the box that can move [m]; a smaller box gives a finer shadow. */
   light(box: Box3): void {
     const center = box.getCenter(new Vector3());
     const radius = Math.max(0.3, box.getSize(new Vector3()).length() * 0.75);
@@ -84,13 +84,13 @@ export class Stage {
     this.renderer.setSize(width, height, false);
   }
 
-  /** Whether it was told that the picture stands still. */
+  /** Whether the picture was declared still. */
   get at_rest(): boolean {
     return this.still;
   }
 
   /**
-   * Tells whether the picture stands still, so that there is time for a fine one.
+   * Tells whether the picture is still, which leaves time for a fine one.
    * @returns whether the view must be resized
    */
   set_still(still: boolean): boolean {
@@ -101,8 +101,8 @@ export class Stage {
   }
 
   /**
-   * Draws coarser where a machine cannot keep up, for a hand that lags is worse than a soft edge.
-   * @param interval between two pictures that follow each other [s]
+   * Draws coarser if a machine cannot keep up, because a lagging hand is worse than a soft edge.
+   * @param interval between two consecutive pictures [s]
    * @returns whether the view must be resized
    */
   judge(interval: number): boolean {
@@ -122,7 +122,7 @@ export class Stage {
   }
 }
 
-/** Whether a processor draws in place of a graphics card, as far as the browser tells. */
+/** Whether the processor renders in place of a graphics card, as far as the browser tells. */
 function draws_in_software(): boolean {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context) return true;

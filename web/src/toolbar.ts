@@ -26,7 +26,7 @@ export class Toolbar {
   private wind: Slider;
   private gravity: Slider;
   private fan_speed: Slider;
-  // Where the wind and gravity point to when a slider makes them longer than nothing.
+  // Directions of wind and gravity for when a slider raises them from zero.
   private wind_direction: Vec3 = [0, 0, -1];
   private gravity_direction: Vec3 = [0, -1, 0];
   private fans: Fan[] = [];
@@ -59,7 +59,7 @@ export class Toolbar {
     this.enable(false);
   }
 
-  /** Without a connection nothing can be asked for. */
+  /** Disables the controls without a connection. */
   enable(connected: boolean): void {
     for (const id of ['pause', 'step', 'reset', 'fan', 'boxes', 'scene', 'wind', 'gravity', 'fan-speed']) {
       element<HTMLButtonElement>(id).disabled = !connected;
@@ -85,7 +85,7 @@ export class Toolbar {
     this.run(this.paused ? this.client.resume() : this.client.pause());
   }
 
-  /** One tick; a room that runs is paused by it. */
+  /** One tick; pauses a running room. */
   one_step(): void {
     if (this.paused) this.run(this.client.step());
     else this.run(this.client.pause());
@@ -95,7 +95,7 @@ export class Toolbar {
     this.run(this.client.reset());
   }
 
-  /** Puts a fan beside the line of sight, or takes all fans away. */
+  /** Puts a fan beside the line of sight, or removes all fans. */
   toggle_fan(): void {
     this.run(this.client.set({ fans: this.fans.length ? [] : [this.view.fan()] }));
   }
@@ -107,7 +107,7 @@ export class Toolbar {
     if (fans.length) this.fan_speed.show(Math.max(...fans.map(({ speed = 0 }) => speed)));
   }
 
-  /** How the hand takes hold. */
+  /** The hand's mode of holding. */
   get hand_mode(): HandMode {
     return this.sling.getAttribute('aria-pressed') === 'true' ? 'sling' : 'live';
   }

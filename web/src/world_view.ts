@@ -8,7 +8,9 @@ import { cast_ray } from './ray.js';
 import type { ClothHit } from './ray.js';
 import type { Stage } from './stage.js';
 
-/** All that belongs to one mesh of the server: its cloths, its objects, and what frames show. */
+/**
+ * Everything that belongs to one mesh of the server: cloths, objects, and the playback of frames.
+ */
 export class WorldView {
   readonly playback: Playback;
   readonly cloth: ClothMesh;
@@ -37,7 +39,7 @@ export class WorldView {
     this.playback.push(frame, now);
   }
 
-  /** Brings the picture to a time [s, own clock]; tells whether it changed. */
+  /** Advances the picture to a time [s, client's clock]; tells whether it changed. */
   show(now: number, live: boolean): boolean {
     const changed = this.playback.sample(now, live);
     if (changed) {
@@ -49,7 +51,7 @@ export class WorldView {
     return changed;
   }
 
-  /** Where a ray meets the cloth, unless an object hides it. */
+  /** The point where a ray meets the cloth, unless an object hides it. */
   hit(ray: { origin: Vec3; direction: Vec3 }): ClothHit | null {
     const { origin, direction } = ray;
     const hit = cast_ray(origin, direction, this.playback.positions, this.triangles);
