@@ -4,9 +4,11 @@
 
 #include "core/types.h"
 
+// Axis-aligned boxes with the usual operations.
+
 namespace weft {
 
-/// Axis-aligned bounding box [m]. Empty when made.
+/// Axis-aligned bounding box [m]. Initially empty.
 template <class Real>
 struct Aabb {
   Vec3<Real> lower = Vec3<Real>::Constant(std::numeric_limits<Real>::infinity());
@@ -20,7 +22,7 @@ struct Aabb {
     lower = lower.cwiseMin(box.lower);
     upper = upper.cwiseMax(box.upper);
   }
-  /// The box with every side moved out by `margin` [m].
+  /// The box with every side moved outwards by `margin` [m].
   Aabb grown(Real margin) const {
     Aabb box = *this;
     box.lower.array() -= margin;
@@ -31,7 +33,7 @@ struct Aabb {
     return lower[0] <= o.upper[0] && o.lower[0] <= upper[0] && lower[1] <= o.upper[1] &&
            o.lower[1] <= upper[1] && lower[2] <= o.upper[2] && o.lower[2] <= upper[2];
   }
-  /// Whether all of the other box is inside; an empty one is inside of everything.
+  /// Whether the other box lies inside; an empty one lies inside every box.
   bool contains(const Aabb& o) const {
     return (lower.array() <= o.lower.array()).all() && (upper.array() >= o.upper.array()).all();
   }

@@ -1,3 +1,5 @@
+// Builds and refits the seed's binary box hierarchy.
+
 #include "core/geometry/bottom_up_tree.h"
 
 #include <algorithm>
@@ -5,8 +7,8 @@
 namespace weft {
 namespace {
 
-/// More primitives than this around one vertex are linked one to the next only, or a vertex shared
-/// by all of them would cost the square of their number.
+/// Beyond this number of primitives around one vertex, each is linked only to the next, because all
+/// pairs of them would cost the square of their number.
 constexpr std::size_t kWidestFan = 16;
 
 template <class Primitive>
@@ -35,7 +37,7 @@ void sort_unique(std::vector<Index>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// For each primitive its neighbours, ascending.
+/// For each primitive its neighbours, in ascending order.
 std::vector<std::vector<Index>> neighbour_lists(const std::vector<Edge>& pairs, std::size_t count) {
   std::vector<std::vector<Index>> lists(count);
   for (const Edge& pair : pairs) {
@@ -46,7 +48,7 @@ std::vector<std::vector<Index>> neighbour_lists(const std::vector<Edge>& pairs, 
   return lists;
 }
 
-/// The neighbours of groups, from those of their members.
+/// Neighbours of groups, derived from those of their members.
 /// @param group_of  group of each member
 std::vector<std::vector<Index>> merge_neighbours(const std::vector<std::vector<Index>>& members,
                                                  const std::vector<Index>& group_of,
@@ -63,7 +65,7 @@ std::vector<std::vector<Index>> merge_neighbours(const std::vector<std::vector<I
   return merged;
 }
 
-/// How much room a box takes: half its surface, which orders flat boxes too.
+/// Size of a box: half its surface, which also orders flat boxes.
 template <class Real>
 Real half_surface(const Aabb<Real>& box) {
   const Vec3<Real> d = box.upper - box.lower;
@@ -85,9 +87,9 @@ void BottomUpTree<Real>::pull_up(Node& n) const {
   set_box(box, n);
 }
 
-/// Makes the nodes above those from `first` on: each node with the best of its neighbours that is
-/// still alone; those that find none with the next of their kind.
-/// @return the group that each node of the level went to, counted from 0
+/// Makes the parents of the nodes from `first` on: pairs each node with its best unpaired
+/// neighbour, and nodes without one with the next such node.
+/// @return the group of each node of the level, counted from 0
 template <class Real>
 std::vector<Index> BottomUpTree<Real>::group_level(
     Index first, const std::vector<std::vector<Index>>& neighbours) {

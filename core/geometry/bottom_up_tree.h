@@ -6,23 +6,25 @@
 #include "core/geometry/aabb.h"
 #include "core/types.h"
 
+// The box hierarchy of the seed's collision detection, which also serves pictures of boxes.
+
 namespace weft {
 
-/// The seed's hierarchy of axis-aligned boxes: binary, built bottom-up by grouping two neighbouring
-/// primitives (particles, edges, triangles), then two neighbouring groups, until one box is left.
-/// The grouping is made once; the boxes follow the primitives by `refit`.
+/// The seed's hierarchy of axis-aligned boxes: binary, built bottom-up by pairing neighbouring
+/// primitives (particles, edges, triangles), then neighbouring groups, until one box is left. The
+/// grouping is made once; `refit` updates the boxes as the primitives move.
 ///
-/// Levels count from the root: level 0 is one box around everything, the last one has a box for
-/// each primitive.
+/// Levels count from the root: level 0 is one box around everything, the last level has a box per
+/// primitive.
 template <class Real>
 class BottomUpTree {
  public:
-  /// Groups each primitive with that of its neighbours with which it has the smallest common box.
-  /// @param boxes       of the primitives; none is fine
-  /// @param pairs  of primitives that lie side by side
+  /// Pairs each primitive with the neighbour that gives the smallest common box.
+  /// @param boxes  of the primitives; may be empty
+  /// @param pairs  of neighbouring primitives
   void build(const std::vector<Aabb<Real>>& boxes, const std::vector<Edge>& pairs);
 
-  /// New boxes for the same primitives.
+  /// Updates the boxes of the same primitives.
   void refit(const std::vector<Aabb<Real>>& boxes);
 
   bool empty() const { return nodes_.empty(); }
@@ -32,23 +34,23 @@ class BottomUpTree {
   std::vector<Aabb<Real>> boxes_of_level(int level) const;
 
   /// Calls visit(p, q) for every primitive p of this and q of the other tree whose boxes overlap,
-  /// each pair once. Two leaves: the primitives' boxes are tested; a leaf and an inner node: the
-  /// inner one is descended; two inner nodes: the one of smaller volume is tested against the
+  /// once per pair. For two leaves, the primitives' boxes are tested; for a leaf and an inner node,
+  /// the inner node is descended; for two inner nodes, the smaller one is tested against the
   /// children of the larger one (van den Bergen 1997).
   template <class Visit>
   void for_each_pair(const BottomUpTree& other, Visit&& visit) const;
 
-  /// The same for pairs within this tree: every two different primitives once, in either order.
+  /// The same within this tree: visits every two different primitives once, in either order.
   template <class Visit>
   void for_each_own_pair(Visit&& visit) const;
 
  private:
-  static constexpr std::size_t kDeepest = 512;  // entries of a search; two or three a level
+  static constexpr std::size_t kDeepest = 512;  // entries of a search; two or three per level
 
   struct Node {
     Aabb<Real> box;
     Real volume = 0;
-    Index left = kNone, right = kNone;  ///< nodes; right is none where one was left over
+    Index left = kNone, right = kNone;  ///< nodes; right is none for an unpaired node
     Index primitive = kNone;            ///< of a leaf
 
     bool is_leaf() const { return primitive != kNone; }
@@ -71,11 +73,11 @@ class BottomUpTree {
   std::vector<Index> first_of_level_;  ///< first node of each level, the root's first
 };
 
-/// Pairs of edges, or of triangles, that share a vertex: the neighbours for a tree over them.
+/// Pairs of edges, or of triangles, that share a vertex: neighbours for a tree over them.
 std::vector<Edge> pairs_that_touch(const std::vector<Edge>& edges);
 std::vector<Edge> pairs_that_touch(const std::vector<Triangle>& triangles);
 
-/// Boxes of one level of a tree as floats, for a picture of it; empty if there is no such level.
+/// Boxes of one level of a tree as floats, for drawing; empty if there is no such level.
 std::vector<Aabb<float>> boxes_of_level(const BottomUpTree<float>& tree, int level);
 std::vector<Aabb<float>> boxes_of_level(const BottomUpTree<double>& tree, int level);
 
@@ -92,7 +94,7 @@ template <class Real>
 template <class Visit>
 void BottomUpTree<Real>::for_each_own_pair(Visit&& visit) const {
   Stack stack;
-  // The pairs within a node are those within each child and those between them.
+  // Pairs within a node are those within each child and those between the children.
   for (const Node& n : nodes_) {
     if (n.is_leaf() || n.right == kNone) continue;
     stack[0] = {n.left, n.right};

@@ -1,3 +1,5 @@
+// Builds and refits the four-wide box hierarchy.
+
 #include "core/geometry/bvh.h"
 
 #include <algorithm>
@@ -33,7 +35,7 @@ void Bvh<Real>::build(const std::vector<Aabb<Real>>& boxes) {
   refit(boxes);
 }
 
-/// Splits a range of primitives at the median of the longest side of its centres.
+/// Splits a range of primitives at the median of their centres along the longest side.
 /// @return where the second half begins
 template <class Real>
 Index Bvh<Real>::halve(Index begin, Index end, const std::vector<Aabb<Real>>& boxes) {
@@ -47,7 +49,7 @@ Index Bvh<Real>::halve(Index begin, Index end, const std::vector<Aabb<Real>>& bo
   if (side[1] > side[axis]) axis = 1;
   if (side[2] > side[axis]) axis = 2;
   const Index middle = begin + (end - begin) / 2;
-  // Ties by number: the tree must not depend on the library's sort.
+  // Ties are broken by index: the tree must not depend on the library's sort.
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](Index a, Index b) {
                      const Real ca = centre(a)[axis], cb = centre(b)[axis];
@@ -87,7 +89,7 @@ void Bvh<Real>::split(std::size_t node, Index begin, Index end,
 
 template <class Real>
 void Bvh<Real>::refit(const std::vector<Aabb<Real>>& boxes) {
-  // Children stand behind their parents, so one backward pass meets them first.
+  // Children follow their parents, so a backward pass visits them first.
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     for (std::size_t k = 0; k < kWidth; ++k) {

@@ -8,43 +8,44 @@
 #include "core/geometry/aabb.h"
 #include "core/types.h"
 
+// A four-wide box hierarchy for overlap and nearest queries.
+
 namespace weft {
 
-/// Hierarchy of axis-aligned boxes over primitives known by their number: four children a node, so
-/// that one pass of vector code tests them all. Built once by splitting at the median of the
-/// longest side; its boxes can be refitted when the primitives move.
+/// Hierarchy of axis-aligned boxes over numbered primitives: four children per node, so that one
+/// pass of vector code tests them all. Built once by splitting at the median of the longest side;
+/// its boxes can be refitted as the primitives move.
 template <class Real>
 class Bvh {
  public:
-  /// @param boxes  of the primitives; none is fine
+  /// @param boxes  of the primitives; may be empty
   void build(const std::vector<Aabb<Real>>& boxes);
 
-  /// New boxes for the same primitives; keeps the shape of the tree.
+  /// Updates the boxes of the same primitives; keeps the structure of the tree.
   void refit(const std::vector<Aabb<Real>>& boxes);
 
   bool empty() const { return nodes_.empty(); }
-  /// Box around everything; empty if there is nothing.
+  /// Box around all primitives; empty if there are none.
   const Aabb<Real>& bounds() const { return bounds_; }
 
-  /// Calls visit(primitive) for each primitive whose box overlaps `box`, in a fixed order. A box
-  /// with a bound that is infinite or NaN ends as every other does.
+  /// Calls visit(primitive) for each primitive whose box overlaps `box`, in a fixed order. The
+  /// search also terminates for a box with infinite or NaN bounds.
   template <class Visit>
   void for_each_overlap(const Aabb<Real>& box, Visit&& visit) const;
 
-  /// Walks nearest-first: calls `narrow(primitive, bound)` while a box can be nearer than the
+  /// Searches nearest first: calls `narrow(primitive, bound)` while a box can be nearer than the
   /// bound; `narrow` returns the new bound.
-  /// @param distance  distance(box) gives a lower bound for all that is inside it
+  /// @param distance  distance(box) gives a lower bound for everything inside the box
   /// @return the final bound
   template <class Distance, class Narrow>
   Real nearest(Real bound, Distance&& distance, Narrow&& narrow) const;
 
  private:
   static constexpr std::size_t kWidth = 4;
-  static constexpr std::size_t kDeepest = 64;  // entries of a search; 3 a level, 2^32 primitives
-  static constexpr Index kNoChild = 0;         // the root is nobody's child
+  static constexpr std::size_t kDeepest = 64;  // entries of a search; 3 per level, 2^32 primitives
+  static constexpr Index kNoChild = 0;         // the root is no node's child
 
-  /// The boxes of up to four children, side by side. Boxes of children that there are not are
-  /// empty.
+  /// Boxes of up to four children, side by side. Boxes of missing children are empty.
   struct Node {
     std::array<std::array<Real, kWidth>, 3> lower, upper;
     std::array<Index, kWidth> child;  ///< a node, or ~primitive
@@ -67,14 +68,14 @@ class Bvh {
   Index halve(Index begin, Index end, const std::vector<Aabb<Real>>& boxes);
 
   std::vector<Node> nodes_;
-  std::vector<Index> order_;  ///< primitives, while the tree is built
+  std::vector<Index> order_;  ///< primitives, during construction
   Aabb<Real> bounds_;
 };
 
 template <class Real>
 template <class Visit>
 void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
-  // The empty box of an empty tree overlaps an infinite one.
+  // The empty box of an empty tree overlaps an infinite box.
   if (nodes_.empty() || !bounds_.overlaps(box)) return;
   std::array<Index, kDeepest> stack;
   std::size_t size = 0;
@@ -83,7 +84,7 @@ void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
     const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
     std::array<std::uint8_t, kWidth> hit;
     for (std::size_t k = 0; k < kWidth; ++k) {
-      // Without short cuts, so that the four become vector code.
+      // Without short circuits, so that the four tests become vector code.
       hit[k] = static_cast<std::uint8_t>(static_cast<int>(node.lower[0][k] <= box.upper[0]) &
                                          static_cast<int>(node.lower[1][k] <= box.upper[1]) &
                                          static_cast<int>(node.lower[2][k] <= box.upper[2]) &
@@ -92,7 +93,7 @@ void Bvh<Real>::for_each_overlap(const Aabb<Real>& box, Visit&& visit) const {
                                          static_cast<int>(node.upper[2][k] >= box.lower[2]));
     }
     for (std::size_t k = 0; k < kWidth; ++k) {
-      // The empty box of a missing child overlaps an infinite one.
+      // The empty box of a missing child overlaps an infinite box.
       if (node.child[k] == kNoChild) break;
       if (!hit[k]) continue;
       if (node.child[k] < 0)

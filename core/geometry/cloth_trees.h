@@ -6,14 +6,16 @@
 #include "core/geometry/bottom_up_tree.h"
 #include "core/types.h"
 
+// Keeps one box hierarchy each for a model's particles, edges and triangles.
+
 namespace weft {
 
-/// The seed's trees over one or several cloths: of particles, edges and triangles. Each is grouped
-/// once, from the rest positions, and refitted when it is asked for.
+/// The seed's trees over all cloths: of particles, edges and triangles. Each is grouped once, from
+/// the rest positions, and refitted on request.
 template <class Real>
 class ClothTrees {
  public:
-  /// @param rest  positions from which neighbours are grouped [m]
+  /// @param rest  positions that determine the grouping [m]
   void build(const Vec3Array<Real>& rest, const std::vector<Edge>& edges,
              const std::vector<Triangle>& triangles) {
     boxes_.reserve(std::max({rest.size(), edges.size(), triangles.size()}));
@@ -43,7 +45,7 @@ class ClothTrees {
     triangles_.refit(boxes_);
     return triangles_;
   }
-  /// @param box  box(triangle) gives the box of each
+  /// @param box  box(triangle) gives the box of a triangle
   template <class Box>
   const BottomUpTree<Real>& triangles_in(const std::vector<Triangle>& triangles, Box&& box) {
     boxes_.clear();
@@ -52,7 +54,7 @@ class ClothTrees {
     return triangles_;
   }
 
-  /// Levels of the tree of particles, edges, triangles.
+  /// Number of levels of each tree.
   int particle_levels() const { return particles_.level_count(); }
   int edge_levels() const { return edges_.level_count(); }
   int triangle_levels() const { return triangles_.level_count(); }
@@ -77,7 +79,7 @@ class ClothTrees {
   }
 
   BottomUpTree<Real> particles_, edges_, triangles_;
-  std::vector<Aabb<Real>> boxes_;  ///< of the primitives, while a tree is fitted
+  std::vector<Aabb<Real>> boxes_;  ///< of the primitives, while a tree is refitted
 };
 
 }  // namespace weft

@@ -25,7 +25,8 @@ struct SegmentPoints {
   Vec3<Real> p, q;    ///< the points [m]
 };
 
-/// Closest parameter, 0 to 1, of segment a + t (b - a) to point p; 0 if the segment has no length.
+/// Closest parameter, 0 to 1, of segment a + t (b - a) to point p; 0 if the segment has zero
+/// length.
 template <class Real>
 inline Real closest_on_segment(const Vec3<Real>& p, const Vec3<Real>& a, const Vec3<Real>& b) {
   const Vec3<Real> d = b - a;
@@ -34,8 +35,8 @@ inline Real closest_on_segment(const Vec3<Real>& p, const Vec3<Real>& a, const V
   return std::clamp((p - a).dot(d) / length2, Real(0), Real(1));
 }
 
-/// Closest point of a triangle that is thin or has no area. Cross products keep the weights right
-/// where differences of products would have lost them.
+/// Closest point of a thin or degenerate triangle. Cross products keep the weights accurate where
+/// differences of products would cancel.
 template <class Real>
 TrianglePoint<Real> closest_on_thin_triangle(const Vec3<Real>& p, const Vec3<Real>& a,
                                              const Vec3<Real>& b, const Vec3<Real>& c) {
@@ -66,9 +67,9 @@ TrianglePoint<Real> closest_on_thin_triangle(const Vec3<Real>& p, const Vec3<Rea
   return best;
 }
 
-/// Closest point of triangle abc to p: which corner, edge or inside it is, is told by the signs of
-/// the weights of p's projection and of its places along the edges (Ericson 2005, section 5.1.5).
-/// Safe without area.
+/// Closest point of triangle abc to p. The signs of the weights of p's projection, and of its
+/// positions along the edges, tell whether a corner, an edge or the inside is closest (Ericson
+/// 2005, section 5.1.5). Safe for a triangle without area.
 template <class Real>
 TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a,
                                         const Vec3<Real>& b, const Vec3<Real>& c) {
@@ -77,7 +78,7 @@ TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a
   if (ab_p <= 0 && ac_p <= 0) return {a, {1, 0, 0}, 1};
   const Real ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), abc = ab.dot(ac);
   const Real area = ab2 * ac2 - abc * abc;  // squared doubled area
-  // The square root of Real's precision: beyond that the weights below lose their last half.
+  // The square root of Real's precision: below it the weights lose half of their digits.
   constexpr Real kThin = std::numeric_limits<Real>::digits > 30 ? Real(1e-8) : Real(3e-4);
   if (!(area > ab2 * ac2 * kThin)) return closest_on_thin_triangle(p, a, b, c);
   const Real ab_pb = ab_p - ab2, ac_pb = ac_p - abc;  // the same products from corner b
@@ -105,8 +106,8 @@ TrianglePoint<Real> closest_on_triangle(const Vec3<Real>& p, const Vec3<Real>& a
   return {a + ab * wb + ac * wc, {wa, wb, wc}, 0};
 }
 
-/// Closest points of segments ab and cd (Ericson 2005, section 5.1.9); parallel and zero-length
-/// ones give one of their closest pairs.
+/// Closest points of segments ab and cd (Ericson 2005, section 5.1.9); for parallel or zero-length
+/// segments one of the closest pairs.
 template <class Real>
 SegmentPoints<Real> closest_of_segments(const Vec3<Real>& a, const Vec3<Real>& b,
                                         const Vec3<Real>& c, const Vec3<Real>& d) {
@@ -122,7 +123,7 @@ SegmentPoints<Real> closest_of_segments(const Vec3<Real>& a, const Vec3<Real>& b
   result.q = c + v * result.t;
   result.s = closest_on_segment(result.q, a, b);
   result.p = a + u * result.s;
-  // One more turn: the second clamp may have moved the first point.
+  // Once more for t: the second clamp may have moved the first point.
   result.t = closest_on_segment(result.p, c, d);
   result.q = c + v * result.t;
   return result;

@@ -20,7 +20,7 @@
 namespace weft {
 namespace {
 
-/// Assimp's name of the format that the ending stands for; OBJ without a material file beside it.
+/// Assimp's name of the format for the extension; OBJ without a separate material file.
 std::string format_of(const std::string& path) {
   const auto ends_with = [&](const std::string& ending) {
     return path.size() > ending.size() &&
@@ -68,7 +68,8 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// What every file of the format has; assimp reads past the end of those that do not.
+/// Checks the parts common to every file of the format; assimp reads past the end of files without
+/// them.
 void check_head(std::string_view bytes, const std::string& ending, const std::string& name) {
   if (ending == "glb") {
     constexpr std::size_t kHead = 20;
@@ -87,7 +88,7 @@ void check_head(std::string_view bytes, const std::string& ending, const std::st
   }
 }
 
-/// Collects the meshes of a scene into one, vertices at one place into one.
+/// Merges the meshes of a scene, and vertices at the same position.
 class Welder {
  public:
   Welder(MeshFile& file, const std::string& name, const MeshFileLimits& limits)
@@ -124,9 +125,9 @@ class Welder {
 
   Index weld(const aiMesh& mesh, unsigned i, bool has_uv) {
     const aiVector3D& p = mesh.mVertices[i];
-    // Adding zero makes -0 and 0 one place.
+    // Adding zero makes -0 and 0 equal.
     const std::array<float, 3> key = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    // Before the search: what is not a number has no place in an order.
+    // Before the search, because NaN has no place in an order.
     for (const float x : key) {
       if (!(std::abs(x) <= 1e6F)) throw unreadable(name_, "a vertex is not finite or far away");
     }
@@ -180,7 +181,7 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
 
 std::string encode_mesh(const TriangleMesh& mesh, const std::string& name) {
   const std::string format = format_of(name);
-  // Assimp's scene owns what it points to.
+  // Assimp's scene owns its members.
   aiScene scene;
   scene.mRootNode = new aiNode();
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };

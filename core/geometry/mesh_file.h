@@ -7,41 +7,43 @@
 
 #include "core/geometry/triangle_mesh.h"
 
+// Reads and writes triangle meshes in common file formats.
+
 namespace weft {
 
-/// The bytes of a file that holds a mesh, as Wavefront OBJ or PLY by the ending of its name (".obj"
-/// or ".ply"). Positions keep float precision. PLY keeps the order of the vertices; OBJ lists them
-/// as the triangles name them first, and those at exactly one place become one. Throws
-/// DefinitionError on another ending.
+/// Encodes a mesh as Wavefront OBJ or PLY, by the extension of its name (".obj" or ".ply").
+/// Positions keep float precision. PLY keeps the order of the vertices; OBJ lists them in the order
+/// of first use by the triangles, and merges those at exactly the same position. Throws
+/// DefinitionError on another extension.
 std::string encode_mesh(const TriangleMesh& mesh, const std::string& name);
 
-/// What a file holds.
+/// Content of a mesh file.
 struct MeshFile {
   TriangleMesh mesh;
-  std::vector<std::array<double, 2>> uv;  ///< one a vertex, or none; v downwards is not undone
+  std::vector<std::array<double, 2>> uv;  ///< one per vertex, or empty; a downward v is not flipped
 };
 
-/// What a file may hold at most; checked before and after parsing.
+/// Largest accepted file; checked before and after parsing.
 struct MeshFileLimits {
   std::size_t bytes = 64 << 20;
   std::size_t vertices = 1'000'000;
   std::size_t triangles = 2'000'000;
 };
 
-/// Whether the name ends in .obj, .ply, .stl or .glb, in small letters.
+/// Whether the name ends in .obj, .ply, .stl or .glb, in lower case.
 bool is_mesh_file_name(std::string_view name);
 
-/// Reads OBJ, PLY, STL or GLB. All meshes of the file become one, with their nodes'
-/// transformations; polygons are cut into triangles, points and lines left out; vertices at exactly
-/// one place become one, with the uv of the first, in the order in which the file names them.
+/// Reads OBJ, PLY, STL or GLB. All meshes of the file are merged, with their nodes' transformations
+/// applied; polygons are triangulated, points and lines dropped; vertices at exactly the same
+/// position are merged, with the uv of the first, in the order of first use in the file.
 ///
-/// The parser is not safe against every file: one that a stranger may have written is parsed in a
-/// process of its own with limits (server/mesh_store.h).
+/// The parser is not safe for every file: one from an untrusted source is parsed in a separate
+/// process with limits (server/mesh_child.h).
 ///
 /// @param bytes  the whole file
 /// @param name   for its ending and for errors
-/// Throws DefinitionError on field "mesh": another ending, too large, not readable, a vertex that
-/// is not finite or farther than 1e6, or nothing in it. Areas are judged by validate(TriangleMesh).
+/// Throws DefinitionError on field "mesh": another extension, too large, unreadable, a vertex that
+/// is not finite or farther than 1e6, or no triangles. validate(TriangleMesh) checks areas.
 MeshFile read_mesh(std::string_view bytes, const std::string& name,
                    const MeshFileLimits& limits = {});
 

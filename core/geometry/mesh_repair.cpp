@@ -1,3 +1,5 @@
+// Removes degenerate triangles and turns meshes that face inwards.
+
 #include "core/geometry/mesh_repair.h"
 
 #include <algorithm>
@@ -13,8 +15,8 @@ namespace weft {
 namespace {
 
 constexpr double kLeastDoubledArea = 1e-14;  // [m^2]
-// Of (surface area)^1.5: a smaller volume is rounding, as that of a sheet with two faces in one
-// place.
+// Of (surface area)^1.5: a smaller volume is rounding, such as that of a sheet with two coincident
+// faces.
 constexpr double kLeastVolume = 1e-6;
 
 const Vec3d& at(const TriangleMesh& mesh, Index vertex) {
@@ -30,7 +32,7 @@ bool has_valid_indices(const TriangleMesh& mesh) {
 
 constexpr int kMostPasses = 64;
 
-/// Takes triangles without area out of a surface, which stays closed if it was, wherever it can.
+/// Removes triangles without area, and keeps a closed surface closed where possible.
 class FlatTriangles {
  public:
   explicit FlatTriangles(TriangleMesh& mesh) : mesh_(mesh), gone_(mesh.triangles.size(), false) {
@@ -40,9 +42,9 @@ class FlatTriangles {
     }
   }
 
-  /// @returns how many went
+  /// @returns how many were removed
   std::size_t take_out() {
-    // Corners in a row on one line leave another flat triangle, of a shorter row.
+    // Collinear consecutive corners leave another flat triangle, with a shorter row of corners.
     for (int i = 0; i < kMostPasses && !flat_.empty(); ++i) {
       if (!pass()) break;
     }
@@ -60,7 +62,7 @@ class FlatTriangles {
     for (const std::size_t t : flat) {
       if (gone_[t] || !is_degenerate(mesh_, mesh_.triangles[t])) continue;
       if (has_doubled_corner(mesh_.triangles[t])) {
-        remove(t);  // what is left of it is one side, there and back
+        remove(t);  // its remainder is one side, there and back
         changed = true;
       } else if (cut_neighbour(t)) {
         changed = true;
@@ -75,8 +77,8 @@ class FlatTriangles {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   }
 
-  /// A flat triangle q, p, m, with m between the others, and its neighbour p, q, c become p, m, c
-  /// and m, q, c.
+  /// Replaces a flat triangle q, p, m, with m between the others, and its neighbour p, q, c by p,
+  /// m, c and m, q, c.
   bool cut_neighbour(std::size_t t) {
     const Triangle flat = mesh_.triangles[t];
     std::size_t longest = 0;
@@ -151,10 +153,11 @@ class FlatTriangles {
   std::vector<bool> gone_;
   std::vector<std::size_t> flat_;
   std::multimap<Side, std::size_t> sides_;
-  std::size_t cut_ = 0;  // flat ones whose place a half of their neighbour has taken
+  std::size_t cut_ = 0;  // flat triangles replaced by half of their neighbour
 };
 
-/// The volume, taken from near the mesh so that its sign is no rounding.
+/// The enclosed volume, relative to a point near the mesh so that rounding does not decide its
+/// sign.
 double volume_of(const TriangleMesh& mesh) {
   double sum = 0;
   const Vec3d& origin = mesh.positions.front();

@@ -7,9 +7,11 @@
 
 #include "core/math/quad.h"
 
+// Axis-aligned boxes in vector registers.
+
 namespace weft {
 
-/// Axis-aligned bounding box whose corners are worked on at once [m]. Empty when made.
+/// Axis-aligned bounding box whose corners are processed as vectors [m]. Initially empty.
 template <class Real>
 struct QuadBox {
   static constexpr Real kFar = std::numeric_limits<Real>::infinity();
@@ -23,7 +25,7 @@ struct QuadBox {
     lower.lanes = box.lower.lanes < lower.lanes ? box.lower.lanes : lower.lanes;
     upper.lanes = box.upper.lanes > upper.lanes ? box.upper.lanes : upper.lanes;
   }
-  /// The box with every side moved out by `margin` [m].
+  /// The box with every side moved outwards by `margin` [m].
   QuadBox grown(Real margin) const {
     QuadBox box = *this;
     box.lower.lanes -= margin;

@@ -1,3 +1,5 @@
+// Watertight ray tests against triangles and their hierarchy.
+
 #include "core/geometry/ray_cast.h"
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// The ray's coordinate system: its largest axis last, sheared so that it points along it.
+/// The ray's coordinate system: its dominant axis last, sheared to point along the ray.
 struct RayFrame {
   int x, y, z;
   double sx, sy, sz;
@@ -25,7 +27,7 @@ struct RayFrame {
   }
 };
 
-/// Largest number that enters a sheared coordinate of a point; its rounding scales with this.
+/// Largest number that enters a point's sheared coordinates; rounding scales with it.
 double extent(const RayFrame& f, const Vec3d& p) {
   return std::max(std::abs(p[f.x]) + std::abs(f.sx * p[f.z]),
                   std::abs(p[f.y]) + std::abs(f.sy * p[f.z]));
@@ -39,7 +41,7 @@ std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, c
   const double u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
   const double determinant = u + v + w;
-  // What rounding alone can make of a triangle that the ray sees edge-on or that has no area.
+  // Bound of the rounding for a triangle seen edge-on or without area.
   const double size = std::max({extent(f, a), extent(f, b), extent(f, c)});
   const double rounding = 16 * std::numeric_limits<double>::epsilon() * size * size;
   if (!(std::abs(determinant) > rounding) || !std::isfinite(determinant)) return std::nullopt;
@@ -49,7 +51,7 @@ std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, c
 }
 
 /// Parameter at which the ray enters a box, infinite if it misses. The bounds are widened by some
-/// units in the last place, so that rounding never loses a box.
+/// units in the last place, so that rounding never misses a box.
 double entry(const Vec3d& origin, const Vec3d& direction, const Vec3d& lower, const Vec3d& upper) {
   constexpr double kWide = 1 + 1e-12;
   double from = 0, to = std::numeric_limits<double>::infinity();
@@ -76,7 +78,7 @@ template <class Real>
 std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>& direction,
                                      const Vec3<Real>& a, const Vec3<Real>& b,
                                      const Vec3<Real>& c) {
-  // In double whatever Real is: picking is rare, and an edge must belong to both its triangles.
+  // In double for any Real: picking is rare, and an edge must belong to both its triangles.
   const Vec3d o = origin.template cast<double>();
   const RayFrame frame(direction.template cast<double>());
   const auto hit = cast_in_frame(frame, a.template cast<double>() - o,
@@ -105,7 +107,7 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
       [&](const Aabb<Real>& box) {
         const double t =
             entry(o, d, box.lower.template cast<double>(), box.upper.template cast<double>());
-        // Boxes behind the best hit are as good as missed.
+        // Boxes behind the best hit count as missed.
         return t <= nearest ? static_cast<Real>(0) : std::numeric_limits<Real>::infinity();
       },
       [&](Index triangle, Real bound) {

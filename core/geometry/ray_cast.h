@@ -6,9 +6,11 @@
 #include "core/geometry/bvh.h"
 #include "core/types.h"
 
+// Casts rays at triangles, for picking.
+
 namespace weft {
 
-/// Where a ray meets a triangle.
+/// Intersection of a ray with a triangle.
 template <class Real>
 struct RayHit {
   Real distance = 0;  ///< in units of the direction's length, >= 0
@@ -16,14 +18,15 @@ struct RayHit {
   std::array<Real, 3> barycentric = {};  ///< >= 0, sum 1
 };
 
-/// Hit of a ray on triangle abc from either side; nothing if they are parallel, if the triangle has
-/// no area or if it is behind the origin. Edges belong to both of their triangles: no ray slips
-/// through between them (the edge tests of both see the same numbers; Woop, Benthin, Wald 2013).
+/// Intersection of a ray with triangle abc from either side; nothing if they are parallel, if the
+/// triangle has no area or if it lies behind the origin. Edges belong to both of their triangles:
+/// no ray slips through between them, because their edge tests use the same numbers (Woop, Benthin,
+/// Wald 2013).
 template <class Real>
 std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>& direction,
                                      const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
 
-/// First hit among triangles through their hierarchy; of equally near ones the smallest index.
+/// First hit among triangles, found through their hierarchy; the smallest index at equal distance.
 template <class Real>
 std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>& direction,
                                      const Bvh<Real>& hierarchy, const Vec3Array<Real>& positions,

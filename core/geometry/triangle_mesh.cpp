@@ -1,3 +1,5 @@
+// Edges, normals, measures and checks of triangle meshes.
+
 #include "core/geometry/triangle_mesh.h"
 
 #include <cmath>

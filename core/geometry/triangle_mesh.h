@@ -6,15 +6,17 @@
 #include "core/definition.h"
 #include "core/types.h"
 
+// Triangle meshes and their placement in the world.
+
 namespace weft {
 
-/// Triangles over shared vertices, counter-clockwise seen from outside [m].
+/// Triangles with shared vertices, counter-clockwise seen from outside [m].
 struct TriangleMesh {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
 };
 
-/// Where a mesh comes from and how it was put into the world: p = position + R (scale p_source).
+/// Source and placement of a mesh: p = position + R (scale p_source).
 struct MeshPlacement {
   std::string source;              ///< name of a built-in mesh or file; empty: made by code
   double scale = 1;                ///< 1e-4 to 1e4
@@ -22,7 +24,7 @@ struct MeshPlacement {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
-/// Describes each field of a placement but its orientation to `visit(info, value)`.
+/// Passes each field of a placement except its orientation to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_placement(Def& placement, Visitor&& visit) {
   visit(FieldInfo{"scale", 1e-4, 1e4, "", "metres in a unit of the mesh"}, placement.scale);
@@ -32,17 +34,17 @@ void visit_fields_of_placement(Def& placement, Visitor&& visit) {
 /// The mesh with the placement applied.
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement);
 
-/// An edge with the triangles beside it.
+/// An edge with its adjacent triangles.
 struct MeshEdge {
   Index a = 0, b = 0;                              ///< ends, smaller index first
-  std::array<Index, 2> triangle = {kNone, kNone};  ///< the second is none on a rim
+  std::array<Index, 2> triangle = {kNone, kNone};  ///< the second is none at a border
 };
 
 /// Unique edges, ordered by their ends. An edge with more than two triangles keeps the first two.
 std::vector<MeshEdge> edges_of(const TriangleMesh& mesh);
 
-/// Whether every edge has exactly two triangles that run through it in opposite directions, so that
-/// there is an inside.
+/// Whether every edge has exactly two triangles that traverse it in opposite directions, so that
+/// the mesh has an inside.
 bool is_closed(const TriangleMesh& mesh);
 
 double surface_area(const TriangleMesh& mesh);  ///< [m^2]
@@ -51,12 +53,12 @@ double enclosed_volume(
 
 Vec3d unit_normal(const TriangleMesh& mesh, Index triangle);  ///< zero if the triangle has no area
 
-/// Normals at the vertices, weighted by the angles of the triangles there: with them the sign of
-/// the distance to the surface is right at vertices too (Baerentzen, Aanaes 2005).
+/// Vertex normals, weighted by the angles of the triangles there: they give the distance to the
+/// surface the right sign even at vertices (Baerentzen, Aanaes 2005).
 std::vector<Vec3d> vertex_normals(const TriangleMesh& mesh);
 
 /// Checks counts, indices, coordinates (finite, within 1000 m) and areas.
-/// Throws DefinitionError with `path` before the name of the field.
+/// Throws DefinitionError with `path` in front of the field's name.
 void validate(const TriangleMesh& mesh, const std::string& path);
 
 /// The twelve triangles of an axis-aligned box around the origin.

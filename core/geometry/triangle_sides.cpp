@@ -1,3 +1,5 @@
+// Sorts the sides of triangles so that neighbours meet.
+
 #include "core/geometry/triangle_sides.h"
 
 #include <algorithm>
