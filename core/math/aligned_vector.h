@@ -4,9 +4,11 @@
 #include <new>
 #include <vector>
 
+// A vector whose storage starts at a cache line.
+
 namespace weft {
 
-/// Places arrays at the start of a cache line, so that no vector in them crosses two.
+/// Aligns arrays to cache lines, so that no vector in them straddles two.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;

@@ -4,15 +4,15 @@
 #include <limits>
 #include <numbers>
 
-// Inverse tangent from + - * / alone. The C library picks other code on other processors, and its
-// last bit with it; ours gives the same bits everywhere.
+// Inverse tangent from + - * / only. The C library selects different code on different processors,
+// which changes the last bit; this version gives the same bits everywhere.
 
 namespace weft {
 
 namespace angle_detail {
 
-/// atan(t) for |t| <= tan(pi/8) by its Taylor series t - t^3/3 + t^5/5 - ...; the first term left
-/// out is below half a unit in the last place of Real.
+/// atan(t) for |t| <= tan(pi/8) by its Taylor series t - t^3/3 + t^5/5 - ...; the first omitted
+/// term is below half a unit in the last place of Real.
 template <class Real>
 inline Real atan_series(Real t) {
   constexpr int kTerms = std::numeric_limits<Real>::digits > 30 ? 21 : 10;
@@ -24,16 +24,16 @@ inline Real atan_series(Real t) {
 
 }  // namespace angle_detail
 
-/// Angle of the vector (x, y) from the x axis, in (-pi, pi] [rad]; 0 for the zero vector.
-/// Absolute error below 4 units in the last place of pi. Selections instead of branches, so that
-/// loops over it become vector code.
+/// Angle of the vector (x, y) from the x axis, in (-pi, pi] [rad]; 0 for the zero vector. Absolute
+/// error below 4 units in the last place of pi. Selects instead of branching, so that loops over it
+/// become vector code.
 template <class Real>
 inline Real angle_of(Real y, Real x) {
   constexpr Real kPi = std::numbers::pi_v<Real>;
   constexpr Real kTanEighth = Real(0.41421356237309504880);  // tan(pi/8)
   const Real ax = std::abs(x), ay = std::abs(y);
   const Real large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
-  // Either the ratio itself is below tan(pi/8), or its angle from the diagonal is.
+  // Either the ratio is below tan(pi/8), or that of its angle from the diagonal is.
   const bool near_diagonal = small > kTanEighth * large;
   const Real numerator = near_diagonal ? small - large : small;
   const Real sum = near_diagonal ? small + large : large;

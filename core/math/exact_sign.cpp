@@ -1,3 +1,5 @@
+// Adaptive-precision orientation test by floating-point expansions.
+
 #include "core/math/exact_sign.h"
 
 #include <array>
@@ -15,8 +17,8 @@ double two_sum(double a, double b, double& error) {
   return sum;
 }
 
-/// A number as an exact sum of doubles of growing size that do not overlap, none of them 0. Room
-/// for the most that an orientation needs: 3 products of 2 and 16 terms, 2 each.
+/// A number as an exact sum of non-overlapping, non-zero doubles of increasing size. Holds the most
+/// that an orientation needs: 3 products of 2 and 16 terms, 2 each.
 struct Expansion {
   std::array<double, 192> term;
   std::size_t size = 0;

@@ -2,6 +2,8 @@
 
 #include "core/types.h"
 
+// Exact geometric predicates.
+
 namespace weft {
 
 /// Sign of the volume of tetrahedron a b c d: +1 if d lies below the plane through a, b, c, seen

@@ -1,3 +1,4 @@
+// Helpers for vector code that give the same bits on every instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_LANES_INL_H
@@ -18,8 +19,8 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// a b + c with one rounding. Instruction sets that have no such instruction go lane by lane, so
-/// that the bits are the same everywhere.
+/// a b + c with a single rounding. Without such an instruction it is computed lane by lane, so that
+/// the bits are the same everywhere.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V fused(D d, V a, V b, V c) {
 #if HWY_NATIVE_FMA
@@ -37,7 +38,7 @@ HWY_INLINE V fused(D d, V a, V b, V c) {
 #endif
 }
 
-/// c - a b with one rounding.
+/// c - a b with a single rounding.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V fused_minus(D d, V a, V b, V c) {
 #if HWY_NATIVE_FMA
@@ -75,7 +76,7 @@ HWY_INLINE Triple<V> fused_cross(D d, const Triple<V>& a, const Triple<V>& b) {
           fused_minus(d, a.y, b.x, hn::Mul(a.x, b.y))};
 }
 
-/// Moves vectors of a row one lane up: each lane gets its left neighbour, lane 0 the last lane of
+/// Shifts vectors of a row one lane up: each lane gets its left neighbour, lane 0 the last lane of
 /// the vector before.
 template <class D>
 class OneLaneUp {
@@ -86,7 +87,7 @@ class OneLaneUp {
  public:
   HWY_INLINE OneLaneUp() : indices_(turned()), first_(hn::FirstN(D(), 1)) {}
 
-  /// @param before  what the previous vector left there; zero at the start of a row
+  /// @param before  state left by the previous vector; zero at the start of a row
   HWY_INLINE V operator()(V& before, V a) const {
     const V turned = hn::TableLookupLanes(a, indices_);
     const V shifted = hn::IfThenElse(first_, before, turned);

@@ -8,10 +8,12 @@
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
+// Four-number vectors in registers.
+
 namespace weft {
 
-/// Four numbers that are worked on at once, in registers of any instruction set with the same bits.
-/// A vector in space has 0 as its fourth.
+/// Four numbers processed together, in registers of any instruction set with the same bits. A
+/// spatial vector has 0 as its fourth.
 template <class Real>
 struct Quad {
   using Lanes [[gnu::vector_size(4 * sizeof(Real))]] = Real;
@@ -31,7 +33,7 @@ struct Quad {
   friend Quad operator*(const Quad& a, Real s) { return {a.lanes * s}; }
 };
 
-/// x a + y b + z c of vectors in space, added in that order.
+/// x a + y b + z c of spatial vectors, added in that order.
 template <class Real>
 Real dot(const Quad<Real>& a, const Quad<Real>& b) {
   const Quad<Real> product{a.lanes * b.lanes};
@@ -60,8 +62,8 @@ Vec3<Real> to_vector(const Quad<Real>& q) {
 template <class Real>
 using QuadArray = AlignedVector<Quad<Real>>;
 
-/// Vectors as quads. All but the last are read as four numbers at once, which costs half.
-/// @param to  as many
+/// Converts vectors to quads. All but the last are read as four numbers at once, which costs half.
+/// @param to  of the same length
 template <class Real>
 void to_quads(std::span<const Vec3<Real>> from, Quad<Real>* to) {
   if (from.empty()) return;
@@ -73,8 +75,9 @@ void to_quads(std::span<const Vec3<Real>> from, Quad<Real>* to) {
   to[last] = to_quad(from[last]);
 }
 
-/// Quads as vectors, each written with a number too much, which the next one mends.
-/// @param to  as many
+/// Converts quads to vectors. Each write spills one number into the next vector, which the next
+/// write repairs.
+/// @param to  of the same length
 template <class Real>
 void to_vectors(std::span<const Quad<Real>> from, Vec3<Real>* to) {
   if (from.empty()) return;

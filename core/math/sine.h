@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-// Sine and cosine from + - * / alone, like the inverse tangent in angle.h: the same bits on every
+// Sine and cosine from + - * / only, like the inverse tangent in angle.h: the same bits on every
 // processor.
 
 namespace weft {
@@ -13,12 +13,11 @@ struct SineCosine {
 
 /// Sine and cosine of an angle within +-1000 [rad]. Absolute error below 4e-16 times (1 + |angle|).
 inline SineCosine sine_cosine(double angle) {
-  // A quarter turn in two parts, of which the first has few enough bits that its multiples are
-  // exact.
+  // A quarter turn in two parts; the first has few enough bits that its multiples are exact.
   constexpr double kQuarterHigh = 1.5707963267341256, kQuarterLow = 6.0771005065061922e-11;
   const double quarters = std::nearbyint(angle / (kQuarterHigh + kQuarterLow));
   const double t = (angle - quarters * kQuarterHigh) - quarters * kQuarterLow;
-  // Taylor series on +-pi/4; the first term left out is below 1e-18.
+  // Taylor series on +-pi/4; the first omitted term is below 1e-18.
   const double t2 = t * t;
   constexpr int kTerms = 9;
   double sine = 1, cosine = 1;

@@ -1,3 +1,4 @@
+// Triples of vector registers: one spatial vector per lane.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_TRIPLE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_TRIPLE_INL_H
@@ -15,7 +16,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Three components in vector registers, one particle, spring, edge or triangle a lane.
+/// Three components in vector registers, one particle, spring, edge or triangle per lane.
 template <class V>
 struct Triple {
   V x, y, z;
@@ -61,7 +62,8 @@ HWY_INLINE Triple<V> drop_if(M mask, const Triple<V>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// The numbers of quads: four vectors hold every fourth quad from the k-th on.
+/// Transposes quads, of which vector k holds every fourth one from the k-th on: the results hold
+/// their first, second, third and fourth numbers.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE std::array<V, 4> transposed_four(D d, V p0, V p1, V p2, V p3) {
   const hn::Repartition<double, D> wide;
@@ -82,7 +84,7 @@ HWY_INLINE Triple<V> transposed(D d, V p0, V p1, V p2, V p3) {
   return {four[0], four[1], four[2]};
 }
 
-/// The other way, with 0 as the fourth number of the quads.
+/// The inverse, with 0 as the fourth number of the quads.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE std::array<V, 4> transposed_back(D d, const Triple<V>& a) {
   const hn::Repartition<double, D> wide;
@@ -98,7 +100,7 @@ HWY_INLINE std::array<V, 4> transposed_back(D d, const Triple<V>& a) {
 }
 #endif
 
-/// Particles one behind the other, x y z each.
+/// Loads consecutive particles, x y z each.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE Triple<hn::Vec<D>> load_particles(D d, const Real* from) {
   Triple<hn::Vec<D>> a;
