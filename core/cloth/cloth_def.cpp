@@ -1,3 +1,5 @@
+// Validates the definition of a cloth.
+
 #include "core/cloth/cloth_def.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Builds models of one or several cloths from their definitions.
+
 #include "core/cloth/cloth_model.h"
 
 #include <algorithm>
@@ -19,7 +21,7 @@ IndexRange append(std::vector<T>& to, const std::vector<T>& from) {
   return range;
 }
 
-/// Puts a cloth behind the others, with its indices moved up.
+/// Appends a cloth to a model, with its indices shifted.
 template <class Real>
 void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   const Index shift = model.particle_count();

@@ -8,18 +8,20 @@
 #include "core/cloth/cloth_def.h"
 #include "core/types.h"
 
+// The constant data of cloths: masses, triangles, springs and hinges.
+
 namespace weft {
 
-/// What a spring stands for.
+/// Role of a spring.
 enum class SpringKind : std::uint8_t {
   warp,   ///< structural, along u
   weft,   ///< structural, along v
   shear,  ///< cell diagonal
   skip,   ///< every second neighbour (the seed's bending spring)
-  edge,   ///< an edge of a cloth that is no grid
+  edge,   ///< an edge of a mesh cloth
 };
 
-/// A Hookean spring with a dashpot along it.
+/// A Hookean spring with a dashpot.
 template <class Real>
 struct Spring {
   Index i = 0, j = 0;    ///< end particles
@@ -32,8 +34,8 @@ struct Spring {
 /// damping moment -damping dtheta/dt.
 ///
 /// x[0], x[1] are the ends of the shared edge; the triangles are (x0, x1, x2) and (x1, x0, x3) with
-/// normals to the same side, so theta = 0 when flat and positive when the normals open away from
-/// each other (a fold whose inside lies on the side opposite to the normals).
+/// normals on the same side, so theta = 0 when flat, and positive when the normals diverge (a fold
+/// with its inside on the side opposite to the normals).
 template <class Real>
 struct Hinge {
   Index x[4] = {0, 0, 0, 0};
@@ -45,11 +47,11 @@ struct Hinge {
   bool sine_form = false;  ///< moment by sines of half angles; see hinge_moment
 };
 
-/// A triangle crumpled below this part of its area at rest pulls on its hinges with less lever.
+/// Below this fraction of its rest area, a crumpled triangle acts on its hinges with less leverage.
 inline constexpr double kCrumpledArea = 0.05;
 
-/// Springs of a grid as one set of numbers for each kind; see grid_springs.h. Border springs have
-/// half.
+/// Springs of a grid as one set of numbers per kind; see grid_springs.h. Border springs have half
+/// the stiffness.
 template <class Real>
 struct GridSprings {
   Real warp = 0, weft = 0, shear = 0;                 ///< stiffness [N/m]
@@ -68,22 +70,22 @@ struct QuadraticBending {
 };
 
 /// Two triangles of a mesh that is flat at rest, with the energy 1/2 stiffness |sum_a weight_a
-/// x_a|^2. The sum is the angle of their hinge times its normal while it is small, and the length
-/// of the mean curvature vector for any bending without stretch (Bergou, Wardetzky, Harmon, Zorin,
+/// x_a|^2. The sum is the hinge's angle times its normal for small angles, and the length of the
+/// mean curvature vector for any bending without stretch (Bergou, Wardetzky, Harmon, Zorin,
 /// Grinspun 2006, "A quadratic bending model for inextensible surfaces").
 template <class Real>
 struct HingeStencil {
-  Index x[4] = {0, 0, 0, 0};      ///< as of a hinge, counted from the part's first particle
+  Index x[4] = {0, 0, 0, 0};      ///< as in a hinge, counted from the part's first particle
   Real weight[4] = {0, 0, 0, 0};  ///< derivative of the angle along the normal [1/m], sum 0
   Real stiffness = 0;             ///< B l^2 / (A1 + A2) [N m]
 };
 
-/// The cells of a grid that are there, and the particles at their corners, which are numbered row
-/// by row. A whole grid has all cells.
+/// The present cells of a grid, and the particles at their corners, numbered row by row. A whole
+/// grid has all cells.
 struct GridCells {
-  int rows = 0, columns = 0;     ///< of places for particles; 0 if the cloth is no grid
-  std::vector<char> kept;        ///< 1 for each cell that is there, row by row
-  std::vector<Index> particles;  ///< by place, counted from the part's first; kNone: nobody
+  int rows = 0, columns = 0;     ///< of particle sites; 0 if the cloth is not a grid
+  std::vector<char> kept;        ///< 1 for each present cell, row by row
+  std::vector<Index> particles;  ///< by site, counted from the part's first; kNone: no particle
 
   bool has_cell(int r, int c) const {
     return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&
@@ -97,44 +99,45 @@ struct GridCells {
   }
 };
 
-/// A stretch of consecutive indices.
+/// A range of consecutive indices.
 struct IndexRange {
   Index first = 0, count = 0;
   Index end() const { return first + count; }
   bool contains(Index i) const { return i >= first && i < end(); }
 };
 
-/// Bounds of the highest squared frequency of the membrane and of bending [1/s^2], and the matching
+/// Bounds of the highest squared frequency of membrane and bending [1/s^2], and the corresponding
 /// bounds of damping rates [1/s]; see stability_bound.h.
 struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
   double membrane_damping_rate = 0, bending_damping_rate = 0;
 };
 
-/// One of the cloths of a model: its share of every list, and what is its own.
+/// One cloth of a model: its range of every list, and its own data.
 template <class Real>
 struct ClothPart {
   std::string name;
   FabricDef fabric;
   IndexRange particles, triangles, edges, springs, hinges;
-  int rows = 0, columns = 0;    ///< of a whole grid, whose particle (r, c) is particles.first +
-                                ///< r * columns + c; 0 if the cloth is none
-  Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
-  Real rest_diagonal = 0;       ///< of the box around its rest positions [m]
+  int rows = 0,
+      columns =
+          0;  ///< of a whole grid: particle (r, c) is particles.first + r * columns + c; else 0
+  Real cell_u = 0, cell_v = 0;                     ///< h_x, h_y, cell size of a grid [m]
+  Real rest_diagonal = 0;                          ///< of the box around its rest positions [m]
   std::optional<GridSprings<Real>> grid_springs;   ///< the same springs, if they are regular
-  QuadraticBending<Real> quadratic_bending;        ///< of a grid; the hinges are none then
+  QuadraticBending<Real> quadratic_bending;        ///< of a grid; it then has no hinges
   std::vector<HingeStencil<Real>> hinge_stencils;  ///< of a mesh that is flat at rest
   std::size_t bending_stencils = 0;                ///< of the quadratic form; see bending_stencil.h
   GridCells cells;                                 ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
 
-/// Everything about the cloths that does not change while they move. Several cloths stand one
-/// behind the other in every list; no spring, hinge or triangle joins two of them.
+/// The constant data of the cloths. Several cloths follow each other in every list; no spring,
+/// hinge or triangle joins two of them.
 template <class Real>
 struct ClothModel {
   std::vector<ClothPart<Real>> parts;         ///< in the order of their particles; at least one
-  Vec3Array<Real> rest_positions;             ///< where the cloth starts [m]
+  Vec3Array<Real> rest_positions;             ///< initial positions [m]
   std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric of its part [m]
   std::vector<Real> mass;                     ///< [kg], positive
   std::vector<Triangle> triangles;            ///< of a grid with alternating diagonals
@@ -142,12 +145,12 @@ struct ClothModel {
   std::vector<Edge> edges;                    ///< unique edges of the triangles
   std::vector<Spring<Real>> springs;          ///< of a grid ordered by first end, then kind
   std::vector<SpringKind> spring_kinds;
-  std::vector<Hinge<Real>> hinges;  ///< none of a part whose bending is quadratic
+  std::vector<Hinge<Real>> hinges;  ///< empty for a part with quadratic bending
 
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };
 
-/// Builds one cloth, as a model of one part.
+/// Builds one cloth, as a model with one part.
 ///
 /// A grid has structural and shear springs whose continuum limit is the fabric's tensor, and hinges
 /// over both ways to split its cells, half of each, whose bending rigidity is B in every direction.
@@ -162,12 +165,12 @@ ClothModel<Real> build_cloth(const ClothDef& def);
 template <class Real>
 ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs);
 
-/// The part that a particle belongs to.
+/// The part that contains a particle.
 template <class Real>
 const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index particle);
 
-/// The particles of the same part whose material distance from particle `centre` is at most
-/// `radius` [m], ascending; at least the centre itself.
+/// The particles of the same part within material distance `radius` [m] of particle `centre`, in
+/// ascending order; at least the centre itself.
 template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius);
 

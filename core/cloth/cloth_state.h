@@ -5,22 +5,24 @@
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
+// The state of cloths: positions, velocities and inverse masses.
+
 namespace weft {
 
-/// Everything about a cloth that changes while it moves. Positions and velocities belong to the
-/// same instant at every tick boundary.
+/// The changing data of a cloth. At tick boundaries, positions and velocities belong to the same
+/// instant.
 template <class Real>
 struct ClothState {
   Vec3Array<Real> x;               ///< positions [m]
   Vec3Array<Real> v;               ///< velocities [m/s]
   std::vector<Real> inverse_mass;  ///< [1/kg]; 0 for a pinned particle
-  /// Of each cloth 1 if it sleeps: nothing is computed for it. Empty if none does.
+  /// For each cloth 1 if it sleeps: sleeping cloths are not computed. Empty if none sleeps.
   std::vector<char> asleep;
 
   bool is_asleep(std::size_t part) const { return !asleep.empty() && asleep[part] != 0; }
 };
 
-/// At rest at the model's rest positions, nothing pinned.
+/// At rest at the model's rest positions, with nothing pinned.
 template <class Real>
 ClothState<Real> initial_state(const ClothModel<Real>& model) {
   ClothState<Real> state;

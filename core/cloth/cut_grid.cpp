@@ -1,3 +1,5 @@
+// Builds grids that are cut to an outline.
+
 #include "core/cloth/cut_grid.h"
 
 #include <cmath>
@@ -11,7 +13,7 @@
 namespace weft {
 namespace {
 
-/// A cut grid while it is built.
+/// A cut grid under construction.
 struct Cut {
   GridCells cells;
   double cell_u = 0, cell_v = 0;  // [m]
@@ -59,7 +61,7 @@ void place_particles(const ClothDef& def, const Cut& cut, ClothModel<Real>& mode
                       static_cast<Real>(whole / static_cast<double>(model.mass.size())));
 }
 
-/// Half an axis spring from each cell beside it, both diagonals from each cell.
+/// Adds half an axis spring for each adjacent cell, and both diagonals of each cell.
 template <class Real>
 void add_springs(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
   const GridStiffness k = grid_stiffness(def.fabric, cut.cell_u, cut.cell_v);

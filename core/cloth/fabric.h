@@ -2,6 +2,8 @@
 
 #include "core/definition.h"
 
+// Material parameters of fabric.
+
 namespace weft {
 
 /// The material of a cloth in physical units, independent of any mesh: doubling the resolution does
@@ -9,7 +11,7 @@ namespace weft {
 ///
 /// Membrane: the plane-stress tensor has C11 = stretch_warp, C22 = stretch_weft, C12 = C66 = shear,
 /// so the uniaxial modulus along the warp is Y_w - G^2/Y_f.
-/// Bending: energy per area B/2 (warp), B/2 (weft) times curvature squared; in every direction B if
+/// Bending: energy per area B/2 (warp), B/2 (weft) times curvature squared; B in every direction if
 /// both are equal.
 struct FabricDef {
   double areal_density = 0.2;    ///< sigma [kg/m^2]
@@ -27,7 +29,7 @@ struct FabricDef {
   double air_tangential = 0.01;  ///< c_t, skin friction per area and speed [kg/(m^2 s)]
 };
 
-/// Describes each field to `visit(info, value)`; see definition.h.
+/// Passes each field to `visit(info, value)`; see definition.h.
 template <class Def, class Visitor>
 void visit_fields_of_fabric(Def& f, Visitor&& visit) {
   visit(FieldInfo{"areal_density", 1e-3, 100, "kg/m^2", "mass per area"}, f.areal_density);

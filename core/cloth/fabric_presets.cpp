@@ -1,23 +1,24 @@
+// The values of the named fabrics, with their sources.
+
 #include "core/cloth/fabric_presets.h"
 
 #include "core/error.h"
 
 // Sources:
-//   Penava   Penava, Simic Penava, Knezic 2014, Determination of the elastic constants of plain
-//   woven
-//            fabrics by a tensile test: thickness t, areal density, Young's modulus E; the stretch
-//            stiffness is E t.
-//   ASTM     D1388: B = sigma g c^3 with c the bending length; c is ours where no measurement is
-//            named, so that the drape test gives what the literature gives for such a fabric.
-//   KES      Kawabata: shear G of 1 gf/(cm degree) is 56.188 N/m, bending B of 1 gf cm^2/cm is
-//            9.80665e-5 N m.
-//   Denim    Regenerated cellulose-based denim fabric for tropical regions, Journal of Textiles
-//            2016, table 5 (KES): G 1.5 to 3.4 gf/(cm degree).
-//   ours     chosen by us; not a measurement.
-// Bands of the drape coefficient are those published for such fabrics; of flag nylon none is known
-// to us, and other simulators differ: one gets 27.8 %, Weft 46 %.
-// Contact thickness, restitution and damping stay those of every fabric: they belong to the
-// simulation and not to the material. Friction is ours: cloth on a smooth object.
+//     Penava   Penava, Simic Penava, Knezic 2014, Determination of the elastic constants of plain
+//              woven fabrics by a tensile test: thickness t, areal density, Young's modulus E; the
+//              stretch stiffness is E t.
+//     ASTM     D1388: B = sigma g c^3 with the bending length c; c is ours unless a measurement is
+//              named, so that the drape test agrees with the literature for such a fabric.
+//     KES      Kawabata: shear G of 1 gf/(cm degree) is 56.188 N/m, bending B of 1 gf cm^2/cm is
+//              9.80665e-5 N m.
+//     Denim    Regenerated cellulose-based denim fabric for tropical regions, Journal of Textiles
+//              2016, table 5 (KES): G 1.5 to 3.4 gf/(cm degree).
+//     ours     chosen by us; not a measurement.
+// Bands of the drape coefficient are those published for such fabrics; we know of none for flag
+// nylon, and other simulators differ: one gets 27.8 %, Weft 46 %.
+// Contact thickness, restitution and damping have the defaults of all fabrics, because they belong
+// to the simulation and not to the material. Friction is ours: cloth on a smooth object.
 
 namespace weft {
 namespace {

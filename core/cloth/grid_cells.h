@@ -6,21 +6,20 @@
 
 namespace weft {
 
-// Cells of a grid as triangles and hinges, for whole grids and for those that are cut out.
+// Cells of a grid as triangles and hinges, for whole and cut grids.
 
-/// All cells of a rectangle.
+/// A rectangle with all cells.
 GridCells whole_grid(int rows, int columns);
 
-/// What is left to do for a model of one part whose lists are complete: frequency bounds, dashpots,
-/// `grid_springs` where the springs follow a rule, and the quadratic form in place of hinges where
-/// that was asked for or fits.
+/// Completes a model of one part whose lists are filled: frequency bounds, dashpots, `grid_springs`
+/// if the springs are regular, and the quadratic form in place of hinges if requested or suitable.
 template <class Real>
 void finish_grid(const ClothDef& def, ClothModel<Real>& model);
 
-/// Two triangles a cell with alternating diagonals: a grid split along one diagonal is three times
-/// too stiff against bending in one diagonal direction. Normals point along u x v.
+/// Splits each cell into two triangles with alternating diagonals: a grid split along one diagonal
+/// is three times too stiff in bending along one diagonal direction. Normals point along u x v.
 /// @param area   of a triangle [m^2]
-/// @param first  0 or 1: which of the two ways the first cell is split
+/// @param first  0 or 1: the diagonal of the first cell
 template <class Real>
 void split_cells(const GridCells& shape, double area, int first, ClothModel<Real>& model) {
   for (int r = 0; r + 1 < shape.rows; ++r) {
@@ -40,9 +39,9 @@ void split_cells(const GridCells& shape, double area, int first, ClothModel<Real
   model.triangle_area.assign(model.triangles.size(), static_cast<Real>(area));
 }
 
-/// Hinges over both ways to split the cells, with half the rigidity each. In one way alone every
-/// second particle is opposite to no edge along the axes: nothing resists its second difference,
-/// and a strip free to relax into that pattern bends up to a quarter too easily.
+/// Adds hinges over both splittings of the cells, with half the rigidity each. In one splitting
+/// every second particle is opposite to no edge along the axes: nothing resists its second
+/// difference, and a strip free to relax into that pattern bends up to a quarter too easily.
 template <class Real>
 void add_hinges(const ClothDef& def, const GridCells& shape, double area, ClothModel<Real>& model) {
   const HingeSettings settings{

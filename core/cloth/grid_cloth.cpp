@@ -1,3 +1,5 @@
+// Builds rectangular grids, and chooses the bending model of grids.
+
 #include "core/cloth/grid_cloth.h"
 
 #include <cmath>
@@ -22,7 +24,7 @@ void place_particles(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
-/// Half a cell's share on border lines and a quarter on corners, or the same for all.
+/// Halves the share of a particle on border lines and quarters it at corners, or shares equally.
 template <class Real>
 void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   const double total = def.fabric.areal_density * def.width * def.height;
@@ -38,7 +40,7 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
-/// Whether all springs are those of `uniform_springs`.
+/// Whether all springs follow `uniform_springs`.
 bool is_uniform(const ClothDef& def) {
   return !def.direct_springs && def.skip_stiffness == 0;
 }
@@ -47,7 +49,7 @@ GridStiffness uniform_springs(const ClothDef& def) {
   return grid_stiffness(def.fabric, def.width / (def.columns - 1), def.height / (def.rows - 1));
 }
 
-/// The springs' numbers by kind, unless some of them follow no rule.
+/// Stores the springs' numbers by kind, if all springs are regular.
 template <class Real>
 void summarise_springs(const ClothDef& def, ClothPart<Real>& part) {
   if (!is_uniform(def)) return;

@@ -2,18 +2,20 @@
 
 #include "core/cloth/cloth_model.h"
 
+// Rectangular cloths as grids.
+
 namespace weft {
 
-/// Builds a rectangular cloth of rows x columns particles as a model of one part; see build_cloth.
-/// The definition is valid already. Throws DefinitionError on "fabric.shear" if a spring would have
-/// negative stiffness.
+/// Builds a rectangular cloth of rows x columns particles as a model with one part; see
+/// build_cloth. The definition must be valid. Throws DefinitionError on "fabric.shear" if a spring
+/// would have negative stiffness.
 template <class Real>
 ClothModel<Real> build_grid_cloth(const ClothDef& def);
 
-/// Bending rigidity times weight of a grid's hinge whose edge spans (du, dv) in the material [N m].
+/// Bending rigidity times weight of a grid's hinge over an edge (du, dv) in the material [N m].
 double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv);
 
-/// Sets name, fabric and ranges of the one part of a model whose lists are complete.
+/// Sets name, fabric and ranges of the only part of a model whose lists are filled.
 template <class Real>
 void complete_part(const ClothDef& def, ClothModel<Real>& model) {
   const auto all = [](const auto& list) { return IndexRange{0, static_cast<Index>(list.size())}; };

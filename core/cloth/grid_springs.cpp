@@ -1,3 +1,5 @@
+// Springs of a grid from the fabric's stiffness tensor.
+
 #include "core/cloth/grid_springs.h"
 
 #include <cmath>
@@ -7,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// One spring to each particle (row + dr, column + dc) that exists.
+/// A spring from each particle to (row + dr, column + dc), where that exists.
 struct Pattern {
   SpringKind kind;
   int dr, dc;

@@ -5,6 +5,8 @@
 #include "core/cloth/cloth_def.h"
 #include "core/cloth/cloth_model.h"
 
+// Springs of a grid.
+
 namespace weft {
 
 /// Stiffnesses of the springs inside a grid of cells h_u x h_v [m], [N/m]: those whose continuum
@@ -16,12 +18,12 @@ struct GridStiffness {
   double shear = 0;  ///< each diagonal: G d^2 / (2 h_u h_v)
 };
 
-/// The springs whose continuum limit is C11 = Y_w, C22 = Y_f, C12 = C66 = G.
+/// Springs with the continuum limit C11 = Y_w, C22 = Y_f, C12 = C66 = G.
 /// Throws DefinitionError on "fabric.shear" if a structural spring would be negative.
 GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell_v);
 
 /// All springs of a grid cloth, ordered by first end and then by kind; `kinds` gets one entry each.
-/// A spring of zero stiffness and zero damping is left out.
+/// Springs without stiffness and damping are left out.
 template <class Real>
 std::vector<Spring<Real>> grid_springs(const ClothDef& def, std::vector<SpringKind>& kinds);
 

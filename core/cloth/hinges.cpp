@@ -1,3 +1,5 @@
+// Finds edges and hinges of triangles.
+
 #include "core/cloth/hinges.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Checks a cloth's mesh and builds its springs, hinges and masses.
+
 #include "core/cloth/mesh_cloth.h"
 
 #include <algorithm>
@@ -19,7 +21,7 @@ std::string at(const char* list, std::size_t index) {
   return std::string("cloth.mesh.") + list + "[" + std::to_string(index) + "]";
 }
 
-/// Places are compared as they will be kept: what falls together then has no length.
+/// Compares positions as they will be stored: coincident ones would make springs without length.
 template <class Real>
 void refuse_unused_and_coincident(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.positions.size(), false);
@@ -70,7 +72,7 @@ double doubled_area(const Uv& uv, const Triangle& t) {
   return std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
 }
 
-/// Projection along the axis that most of the surface faces, upwards where that is possible.
+/// Projects along the axis that most of the surface faces, with v downwards if possible.
 Uv projected(const TriangleMesh& mesh) {
   Vec3d faced = Vec3d::Zero();
   for (const Triangle& t : mesh.triangles) {
@@ -93,7 +95,7 @@ Uv projected(const TriangleMesh& mesh) {
 
 /// Material coordinates in metres.
 Uv material_of(const ClothMesh& cloth) {
-  constexpr double kSmallestPart = 1e-9;  // of a triangle's share that counts as an area
+  constexpr double kSmallestPart = 1e-9;  // fraction of a triangle's share that counts as an area
   const double area = surface_area(cloth.mesh);
   double whole = 0, least = INFINITY;
   if (!cloth.uv.empty()) {
@@ -171,7 +173,7 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   for (const double m : mass) model.mass.push_back(static_cast<Real>(m));
 }
 
-/// One spring for each edge, in the order of the edges.
+/// Adds one spring per edge, in the order of the edges.
 template <class Real>
 void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   std::map<Edge, double> area;
@@ -199,7 +201,7 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   }
 }
 
-/// Weights of a hinge: its angle's derivative at rest, which is along the normal.
+/// Weights of a hinge: the derivative of its angle at rest, which is along the normal.
 template <class Real>
 HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& model) {
   const auto at = [&](int corner) {
@@ -222,7 +224,7 @@ HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& 
 /// Keeps the hinges or replaces them by the quadratic form.
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
-  constexpr double kFlat = 1e-5;  // rest angles below it are rounding [rad]
+  constexpr double kFlat = 1e-5;  // smaller rest angles are rounding [rad]
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
     most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));

@@ -2,9 +2,11 @@
 
 #include "core/cloth/cloth_model.h"
 
+// Cloths from triangle meshes.
+
 namespace weft {
 
-/// Builds a cloth from a triangle mesh as a model of one part.
+/// Builds a cloth from a triangle mesh as a model with one part.
 ///
 /// Every edge is a spring with k = Y(a) sum A / l^2 over its one or two triangles (approximate,
 /// exact in the mean over directions for equilateral triangles), with Y(a) = Y_w cos^4 a + Y_f
@@ -13,17 +15,17 @@ namespace weft {
 /// angle is added to it. Mass: a third of each triangle to its corners, or equal. Particles are
 /// renumbered breadth-first, so that neighbours lie near each other in memory.
 ///
-/// Material coordinates are the uv, scaled alike in both directions so that the areas agree; or,
+/// Material coordinates are the uv, scaled equally in both directions so that the areas agree; or,
 /// without usable uv, the projection along the axis that the mesh faces most, with v downwards.
 ///
-/// The definition is valid already, but for its mesh. Throws DefinitionError on "cloth.mesh...." if
+/// The definition must be valid, except for its mesh. Throws DefinitionError on "cloth.mesh...." if
 /// a vertex is unused, two vertices coincide, a triangle has no area or appears twice, or an edge
 /// has more than two triangles.
 template <class Real>
 ClothModel<Real> build_mesh_cloth(const ClothDef& def);
 
-/// For each place in the new order the old index: breadth-first from vertex 0 over edges,
-/// neighbours in the order of their old indices; further connected pieces follow.
+/// Old index for each position in the new order: breadth-first from vertex 0 over edges, neighbours
+/// in the order of their old indices; further connected components follow.
 std::vector<Index> breadth_first_order(std::size_t vertices,
                                        const std::vector<Triangle>& triangles);
 

@@ -1,3 +1,5 @@
+// Sorts edges into lists by particle.
+
 #include "core/cloth/neighbours.h"
 
 namespace weft {

@@ -6,9 +6,11 @@
 
 #include "core/types.h"
 
+// Neighbourhood of particles along edges.
+
 namespace weft {
 
-/// Of each particle those that an edge joins to it.
+/// The particles joined to each particle by an edge.
 class Neighbours {
  public:
   struct Neighbour {
@@ -16,8 +18,8 @@ class Neighbours {
   };
 
   Neighbours() = default;
-  /// @param particles  how many there are
-  /// @param edges      whose ends are below that; the order of each particle's neighbours
+  /// @param particles  their number
+  /// @param edges      with ends below that; their order is that of each particle's neighbours
   Neighbours(std::size_t particles, const std::vector<Edge>& edges);
 
   std::span<const Neighbour> of(std::size_t particle) const {
@@ -27,7 +29,7 @@ class Neighbours {
   }
 
  private:
-  std::vector<Index> first_;  ///< of each particle, in the list; and the list's end
+  std::vector<Index> first_;  ///< of each particle in the list; then the list's end
   std::vector<Neighbour> list_;
 };
 

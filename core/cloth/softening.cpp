@@ -1,3 +1,5 @@
+// Softens the springs of a model.
+
 #include "core/cloth/softening.h"
 
 #include <cmath>
@@ -6,7 +8,7 @@ namespace weft {
 
 template <class Real>
 void soften(double softness, ClothModel<Real>& model) {
-  // c = 2 zeta k / omega, and omega falls with the root.
+  // c = 2 zeta k / omega, and omega scales with the root.
   const double root = std::sqrt(softness);
   const Real stiffness = static_cast<Real>(softness), damping = static_cast<Real>(root);
   for (Spring<Real>& spring : model.springs) {
