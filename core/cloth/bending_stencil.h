@@ -4,36 +4,38 @@
 
 #include "core/cloth/cloth_model.h"
 
+// Stencils of the quadratic bending form.
+
 namespace weft {
 
-// The parts of full springs and stencils that the cells about them stand for, half for each cell
-// beside a line, in grids of which cells may be missing.
+// Shares of springs and stencils in grids with missing cells: each cell beside a line stands for
+// half.
 
-/// Of the spring from place (r, c) along u to (r, c + 1).
+/// Share of the spring along u from (r, c) to (r, c + 1).
 inline double share_along(const GridCells& g, int r, int c) {
   return 0.5 * (g.has_cell(r - 1, c) + g.has_cell(r, c));
 }
 
-/// Of the spring along v to (r + 1, c).
+/// Share of the spring along v from (r, c) to (r + 1, c).
 inline double share_down(const GridCells& g, int r, int c) {
   return 0.5 * (g.has_cell(r, c - 1) + g.has_cell(r, c));
 }
 
-/// Of the second difference along u centred at (r, c).
+/// Share of the second difference along u centred at (r, c).
 inline double share_bend_u(const GridCells& g, int r, int c) {
   return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r - 1, c)) +
                 (g.has_cell(r, c - 1) && g.has_cell(r, c)));
 }
 
-/// Of the second difference along v centred at (r, c).
+/// Share of the second difference along v centred at (r, c).
 inline double share_bend_v(const GridCells& g, int r, int c) {
   return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
                 (g.has_cell(r - 1, c) && g.has_cell(r, c)));
 }
 
-/// One line of the matrix of second differences 1 -2 1 along `count` particles, at `k`: weight of
-/// the particle itself, of the one before and of the one behind (two away it is 1), and how many
-/// cells meet there, 1 or 2.
+/// Row `k` of the matrix of second differences 1 -2 1 along `count` particles: the weights of the
+/// particle itself, of the previous and of the next one (two away it is 1), and the number of cells
+/// that meet there, 1 or 2.
 template <class Real>
 std::array<Real, 4> bending_line(int k, int count) {
   const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
@@ -42,10 +44,10 @@ std::array<Real, 4> bending_line(int k, int count) {
           static_cast<Real>(-2 * (here + behind)), static_cast<Real>((k > 0) + (k + 1 < count))};
 }
 
-/// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of the quadratic
-/// bending form of a part, whose energy is stiffness/2 |sum_k w_k x_k|^2: of a grid 1 -2 1 along
-/// each row and column (lines with a cell on one side alone stand for half), and 1 -1 -1 1 over the
-/// corners of each cell; of a mesh one for each inner edge.
+/// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of a part's
+/// quadratic bending form, whose energy is stiffness/2 |sum_k w_k x_k|^2. A grid has 1 -2 1 along
+/// each row and column (half on lines with a cell on one side only), and 1 -1 -1 1 over the corners
+/// of each cell; a mesh has one for each inner edge.
 template <class Real, class Visitor>
 void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
   static constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};

@@ -1,3 +1,5 @@
+// Sums elastic energies over the parts of a model.
+
 #include "core/forces/energy_pass.h"
 
 namespace weft {

@@ -6,22 +6,24 @@
 #include "core/forces/grid_pass.h"
 #include "core/types.h"
 
+// Elastic energy of a model.
+
 namespace weft {
 
-/// Tells the elastic energy of a cloth for solvers that do not step in GridPass: grids as vector
-/// code, the rest element by element.
+/// Computes the elastic energy of a cloth for solvers that do not step in GridPass: grids by vector
+/// code, other parts element by element.
 template <class Real>
 class EnergyPass {
  public:
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);
 
-  /// Energies of springs and bending and the largest strain.
+  /// Energies of springs and bending, and the largest strain.
   /// @param x  of all particles of the model [m]
   ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
 
  private:
-  std::vector<GridPass<Real>> grids_;  ///< of each part
+  std::vector<GridPass<Real>> grids_;  ///< per part
 };
 
 }  // namespace weft

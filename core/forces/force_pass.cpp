@@ -1,3 +1,5 @@
+// Element-wise forces and energies.
+
 #include "core/forces/force_pass.h"
 
 #include <algorithm>
@@ -22,7 +24,7 @@ T& at(std::vector<T>& values, Index i) {
   return values[static_cast<std::size_t>(i)];
 }
 
-/// w x of one bending stencil.
+/// Value of one bending stencil, sum_k w_k x_k.
 template <class Real>
 Vec3<Real> stencil_value(const Vec3Array<Real>& x, const Index* corners, const double* weights,
                          int count) {

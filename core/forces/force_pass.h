@@ -5,9 +5,9 @@
 
 namespace weft {
 
-// Forces element by element, in the order of the model's lists. They serve every cloth and are the
-// reference for the row-wise form of grid_pass.h. Each function takes one part of the model; those
-// without a part do all of them in their order.
+// Forces element by element, in the order of the model's lists. They work for every cloth and are
+// the reference for the row-wise form of grid_pass.h. Each function handles one part of the model;
+// those without a part handle all parts in order.
 
 /// Elastic energies at one instant [J], summed in double.
 struct ElasticEnergy {
@@ -27,7 +27,7 @@ template <class Real>
 void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                       const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
-/// Adds the forces of the quadratic bending form to `force` [N]: -k w^T (w x) for each stencil w.
+/// Adds the forces of the quadratic bending form to `force` [N]: -k w^T (w x) per stencil w.
 template <class Real>
 void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force);
@@ -40,16 +40,16 @@ void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                     const Vec3Array<Real>& wind, double density, const Vec3Array<Real>& x,
                     const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
-/// Stencils of the quadratic form that one evaluation of a part visits; 0 if it has none.
+/// Number of quadratic stencils that one evaluation of a part visits; 0 without the form.
 template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part);
 
-/// Energies of springs and bending of a part and its largest strain. NaN is kept and seen.
+/// Energies of springs and bending of a part, and its largest strain. NaN propagates.
 template <class Real>
 ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real>& part,
                              const Vec3Array<Real>& x);
 
-/// Adds up energies and keeps the larger strain; NaN is kept.
+/// Adds energies and keeps the larger strain; NaN propagates.
 void add(const ElasticEnergy& part, ElasticEnergy& sum);
 
 template <class Real>

@@ -1,3 +1,4 @@
+// Air forces on a grid.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_AIR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_AIR_INL_H
@@ -20,8 +21,8 @@ struct AirLaw {
   hn::Vec<D> pressure_sixth, skin_sixth, skin_eighteenth, third, smallest;
 };
 
-/// A third of the force of the air on triangles (a, b, c); the formula of air.h, with the area in
-/// the length of the normal: A n = normal / 2.
+/// A third of the air force on triangles (a, b, c); the formula of air.h, with the area expressed
+/// by the length of the normal: A n = normal / 2.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> air_third(D d, const AirLaw<D>& law, const Triple<V>& ab, const Triple<V>& ac,
                                const Triple<V>& slip_sum) {
@@ -34,8 +35,8 @@ HWY_INLINE Triple<V> air_third(D d, const AirLaw<D>& law, const Triple<V>& ab, c
   return fused(d, normal, along, slip_sum * across);
 }
 
-/// Forces of the air, each triangle once, into the external forces. A cell has its corners a, b in
-/// its upper and f, e in its lower row. Even cells are cut from a to e, odd ones from b to f
+/// Adds the air's forces to the external forces, each triangle once. A cell has corners a, b in its
+/// upper and f, e in its lower row. Even cells are split from a to e, odd ones from b to f
 /// (split_cells in grid_cells.h).
 template <class Real>
 HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction) {

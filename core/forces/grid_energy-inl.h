@@ -1,3 +1,4 @@
+// Elastic energies of a grid.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_ENERGY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_ENERGY_INL_H
@@ -15,7 +16,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Doubled energies and the largest strain by column, at one column.
+/// Doubled energies and largest strain, accumulated per column.
 template <class D>
 struct ColumnSums {
   hn::Vec<D> stretch, bending, strain;
@@ -26,14 +27,14 @@ struct ColumnSums {
     stretch = fused(tag, hn::Mul(stiffness, longer), longer, stretch);
     const auto part =
         hn::IfThenZeroElse(hn::Eq(stiffness, hn::Zero(tag)), hn::Div(hn::Abs(longer), rest_length));
-    strain = hn::IfThenElse(hn::Le(part, strain), strain, part);  // takes NaN
+    strain = hn::IfThenElse(hn::Le(part, strain), strain, part);  // lets NaN through
   }
   HWY_INLINE void add_stencil(D tag, hn::Vec<D> stiffness, const Triple<hn::Vec<D>>& value) {
     bending = fused(tag, stiffness, fused_dot(tag, value, value), bending);
   }
 };
 
-/// Energies of springs and bending and the largest strain at the positions of the grid.
+/// Energies of springs and bending, and the largest strain, at the grid's positions.
 template <class Real>
 HWY_INLINE ElasticEnergy elastic_energy(const GridView<Real>& g) {
   using D = GridTag<Real>;

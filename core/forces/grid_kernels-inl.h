@@ -1,3 +1,4 @@
+// Entry points of a grid's kernels for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_KERNELS_INL_H
@@ -11,7 +12,7 @@
 #include "core/forces/grid_paths-inl.h"
 #include "core/forces/grid_step-inl.h"
 
-// The names that Highway's dispatch goes by, without templates.
+// Entry points without templates, as Highway's dispatch requires.
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {

@@ -5,8 +5,8 @@
 
 namespace weft {
 
-// The vector code behind GridPass, chosen for the processor when the program runs. Arrays of the
-// whole model take three numbers a particle.
+// The vector code behind GridPass, selected for the processor at run time. Arrays of the whole
+// model have three numbers per particle.
 
 #define WEFT_GRID_KERNELS(Real)                                                                    \
   /** Takes three numbers a particle apart into three lines of every row. @param to  at (0, 0)     \

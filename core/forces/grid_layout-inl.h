@@ -1,3 +1,4 @@
+// Loads, stores and loops over a grid's rows.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_LAYOUT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_LAYOUT_INL_H
@@ -22,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class Real>
 using GridTag = hn::CappedTag<Real, kGridLanes>;
 
-/// Three components, a line each.
+/// Loads three components, one line each.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE Triple<hn::Vec<D>> load(D d, const Real* at, std::ptrdiff_t line) {
   return {hn::LoadU(d, at), hn::LoadU(d, at + line), hn::LoadU(d, at + 2 * line)};
@@ -35,9 +36,9 @@ HWY_INLINE void store(D d, const Triple<hn::Vec<D>>& a, Real* at, std::ptrdiff_t
   hn::StoreU(a.z, d, at + 2 * line);
 }
 
-/// Calls body(d, row, column, particle) for stretches of the grid's rows: `particle` is the place
-/// of their first number in arrays of x y z x y z. Whole vectors where a row has as many; the rest
-/// of it particle by particle, so that nobody is visited twice.
+/// Calls body(d, row, column, particle) for stretches of the grid's rows; `particle` is the offset
+/// of their first number in arrays of x y z x y z. A stretch is a whole vector where the row is
+/// long enough; the remainder goes particle by particle, so that each is visited exactly once.
 template <class Real, class Body>
 HWY_INLINE void for_each_stretch(const GridView<Real>& g, Body&& body) {
   const GridTag<Real> wide;
@@ -52,7 +53,7 @@ HWY_INLINE void for_each_stretch(const GridView<Real>& g, Body&& body) {
   }
 }
 
-/// Takes three numbers a particle apart into three lines of every row.
+/// Splits arrays of three numbers per particle into three lines for every row.
 /// @param pitch  from row to row
 template <class Real>
 HWY_INLINE void take_apart(const GridView<Real>& g, const Real* from, Real* to,

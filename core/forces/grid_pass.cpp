@@ -1,3 +1,5 @@
+// Lays out a grid part's arrays and runs its kernels, in bands on several threads.
+
 #include "core/forces/grid_pass.h"
 
 #include <algorithm>
@@ -9,13 +11,13 @@
 namespace weft {
 namespace {
 
-/// Bands of rows have at least so many particles, and so many rows: threads that meet at every
-/// substep, and the two rows that a band looks up again, cost more than they save on smaller ones.
+/// Minimum size of a band of rows: on smaller bands, threads that synchronise at every substep and
+/// the two rows that a band recomputes cost more than they save.
 constexpr std::ptrdiff_t kBandParticles = 2048, kBandRows = 16;
 constexpr std::ptrdiff_t kMostBands = 4;
 
-/// Sum of the powers that a pass has added up; their line is cleared for the next, and stays clear
-/// if nothing is pulled.
+/// Sum of the powers that a pass has accumulated; clears their line for the next pass. The line
+/// stays zero if nothing is pulled.
 template <class Real>
 double take_power(const GridView<Real>& view, bool pulled) {
   if (!pulled) return 0;
@@ -33,7 +35,7 @@ void GridPass<Real>::lay_out(const ClothPart<Real>& part) {
   view_.rows = cells.rows;
   view_.columns = cells.columns;
   view_.line = (cells.columns + kGridLanes - 1) / kGridLanes * kGridLanes;
-  // Rows that lie a multiple of 4 KiB apart would compete for the same lines of the cache.
+  // Rows a multiple of 4 KiB apart would compete for the same cache lines.
   if (view_.line % 64 == 0) view_.line += kGridLanes;
   rows_.assign(static_cast<std::size_t>(cells.rows), {});
   for (int r = 0; r < cells.rows; ++r) {
@@ -70,7 +72,7 @@ std::vector<Real> GridPass<Real>::coefficient_row(const ClothPart<Real>& part, i
   return lines;
 }
 
-/// Rows that are alike, as nearly all of a whole grid are, share their lines.
+/// Equal rows, which most rows of a whole grid are, share their coefficients.
 template <class Real>
 void GridPass<Real>::lay_out_coefficients(const ClothPart<Real>& part) {
   coefficients_.clear();
@@ -107,7 +109,7 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_.odd = odd_.data();
 }
 
-/// Zeros follow for what the last rows and vectors read beyond them.
+/// Trailing zeros serve the reads of the last rows and vectors beyond their ends.
 template <class Real>
 Real* GridPass<Real>::allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const {
   array.assign(static_cast<std::size_t>(lines * view_.line + kGridLanes), Real(0));
@@ -199,7 +201,7 @@ int GridPass<Real>::band_count() const {
       std::min(rows / kBandRows, rows * view_.columns / kBandParticles), 1, kMostBands));
 }
 
-/// An even one, as what rows carry changes places from each to the next.
+/// An even row, because the buffers carried from row to row alternate.
 template <class Real>
 std::ptrdiff_t GridPass<Real>::first_row(int band) const {
   const int bands = band_count();
@@ -224,7 +226,7 @@ GridView<Real> GridPass<Real>::view_of(Band& band) const {
   return view;
 }
 
-/// Looks at rows of other bands while nobody moves them.
+/// Reads rows of other bands, and must therefore finish before any band moves.
 template <class Real>
 void GridPass<Real>::begin_band(int number) {
   Band& band = bands_[static_cast<std::size_t>(number)];
@@ -234,8 +236,8 @@ void GridPass<Real>::begin_band(int number) {
     std::copy_n(view_.motion + tail * view_.pitch(), 4 * view_.pitch(), band.tail.data());
 }
 
-/// The last two rows look at the first two of the next band, which has moved them by then: they are
-/// advanced where their neighbours are still as they were.
+/// The last two rows read the first two of the next band, which may have moved by then: they are
+/// advanced with copies of those rows in their old state.
 template <class Real>
 void GridPass<Real>::advance_band(int number, const GridStep<Real>& step) {
   Band& band = bands_[static_cast<std::size_t>(number)];

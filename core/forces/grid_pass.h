@@ -11,50 +11,52 @@
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
+// Row-wise forces and steps of grids in vector code.
+
 namespace weft {
 
-/// One part of the model that is a grid, whole or cut, row by row: every spring, bending stencil
-/// and triangle once a pass, as vector code chosen for the processor when the program runs. The
-/// results do not depend on that choice: only + - * / fma and square roots, in a fixed order.
+/// Forces of one grid part, whole or cut, row by row: each spring, bending stencil and triangle
+/// once per pass, in vector code selected for the processor at run time. The results do not depend
+/// on that selection: only + - * / fma and square roots, in a fixed order.
 ///
-/// It has its own positions and velocities, taken apart into components, which it moves; they are
-/// loaded from and stored into the arrays of the whole model.
+/// It advances its own copies of positions and velocities, split into components; they are loaded
+/// from and stored into the arrays of the whole model.
 template <class Real>
 class GridPass {
  public:
-  /// Sizes the arrays that are always needed. A part that is no grid or has hinges, skip springs or
-  /// direct springs does not fit and stays with the element-wise form.
+  /// Sizes the arrays that are always needed. A part that is not a grid, or has hinges, skip
+  /// springs or direct springs, does not fit and stays with the element-wise form.
   void prepare(const ClothPart<Real>& part);
 
-  /// Sizes those for external forces, and for the wind if there is air. Until then nothing that
-  /// needs them may be called.
+  /// Sizes the arrays of external forces, and of the wind if there is air. Must precede every call
+  /// that uses them.
   void make_room(bool air);
 
-  /// Sizes what `load_paths` and `keep` fill. Until then neither may be called.
+  /// Sizes the arrays that `load_paths` and `keep` fill. Must precede both.
   void make_room_for_paths();
 
-  /// Sizes what `advance` needs to run on several threads. Until then it runs on one.
+  /// Sizes the arrays for `advance` on several threads. Without them it runs on one.
   void make_room_for_bands();
 
   bool fits() const { return view_.rows > 0; }
 
-  /// Takes positions and velocities of the whole model for the calls below.
+  /// Loads positions and velocities of the whole model for the calls below.
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v);
   void load_positions(const Vec3Array<Real>& x);
   void load_inverse_mass(const std::vector<Real>& inverse_mass);
   void load_wind(const Vec3Array<Real>& wind);
   void load_external(const Vec3Array<Real>& force);
 
-  /// Takes over straight paths of the whole model's particles.
-  /// @param base      where they are at time 0 [m]
-  /// @param velocity  along them [m/s]
+  /// Loads straight paths of the whole model's particles.
+  /// @param base      positions at time 0 [m]
+  /// @param velocity  along the paths [m/s]
   void load_paths(const Vec3Array<Real>& base, const Vec3Array<Real>& velocity);
 
-  /// The box around the ways of all particles off their paths [m].
-  /// @param time  at which they are where they are [s]
+  /// Bounding box of all particles' displacements from their paths [m].
+  /// @param time  of the present positions [s]
   Aabb<Real> box_off_paths(Real time) const;
 
-  /// Keeps positions and velocities as they are, for `take_back`.
+  /// Saves positions and velocities for `take_back`.
   void keep() { kept_ = motion_; }
   void take_back() { motion_ = kept_; }
 
@@ -64,32 +66,31 @@ class GridPass {
 
   /// One substep with the forces of springs, dashpots, bending and, if the step says so, the
   /// external ones.
-  /// @param executor  does bands of rows on its threads; may be null
+  /// @param executor  runs bands of rows on its threads; may be null
   /// @returns power of the external forces at the new velocities [W]
   double advance(const GridStep<Real>& step, Executor* executor = nullptr);
 
-  /// Takes over the model's velocities, and its positions after it has moved them by dt.
+  /// Loads the model's velocities, moves its positions by dt and loads them too.
   /// @returns power of the external forces [W]; 0 if not pulled
   double drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x);
 
-  /// Forces of springs, dashpots and bending on each particle of the part [N]; overwrites its
-  /// stretch of `force`, which is the whole model's, and the external forces, for which it makes
-  /// room.
+  /// Forces of springs, dashpots and bending on each particle of the part [N]. Overwrites its range
+  /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.
   void compute_internal_forces(Vec3Array<Real>& force);
 
-  /// Makes the force of the air on each particle the external force [N]. Formula in air.h.
+  /// Stores the air's force on each particle as the external force [N]. Formula in air.h.
   void compute_air_forces(double density);
 
-  /// Energies of springs and bending and the largest strain at the grid's positions. Sums are by
+  /// Energies of springs and bending, and the largest strain, at the grid's positions. Sums are per
   /// column in Real, then in double.
   ElasticEnergy elastic_energy() const;
 
-  /// What the arrays take [B].
+  /// Size of the arrays [B].
   std::size_t bytes() const;
 
  private:
-  /// What a band of rows needs of its own to be advanced while others are: scratch, and its last
-  /// two rows with the next two as they were before.
+  /// Private data of a band of rows that is advanced in parallel with others: scratch, and its last
+  /// two rows with copies of the next two in their old state.
   struct Band {
     AlignedVector<Real> scratch, tail;
     double power = 0;  ///< of the external forces [W]

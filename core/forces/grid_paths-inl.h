@@ -1,3 +1,4 @@
+// Displacements of a grid's particles from straight paths.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_PATHS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_PATHS_INL_H
@@ -15,8 +16,8 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Widens the bounds by how far each of `count` numbers is off its straight path; at least as many
-/// as a vector takes.
+/// Extends the bounds by the displacement of each of `count` numbers from its straight path;
+/// `count` is at least the width of a vector.
 /// @param base, velocity  of the paths
 template <class D, class V = hn::Vec<D>, class Real = hn::TFromD<D>>
 HWY_INLINE void widen(D d, const Real* x, const Real* base, const Real* velocity, Real time,
@@ -24,7 +25,7 @@ HWY_INLINE void widen(D d, const Real* x, const Real* base, const Real* velocity
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const V t = hn::Set(d, time);
   for (std::ptrdiff_t c = 0; c < count; c += lanes) {
-    // The last vector may overlap the one before.
+    // The last vector may overlap the previous one.
     const std::ptrdiff_t at = std::min(c, count - lanes);
     const V path = hn::Add(hn::LoadU(d, base + at), hn::Mul(hn::LoadU(d, velocity + at), t));
     const V off = hn::Sub(hn::LoadU(d, x + at), path);
@@ -33,9 +34,9 @@ HWY_INLINE void widen(D d, const Real* x, const Real* base, const Real* velocity
   }
 }
 
-/// The box around the ways of all particles off their straight paths; least and largest numbers
-/// are the same for any width of vectors.
-/// @param paths  six lines a row: where the paths are at time 0 [m], velocities along them [m/s]
+/// Bounding box of all particles' displacements from their straight paths; minima and maxima are
+/// the same for any vector width.
+/// @param paths  six lines per row: positions at time 0 [m], velocities along the paths [m/s]
 /// @param box    receives the lower and the upper corner [m]
 template <class Real>
 HWY_INLINE void box_paths(const GridView<Real>& g, const Real* paths, Real time, Real* box) {

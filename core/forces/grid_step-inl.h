@@ -1,3 +1,4 @@
+// Forces, kick and drift of a grid's rows.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_STEP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_STEP_INL_H
@@ -14,10 +15,10 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Factors of the springs of one kind that start on a row, into a line of scratch. A loop for each
-/// kind is short enough for the processor to work at several vectors at once, which hides the
-/// latency of roots and divisions.
-/// @param from, to  where a spring's ends are, counted from its place in the row
+/// Force factors of one kind of spring that starts on a row, into a line of scratch. One loop per
+/// kind is short enough for the processor to overlap several vectors, which hides the latency of
+/// roots and divisions.
+/// @param from, to  offsets of a spring's ends from its site in the row
 template <class Real>
 HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real rest_length,
                                 GridCoefficient stiffness, std::ptrdiff_t from, std::ptrdiff_t to,
@@ -38,16 +39,16 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
   }
 }
 
-/// The lines of scratch that the forces on a row go through. What acts on the next column or the
-/// one after it is stored where it comes from and read from so many places before: aligned stores
-/// are cheap, and what is read before a line's start is the cleared tail of the line before it.
-/// What acts on the row below is kept for that.
+/// Lines of scratch for the forces on a row. A force on the next column, or the one after it, is
+/// stored at its source and read with an offset: aligned stores are cheap, and reads before a
+/// line's start hit the cleared tail of the previous line. Forces on the row below are kept for
+/// that row.
 template <class Real>
 struct ForceLines {
   Real *along, *down, *falling, *rising;  ///< factors of the springs
   Real *here, *right, *ahead;             ///< on this column, the next one, the one after it
-  Real* carry;                            ///< on the row below, by component
-  Real* bent;                             ///< bending stencils centred there, by component
+  Real* carry;                            ///< on the row below, per component
+  Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
   std::ptrdiff_t step;                    ///< from component to component
 
@@ -134,7 +135,7 @@ HWY_INLINE void visit_forces(const GridView<Real>& g, const ForceLines<Real>& fr
                     hn::Sub(hn::LoadU(d, from.right + c - 1), hn::LoadU(d, from.ahead + c - 2))));
 }
 
-/// Nothing is carried into the first row, nor over the left border.
+/// The first row receives no forces from above, and the left border none from the left.
 template <class Real>
 HWY_INLINE void clear_lines(const GridView<Real>& g) {
   const GridTag<Real> d;
@@ -143,7 +144,7 @@ HWY_INLINE void clear_lines(const GridView<Real>& g) {
     hn::StoreU(hn::Zero(d), d, g.scratch + c);
 }
 
-/// Forces alone, into the arrays of external forces.
+/// Only computes the forces, into the arrays of external forces.
 template <class Real>
 HWY_INLINE void internal_forces(const GridView<Real>& g) {
   clear_lines(g);
@@ -160,7 +161,7 @@ HWY_INLINE void internal_forces(const GridView<Real>& g) {
   }
 }
 
-/// Kick and drift of one component of a row, which nobody reads any more.
+/// Kick and drift of one component of a row that no later row reads.
 template <bool Pulled, class Real>
 HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int component,
                          const GridStep<Real>& step, const ForceLines<Real>& from, Real* power) {
@@ -189,8 +190,8 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
   });
 }
 
-/// Clears the lines of scratch, and brings there what the rows above carry to row `first`: springs
-/// reach one row down, bending two.
+/// Clears the lines of scratch, and fills them with the forces that the rows above carry to row
+/// `first`: springs reach one row down, bending two.
 template <class Real>
 HWY_INLINE void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
   clear_lines(g);
@@ -201,8 +202,8 @@ HWY_INLINE void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
   }
 }
 
-/// The whole substep of rows from `first` to before `last`, after `begin_rows` or the rows above.
-/// Powers of the external forces at the new velocities are added up in their line.
+/// The whole substep of rows `first` to `last` (exclusive), after `begin_rows` or the rows above.
+/// Accumulates the powers of the external forces at the new velocities in their line.
 template <class Real>
 HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
                         std::ptrdiff_t last) {
@@ -220,8 +221,8 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
   }
 }
 
-/// Moves positions of the model by its velocities and takes both over. Powers of the external
-/// forces are added up in their line.
+/// Moves positions of the model by its velocities and loads both. Accumulates the powers of the
+/// external forces in their line.
 template <class Real>
 HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool pulled, const Real* v, Real* x) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();

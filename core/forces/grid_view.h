@@ -4,19 +4,21 @@
 
 #include "core/cloth/cloth_model.h"
 
+// Layout of the arrays that a grid's kernels work on.
+
 namespace weft {
 
-inline constexpr int kGridLanes = 16;  ///< at least the widest vector, in numbers
+inline constexpr int kGridLanes = 16;  ///< not less than the widest vector, in numbers
 
-/// One row of a grid: `count` particles from column `column` on, numbered from `particle` on in the
-/// arrays of the whole model.
+/// One row of a grid: `count` particles from column `column` on, with indices from `particle` on in
+/// the arrays of the whole model.
 template <class Real>
 struct GridRow {
   std::ptrdiff_t column = 0, count = 0, particle = 0;
   const Real* coefficients = nullptr;  ///< kGridCoefficients lines, at column 0
 };
 
-/// Lines of coefficients, by the particle that springs and stencils start at.
+/// Lines of coefficients, indexed by the particle where springs and stencils start.
 enum GridCoefficient : int {
   kWarp,     ///< stiffness of the spring to (r, c + 1) [N/m]
   kWeft,     ///< of the spring to (r + 1, c) [N/m]
@@ -24,38 +26,38 @@ enum GridCoefficient : int {
   kTwist,    ///< bending: cell difference of cell (r, c) [N/m]
   kBendU,    ///< second difference along u centred at (r, c + 1) [N/m]
   kBendV,    ///< second difference along v centred at (r + 1, c) [N/m]
-  kHasCell,  ///< 1 if there is a cell (r, c), else 0
+  kHasCell,  ///< 1 if cell (r, c) exists, else 0
   kGridCoefficients
 };
 
-/// What the kernels of a grid read and write. Each row of the grid is a few lines of `line`
-/// numbers, a component of all its particles each, so that one pointer and the length of a line
-/// reach them all. Pointers are at (row 0, column 0); two rows of zeros follow the last. Places
-/// without a particle hold zeros.
+/// The data of a grid's kernels. Each row of the grid has a few lines of `line` numbers, each with
+/// one component of all its particles, so that one pointer and the line's length reach everything.
+/// Pointers are at (row 0, column 0); two rows of zeros follow the last. Sites without a particle
+/// hold zeros.
 template <class Real>
 struct GridView {
   int rows = 0, columns = 0;
-  std::ptrdiff_t line = 0;             ///< numbers a line, at least the columns in whole vectors
-  const GridRow<Real>* row = nullptr;  ///< of each row
+  std::ptrdiff_t line = 0;             ///< numbers per line, at least the columns in whole vectors
+  const GridRow<Real>* row = nullptr;  ///< per row
   Real* motion = nullptr;     ///< x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], unused
-  Real* external = nullptr;   ///< forces of air and hands, three lines a row [N]
-  Real* wind = nullptr;       ///< velocity of the air, three lines a row [m/s]
+  Real* external = nullptr;   ///< forces of air and hands, three lines per row [N]
+  Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
   GridSprings<Real> springs;
   Real* scratch = nullptr;  ///< kGridScratchLines lines
 
   std::ptrdiff_t pitch() const { return kMotionLines * line; }
-  /// Longer, because some are written a few places further.
+  /// Longer, because some stores have an offset.
   std::ptrdiff_t scratch_line() const { return line + kGridLanes; }
   static constexpr int kMotionLines = 8, kInverseMassLine = 3, kVelocityLine = 4;
 };
 
-/// Lines of scratch: factors of springs, forces on their way to other columns, what is carried to
-/// the row below (see grid_step-inl.h), powers by column.
+/// Lines of scratch: factors of springs, forces for other columns, forces carried to the row below
+/// (see grid_step-inl.h), powers per column.
 inline constexpr int kPowerLine = 19, kGridScratchLines = 20;
 
-/// Sum of what a pass has added up by column, in their order, so that the width of a vector does
-/// not matter.
+/// Sum of a pass's values per column, in column order, so that the width of a vector does not
+/// matter.
 template <class Real>
 double sum_of_columns(const GridView<Real>& grid, const Real* values) {
   double sum = 0;
@@ -63,8 +65,8 @@ double sum_of_columns(const GridView<Real>& grid, const Real* values) {
   return sum;
 }
 
-/// What a pass over a grid does with the forces: v <- keep v + push (f/m + g), x <- x + dt v.
-/// Particles without inverse mass get velocity 0.
+/// Time step of a grid pass: v <- keep v + push (f/m + g), x <- x + dt v. Particles without inverse
+/// mass get velocity 0.
 template <class Real>
 struct GridStep {
   Real keep = 0, push = 0;

@@ -1,3 +1,4 @@
+// Kicks particles in vector code.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_KICK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_KICK_INL_H
@@ -16,11 +17,11 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Kicks as many particles as there are lanes. Without fused multiplication, so that the bits are
-/// those of the formula.
-/// @param i     the first of them, counted as in `particles`, `from` and `to`
-/// @param from  velocities before [m/s]
-/// @param to    after; may be `from`
+/// Kicks one particle per lane. Without fused multiplication, so that the bits are those of the
+/// formula.
+/// @param i     index of the first, as in `particles`, `from` and `to`
+/// @param from  old velocities [m/s]
+/// @param to    new velocities; may be `from`
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE void kick_particles(D d, const KickLaw<Real>& law,
                                const KickedParticles<Real>& particles, std::size_t i,
@@ -35,7 +36,7 @@ HWY_INLINE void kick_particles(D d, const KickLaw<Real>& law,
   store_particles(d, load_particles(d, from + 3 * i) * keep + change, to + 3 * i);
 }
 
-/// Calls body(d, i) for particles by whole vectors and then, with one lane, for those left.
+/// Calls body(d, i) for whole vectors of particles, and then with one lane for the remaining ones.
 template <class Real, std::size_t Lanes = 16, class Body>
 HWY_INLINE void for_each_particle(std::size_t count, Body&& body) {
   const hn::CappedTag<Real, Lanes> wide;

@@ -2,20 +2,23 @@
 
 #include <array>
 
+// Parameters of a kick: the change of velocities by forces.
+
 namespace weft {
 
-/// v <- keep v + (f push/m + g push); gravity does not pull what is fixed, whose inverse mass is 0.
+/// v <- keep v + (f push/m + g push); gravity does not act on fixed particles, whose inverse mass
+/// is 0.
 template <class Real>
 struct KickLaw {
   Real keep = 1, push = 0;        ///< push in [s]
   std::array<Real, 3> gravity{};  ///< g [m/s^2]
 };
 
-/// What a kick reads beside forces and velocities, from the same particle on as those.
+/// Input of a kick besides forces and velocities; all start at the same particle.
 template <class Real>
 struct KickedParticles {
-  const Real* inverse_mass = nullptr;  ///< [1/kg], one a particle; 0 where it is fixed
-  const Real* external = nullptr;      ///< more forces [N], three numbers a particle; or null
+  const Real* inverse_mass = nullptr;  ///< [1/kg], one per particle; 0 if it is fixed
+  const Real* external = nullptr;      ///< more forces [N], three numbers per particle; or null
 };
 
 }  // namespace weft

@@ -1,3 +1,4 @@
+// Forces of a mesh for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_MESH_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_MESH_KERNELS_INL_H
@@ -18,7 +19,8 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A particle's three numbers and one of the next particle, which the model's last one has not.
+/// A particle's three numbers and the first of the next particle, which does not exist for the
+/// model's last one.
 /// @param from   numbers of the block's first particle
 /// @param spare  whether this may be the last one
 template <class D4>
@@ -32,7 +34,7 @@ HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, st
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// Every fourth lane's particle, as quads one behind the other.
+/// Every fourth lane's particle, as consecutive quads.
 /// @param ways  of the first of them
 template <bool MeetsLast, class D>
 HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshWay* ways,
@@ -55,7 +57,7 @@ HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshWay* ways,
 }
 #endif
 
-/// Brings the triples of as many particles together as there are lanes.
+/// Gathers the vectors of one particle per lane.
 /// @tparam MeetsLast  whether the model's last particle may be among them
 template <bool MeetsLast, class D>
 HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways,
@@ -82,9 +84,9 @@ HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* way
   return {hn::Load(d, numbers[0]), hn::Load(d, numbers[1]), hn::Load(d, numbers[2])};
 }
 
-/// Keeps triples as quads, those of every fourth lane one behind the other.
-/// @param k   the first lane's place in the group
-/// @param to  the group's
+/// Stores triples as quads, those of every fourth lane consecutively.
+/// @param k   the first lane's index in the group
+/// @param to  the group's quads
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE void store_quads(D d, const Triple<hn::Vec<D>>& a, int k, Real* to) {
   HWY_ALIGN Real numbers[3][hn::MaxLanes(D())];
@@ -114,13 +116,13 @@ HWY_INLINE void store_quads(D d, const Triple<hn::Vec<D>>& a, int k, float* to) 
 }
 #endif
 
-/// Where the kernel stands in the ring of pulls.
+/// Position of the kernel in the ring of pulls.
 template <class Real>
 struct RingPlace {
   Real* ring;
   std::size_t at, size;  ///< in quads
 
-  /// Room for the next slot.
+  /// Returns the next slot.
   HWY_INLINE Real* next() {
     Real* const slot = ring + 4 * at;
     at = at + kMeshGroup == size ? 0 : at + kMeshGroup;
@@ -128,7 +130,7 @@ struct RingPlace {
   }
 };
 
-/// Pulls of a group on its members by those that come later, kept in the ring too.
+/// Pulls on a group's members by later neighbours; also stored in the ring.
 /// @param x,v  of the block's first particle
 /// @param sum  forces as quads
 template <bool MeetsLast, class Real>
@@ -165,8 +167,8 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, c
   }
 }
 
-/// Takes from the members of a group what those that came before were pulled with.
-/// @param pull  where those pulls are, by slot
+/// Subtracts from a group's members the pulls that earlier neighbours have stored.
+/// @param pull  positions of those pulls, by slot
 /// @param sum   forces so far as quads
 /// @param to    all forces, by particle of the block
 template <class Real>
@@ -177,7 +179,7 @@ HWY_INLINE void pull_back(const MeshGroup& group, const MeshWay* way, const Real
   for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
     const Real *const from = sum + part, *const kept = ring + part;
     const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (way[k] / 3) + part; };
-    // Four at a time: each waits for its own sums alone.
+    // Four at a time: each waits only for its own sums.
     for (std::size_t k = 0; k < kMeshGroup; k += 4) {
       auto f0 = hn::Load(d, from + 4 * quad_of_lane(k)),
            f1 = hn::Load(d, from + 4 * quad_of_lane(k + 1)),
@@ -197,8 +199,8 @@ HWY_INLINE void pull_back(const MeshGroup& group, const MeshWay* way, const Real
   }
 }
 
-/// Calls take(first, count, force) for each block, one after the other, with the forces as quads.
-/// What it is told of is not read any more.
+/// Calls take(first, count, force) for each block in order, with the forces as quads. The particles
+/// passed to it are not read again.
 template <class Real, class Take>
 HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const Real* v,
                                Take&& take) {

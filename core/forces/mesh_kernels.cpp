@@ -1,3 +1,5 @@
+// Compiles a mesh's kernels for each instruction set and dispatches to them.
+
 #include "core/forces/mesh_kernels.h"
 
 #include <algorithm>
@@ -8,7 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once for each instruction set; the second inclusion guard belongs to that.
+// Compiled once for each instruction set; the second include guard serves that.
 #include "core/forces/mesh_kernels-inl.h"
 
 #if HWY_ONCE

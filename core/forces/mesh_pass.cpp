@@ -1,3 +1,5 @@
+// Sorts a mesh's springs into the lists of its kernels.
+
 #include "core/forces/mesh_pass.h"
 
 #include <algorithm>
@@ -12,10 +14,10 @@
 namespace weft {
 namespace {
 
-/// Of one particle. The hub of a wheel would leave nearly all slots of its group free.
+/// At one particle. The hub of a wheel would leave nearly all slots of its group unused.
 constexpr std::size_t kMostSprings = 64;
 
-/// Quads in the ring of pulls: as far as 16 bits lead.
+/// Quads in the ring of pulls, limited by the 16 bits of an offset.
 constexpr std::size_t kLongestRing = 65536 * kPullUnit / 4;
 
 }  // namespace
@@ -39,8 +41,8 @@ bool MeshPass<Real>::collect_springs(const ClothModel<Real>& model, const ClothP
   return true;
 }
 
-/// Entries k w_i w_j of the bending matrix. Those of a row add up to zero, so its own is not
-/// needed: the force is minus the sum of entries times ways to the neighbours.
+/// Entries k w_i w_j of the bending matrix. Each row sums to zero, so its diagonal is not needed:
+/// the force is minus the sum of entries times differences to the neighbours.
 template <class Real>
 void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
   const auto link_to = [](Row& row, Index other) -> Link& {
@@ -106,8 +108,9 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
   groups_.push_back(group);
 }
 
-/// Particles of a block that pull as many others share a group, so that few slots stay free; who
-/// are pulled by as many stand together, so that the processor foresees where their lists end.
+/// Groups particles of a block that pull equally many others, so that few slots stay unused;
+/// particles pulled by equally many are adjacent, so that the branch predictor learns where their
+/// lists end.
 template <class Real>
 void MeshPass<Real>::sort_block(const Rows& rows, Members& block) {
   const auto lengths = [&](std::size_t i) {
@@ -117,12 +120,13 @@ void MeshPass<Real>::sort_block(const Rows& rows, Members& block) {
                    [&](std::size_t a, std::size_t b) { return lengths(a) < lengths(b); });
 }
 
-/// Lists of all blocks. Whoever pulls a particle of a block is in it or in one before.
+/// Lists of all blocks. The earlier neighbours of a particle are in its own block or a previous
+/// one.
 /// @returns the members of each group
 template <class Real>
 std::vector<typename MeshPass<Real>::Members> MeshPass<Real>::lay_out(Rows& rows) {
   std::vector<Members> groups;
-  std::size_t reach = 0;  // how far back in the ring anybody looks
+  std::size_t reach = 0;  // the farthest look-back in the ring
   for (std::size_t begin = 0; begin < rows.size(); begin += kMeshBlock) {
     Members block(std::min<std::size_t>(kMeshBlock, rows.size() - begin));
     std::iota(block.begin(), block.end(), begin);
@@ -141,7 +145,7 @@ std::vector<typename MeshPass<Real>::Members> MeshPass<Real>::lay_out(Rows& rows
   return groups;
 }
 
-/// Where in the ring each one finds what earlier ones pulled it with.
+/// Offsets in the ring of the pulls that earlier neighbours store for each particle.
 template <class Real>
 void MeshPass<Real>::list_pulls(const Rows& rows, const std::vector<Members>& groups) {
   in_reach_ = in_reach_ && view_.ring_size < kLongestRing;

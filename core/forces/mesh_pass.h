@@ -9,6 +9,8 @@
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
+// Forces of a mesh by gathering, in vector code.
+
 namespace weft {
 
 /// Springs, dashpots and quadratic bending of one part of the model by gathering: each particle
@@ -18,22 +20,22 @@ template <class Real>
 class MeshPass {
  public:
   /// Lists the neighbours. A part whose springs are not all damped in proportion to their
-  /// stiffness, with more than 64 springs at a particle or with neighbours more than some thousand
-  /// particles apart does not fit and stays with the element-wise form.
+  /// stiffness, with more than 64 springs at a particle, or with neighbours more than some thousand
+  /// particles apart, does not fit and stays with the element-wise form.
   void prepare(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
   bool fits() const { return view_.count > 0; }
 
-  /// Overwrites the part's stretch of `force` [N].
+  /// Overwrites the part's range of `force` [N].
   /// @param x,v  of all particles [m], [m/s]
   void compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
 
-  /// Kicks the part's stretch of `v` by the forces, without a list of them.
+  /// Kicks the part's range of `v` by the forces, without a list of them.
   /// @param particles  from the model's first particle on
   void kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
             const Vec3Array<Real>& x, Vec3Array<Real>& v);
 
-  /// What the arrays take [B].
+  /// Size of the arrays [B].
   std::size_t bytes() const;
 
  private:
@@ -42,11 +44,11 @@ class MeshPass {
     Real rest_length = 0, stiffness = 0;
     double bending_weight = 0;
   };
-  /// Later neighbours of a particle: those that it has a spring with, and those it only bends with.
+  /// Later neighbours of a particle: those joined by a spring, and those joined only by bending.
   struct Row {
     std::vector<Link> near, far;
-    std::size_t pulled_by = 0;         ///< earlier ones
-    std::vector<std::size_t> earlier;  ///< pulls of earlier ones, counted over the whole mesh
+    std::size_t pulled_by = 0;         ///< number of earlier neighbours
+    std::vector<std::size_t> earlier;  ///< their pulls, numbered over the whole mesh
   };
   using Rows = std::vector<Row>;  // by particle of the part
   using Members = std::vector<std::size_t>;
@@ -66,7 +68,7 @@ class MeshPass {
   AlignedVector<Real> numbers_, ring_;
   std::vector<std::uint16_t> pulls_;
   std::size_t pull_count_ = 0;  // lanes of slots laid out so far
-  bool in_reach_ = true;        // every neighbour is a MeshWay off
+  bool in_reach_ = true;        // every neighbour is within a MeshWay
 };
 
 }  // namespace weft

@@ -5,14 +5,16 @@
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
+// Force and energy of a spring.
+
 namespace weft {
 
 /// Keeps divisions by the squared length finite when both ends coincide [m^2]. The elastic force
 /// divides by the root of it alone, the dashpot by it, so it must not be too small for float.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
-/// Force on end i of a spring from x_i to x_j (the opposite acts on j) [N]:
-/// k d (1 - L/l) + c (d . dv) d / l^2, with d = x_j - x_i and l = |d|.
+/// Force on end i of a spring from x_i to x_j (the opposite force acts on j) [N]: k d (1 - L/l) + c
+/// (d . dv) d / l^2, with d = x_j - x_i and l = |d|.
 template <class Real>
 inline Vec3<Real> spring_force(const Spring<Real>& s, const Vec3<Real>& d, const Vec3<Real>& dv) {
   const Real l2 = d.squaredNorm() + Real(kSmallestSquaredLength);

@@ -1,3 +1,4 @@
+// Force of springs in vector code.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_SPRING_LAW_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_SPRING_LAW_INL_H
@@ -14,14 +15,14 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One kind of spring: rest length, dashpot per stiffness.
+/// One kind of spring: rest length and dashpot per stiffness.
 template <class D>
 struct SpringLaw {
   hn::Vec<D> one, rest_length, damping, smallest;
 };
 
-/// Force on the start of springs from their start to their end, as a factor of that way; the
-/// formula of spring.h.
+/// Force on the start of springs, as a factor of the vector d from start to end; the formula of
+/// spring.h.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V spring(D tag, const SpringLaw<D>& law, V stiffness, const Triple<V>& d,
                     const Triple<V>& dv) {

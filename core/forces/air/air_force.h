@@ -4,9 +4,11 @@
 
 #include "core/types.h"
 
+// Force of the air on a triangle.
+
 namespace weft {
 
-/// Keeps the division by the length of a normal finite where a triangle has no area [m^4].
+/// Keeps the division by a normal's length finite for a triangle without area [m^4].
 inline constexpr double kSmallestSquaredNormal = 1e-30;
 
 /// Force of the air on a triangle [N], the drag of a plate and skin friction:

@@ -6,11 +6,13 @@
 
 #include "core/types.h"
 
+// Noise for gusts of wind.
+
 namespace weft {
 
 namespace gust_detail {
 
-/// Three independent numbers in [-1, 1) for a lattice point (mixing after SplitMix64's finaliser).
+/// Three independent numbers in [-1, 1) for a lattice point (mixed like SplitMix64's finaliser).
 template <class Real>
 inline Vec3<Real> lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) {
   auto bits = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ull +
@@ -26,7 +28,8 @@ inline Vec3<Real> lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) 
   return Vec3<Real>(part(0), part(21), part(42));
 }
 
-/// Weight with zero slope and curvature at both ends, so that the field has continuous curvature.
+/// Blending weight with zero slope and curvature at both ends, so that the field's curvature is
+/// continuous.
 template <class Real>
 inline Real fade(Real t) {
   return t * t * t * (t * (t * Real(6) - Real(15)) + Real(10));
@@ -34,15 +37,15 @@ inline Real fade(Real t) {
 
 }  // namespace gust_detail
 
-/// Smooth noise in space, each component within [-1, 1] and of mean 0, with features of size one.
-/// The same point gives the same value on any machine. The corners of the last cell are kept, as
-/// neighbouring particles mostly ask for the same.
+/// Smooth spatial noise, each component within [-1, 1] with mean 0 and features of size one. The
+/// same point gives the same value on every machine. The corners of the last cell are cached,
+/// because neighbouring particles mostly need the same ones.
 template <class Real>
 class SmoothNoise {
  public:
   SmoothNoise() { enter({0, 0, 0}); }
 
-  /// @param p  position in units of the eddy size; every finite value is fine
+  /// @param p  position in units of the eddy size; any finite value
   Vec3<Real> at(const Vec3d& p) {
     using gust_detail::fade;
     const std::array<double, 3> low = {std::floor(p[0]), std::floor(p[1]), std::floor(p[2])};
