@@ -1,3 +1,5 @@
+// Forces, limits and bookkeeping of hands and slings.
+
 #include "core/attachments/grabs.h"
 
 #include <algorithm>
@@ -10,7 +12,7 @@
 namespace weft {
 namespace {
 
-/// Part of critical damping of the hand's spring against the mass that it holds.
+/// Damping ratio of the hand's spring with the held mass.
 constexpr double kGrabDampingRatio = 0.7;
 
 const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "where the held point shall go"};
@@ -31,7 +33,8 @@ void validate(const GrabDef& def, std::size_t triangles) {
   check_field("drag.", kTargetInfo, def.target);
 }
 
-/// Smooth weights over the disc around the hit, by mass, so that all of it is carried alike.
+/// Smooth weights over the disc around the hit, scaled by mass, so that the disc is accelerated
+/// uniformly.
 template <class Real>
 void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
   const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
@@ -74,7 +77,7 @@ Vec3<Real> weighted_mean(const Grab<Real>& grab, const Vec3Array<Real>& values) 
   return sum;
 }
 
-/// Inverse of the mass that the hand feels: sum w^2 / m [1/kg].
+/// Inverse of the effective mass at the hand: sum w^2 / m [1/kg].
 template <class Real>
 double inverse_held_mass(const ClothModel<Real>& model, const Grab<Real>& grab) {
   double sum = 0;
@@ -97,7 +100,7 @@ Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
   return size > most ? Vec3<Real>(force * (most / size)) : force;
 }
 
-/// The place on the way from `from` to `to` that is at most `reach` from `from` [m].
+/// The point between `from` and `to` that is at most `reach` from `from` [m].
 template <class Real>
 Vec3<Real> within_reach(const Vec3<Real>& from, const Vec3<Real>& to, double reach) {
   const Vec3d way = (to - from).template cast<double>();
@@ -106,14 +109,14 @@ Vec3<Real> within_reach(const Vec3<Real>& from, const Vec3<Real>& to, double rea
   return from + Vec3<Real>((way * (reach / length)).template cast<Real>());
 }
 
-/// Force of a sling if it were fired now [N].
+/// Force of the sling if it were fired now [N].
 template <class Real>
 Vec3<Real> sling_force(const Grab<Real>& grab, const ClothState<Real>& state) {
   const Vec3<Real> pull = grab.target - held_point(grab, state.x);
   return bounded<Real>(pull * static_cast<Real>(grab.def.stiffness), grab.def.max_force);
 }
 
-/// Change of velocity of the held point by a unit impulse there [1/kg].
+/// Velocity change of the held point per unit impulse there [1/kg].
 template <class Real>
 Real mobility(const Grab<Real>& grab, const ClothState<Real>& state) {
   Real sum = 0;
@@ -123,13 +126,13 @@ Real mobility(const Grab<Real>& grab, const ClothState<Real>& state) {
   return sum;
 }
 
-/// The damped spring of a live hand, found with the velocity that it leads to. Backward Euler in
-/// the spring alone: with the cloth's own forces explicit it is stable wherever these are, for any
-/// stiffness, and the bound of the force is part of it (a spring that yields is convex too).
-/// What rests stays at rest: there the others' kick is just what this one takes back. Hands that
-/// hold the same particles find their forces in turn, each from the others' last ones.
-/// @param velocity  of the held point when all others have acted [m/s]
-/// @param seconds   for which the force acts
+/// The damped spring of a live hand, solved together with the velocity that it produces. Backward
+/// Euler in the spring alone: with explicit cloth forces it is stable wherever these are, for any
+/// stiffness, and it includes the bound of the force (a spring that yields is convex too). A
+/// resting particle stays at rest, because the hand exactly cancels the kick of the other forces.
+/// Hands that hold the same particles solve in turn, each with the others' latest forces.
+/// @param velocity  of the held point after all other forces [m/s]
+/// @param seconds   duration of the force
 template <class Real>
 Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real seconds,
                       const Vec3Array<Real>& x, const Vec3<Real>& velocity, Real mobility) {
@@ -143,14 +146,14 @@ Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real s
   return bounded<Real>(pull / (1 + resistance), grab.def.max_force);
 }
 
-/// Notes what a force gives the held particles in some time [N s].
+/// Stores the impulses that a force gives the held particles in `seconds` [N s].
 template <class Real>
 void note_impulses(const Vec3<Real>& force, Real seconds, Grab<Real>& grab) {
   for (std::size_t n = 0; n < grab.particles.size(); ++n)
     grab.impulse[n] = force * (grab.weights[n] * seconds);
 }
 
-/// Gives the held particles a force for some time.
+/// Applies a force to the held particles for `seconds`.
 template <class Real>
 void pull(const Grab<Real>& grab, const Vec3<Real>& force, Real seconds, ClothState<Real>& state) {
   for (std::size_t n = 0; n < grab.particles.size(); ++n) {
@@ -159,7 +162,7 @@ void pull(const Grab<Real>& grab, const Vec3<Real>& force, Real seconds, ClothSt
   }
 }
 
-/// Calls visit(grab) for all live hands; of slings it tells the force.
+/// Calls visit(grab) for all live hands; updates the force of slings.
 template <class Real, class Visit>
 void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) {
   for (Grab<Real>& grab : grabs.list) {
@@ -170,7 +173,7 @@ void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) 
   }
 }
 
-/// Takes back what of the velocities is above kFastestHeld, and what that took of the force.
+/// Limits velocities to kFastestHeld, and subtracts the lost impulse from the force.
 template <class Real>
 void hold_back(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
   constexpr Real kMost = static_cast<Real>(kFastestHeld);

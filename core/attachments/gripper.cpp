@@ -1,3 +1,5 @@
+// Plans the motion of grippers and reads their contact.
+
 #include "core/attachments/gripper.h"
 
 #include <algorithm>
@@ -8,24 +10,24 @@
 namespace weft {
 namespace {
 
-/// Near this many thicknesses of cloth between its faces, jaws close no faster than this part of
-/// the thickness a tick, so that they stop at what is between them and not in it.
+/// Below this opening, in thicknesses of cloth, jaws close by at most this fraction of the
+/// thickness per tick, so that they stop at the cloth and not inside it.
 constexpr double kNearOpening = 6, kNearStep = 0.25;
 
-/// What a gripper's middle has left to go that does not count [m].
+/// Remaining distance of a gripper's middle that counts as none [m].
 constexpr double kThere = 1e-9;
 
 Eigen::Quaterniond turned(const Gripper& gripper, const Eigen::Quaterniond& rotation) {
   return rotation * gripper.def.orientation;
 }
 
-/// Where a jaw's middle is from the gripper's, as defined [m].
+/// Offset of a jaw's middle from the gripper's, as defined [m].
 Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
   const double x = opening / 2 + def.half_extents[0];
   return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
 }
 
-/// Where the gripper's middle goes in a tick, straight and by the shortest turn.
+/// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
 Pose next_pose(const Gripper& gripper, double seconds) {
   const Vec3d way = gripper.target.position - gripper.pose.position;
   const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
@@ -37,14 +39,14 @@ Pose next_pose(const Gripper& gripper, double seconds) {
   return moved(gripper.pose, {way * part, turn * part}, 1);
 }
 
-/// How far open the jaws are at the end of the tick [m].
+/// Opening of the jaws at the end of the tick [m].
 double next_opening(const Gripper& gripper, double seconds, double thickest) {
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
   if (gripper.gripping) return gripper.opening;
   if (gripper.opening < kNearOpening * thickest) step = std::min(step, kNearStep * thickest);
   double least = gripper.wanted;
-  // Between two faces with cloth before both there is room for it, and for no less.
+  // Two faces that both have cloth in front leave room for that cloth, and for no less.
   least = std::max(least, 2 * gripper.facing);
   return std::max(std::min(least, gripper.opening), gripper.opening - step);
 }
@@ -160,7 +162,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     const ColliderState &left = colliders[gripper.jaw[0]], &right = colliders[gripper.jaw[1]];
     const Vec3d axis = left.pose.rotation * (gripper.def.orientation * Vec3d::UnitX());
     const Vec3d between = right.pose.position - left.pose.position;
-    // A jaw that was held back holds the other one back half.
+    // A jaw that was held back holds the other one back by half.
     gripper.pose.position = (left.pose.position + right.pose.position) / 2;
     gripper.pose.rotation = left.pose.rotation;
     if ((gripper.pose.position - gripper.target.position).norm() < kThere)

@@ -7,86 +7,88 @@
 #include "core/contact/colliders/collider_state.h"
 #include "core/definition.h"
 
+// Grippers: pairs of jaws that close on cloth with bounded force.
+
 namespace weft {
 
-/// What a gripper is to do from an instant on.
+/// Commanded state of a gripper from an instant on.
 struct GripperStep {
-  double time = 0;               ///< [s], 0 to 3600, growing from one to the next
-  Vec3d offset = Vec3d::Zero();  ///< of its middle from where it is defined [m], within 1000
-  double opening = 0;            ///< between its jaws [m], 0 to 1; 0 closes on what is there
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< from how it is defined; unit
+  double time = 0;               ///< [s], 0 to 3600, increasing from step to step
+  Vec3d offset = Vec3d::Zero();  ///< of its middle from its defined position [m], within 1000
+  double opening = 0;            ///< between its jaws [m], 0 to 1; 0 closes on the cloth between
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< relative to its definition
 };
 
 inline constexpr std::size_t kMostGrippers = 8, kMostGripperSteps = 100;
 
-/// Two boxes that close along the gripper's own x axis, with a bounded force.
+/// Two boxes that close along the gripper's x axis with bounded force.
 struct GripperDef {
   std::string name = "gripper";   ///< its jaws are the colliders NAME.left and NAME.right
   Vec3d centre = Vec3d(0, 1, 0);  ///< of the space between the jaws [m], within 1000
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Vec3d half_extents = Vec3d(0.005, 0.02, 0.02);  ///< of each jaw [m], each 0.001 to 1
   double opening = 0.04;                ///< between the jaws' faces at the start [m], 0 to 1
-  double force = 5;                     ///< with which each jaw presses [N], 0 to 1000
+  double force = 5;                     ///< pressure of each jaw [N], 0 to 1000
   double max_force = 100;               ///< resistance beyond which it lags [N], 0.01 to 1e6
-  double speed = 0.25;                  ///< of its middle, at most [m/s], 0.001 to 20
-  double turn_speed = 2;                ///< about it, at most [rad/s], 0.001 to 60
+  double speed = 0.25;                  ///< limit of its middle [m/s], 0.001 to 20
+  double turn_speed = 2;                ///< limit about its middle [rad/s], 0.001 to 60
   double closing_speed = 0.05;          ///< of each jaw [m/s], 0.001 to 1
-  std::vector<GripperStep> steps = {};  ///< what it does by itself; at most kMostGripperSteps
+  std::vector<GripperStep> steps = {};  ///< its schedule; at most kMostGripperSteps
 };
 
-/// A command, from the coming tick on; what it does not tell stays as it is. The gripper no longer
-/// follows its steps.
+/// A command, effective from the coming tick; omitted values stay as they are. The gripper no
+/// longer follows its steps.
 struct GripperCommand {
   std::optional<double> opening;               ///< [m], 0 to 1
   std::optional<double> force;                 ///< [N], 0 to 1000
   std::optional<Vec3d> position;               ///< of its middle [m], within 1000
-  std::optional<Eigen::Quaterniond> rotation;  ///< from how it is defined; unit
-  std::optional<double> speed;                 ///< of its middle, at most [m/s], 0.001 to 20
-  std::optional<double> turn_speed;            ///< at most [rad/s], 0.001 to 60
+  std::optional<Eigen::Quaterniond> rotation;  ///< relative to its definition; unit
+  std::optional<double> speed;                 ///< limit of its middle [m/s], 0.001 to 20
+  std::optional<double> turn_speed;            ///< limit [rad/s], 0.001 to 60
 };
 
-/// A gripper as it stands and moves now.
+/// Present state of a gripper.
 struct Gripper {
   GripperDef def;
   std::array<std::size_t, 2> jaw = {0, 0};  ///< its colliders: at -x and at +x
-  Pose pose;                                ///< of its middle; rotation from how it is defined
+  Pose pose;                                ///< of its middle; rotation relative to its definition
   Pose target;
   double speed = 0.25, turn_speed = 2;
   double opening = 0, wanted = 0;  ///< [m]
-  double force = 0;                ///< with which each jaw may press [N]
-  double facing = 0;               ///< thickness of the cloth before both jaws; 0: none [m]
-  bool commanded = false;          ///< follows commands and no longer its steps
-  bool gripping = false;           ///< stopped by what is between its jaws, and presses it
+  double force = 0;                ///< limit of each jaw's pressure [N]
+  double facing = 0;               ///< thickness of the cloth in front of both jaws; 0: none [m]
+  bool commanded = false;          ///< follows commands instead of its steps
+  bool gripping = false;           ///< the jaws are stopped by the cloth between them, and press it
 };
 
-/// The colliders of a gripper, as it stands at the start.
+/// The colliders of a gripper in its initial state.
 std::array<ColliderDef, 2> jaws_of(const GripperDef& def);
 
-/// The grippers at their start.
-/// @param first_jaw  place of the first one's jaws among the colliders
+/// The grippers in their initial state.
+/// @param first_jaw  index of the first one's jaws among the colliders
 std::vector<Gripper> initial_grippers(const std::vector<GripperDef>& defs, std::size_t first_jaw);
 
-/// Throws DefinitionError if a field is out of range; `path` stands before the name of the field.
+/// Throws DefinitionError if a field is out of range; `path` precedes the field's name.
 void validate(const GripperDef& def, const std::string& path);
 void validate(const GripperCommand& command, const std::string& path);
 
 void command_gripper(const GripperCommand& command, Gripper& gripper);
 
-/// Before `plan_motion` of a tick: tells the jaws where to go in it, and how hard to press.
+/// Call before `plan_motion` of a tick: gives the jaws their targets and pressing forces.
 /// @param time      at the start of the tick [s]
 /// @param seconds   length of the tick
 /// @param thickest  thickness of the thickest cloth [m]
 void plan_grippers(double time, double seconds, double thickest, std::vector<Gripper>& grippers,
                    ColliderStates& colliders);
 
-/// After `finish_motion`: finds where the jaws are, and whether they were stopped with their force.
+/// Call after `finish_motion`: reads the jaws' poses, and whether they were stopped.
 void finish_grippers(double seconds, const ColliderStates& colliders,
                      std::vector<Gripper>& grippers);
 
-/// Direction in which a jaw presses: 0 to +x, 1 to -x of the gripper; unit.
+/// Direction in which a jaw presses: jaw 0 to +x, jaw 1 to -x of the gripper; unit.
 Vec3d press_of(const Gripper& gripper, std::size_t jaw);
 
-/// Describes each field of a gripper to `visit(info, value)`, but for name, orientation and steps.
+/// Passes each field of a gripper except name, orientation and steps to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
   visit(FieldInfo{"center", -1000, 1000, "m", "middle between the jaws"}, gripper.centre);
@@ -103,7 +105,7 @@ void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
   visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "of each jaw"}, gripper.closing_speed);
 }
 
-/// The same for a step, but for its rotation.
+/// The same for a step, except its rotation.
 template <class Def, class Visitor>
 void visit_fields_of_gripper_step(Def& step, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "from when on"}, step.time);

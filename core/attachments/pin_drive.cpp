@@ -1,3 +1,5 @@
+// Drives the particles of moving pins with bounded impulses.
+
 #include "core/attachments/pin_drive.h"
 
 #include <algorithm>
@@ -7,26 +9,25 @@
 namespace weft {
 namespace {
 
-/// Of the way when it starts and before it ends [m/s^2].
+/// At the start and the end of a motion [m/s^2].
 constexpr double kAcceleration = 40;
 
-/// A pin whose particle is farther than this from its place goes on from where they are, and leads
-/// them by as much [m].
+/// A pin farther than this from its particles restarts from them, and leads them by this much [m].
 constexpr double kSlack = 0.005;
 
-/// Who is so near has arrived [m, and in units of rounding].
+/// Distance that counts as arrived [m, and in units of rounding].
 constexpr double kArrived = 1e-5, kRoundings = 4;
 
-/// A pin that has gone its way rests for a tick before it is fixed, and one is lost to rounding.
+/// A moved pin rests for one tick before it is fixed, and one more tick is lost to rounding.
 constexpr double kTicksAtTarget = 2;
 
-/// So little of a way is rounding [m].
+/// Remaining distance that is rounding [m].
 constexpr double kThere = 1e-9;
 
-/// What is behind comes after with at most so many times the pin's speed.
+/// Lagging particles catch up at no more than this multiple of the pin's speed.
 constexpr double kCatchUp = 1.5;
 
-/// Longest distance of a particle from its place.
+/// Largest distance of a particle from its place.
 template <class Real>
 double farthest(const Pin& pin, const ClothState<Real>& state) {
   double most2 = 0;
@@ -38,7 +39,7 @@ double farthest(const Pin& pin, const ClothState<Real>& state) {
   return std::sqrt(most2);
 }
 
-/// What is left of the way [m].
+/// Remaining displacement [m].
 Vec3d rest_of(const Pin& pin) {
   const auto centre = static_cast<std::size_t>(
       std::lower_bound(pin.particles.begin(), pin.particles.end(), pin.centre) -
@@ -46,8 +47,8 @@ Vec3d rest_of(const Pin& pin) {
   return pin.path->move.target - (pin.path->start[centre] + pin.path->offset);
 }
 
-/// Puts the places of a pin's particles a little before where these are, towards the target: it
-/// leads what lags, around what is in the way if friction lets it.
+/// Resets the places of a pin's particles to slightly ahead of these, towards the target: it leads
+/// lagging particles, around obstacles if friction permits.
 template <class Real>
 void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path) {
   Vec3d sum = Vec3d::Zero();
@@ -71,7 +72,7 @@ double least_seconds(double way, double tick_seconds) {
 
 double speed_within(double way, double seconds, double tick_seconds) {
   const double moving = seconds - kTicksAtTarget * tick_seconds;
-  // way / v + v / a = moving; of both solutions the slower one.
+  // way / v + v / a = moving; the slower of the two solutions.
   const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kAcceleration));
   return std::clamp(2 * way / (moving + root), kLeastPinSpeed, kMostPinSpeed);
 }
@@ -116,7 +117,7 @@ void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& mod
 
 template <class Real>
 void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
-  // The first kick of a tick is half of one, and so is what the pins may give.
+  // The first kick of a tick is half a kick, and limits the pins' impulse likewise.
   const bool first = elapsed_ == 0;
   elapsed_ += static_cast<double>(dt);
   drive(state, dt, static_cast<double>(dt) * (first ? 0.5 : 1));
@@ -135,8 +136,8 @@ void PinDrive<Real>::drive(ClothState<Real>& state, Real dt, double seconds) {
   }
 }
 
-/// The impulse is that of the particles as a whole, and what keeps them in their places to each
-/// other; either is bounded.
+/// Bounds two impulses separately: that of the particles as a whole, and the one that keeps them in
+/// formation.
 template <class Real>
 void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt,
                            double seconds) {
@@ -176,8 +177,8 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
     const Vec3d given = mean * whole + (change(n, i) - mean) * own;
     const Vec3d after = before + given;
     state.v[i] = after.template cast<Real>();
-    // Forces that the pin only cancels do no work: what counts is how the particle drifts before
-    // and after, not how it was kicked in between.
+    // Forces that the pin merely cancels do no work: only the drift before and after counts, not
+    // the kick in between.
     work_ += static_cast<double>(model_->mass[i]) * given.dot(path.velocity[n] + after) / 2;
     path.velocity[n] = after;
   }

@@ -1,3 +1,5 @@
+// Finds the particles of corners, strips, points and discs.
+
 #include "core/attachments/pin_place.h"
 
 #include <algorithm>
@@ -9,7 +11,7 @@
 namespace weft {
 namespace {
 
-/// Part of the fabric's extent by which rounding may move a particle off the line it stands on.
+/// Fraction of the fabric's extent by which rounding may move a particle off its line.
 constexpr double kRounding = 1e-5;
 
 struct MaterialBounds {
@@ -81,7 +83,7 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRan
   const double across = far_side ? 1 : 0;
   held.centre = nearest_particle(
       model, range, axis == 0 ? MaterialPoint{across, 0.5} : MaterialPoint{0.5, across});
-  // On a mesh the particle nearest to the side's middle may lie farther inside.
+  // On a mesh the particle nearest to the middle of the side may lie outside the strip.
   if (!std::binary_search(held.particles.begin(), held.particles.end(), held.centre))
     held.centre = held.particles[held.particles.size() / 2];
   return held;

@@ -9,9 +9,9 @@
 
 namespace weft {
 
-// Places of a cloth that stay where they are when its resolution changes. They are told in the
-// fabric: `left` is u = 0, `right` the largest u, `top` is v = 0 (row 0 of a grid), `bottom` the
-// largest v, wherever these lie in space.
+// Places of a cloth that do not depend on its resolution. They are given in the fabric: `left` is u
+// = 0, `right` the largest u, `top` is v = 0 (row 0 of a grid), `bottom` the largest v, wherever
+// these lie in space.
 
 enum class Corner : std::uint8_t { top_left, top_right, bottom_left, bottom_right };
 enum class Side : std::uint8_t { top, bottom, left, right };
@@ -19,10 +19,10 @@ enum class Side : std::uint8_t { top, bottom, left, right };
 /// All particles within `width` of one side of the fabric.
 struct EdgeStrip {
   Side side = Side::top;
-  double width = 0;  ///< [m], 0 to 100; 0: the outermost line alone
+  double width = 0;  ///< [m], 0 to 100; 0: only the outermost line
 };
 
-/// The particle nearest to a point of the fabric; of equally near ones the first.
+/// The particle nearest to a point of the fabric; the first of several at equal distance.
 struct MaterialPoint {
   double u = 0, v = 0;  ///< each 0 to 1 of the fabric's extent
 };
@@ -34,12 +34,12 @@ using PinPlace = std::variant<Index, Corner, EdgeStrip, MaterialPoint>;
 /// grows with resolution; a disc of fixed physical radius is not.
 struct PinDef {
   PinPlace place = Index(0);
-  double radius = 0;       ///< of the disc in the fabric [m], 0 to 100; 0 fixes the particle alone.
-                           ///< A strip has its width instead
-  std::string cloth = {};  ///< name; empty: the first cloth, and a particle counts over all cloths
+  double radius = 0;       ///< of the disc in the fabric [m], 0 to 100; 0: one particle; unused by
+                           ///< a strip
+  std::string cloth = {};  ///< name; empty: the first cloth, or, for a particle, all cloths
 };
 
-/// What a pin holds.
+/// The particles of a pin.
 struct PinnedParticles {
   Index centre = 0;
   std::vector<Index> particles;  ///< ascending; at least the centre
@@ -50,7 +50,7 @@ struct PinnedParticles {
 template <class Real>
 PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def);
 
-/// Describes each field of a place or pin to `visit(info, value)`.
+/// Passes each field of a place or pin to `visit(info, value)`.
 template <class Value, class Visitor>
 void visit_field_of_particle(Value& particle, Visitor&& visit) {
   visit(FieldInfo{"particle", 0, 1e7, "", "index in its cloth"}, particle);

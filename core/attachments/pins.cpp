@@ -1,3 +1,5 @@
+// Adds, moves and removes pins.
+
 #include "core/attachments/pins.h"
 
 #include <algorithm>
