@@ -1,3 +1,5 @@
+// Solves the elastica for the cantilever test.
+
 #include "core/diagnostics/cantilever.h"
 
 #include <algorithm>
@@ -15,7 +17,7 @@ struct Curve {
   double clamp_angle = 0, x = 0, drop = 0;
 };
 
-/// The elastica integrated from its free tip, where the moment is zero, to the clamp. With the
+/// Integrates the elastica from its free tip, where the moment is zero, to the clamp. With the
 /// distance q = 1 - s from the tip, theta'' = -gamma q cos theta; midpoint rule.
 Curve shoot(double gamma, double tip_angle) {
   const double h = 1.0 / kSteps;
@@ -27,7 +29,7 @@ Curve shoot(double gamma, double tip_angle) {
     const double middle_slope = slope - 0.5 * h * gamma * q * std::cos(angle);
     slope -= h * gamma * (q + 0.5 * h) * std::cos(middle_angle);
     angle += h * middle_slope;
-    if (angle < 0) break;  // below the level already: the tip must hang more steeply
+    if (angle < 0) break;  // already below the level: the tip must hang more steeply
     curve.x += h * std::cos(middle_angle);
     curve.drop += h * std::sin(middle_angle);
   }

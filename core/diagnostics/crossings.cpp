@@ -1,3 +1,5 @@
+// Exact edge-triangle intersection tests.
+
 #include "core/diagnostics/crossings.h"
 
 #include <utility>
@@ -21,7 +23,7 @@ Positions in_double(const Vec3Array<Real>& x) {
   return result;
 }
 
-/// Boxes around triangles, which keep their room.
+/// Boxes around triangles; the array keeps its capacity.
 void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
                std::vector<Aabb<double>>& boxes) {
   boxes.clear();
@@ -32,7 +34,7 @@ void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
   }
 }
 
-/// What adds up crossings.
+/// A visitor that sums crossings.
 auto adding_to(Crossings& sum) {
   return [&sum](const Edge&, const Triangle&, const Crossings& how) {
     sum.proper += how.proper;
@@ -58,7 +60,7 @@ Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3
   const bool outside = ab * bc < 0 || bc * ca < 0 || ca * ab < 0;
   if (outside) return {};
   const bool proper = side_p * side_q < 0 && ab != 0 && bc != 0 && ca != 0;
-  // All three zero: the triangle has no area as seen along the edge.
+  // All three zero: the triangle has no area in the edge's direction.
   if (!proper && ab == 0 && bc == 0 && ca == 0) return {};
   return proper ? Crossings{1, 0} : Crossings{0, 1};
 }

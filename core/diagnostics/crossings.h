@@ -13,32 +13,32 @@
 
 namespace weft {
 
-/// Pairs of an edge and a triangle that meet.
+/// Pairs of an edge and a triangle that intersect.
 struct Crossings {
-  std::size_t proper = 0;    ///< the edge passes through the inside of the triangle
-  std::size_t touching = 0;  ///< they meet, but an end or a border only; coplanar pairs excepted
+  std::size_t proper = 0;    ///< the edge passes through the interior of the triangle
+  std::size_t touching = 0;  ///< they touch only at an end or a border; excludes coplanar pairs
 
   std::size_t all() const { return proper + touching; }
 };
 
-/// Whether and how edge pq and triangle abc meet, exactly. Coplanar ones count as neither.
+/// Whether and how edge pq and triangle abc intersect, exactly. Coplanar pairs count as neither.
 Crossings crossing_of(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b,
                       const Vec3d& c);
 
-/// Whether an edge and a triangle of one surface have a vertex in common.
+/// Whether an edge and a triangle of one surface share a vertex.
 bool share_vertex(const Edge& edge, const Triangle& t);
 
-/// Edges and triangles of cloth or of an object, for those who count again and again: it keeps its
-/// arrays and its tree, so that nothing is allocated from the second placing on.
+/// Edges and triangles of cloth or of an object, for repeated counts: it keeps its arrays and its
+/// tree, so that nothing is allocated from the second placement on.
 class CrossingSurface {
  public:
-  /// @param edges, triangles  indices into the positions that `place` gets
+  /// @param edges, triangles  indices into the positions of `place`
   CrossingSurface(std::vector<Edge> edges, std::vector<Triangle> triangles);
-  /// Of a mesh, not placed yet.
+  /// From a mesh, not placed yet.
   explicit CrossingSurface(const TriangleMesh& mesh);
 
-  /// Puts vertex i at at(i) [m], finite.
-  /// @param count  of vertices, the same each time
+  /// Moves vertex i to at(i) [m], finite.
+  /// @param count  number of vertices, the same each time
   template <class At>
   void place(std::size_t count, At&& at) {
     positions_.resize(count);
@@ -49,7 +49,7 @@ class CrossingSurface {
   const std::vector<Vec3d>& positions() const { return positions_; }
   const std::vector<Edge>& edges() const { return edges_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  const Bvh<double>& tree() const { return tree_; }  ///< over the triangles where they are
+  const Bvh<double>& tree() const { return tree_; }  ///< over the placed triangles
 
  private:
   void fit();
@@ -61,9 +61,9 @@ class CrossingSurface {
   Bvh<double> tree_;
 };
 
-/// Calls see(edge, triangle, how) for each edge over x that meets a triangle over y.
-/// @param one_cloth  both belong to the same vertices: pairs with a common one are left out
-/// @param tree       over the triangles where they are
+/// Calls see(edge, triangle, how) for each edge over x that intersects a triangle over y.
+/// @param one_cloth  both use the same vertices: pairs with a common one are skipped
+/// @param tree       over the triangles at y
 template <class See>
 void for_each_crossing(const std::vector<Vec3d>& x, const std::vector<Edge>& edges,
                        const std::vector<Vec3d>& y, const std::vector<Triangle>& triangles,
@@ -87,7 +87,7 @@ void for_each_crossing(const std::vector<Vec3d>& x, const std::vector<Edge>& edg
   }
 }
 
-/// The same for surfaces that have been placed.
+/// The same for placed surfaces.
 template <class See>
 void for_each_crossing(const CrossingSurface& edges, const CrossingSurface& triangles,
                        bool one_cloth, See&& see) {
@@ -96,16 +96,15 @@ void for_each_crossing(const CrossingSurface& edges, const CrossingSurface& tria
                     one_cloth, triangles.tree(), see);
 }
 
-/// Edges through triangles that share no vertex with them. It has been placed.
+/// Counts edges through triangles that share no vertex with them, in a placed surface.
 Crossings count_self_crossings(const CrossingSurface& cloth);
 
-/// Edges of either through triangles of the other. Both have been placed.
+/// Counts edges of either through triangles of the other; both must be placed.
 Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object);
 
-/// Edges of cloths through triangles of cloths that share no particle with them.
+/// Counts edges of cloths through triangles of cloths that share no particle with them.
 /// @param x     positions of all particles [m], finite
-/// @param tree  over the same triangles, from an earlier count; built if it is empty. Who counts
-///              often keeps one.
+/// @param tree  over the same triangles, kept by the caller between counts; built if it is empty
 template <class Real>
 Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
                                const std::vector<Triangle>& triangles, Bvh<double>& tree);
@@ -116,7 +115,7 @@ Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>
   return count_self_crossings(x, edges, triangles, tree);
 }
 
-/// Edges of cloths through triangles of the mesh, and edges of the mesh through triangles of
+/// Counts edges of cloths through triangles of the mesh, and edges of the mesh through triangles of
 /// cloths.
 template <class Real>
 Crossings count_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,

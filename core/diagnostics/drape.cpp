@@ -1,3 +1,5 @@
+// Shadow, hem and folds of a draped specimen.
+
 #include "core/diagnostics/drape.h"
 
 #include <algorithm>
@@ -9,18 +11,18 @@ namespace weft {
 namespace {
 
 using std::numbers::pi;
-constexpr double kPointDistance = 5e-4;  // of the points on which the shadow is counted [m]
+constexpr double kPointDistance = 5e-4;  // spacing of the points that sample the shadow [m]
 constexpr int kDirections = 180;         // around the hem
 constexpr double kCrestHeight = 2e-3;    // least rise of a fold [m]
 
-/// Points of a square around the middle, marked where a triangle is above them.
+/// Sample points in a square around the middle, marked if a triangle lies above them.
 class Shadow {
  public:
   explicit Shadow(double reach)
       : side_(static_cast<int>(std::ceil(2 * reach / kPointDistance)) + 2),
         marks_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), false) {}
 
-  /// Corners relative to the middle, as (x, z).
+  /// Adds a triangle; corners are relative to the middle, as (x, z).
   void add(const std::array<std::array<double, 2>, 3>& corners) {
     const auto [low_u, high_u] = range(corners, 0);
     const auto [low_v, high_v] = range(corners, 1);
@@ -64,7 +66,7 @@ class Shadow {
   std::vector<bool> marks_;
 };
 
-/// Particles at edges of one triangle alone.
+/// Particles at edges with only one triangle.
 template <class Real>
 std::vector<Index> hem_particles(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   std::map<Edge, int> triangles;
@@ -84,8 +86,8 @@ std::vector<Index> hem_particles(const ClothModel<Real>& model, const ClothPart<
   return hem;
 }
 
-/// Crests of a closed line of heights: a crest counts where the line falls by `least` on both
-/// sides.
+/// Number of crests of a closed line of heights: a crest counts if the line falls by `least` on
+/// both sides.
 int count_crests(const std::vector<double>& heights, double least) {
   const std::size_t n = heights.size();
   const auto start =
@@ -97,7 +99,7 @@ int count_crests(const std::vector<double>& heights, double least) {
     const double h = heights[(start + k) % n];
     if (rising) {
       if (h > extreme) extreme = h;
-      // The last crest has the lowest point behind it, where the walk began.
+      // The last crest is followed by the lowest point, where the walk began.
       if (h >= extreme - least || extreme - heights[start] < least) continue;
       ++crests;
       rising = false;
@@ -135,8 +137,8 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
   const double disc = pi * kDrapeSupportRadius * kDrapeSupportRadius;
   result.coefficient = 100 * (shadow.area() - disc) / (flat - disc);
 
-  // The hem in even directions. What hangs over is stretched to the overhang of a round specimen,
-  // so that the staircase of a cut grid is no fold.
+  // The hem, sampled in even directions. The overhang is rescaled to that of a round specimen, so
+  // that the staircase of a cut grid does not count as folds.
   std::vector<double> sum(kDirections, 0), weight(kDirections, 0);
   const std::vector<Index> hem = hem_particles(model, part);
   const auto material = [&](Index i, std::size_t k) {

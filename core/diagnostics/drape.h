@@ -3,24 +3,26 @@
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
+// The drape test.
+
 namespace weft {
 
 /// Cusick's drape test (BS 5058): a round specimen of 30 cm lies centred on a disc of 18 cm, and
-/// what hangs over falls into folds. A lamp above throws the shadow that is measured.
+/// the overhang falls into folds. The shadow under a lamp above is measured.
 inline constexpr double kDrapeSupportRadius = 0.09;   ///< of the disc [m]
 inline constexpr double kDrapeSpecimenRadius = 0.15;  ///< of the specimen [m]
 
 struct DrapeMeasurement {
-  double coefficient = 0;  ///< part of the overhanging ring that the shadow covers [%]
+  double coefficient = 0;  ///< fraction of the overhanging ring that the shadow covers [%]
   int folds = 0;           ///< crests of the shadow's edge around the disc
-  double droop = 0;        ///< mean height of the disc over the hem [m]
+  double droop = 0;        ///< mean height of the disc above the hem [m]
 };
 
 /// Measures the drape of one part of a model, seen from above along -y.
 ///
-/// The coefficient is (shadow - disc) / (specimen - disc) with the specimen's own flat area, the
-/// shadow counted on points 0.5 mm apart. A fold is a crest of the hem's distance from the middle
-/// that rises by 2 mm on both sides, as it would be on a hem that is round when flat.
+/// The coefficient is (shadow - disc) / (specimen - disc) with the specimen's own flat area; the
+/// shadow is sampled at points 0.5 mm apart. A fold is a crest of the hem's distance from the
+/// middle that rises by 2 mm on both sides, as on a hem that is round when flat.
 /// @param x       positions of all particles [m], finite
 /// @param centre  of the disc, at its height [m]
 template <class Real>

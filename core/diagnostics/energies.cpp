@@ -1,3 +1,5 @@
+// Sums the energies of a state.
+
 #include "core/diagnostics/energies.h"
 
 namespace weft {

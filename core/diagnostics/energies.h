@@ -5,6 +5,8 @@
 #include "core/forces/force_pass.h"
 #include "core/types.h"
 
+// Energies of a state.
+
 namespace weft {
 
 /// Energies at one instant [J].
@@ -16,19 +18,19 @@ struct Energies {
   double total() const { return kinetic + stretch + bending + gravity; }
 };
 
-/// Energies together with what the same walk over the springs finds.
+/// Energies, and the strain found in the same pass over the springs.
 struct EnergyReading {
   Energies energies;
   double largest_strain = 0;  ///< |l - L| / L of the structural and shear springs
 };
 
-/// Energies of the present state, summed in double. NaN is kept and seen.
+/// Energies of the present state, summed in double. NaN propagates.
 /// @param gravity  [m/s^2]
 template <class Real>
 EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
                             const Vec3<Real>& gravity);
 
-/// The same where the elastic part is known already.
+/// The same with a known elastic part.
 template <class Real>
 EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
                             const Vec3<Real>& gravity, const ElasticEnergy& elastic);

@@ -1,3 +1,5 @@
+// Reads the textile tests off the first cloth.
+
 #include "core/diagnostics/measurements.h"
 
 #include <algorithm>
@@ -62,7 +64,7 @@ std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothSt
       sum += state.x[static_cast<std::size_t>(at(r, c))].template cast<double>();
     return (sum / part.rows).eval();
   };
-  // Two pinned columns make a hinge that stands for half a cell behind the second.
+  // Two pinned columns form a hinge that acts half a cell behind the second.
   const int behind = std::max(pinned - 2, 0);
   const Vec3d clamp = 0.5 * (column(pinned - 1) + column(behind));
   const double cells = part.columns - 1 - 0.5 * (pinned - 1 + behind);

@@ -6,13 +6,15 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 
+// Measurements of textile tests.
+
 namespace weft {
 
-/// Which test of textiles a scene is, and so what is measured of its first cloth.
+/// Textile test that a scene performs, and so the measurements of its first cloth.
 enum class TextileTest {
   none,
-  drape,       ///< Cusick's: a round cloth whose pinned middle is the support (drape.h)
-  cantilever,  ///< a grid whose first columns are pinned hangs over by the others (cantilever.h)
+  drape,       ///< Cusick's: the pinned middle of a round cloth is the support (drape.h)
+  cantilever,  ///< a grid with pinned first columns, which overhangs by the others (cantilever.h)
 };
 
 /// A number with a name that ends in its unit, e.g. "drape_coefficient_percent".
@@ -21,12 +23,12 @@ struct NamedNumber {
   double value = 0;
 };
 
-/// What the test reads off the first part of the model as it is now: for the drape coefficient,
-/// folds and droop, and the published band of the coefficient if the fabric is a preset with one;
-/// for the cantilever droop, angle, bending length and rigidity; for both the largest speed, so
-/// that one sees whether it rests. Empty for no test, and where the first part does not fit the
-/// test: nothing pinned, or for the cantilever no grid or nothing that hangs over.
-/// @param gravity  its size [m/s^2], which the rigidity is in proportion to
+/// Results of the test on the first part of the model in its present state. Drape: the coefficient,
+/// folds and droop, and the published band of the coefficient if the fabric is a preset with one.
+/// Cantilever: droop, angle, bending length and rigidity. Both: the largest speed, which shows
+/// whether the cloth rests. Empty without a test, or if the first part does not suit it: nothing is
+/// pinned, or for the cantilever it is not a grid or does not overhang.
+/// @param gravity  its magnitude [m/s^2], to which the rigidity is proportional
 template <class Real>
 std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,
                                       const ClothState<Real>& state, double gravity);

@@ -1,3 +1,5 @@
+// Strain of springs: largest and 99th percentile.
+
 #include "core/diagnostics/strain.h"
 
 #include <algorithm>

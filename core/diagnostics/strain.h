@@ -5,16 +5,18 @@
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
+// Strain statistics.
+
 namespace weft {
 
-/// How far the cloth is strained at one instant: |l - L| / L over its structural and shear springs.
+/// Strain of the cloth at one instant: |l - L| / L over its structural and shear springs.
 struct StrainStatistics {
   double largest = 0;
-  double p99 = 0;  ///< 99 of 100 springs have at most this: the element of rank floor(0.99 (n - 1))
+  double p99 = 0;  ///< 99th percentile: the element of rank floor(0.99 (n - 1))
 };
 
 /// @param x        positions of all particles [m], finite
-/// @param scratch  keeps its capacity from call to call
+/// @param scratch  keeps its capacity between calls
 template <class Real>
 StrainStatistics strain_statistics(const ClothModel<Real>& model, const Vec3Array<Real>& x,
                                    std::vector<Real>& scratch);
