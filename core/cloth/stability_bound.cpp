@@ -1,3 +1,5 @@
+// Bounds frequencies and derives stable substeps.
+
 #include "core/cloth/stability_bound.h"
 
 #include <algorithm>
@@ -10,10 +12,10 @@
 namespace weft {
 namespace {
 
-/// How far over the row sums the squared frequency of the springs is put. The linear theory asks
-/// for less: the highest frequency of a net is up to a third below them. But without this margin a
-/// cloth that was crushed may stay stretched to eight times its size for ever, though every number
-/// is finite (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
+/// Margin of the springs' squared frequency over the row sums. Linear theory requires less: the
+/// highest frequency of a net is up to a third below them. But without this margin a crushed cloth
+/// may stay stretched to eight times its size forever, with finite numbers throughout
+/// (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
 constexpr double kShakenMargin = 1.15;
 
 }  // namespace
@@ -23,7 +25,7 @@ double largest_stable_substep(const StabilityBound& bound) {
     return bound.damping_rate > 0 ? 2 / bound.damping_rate
                                   : std::numeric_limits<double>::infinity();
   const double c = bound.damping_rate;
-  // The root in the form that does not cancel: 4 / (c + sqrt(c^2 + 4 omega^2)).
+  // The root in the form without cancellation: 4 / (c + sqrt(c^2 + 4 omega^2)).
   return 4 / (c + std::sqrt(c * c + 4 * bound.omega2));
 }
 

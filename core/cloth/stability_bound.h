@@ -2,28 +2,30 @@
 
 #include "core/cloth/cloth_model.h"
 
+// The stability bound of the explicit solver.
+
 namespace weft {
 
-/// Bounds that decide the largest stable substep of the explicit solver.
+/// Bounds that determine the largest stable substep of the explicit solver.
 struct StabilityBound {
-  double omega2 = 0;        ///< bound of the highest squared frequency, summed over parts [1/s^2]
-  double damping_rate = 0;  ///< bound of the matching damping rates 2 zeta omega [1/s]
+  double omega2 = 0;        ///< bound of the highest squared frequency, summed over terms [1/s^2]
+  double damping_rate = 0;  ///< bound of the corresponding damping rate 2 zeta omega [1/s]
 };
 
-/// The largest stable leapfrog substep with lagged damping [s]: the positive root of
-/// dt^2 omega^2 + 2 dt c = 4, which is (sqrt(1 + zeta^2) - zeta) 2/omega for c = 2 zeta omega.
-/// Infinite if nothing pulls.
+/// The largest stable leapfrog substep with lagged damping [s]: the positive root of dt^2 omega^2 +
+/// 2 dt c = 4, which is (sqrt(1 + zeta^2) - zeta) 2/omega for c = 2 zeta omega. Infinite without
+/// forces.
 double largest_stable_substep(const StabilityBound& bound);
 
-/// Substeps that cut a tick of `tick_seconds` [s] into stable ones; at least `fewest`.
-/// Returns a number above `kMostSubsteps` if the cloth is too stiff for the explicit solver.
+/// Number of stable substeps in a tick of `tick_seconds` [s], at least `fewest`. Above
+/// `kMostSubsteps` if the cloth is too stiff for the explicit solver.
 long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
 
 inline constexpr int kMostSubsteps = 20000;
 
-/// Fills a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
+/// Computes a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
 /// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state
-/// matrix k g g^T, and the damping rates already in the elements.
+/// matrix k g g^T, and the damping rates of the elements.
 template <class Real>
 void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part);
 

@@ -1,3 +1,5 @@
+// Finds particles with implausible motion.
+
 #include "core/solver/blow_up.h"
 
 #include <cassert>
@@ -6,7 +8,7 @@
 namespace weft {
 namespace {
 
-/// Whether any of `count` numbers is beyond the limit or NaN. Without a way out, so that it becomes
+/// Whether any of `count` numbers exceeds the limit or is NaN. No early exit, so that it becomes
 /// vector code.
 template <class Real>
 bool any_beyond(const Real* values, std::size_t count, Real limit) {
@@ -36,7 +38,7 @@ std::optional<BlowUp> find_blow_up(const ClothModel<Real>& model, const ClothSta
                                    Real dt) {
   assert(dt > 0);
   const auto farthest = static_cast<Real>(kFarthestFromOrigin);
-  const Real per_component = 1 / std::sqrt(Real(3));  // of a vector that is as long as the limit
+  const Real per_component = 1 / std::sqrt(Real(3));  // of a vector as long as the limit
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     if (state.is_asleep(p)) continue;
     const ClothPart<Real>& part = model.parts[p];

@@ -1,3 +1,5 @@
+// Steps grids while contact cannot act, and returns if it might have.
+
 #include "core/solver/fused_steps.h"
 
 #include <algorithm>
@@ -7,26 +9,26 @@
 namespace weft {
 namespace {
 
-/// Substeps after which positions are kept, to go back to if somebody left his path since.
+/// Positions are saved after this many substeps, to return to if a particle has left its path.
 constexpr int kKeptSteps = 8;
 
-/// Paths are left when somebody is off by this part of what is allowed: better ones cost less than
-/// going back.
+/// New paths are requested at this fraction of the allowed displacement: they cost less than a
+/// return to saved positions.
 constexpr double kNearlyOff = 0.9;
 
-/// A part of the room for rounding.
+/// Fraction of the slack that remains after rounding.
 constexpr double kSureOf = 0.999;
 
-/// What keeps a spell of steps without contact together.
+/// State of a run of steps without contact.
 template <class Real>
 struct Spell {
   const CalmPaths<Real>& paths;
-  Real room;          ///< that every particle may go, from where it is when it begins [m]
-  Real begun;         ///< time then, as in the paths [s]
-  Vec3<Real> common;  ///< way off the paths that all had in common then [m]
+  Real room;          ///< displacement that every particle may make during the run [m]
+  Real begun;         ///< its start, in the time of the paths [s]
+  Vec3<Real> common;  ///< common displacement from the paths at its start [m]
 };
 
-/// The box around the ways off the paths of all grids.
+/// Bounding box of the displacements of all grids from their paths.
 template <class Real>
 Aabb<Real> box_off_paths(const Tick<Real>& tick, Real time) {
   Aabb<Real> box;
@@ -39,8 +41,8 @@ Real half_diagonal(const Aabb<Real>& box) {
   return (box.upper - box.lower).norm() / 2;
 }
 
-/// How far anybody may have gone since the spell began: along his path, with all in common, and
-/// off both.
+/// Bound of any particle's displacement since the start of the run: along its path, in common with
+/// all others, and relative to both.
 template <class Real>
 Real farthest(const Spell<Real>& spell, const Aabb<Real>& box, Real time) {
   return spell.paths.fastest * (time - spell.begun) + (box.centre() - spell.common).norm() +
@@ -61,7 +63,7 @@ double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   return work;
 }
 
-/// Whether a spell may begin: nobody but grids, the guard and objects take part, and all are awake.
+/// Whether a run may begin: only grids, the guard and objects take part, and all cloths are awake.
 template <class Real>
 bool may_be_calm(const Tick<Real>& tick) {
   const Collision<Real>& c = tick.collision;
@@ -75,7 +77,7 @@ bool may_be_calm(const Tick<Real>& tick) {
 
 }  // namespace
 
-/// Springs, bending, kick and drift of a grid in one pass, all booked under stretch.
+/// Springs, bending, kick and drift of a grid in one pass, all accounted to stretch.
 /// @returns work of the external forces over the drift [J]
 template <class Real>
 double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real drift) {
@@ -97,7 +99,7 @@ void load_grids(Tick<Real>& tick) {
   }
 }
 
-/// All substeps of a grid that nobody else touches: the particles stay in its own arrays.
+/// All substeps of a grid that nothing else touches: the particles stay in its own arrays.
 /// @returns work of the air [J]
 template <class Real>
 double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
@@ -154,7 +156,8 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     box = box_off_paths(tick, time);
     const Real off = half_diagonal(box);
     if (!(off <= paths->reach && farthest(begin, box, time) <= room)) {
-      // Somebody may have met something: back, and the same steps with contact.
+      // Particles may have touched: return to the saved positions, and repeat the steps with
+      // contact.
       for (GridPass<Real>& grid : tick.work.grids) grid.take_back();
       next.substep = s + 1;
       s = kept, time = kept_time, box = kept_box, work = kept_work;

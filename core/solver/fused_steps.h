@@ -4,9 +4,9 @@
 
 namespace weft {
 
-// Substeps of grids in their own arrays, forces, kick and drift in one pass.
+// Substeps of grids in their own arrays, with forces, kick and drift in one pass.
 
-/// Springs, bending, kick and drift of a grid in one pass, all booked under stretch.
+/// Springs, bending, kick and drift of a grid in one pass, all accounted to stretch.
 /// @param drift  length of the drift [s]; 0: none
 /// @returns work of the external forces over the drift [J]
 template <class Real>
@@ -16,21 +16,21 @@ double advance_grid(Tick<Real>& tick, std::size_t part, const Kick<Real>& kick, 
 template <class Real>
 void load_grids(Tick<Real>& tick);
 
-/// All substeps of a grid that nobody else touches: the particles stay in its own arrays.
+/// All substeps of a grid that nothing else touches: the particles stay in its own arrays.
 /// @returns work of the air [J]
 template <class Real>
 double advance_alone(Tick<Real>& tick, std::size_t part, const Kicks<Real>& kicks, int substeps);
 
-/// What a tick knows of when it may go on without contact.
+/// When a tick may continue without contact.
 struct NextCalm {
-  int substep = 0;  ///< not before this one: it needs contact
+  int substep = 0;  ///< not before this one, which needs contact
 };
 
-/// Goes on without calls of contact while nothing can meet anything: all stay near straight paths
-/// that the guard of the cloths knows to be clear (CalmPaths), and none goes as far as an object
-/// may be. Leaves the state as contact would, bit for bit.
+/// Steps without calls of contact while no particle can meet anything: all stay near straight paths
+/// that the guard of the cloths knows to be clear (CalmPaths), and none moves as far as the nearest
+/// object. Leaves the same state as contact would, bit for bit.
 /// @param substeps  of the tick
-/// @param s         substep to begin with, before its kick; moved on to the first that is not done
+/// @param s         first substep, before its kick; advanced to the first that is not done
 /// @returns work of the air [J]
 template <class Real>
 double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, int& s,

@@ -1,3 +1,5 @@
+// Lays out a grid for compliant sweeps.
+
 #include "core/solver/grid_relaxation.h"
 
 #include <algorithm>

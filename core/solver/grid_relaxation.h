@@ -8,37 +8,39 @@
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
 
+// Compliant relaxation of grids in vector code.
+
 namespace weft {
 
-/// What the kernels of the compliant sweeps read and write. The particles of a row with even and
-/// with odd columns stand apart, so that the springs of one colour are neighbours in memory:
-/// particle (r, c) is at r * stride + (c % 2) * half + c / 2. Around each half row stand at least
-/// kSweepMargin zeros, and above and below the grid two rows of them.
+/// The data of the kernels of the compliant sweeps. Particles of a row with even and odd columns
+/// are separated, so that the springs of one colour are adjacent in memory: particle (r, c) is at r
+/// * stride + (c % 2) * half + c / 2. Each half row is surrounded by at least kSweepMargin zeros,
+/// and the grid by two rows of zeros above and below.
 template <class Real>
 struct SweepView {
   int rows = 0, columns = 0;
   std::ptrdiff_t half = 0, stride = 0;
   Real* x[3] = {};               ///< positions at the start of the substep [m]
-  Real* way[3] = {};             ///< x' - x, what the substep moves [m]
-  const Real* force[3] = {};     ///< of hands and air [N]; read where asked for
+  Real* way[3] = {};             ///< x' - x, displacement of the substep [m]
+  const Real* force[3] = {};     ///< of hands and air [N]; read on request
   const Real* w = nullptr;       ///< inverse masses [1/kg], 0 if pinned
   const Real* free = nullptr;    ///< 1, or 0 if pinned
-  const Real* share[4] = {};     ///< 1/(w_i + w_j + alpha~) [kg] of each spring by its
-                                 ///< first cell: along, down, falling, rising
+  const Real* share[4] = {};     ///< 1/(w_i + w_j + alpha~) [kg] of each spring by its first cell:
+                                 ///< along, down, falling, rising
   Real* multiplier[4] = {};      ///< lambda [m kg]; used with more than one sweep
-  const Real* border = nullptr;  ///< by column: 1/2 on the border lines, else 1
-  const Real* softer = nullptr;  ///< by column: 2 on the border lines, else 1
+  const Real* border = nullptr;  ///< by column: 1/2 on border lines, else 1
+  const Real* softer = nullptr;  ///< by column: 2 on border lines, else 1
   const Real *bend = nullptr, *bend_left = nullptr, *bend_right = nullptr;  ///< by column
   const Real* cells = nullptr;                ///< by column: cells that meet there, 1 or 2
-  std::vector<std::array<Real, 4>> row_bend;  ///< by row: the same three and the cells
-  Real length[3] = {};                        ///< at rest: along, down, diagonal [m]
-  Real alpha[3] = {};  ///< alpha~ inside the grid [1/kg]; 0 if no such spring
+  std::vector<std::array<Real, 4>> row_bend;  ///< by row: the same three, and the cells
+  Real length[3] = {};                        ///< rest lengths: along, down, diagonal [m]
+  Real alpha[3] = {};  ///< alpha~ inside the grid [1/kg]; 0 without such springs
   QuadraticBending<Real> bending;
 };
 
-inline constexpr int kSweepMargin = 16;  ///< at least the widest vector, in numbers
+inline constexpr int kSweepMargin = 16;  ///< not less than the widest vector, in numbers
 
-/// Constants of one prediction: way <- keep way + dt2 (f w + g).
+/// Constants of a prediction: way <- keep way + dt2 (f w + g).
 template <class Real>
 struct Prediction {
   Real keep = 1, dt2 = 0;
@@ -51,7 +53,7 @@ void predict_grid(const SweepView<double>& grid, const Prediction<double>& step)
 
 /// One sweep over all springs, row by row, either down or up.
 /// @param first  all multipliers are 0 before it
-/// @param last   nobody reads the multipliers after it
+/// @param last   the multipliers are not read after it
 void sweep_grid(const SweepView<float>& grid, bool down, bool first, bool last);
 void sweep_grid(const SweepView<double>& grid, bool down, bool first, bool last);
 
@@ -67,22 +69,22 @@ void move_grid(const SweepView<double>& grid);
 template <class Real>
 class GridRelaxation {
  public:
-  /// Sizes the arrays. A part that is no grid or has hinges, skip springs or direct springs does
-  /// not fit and is swept spring by spring.
+  /// Sizes the arrays. A part that is not a grid, or has hinges, skip springs or direct springs,
+  /// does not fit and is swept spring by spring.
   void prepare(const ClothPart<Real>& part);
 
   bool fits() const { return view_.rows > 0; }
   const SweepView<Real>& view() const { return view_; }
 
-  /// Takes the inverse masses and tabulates what each spring gives way.
+  /// Sets the inverse masses and tabulates the compliance of each spring.
   /// @param softness  compliance / dt^2 [1/s^2]
   void set_masses(const std::vector<Real>& inverse_mass, Real softness);
 
-  /// Takes positions and ways v dt of the whole model.
+  /// Loads positions and displacements v dt of the whole model.
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt);
   void load_force(const Vec3Array<Real>& force);
 
-  /// Gives back positions and velocities way / dt.
+  /// Stores positions and velocities way / dt.
   void store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const;
   void store_way(Vec3Array<Real>& way) const;
 
@@ -95,7 +97,7 @@ class GridRelaxation {
 
   SweepView<Real> view_;
   GridSprings<Real> springs_;
-  std::size_t first_ = 0;  ///< particle of the model that is particle 0 of the grid
+  std::size_t first_ = 0;  ///< index in the model of the grid's particle 0
   std::array<Array, 3> x_, way_, force_;
   std::array<Array, 4> share_, multiplier_;
   Array w_, free_, border_, softer_, bend_, bend_left_, bend_right_, cells_;

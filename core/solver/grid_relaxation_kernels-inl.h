@@ -1,3 +1,4 @@
+// Compliant sweeps over a grid for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_RELAXATION_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_RELAXATION_KERNELS_INL_H
@@ -32,15 +33,15 @@ HWY_INLINE void store_at(D d, Real* const (&fields)[3], std::ptrdiff_t at,
   hn::StoreU(a.z, d, fields[2] + at);
 }
 
-/// Which multipliers a sweep reads and writes.
+/// Whether a sweep reads and writes multipliers.
 template <bool Read, bool Write>
 struct Multipliers {
   static constexpr bool kReads = Read, kWrites = Write;
 };
 
-/// Springs of one colour, `count` of them: spring n goes from particle i + n to particle j + n and
-/// has the tables' entry k + n.
-/// @param times  `alpha` is that of each spring, by spring; null: once
+/// Relaxes `count` springs of one colour: spring n joins particles i + n and j + n and has the
+/// tables' entry k + n.
+/// @param times  factor of `alpha` for each spring; null: 1
 template <class Use, class D, class Real = hn::TFromD<D>>
 HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table, Real rest_length,
                            Real alpha, const hn::TFromD<D>* times, std::ptrdiff_t i,
@@ -69,7 +70,7 @@ HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table
     const auto w_i = hn::LoadU(d, g.w + i + n), w_j = hn::LoadU(d, g.w + j + n);
     auto new_i = way_i + delta * hn::Mul(ratio, w_i), new_j = way_j - delta * hn::Mul(ratio, w_j);
     if (const std::ptrdiff_t left = count - n; left < static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
-      // Adding 0 to what is no end of these springs could turn the sign of a zero.
+      // Adding 0 to particles without such a spring could change the sign of a zero.
       const auto ends = hn::FirstN(d, static_cast<std::size_t>(left));
       new_i = select(ends, new_i, way_i);
       new_j = select(ends, new_j, way_j);
@@ -89,7 +90,7 @@ HWY_INLINE void relax_row(Use use, D d, const SweepView<Real>& g, int r) {
   relax_line(use, d, g, 0, g.length[0], alpha, nullptr, odd, even + 1, odd, (g.columns - 1) / 2);
 }
 
-/// Springs between rows r and r + 1; those of one direction have no particle in common.
+/// Springs between rows r and r + 1; those of one direction share no particle.
 template <class Use, class D, class Real = hn::TFromD<D>>
 HWY_INLINE void relax_between_rows(Use use, D d, const SweepView<Real>& g, int r) {
   const std::ptrdiff_t even = r * g.stride, odd = even + g.half;
@@ -127,14 +128,14 @@ HWY_INLINE void sweep(const SweepView<Real>& g, bool down, bool first, bool last
     sweep_rows(Multipliers<true, true>(), g, down);
 }
 
-/// Where particles that follow each other in a row and their neighbours stand; `column` is the
-/// place of the first in the tables by column.
+/// Positions of consecutive particles of a row and of their neighbours; `column` is the index of
+/// the first in the tables by column.
 struct Places {
   std::ptrdiff_t at, left, right, column;
 };
 
-/// Bending of one row in registers: the stencils of bending_stencil.h, summed for each particle.
-/// Beyond the border all positions are 0 and count for nothing.
+/// Bending of one row in registers: the stencils of bending_stencil.h, summed per particle. Beyond
+/// the border all positions are 0 and have no effect.
 template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
 struct RowBending {
   D d;
@@ -184,7 +185,7 @@ struct RowBending {
   }
 };
 
-/// Predicts one component of `count` particles that follow each other in row r.
+/// Predicts one component of `count` consecutive particles in row r.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE void predict_line(D d, const SweepView<Real>& g, const Prediction<Real>& step, int r,
                              int component, const Places& p, std::ptrdiff_t count) {

@@ -1,3 +1,5 @@
+// One tick of relaxation: prediction, sweeps, contact and velocities.
+
 #include "core/solver/relaxation.h"
 
 #include <algorithm>
@@ -9,7 +11,7 @@
 namespace weft {
 namespace {
 
-/// One tick's constant inputs together with what it changes.
+/// One tick: constant inputs and changing state.
 template <class Real>
 struct Tick {
   const ClothModel<Real>& model;
@@ -32,14 +34,14 @@ bool in_rows(const Tick<Real>& tick, std::size_t part) {
   return tick.compliant() && tick.work.grids[part].fits();
 }
 
-/// What a substep without forces leaves of a velocity.
+/// Fraction of a velocity left by a substep without forces.
 template <class Real>
 double kept(const Tick<Real>& tick) {
   return (1 - tick.solver.damping) / (1 + tick.surroundings.drag * static_cast<double>(tick.dt));
 }
 
-/// Everything that is a force and no constraint, gravity excepted, and the bending of parts that
-/// are swept row by row.
+/// Everything that is a force, not a constraint, except gravity and the bending of parts that are
+/// swept row by row.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
   const ClothModel<Real>& model = tick.model;
@@ -78,7 +80,7 @@ Prediction<Real> prediction(const Tick<Real>& tick) {
           tick.pulled()};
 }
 
-/// Eq. (5), into `wanted`: the way of compliant springs, the place of rigid ones.
+/// Eq. (5), into `wanted`: displacements for compliant springs, positions for rigid ones.
 template <class Real>
 void predict(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, tick.state.x.size());
@@ -106,7 +108,7 @@ void predict(Tick<Real>& tick) {
   }
 }
 
-/// Relaxes rigid springs first, first + step, ... until `count` of them are done.
+/// Relaxes `count` rigid springs: first, first + step, ...
 template <class Real>
 void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   Vec3Array<Real>& x = tick.work.wanted;
@@ -125,7 +127,7 @@ void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::pt
   }
 }
 
-/// The same for compliant springs, whose ends are at x + way.
+/// The same for compliant springs, with ends at x + way.
 template <class Real>
 void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
@@ -151,7 +153,7 @@ void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std
 }
 
 /// All sweeps of a substep over the springs of one part that is not swept row by row. Without
-/// compliance they are the seed's and start anew in each substep; with it, `turn` counts the sweeps
+/// compliance they follow the seed and restart in each substep; with it, `turn` counts the sweeps
 /// of the tick.
 template <class Real>
 void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
@@ -200,7 +202,7 @@ void relax(Tick<Real>& tick, int substep) {
   }
 }
 
-/// Takes the wanted positions, as far as contact lets them.
+/// Moves to the wanted positions, as far as contact allows.
 /// @returns the motion that contact must not see, if there is one; nothing has moved then
 template <class Real>
 std::optional<BlowUp> move(Tick<Real>& tick) {
@@ -221,7 +223,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
   return std::nullopt;
 }
 
-/// Whether nothing but the sweeps' own arrays is needed during the tick.
+/// Whether the tick needs only the sweeps' own arrays.
 template <class Real>
 bool rows_alone(const Tick<Real>& tick) {
   if (tick.pulled() || !tick.collision.empty()) return false;

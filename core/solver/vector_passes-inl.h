@@ -1,3 +1,4 @@
+// Kick and drift passes for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_VECTOR_PASSES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_VECTOR_PASSES_INL_H
@@ -18,7 +19,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls body(d, n) for whole vectors and then, with one lane, for the numbers that are left.
+/// Calls body(d, n) for whole vectors and then, with one lane, for the remaining numbers.
 template <class Real, class Body>
 HWY_INLINE void for_each_number(std::size_t count, Body&& body) {
   const hn::ScalableTag<Real> wide;

@@ -6,16 +6,16 @@
 
 namespace weft {
 
-// The passes of the solver over all numbers of a cloth (three a particle), as vector code chosen
-// for the processor when the program runs. Each number is computed by itself with + and * alone, so
-// the choice does not change a bit.
+// The solver's passes over all numbers of a cloth (three per particle), in vector code selected for
+// the processor at run time. Each number is computed separately with + and * only, so the selection
+// does not change a bit.
 
-/// Kicks particles that lie one behind the other.
+/// Kicks consecutive particles.
 template <class Real>
 struct KickPass {
   std::size_t count = 0;           ///< particles
-  const Real* from = nullptr;      ///< velocities before [m/s]
-  Real* to = nullptr;              ///< after; may be `from`
+  const Real* from = nullptr;      ///< old velocities [m/s]
+  Real* to = nullptr;              ///< new velocities; may be `from`
   const Real* internal = nullptr;  ///< forces [N]
   KickedParticles<Real> particles;
   KickLaw<Real> law;

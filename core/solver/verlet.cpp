@@ -1,3 +1,5 @@
+// One tick of verlet: forces, kicks, contact and drifts.
+
 #include "core/solver/verlet.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 namespace weft {
 namespace {
 
-/// Springs and quadratic bending of a part by gathering, booked under stretch, or element by
+/// Springs and quadratic bending of a part: by gathering, accounted to stretch, or element by
 /// element.
 template <class Real>
 void evaluate_springs(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
@@ -35,7 +37,7 @@ void evaluate_springs(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& ve
   }
 }
 
-/// Springs and bending of a part that is no grid.
+/// Springs and bending of a part that is not a grid.
 template <class Real>
 void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
   const ClothPart<Real>& part = tick.part(p);
@@ -45,8 +47,8 @@ void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
 }
 
-/// Shots and air. A grid has them as its external forces; as numbers of the whole model they are
-/// there for all other parts, and for grids if `listed`.
+/// Forces of shots and air. Grids store them as their external forces; the arrays of the whole
+/// model contain them for all other parts, and for grids if `listed`.
 template <class Real>
 void push(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
   if (!tick.pulled) return;
@@ -94,7 +96,7 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
   run_kick(pass);
 }
 
-/// Springs, bending and kick of a mesh in one pass, all booked under stretch.
+/// Springs, bending and kick of a mesh in one pass, all accounted to stretch.
 template <class Real>
 void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k) {
   const ClothPart<Real>& part = tick.part(p);
@@ -126,8 +128,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
   }
 }
 
-/// All forces at the present positions as numbers of the whole model, with `velocity` as seen by
-/// dashpots and air.
+/// All forces at the present positions in the model's arrays; dashpots and air see `velocity`.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
   for (std::size_t p = 0; p < tick.parts(); ++p) {
@@ -155,7 +156,7 @@ void kick_awake(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& fr
 }
 
 /// Kicks with the dashpots' velocity found by fixed-point sweeps.
-/// @param share  where between the old and the new velocity the instant of the forces lies
+/// @param share  position of the forces' instant between the old and the new velocity
 template <class Real>
 void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   if (tick.solver.damping_sweeps == 1) {
@@ -174,11 +175,11 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   kick_awake(tick, k, v, v);
 }
 
-/// Work of the external forces on some particles over the coming drift [J].
+/// Work of the external forces on a range of particles over the coming drift [J].
 template <class Real>
 double external_work(const Tick<Real>& tick, const IndexRange& range) {
   if (!tick.pulled) return 0;
-  // Four sums, so that the compiler may keep them in one vector.
+  // Four sums, so that the compiler can keep them in one vector.
   std::array<double, 4> sums{};
   const Real *force = numbers(range, tick.work.external), *v = numbers(range, tick.state.v);
   const std::size_t count = 3 * size_of(range), whole = count / 4 * 4;
@@ -190,14 +191,13 @@ double external_work(const Tick<Real>& tick, const IndexRange& range) {
   return power * static_cast<double>(tick.dt);
 }
 
-/// Whether grids take over all particles after each drift, as contact may have changed what it
-/// left.
+/// Whether grids reload all particles after each drift, because contact may have changed them.
 template <class Real>
 bool takes_over(const Collision<Real>& collision) {
   return collision.seed || collision.guard;
 }
 
-/// Moves everybody. @returns work of the external forces [J]
+/// Drifts all particles. @returns work of the external forces [J]
 template <class Real>
 double drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
@@ -228,7 +228,7 @@ void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
   kick_awake(tick, k, tick.state.v, tick.state.v);
 }
 
-/// Hands, after the kick before substep `s` of `substeps`.
+/// Pulls of the hands, after the kick before substep `s` of `substeps`.
 template <class Real>
 void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
   if (tick.grabs.list.empty()) return;
@@ -238,8 +238,8 @@ void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
                tick.grabs);
 }
 
-/// The substeps of a tick where hands or contact see the particles between kick and drift.
-/// @param blow_up  gets the motion that ended the tick before contact saw it
+/// The substeps of a tick in which hands or contact act between kick and drift.
+/// @param blow_up  receives the motion that ended the tick before contact saw it
 /// @returns work of hands and air [J]
 template <class Real>
 double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps,
@@ -276,7 +276,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
   return work;
 }
 
-/// Elastic energy at the present positions, of grids from their own arrays, which are up to date.
+/// Elastic energy at the present positions; of grids from their own arrays, which are up to date.
 template <class Real>
 ElasticEnergy present_energy(const Tick<Real>& tick) {
   ElasticEnergy sum;

@@ -15,25 +15,27 @@
 #include "core/solver/blow_up.h"
 #include "core/solver/collision.h"
 
+// The explicit solver, and types shared by all solvers.
+
 namespace weft {
 
-/// Which solver moves the cloth.
+/// The solver that moves the cloth.
 enum class SolverKind {
-  automatic,   ///< the one of the world's model: verlet for weft, relaxation for the seed
+  automatic,   ///< that of the world's model: verlet for weft, relaxation for the seed
   verlet,      ///< springs as forces, leapfrog
-  relaxation,  ///< springs as constraints, swept over (relaxation.h)
+  relaxation,  ///< springs as constraints, relaxed in sweeps (relaxation.h)
   implicit,    ///< springs as forces at the substep's end, BDF2 (implicit/implicit.h)
 };
 
-/// The choice of a solver, and the settings of `verlet`.
+/// Choice of the solver, and settings of `verlet`.
 struct SolverDef {
   SolverKind kind = SolverKind::automatic;
-  int min_substeps = 1;  ///< at least so many substeps a tick; the stability rule may ask for more
-  int damping_sweeps = 1;  ///< 1: dashpots see the velocity half a substep ago (first order in the
-                           ///< dashpot term); 2 and more: fixed-point sweeps, second order
+  int min_substeps = 1;    ///< least per tick; the stability rule may require more
+  int damping_sweeps = 1;  ///< 1: dashpots see the velocity of half a substep ago (first order in
+                           ///< the dashpot term); 2 and more: fixed-point sweeps, second order
 };
 
-/// Describes each field to `visit(info, value)`.
+/// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_solver(Def& s, Visitor&& visit) {
   visit(choice("kind", "automatic|verlet|relaxation|implicit", "automatic: by the model"), s.kind);
@@ -43,54 +45,54 @@ void visit_fields_of_solver(Def& s, Visitor&& visit) {
         s.damping_sweeps);
 }
 
-/// What acts on the cloth from outside during one tick.
+/// External influences on the cloth during one tick.
 template <class Real>
 struct Surroundings {
   Vec3<Real> gravity = Vec3<Real>::Zero();  ///< [m/s^2]
   double drag = 0;                          ///< alpha [1/s]
-  bool air = false;                         ///< evaluate the air forces at all
+  bool air = false;                         ///< whether air forces are computed
   double air_density = 0;                   ///< [kg/m^3]
-  Vec3Array<Real> wind;                     ///< at each particle [m/s]; used if `air`
+  Vec3Array<Real> wind;                     ///< at each particle [m/s]; only if `air`
 };
 
-/// What one tick of the solver did.
+/// Result of one tick of a solver.
 struct AdvanceResult {
   Energies before, after;
-  double work = 0;            ///< done by hands and air over the tick [J]
+  double work = 0;            ///< of hands and air over the tick [J]
   double largest_strain = 0;  ///< at the end
-  int damped_substeps = 0;    ///< that `implicit` had to go again by backward Euler
-  /// Why the tick was ended in the midst of it; nothing above but `before` counts then.
+  int damped_substeps = 0;    ///< that `implicit` had to repeat by backward Euler
+  /// Why the tick ended early; then only `before` above is valid.
   std::optional<BlowUp> blow_up;
 };
 
-/// Arrays that live from tick to tick so that nothing allocates during a step.
+/// Arrays that live across ticks, so that no step allocates.
 template <class Real>
 struct VerletWorkspace {
-  // Where all parts are kicked in one pass with their forces, these are empty, but for the external
-  // forces if there are shots, and with parts that are no grid if there is air.
+  // These are empty if all parts are kicked in one pass with their forces; `external` is still
+  // needed for shots, and for air on parts that are not grids.
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
   Vec3Array<Real> external;              ///< forces of shots and air [N]
-  Vec3Array<Real> velocity;              ///< estimate of the velocity that the dashpots see [m/s]
+  Vec3Array<Real> velocity;              ///< estimate of the velocity for the dashpots [m/s]
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
-                                         ///< somebody else moves the cloth
-  std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each part while it sleeps, once known
-  std::vector<GridPass<Real>> grids;   ///< for each part its row-wise form, if it fits
-  std::vector<MeshPass<Real>> meshes;  ///< for each other part its form by gathering, likewise
+                                         ///< other code moves the cloth
+  std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each sleeping part, once known
+  std::vector<GridPass<Real>> grids;                  ///< row-wise form of each part, if it fits
+  std::vector<MeshPass<Real>> meshes;  ///< gathering form of each other part, if it fits
   bool all_grids = false;              ///< every part fits as a grid
-  std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths that the grids have; 0: none
-  Executor* executor = nullptr;        ///< advances bands of large grids on its threads
+  std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths loaded into the grids; 0: none
+  Executor* executor = nullptr;        ///< runs bands of large grids on its threads
 
-  /// Sizes the arrays for a cloth on which neither air nor shots act.
+  /// Sizes the arrays for a cloth without air and shots.
   /// @param threads  may be null
   void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* threads);
 
-  /// Sizes what air and shots need besides. To be called before a tick that has them.
+  /// Sizes the additional arrays for air and shots. Call before a tick that has them.
   void make_room(const ClothModel<Real>& model, bool air, bool shots);
 
-  /// Sizes what the steps without contact need, in a world with a guard (fused_steps.h).
+  /// Sizes the arrays for steps without contact, in a world with a guard (fused_steps.h).
   void make_room_for_paths();
 
-  /// Gives the grids these paths, if they have others.
+  /// Loads these paths into the grids, unless they are loaded.
   void load_paths(const CalmPaths<Real>& paths);
 
   /// Whether a part is kicked in one pass with its forces, without sweeps.
@@ -98,7 +100,7 @@ struct VerletWorkspace {
     return grids[part].fits() || (meshes[part].fits() && model.parts[part].hinges.count == 0);
   }
 
-  /// What the arrays take [B].
+  /// Size of the arrays [B].
   std::size_t bytes() const;
 };
 

@@ -2,7 +2,7 @@
 
 #include "core/solver/verlet.h"
 
-// What the files of verlet share: the kicks of a tick and everything that it works on.
+// Shared by the files of verlet: the kicks of a tick and its inputs and state.
 
 namespace weft {
 
@@ -12,7 +12,7 @@ struct Kick {
   Real keep, push;
 };
 
-/// The three kicks of a tick. The opening and the closing one together are one full kick.
+/// The three kicks of a tick. Opening and closing together make one full kick.
 template <class Real>
 struct Kicks {
   Kick<Real> opening, full, closing;
@@ -25,7 +25,7 @@ struct Kicks {
   }
 };
 
-/// One tick's constant inputs together with what it changes.
+/// One tick: constant inputs and changing state.
 template <class Real>
 struct Tick {
   const ClothModel<Real>& model;
@@ -37,7 +37,7 @@ struct Tick {
   ClothState<Real>& state;
   VerletWorkspace<Real>& work;
   Profile& profile;
-  bool hands, shots, pulled;  // anybody holds; was shot; shots or the air push
+  bool hands, shots, pulled;  // any hand; any shot; shots or air push
 
   const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
   GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }

@@ -1,3 +1,5 @@
+// Sizes the arrays of verlet.
+
 #include <utility>
 
 #include "core/solver/verlet.h"
@@ -13,7 +15,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   meshes.assign(model.parts.size(), {});
   at_rest.assign(model.parts.size(), {});
   all_grids = true;
-  bool listed = solver.damping_sweeps > 1;  // somebody needs forces as numbers of the whole model
+  bool listed = solver.damping_sweeps > 1;  // whether the model's force arrays are needed
   for (std::size_t p = 0; p < grids.size(); ++p) {
     grids[p].prepare(model.parts[p]);
     if (executor && grids[p].fits()) grids[p].make_room_for_bands();

@@ -4,20 +4,22 @@
 #include <cstddef>
 #include <vector>
 
+// The quadratic bending form along one line of a grid level.
+
 namespace weft {
 
-/// What the quadratic form of bending has to say about one line of particles of a level and those
-/// beside it. Distances are in units of the level's regular one; where all are regular, `bend` is
+/// Contribution of the quadratic bending form to one line of particles of a level and its
+/// neighbours. Distances are in units of the level's regular one; where all are regular, `bend` is
 /// that of second differences 1 -2 1 and `slope` that of first differences -1 1.
 template <class Real>
 struct BendingLine {
-  std::array<Real, 5> bend{};   ///< of the line two before, before, itself, behind, two behind
-  std::array<Real, 3> slope{};  ///< of the line before, itself, behind
-  Real width = 0;               ///< of the cells before and behind together
+  std::array<Real, 5> bend{};   ///< of the line two before, before, itself, after, two after
+  std::array<Real, 3> slope{};  ///< of the line before, itself, after
+  Real width = 0;               ///< of the cells before and after together
 };
 
 /// All lines of a level in one direction.
-/// @param at    where they are, in cells of the finest level, ascending; at least two
+/// @param at    their positions, in cells of the finest level, ascending; at least two
 /// @param unit  the regular distance
 template <class Real>
 std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int unit) {
@@ -35,7 +37,7 @@ std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int uni
     lines[k + 1].slope[0] -= stiffness;
   }
   for (std::size_t k = 1; k + 1 < at.size(); ++k) {
-    // The curvature is 2 / (a + b) times the change of slope, and stands for (a + b) / 2.
+    // The curvature is 2 / (a + b) times the change of slope, over a length of (a + b) / 2.
     const Real before = step(k - 1), behind = step(k), share = 2 / (before + behind);
     const Real change[3] = {1 / before, -1 / before - 1 / behind, 1 / behind};
     for (std::size_t i = 0; i < 3; ++i) {

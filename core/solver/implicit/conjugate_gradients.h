@@ -6,30 +6,32 @@
 #include "core/solver/implicit/spring_grid.h"
 #include "core/stop_signal.h"
 
+// Preconditioned conjugate gradients.
+
 namespace weft {
 
 inline constexpr int kMostLinearIterations = 200;
 
-/// What became of a linear system.
+/// Outcome of a linear system.
 struct LinearSolution {
   int iterations = 0;
   double start = 0;     ///< sqrt(r^T z) at the start
-  bool solved = false;  ///< false: not positive definite, not finite, or not done in time
+  bool solved = false;  ///< false: not positive definite, not finite, or not converged in time
 };
 
-/// Vectors of a system, all of the same size.
+/// Vectors of a system, all of equal size.
 template <class Real>
 struct LinearVectors {
-  Real* residual;  ///< the right side when it begins
+  Real* residual;  ///< initially the right-hand side
   Real* solution;  ///< out
   Real *direction, *product, *preconditioned;
   std::size_t count;
 };
 
-/// Preconditioned conjugate gradients from zero until sqrt(r^T z) has fallen to `tolerance` of its
-/// start or to `enough`.
+/// Preconditioned conjugate gradients from zero until sqrt(r^T z) falls to `tolerance` of its
+/// initial value or to `enough`.
 /// @param apply         y = A p
-/// @param precondition  z = about A^-1 r, symmetric and positive definite
+/// @param precondition  z approximates A^-1 r; symmetric and positive definite
 template <class Real, class Apply, class Precondition>
 LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, double enough,
                             Apply&& apply, Precondition&& precondition) {

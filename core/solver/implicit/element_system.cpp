@@ -1,3 +1,5 @@
+// Assembles and applies the element-wise matrix.
+
 #include "core/solver/implicit/element_system.h"
 
 #include <algorithm>

@@ -7,11 +7,13 @@
 #include "core/solver/implicit/linear_terms.h"
 #include "core/types.h"
 
+// Linear systems of meshes and other cloths without a regular grid.
+
 namespace weft {
 
-/// The linear systems of any other cloth, spring by spring and hinge by hinge; the inverse of the
-/// diagonal blocks stands for that of the matrix. A hinge's matrix is k g g^T with g the gradient
-/// of its angle (Gauss-Newton: what the angle's own curvature adds may be indefinite).
+/// The linear systems of cloths other than regular grids, spring by spring and hinge by hinge,
+/// preconditioned by the inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the
+/// gradient of its angle (Gauss-Newton: the curvature of the angle itself may be indefinite).
 template <class Real>
 class ElementSystem {
  public:

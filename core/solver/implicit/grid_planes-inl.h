@@ -1,3 +1,4 @@
+// Vector access to the planes of a grid level.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_PLANES_INL_H
@@ -18,7 +19,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The three planes of a vector, or the six of symmetric blocks, at one place.
+/// Access to the three planes of a vector, or the six of symmetric blocks.
 template <class Real>
 struct PlaneVector {
   const Real *x, *y, *z;
@@ -36,7 +37,7 @@ struct PlaneBlocks {
   explicit PlaneBlocks(const std::array<AlignedVector<Real>, 6>& b)
       : xx(b[0].data()), xy(b[1].data()), xz(b[2].data()), yy(b[3].data()), yz(b[4].data()),
         zz(b[5].data()) {}
-  /// sum + block at k times u
+  /// sum + (block at k) times u
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE Triple<V> times(D d, std::ptrdiff_t k, const Triple<V>& u,
                              const Triple<V>& sum) const {
@@ -45,7 +46,7 @@ struct PlaneBlocks {
             fused_dot(d, {b, hn::LoadU(d, yy + k), e}, u, sum.y),
             fused_dot(d, {c, e, hn::LoadU(d, zz + k)}, u, sum.z)};
   }
-  /// Number e of the blocks from k on.
+  /// Component e of the blocks from k on.
   template <class D>
   HWY_INLINE hn::Vec<D> number(D d, std::size_t e, std::ptrdiff_t k) const {
     const Real* const numbers[6] = {xx, xy, xz, yy, yz, zz};
@@ -53,7 +54,7 @@ struct PlaneBlocks {
   }
 };
 
-/// The same of blocks a I + s s^T.
+/// The same for blocks a I + s s^T.
 template <class Real>
 struct FactoredBlocks {
   const Real *x, *y, *z, *a;
@@ -82,20 +83,20 @@ HWY_INLINE void store_planes(D d, const Triple<V>& a, std::ptrdiff_t plane, Real
   hn::StoreU(a.z, d, at + 2 * plane);
 }
 
-/// Lanes from k on that are particles and not pinned.
+/// Lanes from k on that hold particles that are not pinned.
 template <class D, class Real>
 HWY_INLINE hn::Mask<D> is_free(D d, const SpringGrid<Real>& g, std::ptrdiff_t k) {
   return hn::Gt(hn::LoadU(d, g.free.data() + k), hn::Zero(d));
 }
 
-/// What stands in the other lanes goes, even if it is no number.
+/// Zeroes the other lanes, even if they are NaN.
 template <class M, class V>
 HWY_INLINE Triple<V> only(M mask, const Triple<V>& a) {
   return {hn::IfThenElseZero(mask, a.x), hn::IfThenElseZero(mask, a.y),
           hn::IfThenElseZero(mask, a.z)};
 }
 
-/// What bending adds to a row of the product.
+/// Adds bending to a row of the product.
 template <class D, class Real, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> add_bending(D d, const SpringGrid<Real>& g, const PlaneVector<Real>& p, int r,
                                  std::ptrdiff_t c, const Triple<V>& sum) {

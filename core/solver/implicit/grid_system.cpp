@@ -1,3 +1,5 @@
+// Connects a grid's linear systems to its multigrid.
+
 #include "core/solver/implicit/grid_system.h"
 
 namespace weft {

@@ -8,17 +8,19 @@
 #include "core/solver/implicit/spring_planes.h"
 #include "core/types.h"
 
+// Linear systems of regular grids.
+
 namespace weft {
 
-/// Where a Newton step is taken, for all particles of the model.
+/// Linearisation point of a Newton step, for all particles of the model.
 template <class Real>
 struct NewtonPoint {
   const Vec3Array<Real>& x;  ///< [m]
   const Vec3Array<Real>& v;  ///< [m/s]
-  Real rate;                 ///< by which velocities change with positions [1/s]
-  /// Of each particle what inertia and drag add to the matrix, times the unit matrix [N/m].
+  Real rate;                 ///< derivative of velocities by positions [1/s]
+  /// Contribution of inertia and drag to the matrix per particle, times the unit matrix [N/m].
   const std::vector<Real>& inertia;
-  /// And what the air adds; null where there is none [N/m].
+  /// Contribution of the air; null without air [N/m].
   const std::vector<SymmetricBlock<Real>>* air;
 };
 
@@ -31,15 +33,15 @@ class GridSystem {
 
   GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
-  /// Numbers in a vector. Between them stand zeros.
+  /// Number of values in a vector, including the zeros between them.
   std::size_t size() const { return grid().layout.size(); }
-  /// Where the components of a particle stand, counted from the part's first.
+  /// Indices of a particle's components; the particle is counted from the part's first.
   std::array<std::size_t, 3> places(Index particle) const;
 
-  /// Takes who is pinned.
+  /// Sets the pinned particles.
   void set_pinned(const std::vector<Real>& inverse_mass);
 
-  /// Adds the forces of springs and bending to `force`, and keeps the matrix.
+  /// Adds the forces of springs and bending to `force`, and stores the matrix.
   void linearise(const ClothModel<Real>&, const NewtonPoint<Real>& at, Vec3Array<Real>& force);
 
   void load(const Vec3Array<Real>& from, Real* to) const;
@@ -54,7 +56,7 @@ class GridSystem {
   Multigrid<Real> multigrid_;
   SpringPlanes<Real> springs_;
   IndexRange particles_;
-  GridVector<Real> x_, v_, force_;  ///< of `linearise`
+  GridVector<Real> x_, v_, force_;  ///< scratch of `linearise`
 };
 
 }  // namespace weft

@@ -1,3 +1,4 @@
+// Restriction and prolongation for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_GRID_TRANSFER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_GRID_TRANSFER_INL_H
@@ -19,16 +20,16 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A fine row, and its share.
+/// A fine row and its weight.
 template <class Real>
 struct Share {
   std::ptrdiff_t row;
   Real weight;
 };
 
-/// line = row a + weighted b + weighted c, and zeros behind it.
-/// @param at  vector of numbers at a place of the fine level
-/// @returns   where the line begins
+/// line = row a + weighted b + weighted c, followed by zeros.
+/// @param at  loads a vector of numbers of the fine level
+/// @returns   start of the line
 template <class Real, class Numbers>
 HWY_INLINE Real* add_up_rows(const Numbers& at, std::ptrdiff_t a, Share<Real> b, Share<Real> c,
                              int columns, AlignedVector<Real>& line) {
@@ -43,26 +44,26 @@ HWY_INLINE Real* add_up_rows(const Numbers& at, std::ptrdiff_t a, Share<Real> b,
     if (c.weight > 0) sum = fused(d, at(d, c.row + k), wc, sum);
     hn::StoreU(sum, d, to + k);
   }
-  // Coarse vectors end up to two fine ones behind the last column.
+  // Coarse vectors extend up to two fine ones beyond the last column.
   for (const std::ptrdiff_t end = columns + 2 * lanes; k < end; k += lanes)
     hn::StoreU(hn::Zero(d), d, to + k);
   return to;
 }
 
-/// Coarse row `r`: what is on its line with half of what is on the fine lines beside it.
+/// Coarse row `r`: the fine row on its line plus half of the adjacent fine rows.
 template <class Real, class Numbers>
 HWY_INLINE Real* add_up_about(const Numbers& at, const GridLayout& fine, int r,
                               AlignedVector<Real>& line) {
   const int here = r * 2 < fine.rows ? r * 2 : fine.rows - 1;
-  // The fine row before is one that goes, and so is the one behind.
+  // Only fine rows that the coarse level drops are shared.
   const bool before = r > 0 && here == r * 2, behind = here + 2 < fine.rows;
   const std::ptrdiff_t row = fine.at(here, 0);
   return add_up_rows<Real>(at, row, {row - fine.stride, before ? Real(0.5) : Real(0)},
                            {row + fine.stride, behind ? Real(0.5) : Real(0)}, fine.columns, line);
 }
 
-/// to(c) = line(2c) + half of line(2c - 1) and of line(2c + 1); the last of an even number of
-/// columns stands for itself.
+/// to(c) = line(2c) + half of line(2c - 1) and line(2c + 1); the last of an even number of columns
+/// is copied.
 template <class Real>
 HWY_INLINE void gather_about(Real* line, int columns, int coarse_columns, Real* to) {
   const hn::ScalableTag<Real> d;
@@ -88,8 +89,8 @@ HWY_INLINE void restrict_rows(const GridLayout& fine, const GridLayout& coarse, 
                  to + coarse.at(r, 0));
 }
 
-/// wide(2c) = line(c), wide(2c + 1) = their mean; the last of an even number of columns stands for
-/// itself.
+/// wide(2c) = line(c), wide(2c + 1) = mean of line(c) and line(c + 1); the last of an even number
+/// of columns is copied.
 template <class Real>
 HWY_INLINE void interpolate(const Real* line, int columns, int coarse_columns, Real* wide) {
   const hn::ScalableTag<Real> d;
@@ -130,7 +131,7 @@ HWY_INLINE void prolong_rows(const GridLayout& fine, const GridLayout& coarse, c
   }
 }
 
-/// to(c) = (line(2c) + line(2c + 1)) / 4; of a last short cell, line(2c) whole.
+/// to(c) = (line(2c) + line(2c + 1)) / 4; for a short last cell, all of line(2c).
 template <class Real>
 HWY_INLINE void gather_pairs(const Real* line, int columns, int coarse_columns, Real short_share,
                              Real share, Real* to) {
@@ -144,7 +145,7 @@ HWY_INLINE void gather_pairs(const Real* line, int columns, int coarse_columns, 
   if (columns % 2 == 0) to[coarse_columns - 2] = line[columns - 2] * short_share;
 }
 
-/// Coarse row `r` of number `e` of all blocks.
+/// Coarse row `r` of component `e` of all blocks.
 template <template <class> class Blocks, class Real>
 HWY_INLINE void coarsen_row(const SpringGrid<Real>& fine, int r, std::size_t e,
                             SpringGrid<Real>& coarse, AlignedVector<Real>& line) {

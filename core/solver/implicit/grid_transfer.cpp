@@ -1,3 +1,5 @@
+// Compiles the transfers for each instruction set and dispatches to them.
+
 #include "core/solver/implicit/grid_transfer.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -5,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once for each instruction set; the second inclusion guard belongs to that.
+// Compiled once for each instruction set; the second include guard serves that.
 #include "core/solver/implicit/grid_transfer-inl.h"
 
 #if HWY_ONCE
@@ -46,7 +48,7 @@ void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
 
 template <class Real>
 void TransferLines<Real>::prepare(const GridLayout& finest) {
-  // A margin before; behind, what vectors of coarse columns take at twice their width.
+  // A margin in front; behind, the double width of vectors of coarse columns.
   for (AlignedVector<Real>* line : {&fine, &coarse})
     line->assign(static_cast<std::size_t>(finest.stride + 5 * kGridMargin), Real(0));
 }

@@ -3,34 +3,36 @@
 #include "core/math/aligned_vector.h"
 #include "core/solver/implicit/spring_grid.h"
 
+// Transfer between the levels of multigrid.
+
 namespace weft {
 
-/// From one level of a grid to the next coarser one and back. Of both directions every second line
-/// of particles stays, and the last one: where the number of lines is even, the last coarse cell is
-/// as short as a fine one.
+/// Transfer from one level of a grid to the next coarser one and back. In both directions every
+/// second line of particles is kept, and the last one: if the number of lines is even, the last
+/// coarse cell is as short as a fine one.
 
-/// How many of `count` lines stay.
+/// Number of kept lines out of `count`.
 inline int coarse_count(int count) {
   return count / 2 + 1;
 }
 
-/// Two rows of numbers with a margin before and behind, for the functions below.
+/// Two rows of numbers with margins, for the functions below.
 template <class Real>
 struct TransferLines {
   AlignedVector<Real> fine, coarse;
 
-  /// @param finest  no level is wider
+  /// @param finest  the widest level
   void prepare(const GridLayout& finest);
 };
 
-/// `to` = sum over the fine particles about each coarse one of bilinear weight times `from`. One
-/// plane of numbers, zero around the grid.
+/// `to` = sum over the fine particles around each coarse one of bilinear weight times `from`. One
+/// plane of numbers, with zeros around the grid.
 void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const float* from, float* to,
                     TransferLines<float>& lines);
 void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const double* from,
                     double* to, TransferLines<double>& lines);
 
-/// `to` += bilinear interpolation of `from`, where it is free. One plane of numbers.
+/// `to` += bilinear interpolation of `from`, for free particles. One plane of numbers.
 /// @param free  of the fine level
 void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const float* free,
                    const float* from, float* to, TransferLines<float>& lines);

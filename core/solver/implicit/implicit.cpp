@@ -1,3 +1,5 @@
+// One tick of the implicit solver: substeps, energy checks and contact.
+
 #include "core/solver/implicit/implicit.h"
 
 #include <algorithm>
@@ -9,25 +11,25 @@
 namespace weft {
 namespace {
 
-/// Energy out of nothing that is put down to rounding, as a part of the kinetic and elastic one.
+/// Unexplained energy that counts as rounding, as a fraction of kinetic and elastic energy.
 constexpr double kRounding = 1e-4;
-/// Part of the energy that was lost that may come back, kept each tick: for a moment the scheme has
-/// what a wave brings back in the next.
+/// Fraction of the lost energy that may return, kept from tick to tick: the scheme loses for a
+/// moment the energy that a wave returns in the next tick.
 constexpr double kKeptCredit = 0.9;
-/// Longest way of a particle beside the others in a substep that the guard shall keep apart, in
-/// mean lengths of the edges.
+/// Largest relative displacement of a particle in a substep that the guard can handle, in mean edge
+/// lengths.
 constexpr double kFarWay = 1;
-/// Into how many pieces a substep is cut at the most.
+/// Largest number of pieces of a divided substep.
 constexpr int kMostPieces = 64;
-/// Part of the kinetic and elastic energy that a violent substep takes.
+/// Fraction of kinetic and elastic energy lost in a violent substep.
 constexpr double kViolentLoss = 0.1;
-/// Speed of all particles whose energy a violently shaken cloth has at least [m/s].
+/// A violently shaken cloth has at least the energy of all its particles at this speed [m/s].
 constexpr double kViolentSpeed = 1;
-/// And how far a spring of it is stretched or crushed. Waves in a stiff cloth that snaps taut may
-/// have as much energy, and may go.
+/// And the strain of one of its springs. Waves in a stiff cloth that snaps taut may have as much
+/// energy, and may be damped.
 constexpr double kViolentStrain = 0.1;
 
-/// Who was moved by others since the tick before starts anew.
+/// Discards the history of particles that were moved between ticks.
 template <class Real>
 void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<Real>& work) {
   const bool same_step = work.last_dt == dt;
@@ -41,7 +43,7 @@ void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<R
   work.last_dt = dt;
 }
 
-/// What is not gravity's [J].
+/// Energy without that of gravity [J].
 double mechanical(const Energies& e) {
   return e.kinetic + e.stretch + e.bending;
 }
@@ -64,7 +66,7 @@ EnergyReading energies_at(const Step<Real>& step, const Vec3Array<Real>& x,
   return reading;
 }
 
-/// What drag took over the present ways [J].
+/// Energy that drag took over the present displacements [J].
 template <class Real>
 double drag_work(const Step<Real>& step) {
   double sum = 0;
@@ -73,7 +75,7 @@ double drag_work(const Step<Real>& step) {
   return step.surroundings.drag * sum;
 }
 
-/// Whether no energy came from nowhere in a substep, and if so what of what was lost is left.
+/// Whether the energy after a substep has a source; if so, updates the credit of lost energy.
 bool explained(const Energies& before, const Energies& after, double work, double& credit) {
   const double excess = after.total() - before.total() - work - credit;
   const double rounding = kRounding * (mechanical(before) + std::abs(work) + 1e-9);
@@ -82,7 +84,7 @@ bool explained(const Energies& before, const Energies& after, double work, doubl
   return true;
 }
 
-/// What the air gives to some particles and takes from others over the present ways, together [J].
+/// Absolute work of the air on all particles over the present displacements [J].
 template <class Real>
 double air_turnover(const Step<Real>& step) {
   if (!step.surroundings.air) return 0;
@@ -92,9 +94,9 @@ double air_turnover(const Step<Real>& step) {
   return sum;
 }
 
-/// Whether the substep brought energy to a cloth that is torn or shaken violently, or took much of
-/// what it has. What the air's own work is off by does not count.
-/// @param sound  it brought none
+/// Whether the substep added energy to a torn or violently shaken cloth, or took much of its
+/// energy. Errors of the air's own work do not count.
+/// @param sound  it added none
 template <class Real>
 bool is_violent(const Step<Real>& step, const EnergyReading& before, const EnergyReading& after,
                 double work, bool sound) {
@@ -105,7 +107,7 @@ bool is_violent(const Step<Real>& step, const EnergyReading& before, const Energ
   return !sound || lost > kViolentLoss * had + air_turnover(step);
 }
 
-/// The ways of a substep in pieces by backward Euler, `work.way`, `x` and `v` at its end.
+/// Divides a substep into pieces of backward Euler; sets `work.way`, `x` and `v` at its end.
 /// @returns whether all linear systems were solved
 template <class Real>
 bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double& brought) {
@@ -132,10 +134,10 @@ bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, dou
   return solved;
 }
 
-/// The ways of a substep that brings no energy from nowhere.
-/// @param after    gets the energies to which they lead
-/// @param brought  gets the work of air, shots and hands [J]
-/// @returns        false if there are none, or if the substep is violent and that is asked for
+/// Displacements of a substep that adds no energy without a source.
+/// @param after    receives the resulting energies
+/// @param brought  receives the work of air, shots and hands [J]
+/// @returns        false if there are none, or if the substep is violent and refused
 template <class Real>
 bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading& before,
                      EnergyReading& after, double& brought) {
@@ -156,8 +158,8 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading
   }
 }
 
-/// Whether anybody goes so far beside the others in a substep that the guard would look at half the
-/// cloth to keep him off it, and would stop him on the way.
+/// Whether a particle moves so far relative to the others in a substep that the guard would have to
+/// search half of the cloth for it, and would stop it early.
 template <class Real>
 bool goes_far(const Step<Real>& step, const Collision<Real>& collision) {
   if (!collision.guard) return false;
@@ -171,15 +173,15 @@ bool goes_far(const Step<Real>& step, const Collision<Real>& collision) {
   });
 }
 
-/// Goes the ways as far as contact lets. Who was not hindered has the scheme's velocity at the end;
-/// who was has the mean one, and begins anew.
+/// Moves by the displacements as far as contact allows. An unobstructed particle has the scheme's
+/// final velocity; an obstructed one has the mean velocity, and loses its history.
 /// @returns the motion that contact must not see, if there is one; nothing has moved then
 template <class Real>
 std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
   ClothState<Real>& state = step.state;
   ImplicitWorkspace<Real>& work = step.work;
   collision.before_kick(state);
-  std::swap(state.v, work.last_v);  // the velocities before
+  std::swap(state.v, work.last_v);  // the previous velocities
   if (collision.empty()) {
     std::copy(work.v.begin(), work.v.end(), state.v.begin());
     std::copy(work.x.begin(), work.x.end(), state.x.begin());

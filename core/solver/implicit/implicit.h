@@ -15,21 +15,22 @@
 #include "core/solver/implicit/grid_system.h"
 #include "core/solver/verlet.h"
 
+// The implicit solver.
+
 namespace weft {
 
 /// Settings of the solver `implicit`.
 struct ImplicitDef {
-  int substeps = 1;         ///< a tick; where the cloth can meet anything, at least
-                            ///< kFewestInContact
-  int iterations = 2;       ///< of Newton's method a substep; one is 2 to 30 % off on stiff cloth
-  double tolerance = 0.02;  ///< of each linear system, as a part of what it begins with
+  int substeps = 1;         ///< per tick; at least kFewestInContact if the cloth can meet anything
+  int iterations = 2;       ///< of Newton's method per substep; one is 2 to 30 % off on stiff cloth
+  double tolerance = 0.02;  ///< of each linear system, relative to its initial residual
 };
 
-/// Substeps a tick at the least where there is anything to meet: contact acts between them, and
-/// what holds the cloth is not part of its equations.
+/// Least number of substeps per tick if there is anything to meet: contact acts between substeps,
+/// and its constraints are not part of their equations.
 inline constexpr int kFewestInContact = 4;
 
-/// Describes each field to `visit(info, value)`.
+/// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_implicit(Def& s, Visitor&& visit) {
   visit(FieldInfo{"substeps", 1, kMostSubsteps, "", "fewest substeps a tick"}, s.substeps);
@@ -37,68 +38,70 @@ void visit_fields_of_implicit(Def& s, Visitor&& visit) {
   visit(FieldInfo{"tolerance", 1e-10, 0.5, "", "of each linear system, relative"}, s.tolerance);
 }
 
-/// What a live hand adds to the linear system: stiffness (sum w x) w.
+/// Contribution of a live hand to the linear system: stiffness (sum w x) w.
 template <class Real>
 struct HandTerm {
-  std::size_t grab = 0;                            ///< its number in the list
-  std::size_t part = 0;                            ///< of the model, that it holds
+  std::size_t grab = 0;                            ///< its index in the list
+  std::size_t part = 0;                            ///< the held part of the model
   Real stiffness = 0;                              ///< [N/m]
   std::vector<std::array<std::size_t, 3>> places;  ///< of the held particles in a vector
-  std::vector<Real> weights;                       ///< 0 of pinned ones
+  std::vector<Real> weights;                       ///< 0 for pinned ones
 };
 
-/// Arrays that live from tick to tick.
+/// Arrays that live across ticks.
 template <class Real>
 struct ImplicitWorkspace {
   using System = std::variant<GridSystem<Real>, ElementSystem<Real>>;
 
   std::vector<System> systems;  ///< of each part
   EnergyPass<Real> energy;
-  Vec3Array<Real> way, x, v;                     ///< of the substep, and where and how fast it ends
-  Vec3Array<Real> force, air;                    ///< [N]
-  Vec3Array<Real> last_way, last_v;              ///< of the substep before
-  Vec3Array<Real> end_x, end_v;                  ///< at the end of the tick before
-  Vec3Array<Real> start_x, start_v;              ///< of a substep that is gone in pieces
-  std::vector<char> history;                     ///< of each particle: whether that substep counts
-  std::vector<Real> inertia;                     ///< see NewtonPoint
+  Vec3Array<Real> way, x, v;         ///< displacement, final positions and velocities
+  Vec3Array<Real> force, air;        ///< [N]
+  Vec3Array<Real> last_way, last_v;  ///< of the previous substep
+  Vec3Array<Real> end_x, end_v;      ///< at the end of the previous tick
+  Vec3Array<Real> start_x, start_v;  ///< of a divided substep
+  std::vector<char> history;         ///< per particle: whether last_way and last_v count
+  std::vector<Real> inertia;         ///< see NewtonPoint
   std::vector<SymmetricBlock<Real>> air_blocks;  ///< see NewtonPoint
-  std::vector<HandTerm<Real>> hands;             ///< the first hand_count of them
+  std::vector<HandTerm<Real>> hands;             ///< the first hand_count are valid
   std::size_t hand_count = 0;
-  std::vector<double> starts;  ///< of each part's first linear system of a substep
+  std::vector<double> starts;  ///< of each part's first linear system in a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
   double last_dt = 0;         ///< [s]; 0: no history
-  double credit = 0;          ///< energy that was lost not long ago, and may come back [J]
-  bool unsolved = false;      ///< a linear system of the last tick found no solution
-  bool refuses = false;       ///< the coming tick ends where it is violent or touches
-  bool violent = false;       ///< the last tick ended as it was
-  bool touching = false;      ///< the last tick ended as something touched
-  double violent_energy = 0;  ///< below which nothing is [J]
+  double credit = 0;          ///< recently lost energy that may return [J]
+  bool unsolved = false;      ///< a linear system of the last tick was not solved
+  bool refuses = false;       ///< the coming tick ends if it is violent or touches
+  bool violent = false;       ///< the last tick ended for violent motion
+  bool touching = false;      ///< the last tick ended for contact
+  double violent_energy = 0;  ///< least energy of a violent substep [J]
   double far_way = 0;         ///< see goes_far() [m]
 
   void prepare(const ClothModel<Real>& model);
 
-  /// The coming substep begins anew: what came before it is not its past.
+  /// Makes the coming substep independent of the previous one.
   void forget();
 };
 
 /// One tick of the implicit solver: BDF2 with a few Newton iterations and conjugate gradients,
 /// on grids with multigrid as preconditioner (multigrid.h),
 ///   v' = (3x' - 4x + x_before) / 2h,   M (3v' - 4v + v_before) / 2h = f(x', v') - alpha M v',
-/// or backward Euler where the substep before does not count: at the start, for who was stopped or
-/// pushed by contact, pins or anybody between ticks, and after a change of the substep. Springs,
-/// dashpots, bending, air, drag and hands are all taken at the substep's end, so no stiffness
-/// bounds the substep. The matrix is kept positive definite: the forces are exact, their
-/// derivatives are not all (linear_terms.h). Contact corrects the mean velocities of a substep.
+/// or backward Euler where the previous substep does not count: at the start, for particles that
+/// contact or pins stopped or pushed, or that moved between ticks, and after a change of the
+/// substep. Springs, dashpots, bending, air, drag and hands all act at the substep's end, so no
+/// stiffness bounds the substep. The matrix is kept positive definite: the forces are exact, some
+/// of their derivatives are not (linear_terms.h). Contact corrects the mean velocities of a
+/// substep.
 ///
-/// A substep that ends with more energy than there was and than hands and air brought, or whose
-/// linear systems are not solved, is gone again by backward Euler in 1, 2, 4 ... pieces, which
-/// AdvanceResult::damped_substeps tells. A substep is violent that brings or loses a
-/// tenth of the energy of a cloth that is fast and stretched far: in one long step the waves in it
-/// are lost, and it comes to rest in tucks that they would have shaken out. And as contact acts
-/// after the linear systems, what it holds gives way for a whole substep to what pulls at it;
-/// friction, which lives on the pressure, then lets a strip slip over a bar that should hold it.
-/// Nor can cloth be kept off cloth whose particles go far beside each other in one step. Where
-/// `refuses` is set, ticks end at each of these for somebody else to go them.
+/// A substep that ends with more energy than it had and received from hands and air, or whose
+/// linear systems are not solved, is repeated by backward Euler in 1, 2, 4 ... pieces;
+/// AdvanceResult::damped_substeps counts these. A substep is violent if it adds or loses a tenth of
+/// the energy of a fast and strongly stretched cloth: one long step damps the waves in it, and it
+/// comes to rest in tucks that they would have shaken out. Nor does a long step suit contact.
+/// Because contact acts after the linear systems, held cloth yields for a whole substep to the
+/// forces on it; friction, which depends on the pressure, then lets a strip slip over a bar that
+/// should hold it. And cloth cannot be kept off cloth whose particles move far relative to each
+/// other in one step. If `refuses` is set, ticks end at each of these, for another solver to step
+/// them.
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1

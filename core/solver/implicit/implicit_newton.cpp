@@ -1,3 +1,5 @@
+// Newton's method for one substep of the implicit solver.
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +11,11 @@
 namespace weft {
 namespace {
 
-/// Later linear systems of a substep need not be solved better than this part of the first one's
-/// tolerance.
+/// Later linear systems of a substep need not be solved better than this fraction of the first
+/// one's tolerance.
 constexpr double kEnough = 0.1;
 
-/// Where the present ways lead, and how fast.
+/// Positions and velocities that result from the present displacements.
 template <class Real>
 void place(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
@@ -28,7 +30,7 @@ void place(Step<Real>& step) {
   }
 }
 
-/// Gravity, drag and inertia, and what of the matrix goes with them.
+/// Gravity, drag and inertia, with their part of the matrix.
 template <class Real>
 void add_own(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
@@ -42,7 +44,7 @@ void add_own(Step<Real>& step) {
   }
 }
 
-/// Air on all triangles. The matrix counts for each corner as if the others went with it.
+/// Air on all triangles. The matrix treats each corner as if the others moved with it.
 template <class Real>
 void add_air(Step<Real>& step) {
   const Surroundings<Real>& around = step.surroundings;
@@ -84,8 +86,8 @@ void add_air(Step<Real>& step) {
   }
 }
 
-/// What each live hand pulls with at the end of the substep, and its part of the matrix.
-/// @param progress  how much of the tick has passed then, 0 to 1
+/// Forces of the live hands at the end of the substep, with their part of the matrix.
+/// @param progress  fraction of the tick that has passed then, 0 to 1
 template <class Real>
 void add_hands(Step<Real>& step, Real progress) {
   ImplicitWorkspace<Real>& work = step.work;
@@ -98,7 +100,7 @@ void add_hands(Step<Real>& step, Real progress) {
     Vec3<Real> velocity = Vec3<Real>::Zero();
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
       velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
-    // Nobody is made faster than kFastestHeld.
+    // No particle is accelerated beyond kFastestHeld.
     const Vec3<Real> start = held_point(grab, step.state.x);
     Vec3<Real> way = target - start;
     const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = way.norm();
@@ -116,7 +118,7 @@ void add_hands(Step<Real>& step, Real progress) {
   }
 }
 
-/// y += what the hands add to the matrix, times p.
+/// y += the hands' part of the matrix, times p.
 template <class Real>
 void apply_hands(const ImplicitWorkspace<Real>& work, std::size_t part, const Real* p, Real* y) {
   for (std::size_t h = 0; h < work.hand_count; ++h) {
@@ -133,7 +135,7 @@ void apply_hands(const ImplicitWorkspace<Real>& work, std::size_t part, const Re
   }
 }
 
-/// Forces and matrix at the present ways.
+/// Forces and matrix at the present displacements.
 template <class Real>
 void linearise(Step<Real>& step, Real progress) {
   ImplicitWorkspace<Real>& work = step.work;
@@ -160,14 +162,14 @@ void linearise(Step<Real>& step, Real progress) {
     if (!step.movable(i)) work.force[i].setZero();
 }
 
-/// A Newton step of a part. @returns whether it was found
+/// Newton step of a part. @returns whether it was found
 template <class Real>
 bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start) {
   ImplicitWorkspace<Real>& work = step.work;
   return std::visit(
       [&](auto& system) {
         const StageTimer timer(step.profile, Stage::linear_systems, 0);
-        if (work.systems.size() > 1) {  // others left theirs where this one has its zeros
+        if (work.systems.size() > 1) {  // others may have left values at zeros of this one
           for (GridVector<Real>* vector : {&work.residual, &work.product, &work.preconditioned})
             std::fill(vector->begin(), vector->end(), Real(0));
         }

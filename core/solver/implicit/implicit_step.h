@@ -2,11 +2,11 @@
 
 #include "core/solver/implicit/implicit.h"
 
-// What the files of the solver implicit share.
+// Shared by the files of the implicit solver.
 
 namespace weft {
 
-/// One substep's constant inputs together with what it changes.
+/// One substep: constant inputs and changing state.
 template <class Real>
 struct Step {
   const ClothModel<Real>& model;
@@ -22,8 +22,8 @@ struct Step {
   bool movable(std::size_t i) const { return state.inverse_mass[i] > 0; }
 };
 
-/// How the velocity at the end and its change follow from the way of a particle:
-/// v' = rate way - offset, M (rate v' - before) = forces.
+/// How the final velocity and its change follow from a particle's displacement: v' = rate way -
+/// offset, M (rate v' - before) = forces.
 template <class Real>
 struct Scheme {
   Real rate;
@@ -45,18 +45,18 @@ struct Scheme {
   }
 };
 
-/// Notes where the live hands hold, for the coming tick. Allocates only where there are more of
-/// them, or larger ones, than ever before.
+/// Records where the live hands hold, for the coming tick. Allocates only if they are more, or
+/// larger, than ever before.
 template <class Real>
 void take_hands(Step<Real>& step);
 
-/// Finds the ways of a substep: `way`, and `x` and `v` to which it leads.
-/// @param progress  how much of the tick has passed at its end, 0 to 1
+/// Solves for the displacements of a substep: `way`, and the resulting `x` and `v`.
+/// @param progress  fraction of the tick that has passed at its end, 0 to 1
 /// @returns whether all its linear systems were solved
 template <class Real>
 bool find_ways(Step<Real>& step, Real progress);
 
-/// Work of air, shots and hands over the present ways [J].
+/// Work of air, shots and hands over the present displacements [J].
 template <class Real>
 double outer_work(const Step<Real>& step);
 

@@ -8,6 +8,8 @@
 #include "core/forces/spring.h"
 #include "core/types.h"
 
+// Forces and derivatives of single springs.
+
 namespace weft {
 
 /// Symmetric 3 x 3 matrix as xx xy xz yy yz zz.

@@ -1,3 +1,5 @@
+// Builds the levels and runs the V-cycle.
+
 #include "core/solver/implicit/multigrid.h"
 
 #include <algorithm>
@@ -7,18 +9,18 @@
 namespace weft {
 namespace {
 
-/// Levels of at most so many lines either way are not made coarser.
+/// Levels with at most this many lines in one direction are not coarsened.
 constexpr int kCoarsest = 5;
 /// Sweeps on the coarsest level.
 constexpr int kCoarsestSweeps = 30;
 /// Damping of the block Jacobi sweeps: 1 / (0.583 lambda) with the bound lambda = 2.
 constexpr double kOmega = 0.857;
-/// How much heavier pinned particles are where the coarse levels see them.
+/// Factor by which pinned particles are heavier on the coarse levels.
 constexpr double kPinnedWeight = 1e5;
-/// Bending whose matrix is smaller than this part of the inertia is left to the finest level.
+/// Bending with a matrix smaller than this fraction of the inertia is left to the finest level.
 constexpr double kSmallBending = 0.1;
 
-/// Where the lines are of which every second one and the last one stay.
+/// Positions of the lines that a coarser level keeps: every second one, and the last.
 std::vector<int> every_second(const std::vector<int>& at) {
   std::vector<int> kept;
   for (std::size_t k = 0; k < at.size(); k += 2) kept.push_back(at[k]);

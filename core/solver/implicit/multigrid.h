@@ -5,6 +5,8 @@
 #include "core/solver/implicit/grid_transfer.h"
 #include "core/solver/implicit/spring_grid.h"
 
+// Multigrid preconditioner of regular grids.
+
 namespace weft {
 
 /// Approximate inverse of a grid's matrix, symmetric and positive definite: one V-cycle over levels
@@ -17,21 +19,23 @@ class Multigrid {
   /// Sizes all levels for a grid of at least 2 x 2 particles.
   void prepare(const GridLayout& finest, const QuadraticBending<Real>& bending);
 
-  /// The finest level, to be filled; its `inverse` and all coarser levels come from `coarsen`.
+  /// The finest level, for the caller to fill; `coarsen` computes its `inverse` and all coarser
+  /// levels.
   SpringGrid<Real>& finest() { return levels_.front().grid; }
   const SpringGrid<Real>& finest() const { return levels_.front().grid; }
   std::size_t level_count() const { return levels_.size(); }
 
-  /// After the finest level has changed. Pinned particles have a great mass below it.
+  /// Call after the finest level has changed. Pinned particles are heavy on coarser levels.
   void coarsen();
 
-  /// z = about A^-1 r. Both of the finest level's layout, zero where pinned and around the grid.
+  /// z approximates A^-1 r. Both in the finest level's layout, zero where pinned and around the
+  /// grid.
   void precondition(const Real* r, Real* z);
 
  private:
   struct Level {
     SpringGrid<Real> grid;
-    Real strongest_bending = 0;      ///< of its bending bounds [N/m]
+    Real strongest_bending = 0;      ///< largest of its bending bounds [N/m]
     GridVector<Real> residual, sum;  ///< of this level
     GridVector<Real> product;        ///< A times sum
   };

@@ -1,3 +1,4 @@
+// Matrix operations of a grid level for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_SPRING_GRID_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_SPRING_GRID_INL_H
@@ -17,7 +18,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// @tparam Blocks  of the springs, by how they are kept
+/// @tparam Blocks  storage of the springs' blocks
 template <template <class> class Blocks, class Real>
 HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Real* product) {
   const hn::ScalableTag<Real> d;
@@ -49,7 +50,7 @@ HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Rea
   }
 }
 
-/// @param y  product of z, or null where z counts as 0
+/// @param y  product of z, or null for z = 0
 template <class Real>
 HWY_INLINE void smooth_grid(const SpringGrid<Real>& g, Real omega, const Real* residual,
                             const Real* y, Real* z) {
@@ -70,7 +71,7 @@ HWY_INLINE void smooth_grid(const SpringGrid<Real>& g, Real omega, const Real* r
   }
 }
 
-/// Stripes of kGridMargin numbers are summed one beside the other, and now and then in double.
+/// Sums kGridMargin interleaved partial sums, which are added to doubles from time to time.
 template <class Real>
 HWY_INLINE double dot_product(const Real* a, const Real* b, std::size_t count) {
   const hn::CappedTag<Real, static_cast<std::size_t>(kGridMargin)> d;
@@ -100,7 +101,7 @@ HWY_INLINE void combine(bool scale_y, Real s, const Real* a, Real* y, std::size_
   }
 }
 
-/// Inverses of diagonal blocks, see `invert_diagonal`.
+/// Inverses of diagonal blocks; see `invert_diagonal`.
 template <template <class> class Blocks, class Real>
 HWY_INLINE void invert_grid(SpringGrid<Real>& g) {
   const hn::ScalableTag<Real> d;

@@ -1,3 +1,5 @@
+// Compiles the matrix operations for each instruction set and dispatches to them.
+
 #include "core/solver/implicit/spring_grid.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -5,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once for each instruction set; the second inclusion guard belongs to that.
+// Compiled once for each instruction set; the second include guard serves that.
 #include "core/solver/implicit/spring_grid-inl.h"
 
 #if HWY_ONCE
@@ -119,8 +121,8 @@ template <class Real>
 void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form,
                                    const std::vector<int>& rows_at,
                                    const std::vector<int>& columns_at, int unit) {
-  // A stencil over cells of twice the size has twice the width and an eighth of what it had for
-  // the same differences.
+  // A stencil over cells of twice the size has twice the width and an eighth of the value for the
+  // same differences.
   const Real size = Real(1) / static_cast<Real>(unit * unit);
   bending = form;
   bending.along_u *= size;

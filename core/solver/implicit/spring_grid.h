@@ -8,17 +8,19 @@
 #include "core/math/aligned_vector.h"
 #include "core/solver/implicit/bending_line.h"
 
+// The matrix of one grid level, and operations on its vectors.
+
 namespace weft {
 
-/// Zeros that stand around each row of a level, at least the widest vector, in numbers.
+/// Zeros around each row of a level, not less than the widest vector, in numbers.
 inline constexpr std::ptrdiff_t kGridMargin = 16;
 
-/// A vector of a level: three planes of numbers, each laid out as the level is.
+/// A vector of a level: three planes of numbers, each in the level's layout.
 template <class Real>
 using GridVector = AlignedVector<Real>;
 
-/// Where the numbers of a level stand: particle (r, c) of a plane is at origin + r * stride + c.
-/// Two rows of zeros above and below, and at least kGridMargin + 2 of them behind each row.
+/// Layout of a level's numbers: particle (r, c) of a plane is at origin + r * stride + c. Two rows
+/// of zeros precede and follow them, and at least kGridMargin + 2 zeros end each row.
 struct GridLayout {
   int rows = 0, columns = 0;
   std::ptrdiff_t stride = 0, plane = 0, origin = 0;
@@ -29,31 +31,32 @@ struct GridLayout {
   std::ptrdiff_t at(int r, int c) const { return origin + r * stride + c; }
 };
 
-/// The four kinds of springs of a grid. By the cell (r, c) they begin at: along to (r, c + 1), down
-/// to (r + 1, c), falling to (r + 1, c + 1), and rising, which joins (r, c + 1) with (r + 1, c).
+/// The four kinds of springs of a grid, by the cell (r, c) where they begin: along to (r, c + 1),
+/// down to (r + 1, c), falling to (r + 1, c + 1), and rising, which joins (r, c + 1) with (r + 1,
+/// c).
 enum GridSpring { kAlong, kDown, kFalling, kRising };
 
-/// The symmetric positive semidefinite matrix of one level of a grid: to each particle its own
-/// symmetric 3 x 3 block, to each spring one that acts on the difference of its ends. Blocks are
+/// The symmetric positive semidefinite matrix of one level of a grid: a symmetric 3 x 3 block for
+/// each particle, and one for each spring that acts on the difference of its ends. Blocks are
 /// planes of numbers xx xy xz yy yz zz.
 template <class Real>
 struct SpringGrid {
   GridLayout layout;
-  /// By GridSpring [N/m]. On the finest level a block is a I + s s^T, and kept as s and a: the
-  /// product is bound by what has to be fetched from memory.
+  /// By GridSpring [N/m]. On the finest level a block is a I + s s^T, and stored as s and a,
+  /// because memory traffic bounds the speed of the product.
   std::array<std::array<AlignedVector<Real>, 6>, 4> springs;
-  bool factored = false;                       ///< springs are kept so
+  bool factored = false;                       ///< springs are stored that way
   AlignedVector<Real> inertia;                 ///< of each particle, times the unit matrix [N/m]
-  std::array<AlignedVector<Real>, 6> air;      ///< of each particle, if there is any [N/m]
-  bool has_air = false;                        ///< air counts
+  std::array<AlignedVector<Real>, 6> air;      ///< of each particle, if there is air [N/m]
+  bool has_air = false;                        ///< whether `air` is used
   std::array<AlignedVector<Real>, 6> inverse;  ///< of the diagonal blocks; 0 where pinned [m/N]
-  AlignedVector<Real> free;                    ///< 1, or 0 if pinned and around the grid
+  AlignedVector<Real> free;                    ///< 1; 0 if pinned and around the grid
 
   // Bending, as a constant matrix (QuadraticBending).
   QuadraticBending<Real> bending;
-  bool bending_counts = false;  ///< else it is left out
-  /// Of each column the nine numbers of its BendingLine, in lines `stride` + 3 kGridMargin apart;
-  /// each begins with a margin and has zeros around.
+  bool bending_counts = false;  ///< otherwise it is left out
+  /// Per column the nine numbers of its BendingLine, in lines `stride` + 3 kGridMargin apart; each
+  /// begins with a margin and is surrounded by zeros.
   AlignedVector<Real> column_bending;
   std::vector<BendingLine<Real>> row_bending;
   AlignedVector<Real> bending_bound;  ///< see `invert_diagonal`
@@ -61,10 +64,10 @@ struct SpringGrid {
   bool bends() const { return bending_counts; }
   std::ptrdiff_t bending_pitch() const { return layout.stride + 3 * kGridMargin; }
 
-  /// Sizes all arrays, with zeros; everybody is free and nothing bends.
+  /// Sizes all arrays and fills them with zeros; all particles are free and nothing bends.
   void prepare(const GridLayout& shape, bool is_factored);
 
-  /// Sets the bending, which counts from then on.
+  /// Sets the bending and includes it from then on.
   /// @param form             of the finest level
   /// @param rows_at, columns_at, unit  see bending_lines
   void set_bending(const QuadraticBending<Real>& form, const std::vector<int>& rows_at,
@@ -84,7 +87,7 @@ void smooth(const SpringGrid<float>& grid, float omega, const float* r, const fl
 void smooth(const SpringGrid<double>& grid, double omega, const double* r, const double* y,
             double* z);
 
-/// Sum of a[k] b[k], in an order that is the same for all instruction sets.
+/// Sum of a[k] b[k], in the same order on all instruction sets.
 /// @param count  a multiple of kGridMargin
 double dot(const float* a, const float* b, std::size_t count);
 double dot(const double* a, const double* b, std::size_t count);
@@ -97,13 +100,13 @@ void add_scaled(double s, const double* a, double* y, std::size_t count);
 void scale_and_add(float s, const float* a, float* y, std::size_t count);
 void scale_and_add(double s, const double* a, double* y, std::size_t count);
 
-/// The inverses of the diagonal blocks: each particle's own, those of its springs, and half the sum
-/// of the absolute values of its row of the bending matrix, so that no eigenvalue of D^-1 A is
-/// above 2 (for springs and rows alike 2 D - A is a sum of squares).
+/// Inverts the diagonal blocks: each particle's own block, those of its springs, and half the sum
+/// of the absolute values of its row of the bending matrix, so that no eigenvalue of D^-1 A exceeds
+/// 2 (for springs and rows alike 2 D - A is a sum of squares).
 void invert_diagonal(SpringGrid<float>& grid);
 void invert_diagonal(SpringGrid<double>& grid);
 
-/// Inverse of a symmetric matrix given and returned as xx xy xz yy yz zz; zeros if it is singular.
+/// Inverse of a symmetric matrix, both as xx xy xz yy yz zz; zeros if it is singular.
 template <class Real>
 std::array<Real, 6> inverse_of(const std::array<Real, 6>& a);
 

@@ -1,3 +1,4 @@
+// Linearises a grid's springs for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_SPRING_PLANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_SPRING_PLANES_INL_H
@@ -15,7 +16,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Where the forces of a row of springs stand: by kind and component a line, with a margin before.
+/// Layout of a row of springs' forces: a line by kind and component, with a margin in front.
 template <class Real>
 class ForceRow {
  public:
@@ -63,7 +64,7 @@ HWY_INLINE Triple<V> spring_term(D d, const SpringPlanes<Real>& springs, std::si
   return way * fused(d, c, closing, elastic);
 }
 
-/// Springs that begin in a row of cells: their blocks, and their forces for `add_up_row`.
+/// Blocks of the springs that begin in a row of cells, and their forces for `add_up_row`.
 template <class Real>
 HWY_INLINE void linearise_row(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
                               int r, SpringGrid<Real>& grid) {
@@ -84,8 +85,8 @@ HWY_INLINE void linearise_row(SpringPlanes<Real>& springs, Real rate, const Real
   }
 }
 
-/// What the springs of this row of cells and of the one before, and bending, do to a row of
-/// particles: summed in one order, however wide the vectors are.
+/// Sums the forces of this row of springs, of the previous one and of bending on a row of
+/// particles, in the same order for any vector width.
 template <class Real>
 HWY_INLINE void add_up_row(SpringPlanes<Real>& springs, const SpringGrid<Real>& grid, const Real* x,
                            int r, Real* force) {

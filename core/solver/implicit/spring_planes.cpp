@@ -1,3 +1,5 @@
+// Lays out a grid's springs and dispatches to their kernels.
+
 #include "core/solver/implicit/spring_planes.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -5,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once for each instruction set; the second inclusion guard belongs to that.
+// Compiled once for each instruction set; the second include guard serves that.
 #include "core/solver/implicit/spring_planes-inl.h"
 
 #if HWY_ONCE
@@ -30,7 +32,7 @@ SpringPlanes<Real>::SpringPlanes(const GridLayout& layout, const ClothModel<Real
     for (AlignedVector<Real>& plane : *planes)
       plane.assign(static_cast<std::size_t>(layout.plane), Real(0));
   }
-  // Rows of vectors end up to a vector behind the last column.
+  // Rows of vectors extend up to a vector beyond the last column.
   forces.assign(static_cast<std::size_t>(24 * layout.stride + kGridMargin), Real(0));
   for (Index n = part.springs.first; n < part.springs.end(); ++n) {
     const Spring<Real>& spring = model.springs[static_cast<std::size_t>(n)];

@@ -6,16 +6,18 @@
 #include "core/math/aligned_vector.h"
 #include "core/solver/implicit/spring_grid.h"
 
+// A grid's springs in planes, for linearisation.
+
 namespace weft {
 
-/// The springs of a whole grid by kind and by the cell they begin at, laid out as the finest level
-/// is; 0 where there is none.
+/// The springs of a whole grid by kind and first cell, in the finest level's layout; 0 where there
+/// is none.
 template <class Real>
 struct SpringPlanes {
   std::array<AlignedVector<Real>, 4> stiffness;    ///< by GridSpring [N/m]
   std::array<AlignedVector<Real>, 4> damping;      ///< [N s/m]
   std::array<AlignedVector<Real>, 4> rest_length;  ///< [m]
-  AlignedVector<Real> forces;                      ///< of two rows of them, see `linearise`
+  AlignedVector<Real> forces;                      ///< of two rows of springs; see `linearise`
 
   SpringPlanes(const GridLayout& layout, const ClothModel<Real>& model,
                const ClothPart<Real>& part);
@@ -23,9 +25,9 @@ struct SpringPlanes {
 
 /// Forces of springs, dashpots and bending on all particles, and the blocks of the springs
 /// (SpringTerm), factored.
-/// @param rate   by which velocities change with positions [1/s]
-/// @param x, v   of the grid's layout [m], [m/s]
-/// @param force  gets them, of pinned particles too [N]
+/// @param rate   derivative of velocities by positions [1/s]
+/// @param x, v   in the grid's layout [m], [m/s]
+/// @param force  receives the forces, also of pinned particles [N]
 void linearise(SpringPlanes<float>& springs, float rate, const float* x, const float* v,
                SpringGrid<float>& grid, float* force);
 void linearise(SpringPlanes<double>& springs, double rate, const double* x, const double* v,
