@@ -1,3 +1,5 @@
+// Generates or loads the meshes of built-in scenes.
+
 #include "core/scenes/built_in_meshes.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 namespace weft {
 namespace {
 
-/// A prism that stands on y = 0, with a sharp ridge along z: half a metre high, 36 cm wide, 60 cm
+/// A prism standing on y = 0, with a sharp ridge along z: half a metre high, 36 cm wide, 60 cm
 /// long.
 TriangleMesh make_gable() {
   constexpr double kHeight = 0.5;
@@ -20,7 +22,7 @@ TriangleMesh make_gable() {
           {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {2, 4, 5}, {2, 5, 3}, {0, 4, 2}, {1, 3, 5}}};
 }
 
-/// A strip of a metre by 30 cm, bent round z to a loop whose ends cross and go askew.
+/// A strip of 1 m by 30 cm, bent around z to a loop with skewed, crossing ends.
 TriangleMesh make_loop() {
   constexpr int kColumns = 41, kRows = 13;
   constexpr double kCell = 0.025, kRadius = 0.08, kMost = 2.2, kSkew = 0.02;

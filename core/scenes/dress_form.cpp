@@ -1,3 +1,5 @@
+// Lofts the dress form from elliptical sections.
+
 #include "core/scenes/dress_form.h"
 
 #include <algorithm>
@@ -10,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A horizontal section: an ellipse in two halves.
+/// A horizontal section: an ellipse with different front and back halves.
 struct Section {
   double height;  ///< y [m]
   double width;   ///< half, along x [m]
@@ -18,7 +20,7 @@ struct Section {
   double back;    ///< depth along -z [m]
 };
 
-/// Sections of the body from the lower rim to the neck, after a common dress size.
+/// Sections of the body from the lower rim to the neck, for a common dress size.
 constexpr std::array<Section, 12> kBody = {{{0.720, 0.150, 0.104, 0.112},
                                             {0.780, 0.172, 0.114, 0.132},
                                             {0.850, 0.180, 0.115, 0.138},
@@ -32,7 +34,7 @@ constexpr std::array<Section, 12> kBody = {{{0.720, 0.150, 0.104, 0.112},
                                             {1.460, 0.064, 0.054, 0.058},
                                             {1.520, 0.056, 0.050, 0.053}}};
 
-/// One of the two hills of the bust.
+/// One of the two bumps of the bust.
 constexpr double kBustHeight = 1.215, kBustAngle = 0.62, kBustDepth = 0.042, kBustSpread = 0.075;
 
 /// Catmull-Rom interpolation of four values at 0 <= t <= 1 between the middle two.
@@ -40,7 +42,7 @@ double interpolate(double a, double b, double c, double d, double t) {
   return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
-/// Section at `position` along the table, 0 to 11.
+/// Section at `position` in the table, 0 to 11.
 Section section_at(double position) {
   const auto k = static_cast<std::ptrdiff_t>(std::min(std::floor(position), 10.0));
   const double t = position - static_cast<double>(k);
@@ -54,7 +56,7 @@ Section section_at(double position) {
           interpolate(a.back, b.back, c.back, d.back, t)};
 }
 
-/// Height of the bust over the ellipse at angle phi from the front [m].
+/// Height of the bust above the ellipse at angle phi from the front [m].
 double bust(double height, double phi) {
   const double up = (height - kBustHeight) / kBustSpread;
   double sum = 0;
@@ -65,7 +67,7 @@ double bust(double height, double phi) {
   return kBustDepth * sum;
 }
 
-/// Grows a closed surface ring by ring, from the bottom up.
+/// Builds a closed surface ring by ring, from the bottom up.
 class Loft {
  public:
   explicit Loft(const Vec3d& bottom) { mesh_.positions.push_back(bottom); }
@@ -97,7 +99,7 @@ class Loft {
     }
   }
 
-  /// Joins the last ring to a new one, always advancing on the ring that is behind in angle.
+  /// Joins the last ring to a new one, always advancing on the ring that lags in angle.
   void stitch(Index start, int count) {
     int below = 0, above = 0;
     while (below < count_ || above < count) {
@@ -126,7 +128,7 @@ TriangleMesh make_dress_form() {
     return
         [=](double phi) { return Vec3d(radius * std::sin(phi), height, radius * std::cos(phi)); };
   };
-  // The rings have 709 vertices altogether, and a closed loft has twice as many triangles.
+  // The rings have 709 vertices in total, and a closed loft has twice as many triangles.
   Loft loft(Vec3d(0, 0, 0));
   loft.add_ring(16, circle(0.170, 0.000));
   loft.add_ring(16, circle(0.165, 0.018));
@@ -143,7 +145,7 @@ TriangleMesh make_dress_form() {
     });
   }
   TriangleMesh form = loft.close(Vec3d(0, 1.530, 0));
-  // Whole micrometres: the last bits of the library's sine differ between processors.
+  // Rounded to micrometres: the last bits of the library's sine differ between processors.
   for (Vec3d& p : form.positions) p = (p * 1e6).array().round() / 1e6;
   return form;
 }

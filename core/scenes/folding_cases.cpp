@@ -11,19 +11,19 @@ namespace {
 
 using std::numbers::pi;
 
-/// Where hands take hold, as parts of the fabric's extent.
+/// Held points, as fractions of the fabric's extent.
 struct Hold {
   double u, v;
 };
 
-/// Hands that take what they hold over to the other side on a low arch, and let go of it there.
+/// Hands that carry the held points to the other side in a low arch, and let go there.
 /// @param start    when they take hold [s]
-/// @param seconds  that they take for it [s]
-/// @param way      to where they lay it down [m]
+/// @param seconds  duration of the motion [s]
+/// @param way      displacement to the place where they let go [m]
 void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, double seconds,
                const Vec3d& way) {
   constexpr int kKeys = 20;
-  constexpr double kHeld = 0.1, kArch = 0.15;  // arch: height by way
+  constexpr double kHeld = 0.1, kArch = 0.15;  // arch: height per length of the displacement
   for (const Hold& hold : holds) {
     HandDef hand;
     hand.u = hold.u;
@@ -39,7 +39,7 @@ void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, doub
   }
 }
 
-/// A towel that is folded twice, and unfolded twice; the last time by one hand in the middle of its
+/// A towel that is folded twice and unfolded twice; the last time by one hand in the middle of an
 /// edge.
 void build_towel(WorldDef& def, const std::string&) {
   constexpr double kSide = 0.8, kFolded = 0.97 * kSide;
@@ -57,7 +57,7 @@ void build_towel(WorldDef& def, const std::string&) {
   judge(def, 0.5);
   def.verdict.rest_at = 0.5;
   def.verdict.back_by = 9.9;
-  def.verdict.heights = towel.fabric.thickness / 4;  // folded once it is half a thickness higher
+  def.verdict.heights = towel.fabric.thickness / 4;  // folded once, it is half a thickness higher
   def.verdict.hands_lag = 0.05;
 }
 

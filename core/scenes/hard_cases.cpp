@@ -1,3 +1,5 @@
+// The first list of hard cases: motion, shapes and starts that provoke crossings.
+
 #include "core/scenes/hard_cases.h"
 
 #include <cmath>
@@ -22,7 +24,7 @@ HandDef hand_at(double u, double v, std::vector<HandKey> path) {
   return hand;
 }
 
-/// It hangs by two corners, whose flat shape is no stable one: a breath at the start bends it.
+/// The cloth hangs by two corners, and its flat shape is unstable: a breath at the start bends it.
 void hang(WorldDef& def) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
   def.pins = {{Corner::top_left, 0.05, {}}, {Corner::top_right, 0.05, {}}};
@@ -32,7 +34,7 @@ void hang(WorldDef& def) {
 
 void build_noise(WorldDef& def, const std::string&) {
   hang(def);
-  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // by which it has one rest alone
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // which leaves a single rest shape
   def.insults = {{3, 20}, {4, 20}};
   judge(def, 3);
   def.verdict.rest_at = 3;
@@ -110,7 +112,7 @@ void build_knives(WorldDef& def, const std::string&) {
   judge(def, 0.5);
 }
 
-/// Bridson, Fedkiw, Anderson 2002: a ball that turns under a cloth drags it round on the floor.
+/// Bridson, Fedkiw, Anderson 2002: a rotating ball under a cloth drags it around on the floor.
 void build_rotating_sphere(WorldDef& def, const std::string&) {
   constexpr double kPeriod = 4;
   def.cloths[0] = lying_cloth(41, 1.2, 0.68);
@@ -125,7 +127,7 @@ void build_rotating_sphere(WorldDef& def, const std::string&) {
   judge(def, 0.5);
 }
 
-/// Hands turn one end of a strip by two turns and a half while the other is held.
+/// Hands turn one end of a strip by two and a half turns while the other end is held.
 void build_twist(WorldDef& def, const std::string&) {
   constexpr double kLength = 0.8, kWidth = 0.3, kTurns = 2.5, kSeconds = 7;
   constexpr int kKeys = 40;
@@ -180,7 +182,7 @@ void build_tablecloth(WorldDef& def, const std::string&) {
   def.cloths[0] = lying_cloth(41, 1.2, kTop + 0.02);
   def.cloths[0].fabric = make_fabric("cotton");
   def.colliders = {ground(), {"top", BoxDef{Vec3d(0, kTop - 0.02, 0), Vec3d(0.4, 0.02, 0.4)}}};
-  // Pulled off at 1, back at 2, off again at 8 m/s.
+  // Pulled away at 1, back at 2, away again at 8 m/s.
   const std::vector<HandKey> path = {{2, Vec3d::Zero()},
                                      {2.5, Vec3d(0.5, 0, 0)},
                                      {2.75, Vec3d::Zero()},

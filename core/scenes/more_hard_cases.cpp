@@ -4,7 +4,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/hard_cases.h"
 
-// The second list: ratios, steps, forces and winds far beyond use.
+// The second list of hard cases: ratios, ticks, forces and winds far beyond normal use.
 
 namespace weft {
 namespace {
@@ -18,7 +18,7 @@ FabricDef weave(double areal_density, double warp, double weft, double shear) {
   return fabric;
 }
 
-/// Square sheets over each other and over a ball, each a little aside.
+/// Square sheets above each other and above a ball, each slightly offset.
 void drop_on_ball(WorldDef& def, int particles, const std::vector<FabricDef>& fabrics) {
   def.cloths.clear();
   for (std::size_t k = 0; k < fabrics.size(); ++k) {
@@ -49,7 +49,7 @@ void build_warp_and_weft(WorldDef& def, const std::string&) {
   judge(def, 10);
 }
 
-/// Two sheets on a ball, one of which a hand lifts and drops, in ticks of any length.
+/// Two sheets on a ball, one lifted and dropped by a hand, in ticks of any length.
 void drop_in_ticks(WorldDef& def, double ticks_a_second) {
   drop_on_ball(def, 21, {make_fabric("cotton"), make_fabric("silk")});
   HandDef hand;
@@ -72,8 +72,8 @@ void build_ticks_of_a_second(WorldDef& def, const std::string&) {
   drop_in_ticks(def, 1);
 }
 
-/// It passes through itself, as it cannot leave a point otherwise; when it hangs again, nothing is
-/// left of that. Its rigidity is such that it has one rest: without, it keeps tucks.
+/// The cloth passes through itself, because it cannot leave a point otherwise; when it hangs again,
+/// no crossing is left. Its rigidity leaves a single rest shape: without it, tucks would remain.
 void build_point(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
   def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 4e-3;
@@ -84,7 +84,7 @@ void build_point(WorldDef& def, const std::string&) {
   gather.time = 2;
   gather.gather = 5e-4;
   def.insults = {gather};
-  judge(def, 1000);  // the pinned row is as far from the point as it is
+  judge(def, 1000);  // the pinned row lies that far from the point
   def.verdict.clear_after = 7;
   def.verdict.rest_at = 2;
   def.verdict.back_by = 7;
@@ -92,7 +92,7 @@ void build_point(WorldDef& def, const std::string&) {
 
 void build_far_teleport(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
-  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // by which it has one rest alone
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // which leaves a single rest shape
   def.colliders = {ground()};
   def.environment.drag = 5;
   InsultDef away, back;

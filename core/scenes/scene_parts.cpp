@@ -1,3 +1,5 @@
+// Grounds, cloths and meshes for built-in scenes.
+
 #include "core/scenes/scene_parts.h"
 
 #include "core/scenes/built_in_meshes.h"

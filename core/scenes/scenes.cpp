@@ -1,3 +1,5 @@
+// The built-in scenes, and the list of all of them.
+
 #include "core/scenes/scenes.h"
 
 #include <algorithm>
@@ -18,21 +20,21 @@ void pin_along_top(WorldDef& def, int count, double radius) {
     def.pins.push_back({MaterialPoint{static_cast<double>(k) / (count - 1), 0}, radius, {}});
 }
 
-/// For scenes in which nothing moves by itself once the air is still: what has moved by no more
-/// than half a millimetre in three seconds sleeps until something acts on it.
+/// For scenes that come to rest once the air is still: cloth that has moved by at most half a
+/// millimetre in three seconds sleeps until something acts on it.
 void let_sleep(WorldDef& def) {
   def.sleep = {3, 5e-4};
 }
 
-/// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles hung
-/// by six, three at each upper corner, gravity and wind.
+/// The seed's default scene: ground, a static model of 1,418 faces, a cloth of 600 particles pinned
+/// at six, three at each upper corner, gravity and wind.
 void build_default(WorldDef& def, const std::string&) {
-  // Warp down, weft across: 30 particles down the columns of the page, 20 across.
+  // Warp down, weft across: 30 particles down the columns of the picture, 20 across.
   def.cloths[0].rows = 20;
   def.cloths[0].columns = 30;
   def.cloths[0].width = 1.45;
   def.cloths[0].height = 0.95;
-  // Behind the form, so that the form is seen and the cloth reaches round it.
+  // Behind the form, so that the form is visible and the cloth reaches around it.
   def.cloths[0].origin = Vec3d(-0.475, 1.85, -0.28);
   def.cloths[0].u = -Vec3d::UnitY();
   def.cloths[0].v = Vec3d::UnitX();
@@ -125,7 +127,7 @@ void build_hammock(WorldDef& def, const std::string&) {
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("wool");
   def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}, {EdgeStrip{Side::right, 0}, 0, {}}};
-  // Each end hangs a centimetre before a bar across its post.
+  // Each end hangs a centimetre in front of a bar across its post.
   const double bar = kLength / 2 + 0.03, post = kLength / 2 + 0.06, half = kWidth / 2 + 0.04;
   def.colliders = {
       ground(),
@@ -170,7 +172,7 @@ void build_fan(WorldDef& def, const std::string&) {
   def.cloths[0].fabric = make_fabric("silk");
   pin_along_top(def, 7, 0.02);
   def.colliders = {ground()};
-  FanDef fan;  // at the right, so that the view from the left shows where it points
+  FanDef fan;  // at the right, so that the view from the left shows its direction
   fan.position = Vec3d(0.95, 0.8, 0.6);
   fan.direction = Vec3d(-0.8, 0.05, -0.6);
   fan.speed = 4;
@@ -178,7 +180,7 @@ void build_fan(WorldDef& def, const std::string&) {
   let_sleep(def);
 }
 
-/// A board that turns once in five seconds, with a sheet over it.
+/// A board that turns once in five seconds, with a sheet on it.
 void build_turntable(WorldDef& def, const std::string&) {
   constexpr double kTop = 0.6, kPeriod = 5;
   def.cloths[0] = lying_cloth(41, 1.1, kTop + 0.02);
@@ -186,7 +188,7 @@ void build_turntable(WorldDef& def, const std::string&) {
   ColliderDef board{"board", upright_box(Vec3d(0, kTop - 0.02, 0), Vec3d(0.32, 0.02, 0.32))};
   board.motion.loop = true;
   constexpr double kHalfRoot = 0.70710678118654752;
-  // Quarter turns; a turn of a half would not tell which way round.
+  // Quarter turns; a half turn would not determine its direction.
   const Eigen::Quaterniond turns[] = {{1, 0, 0, 0},
                                       {kHalfRoot, 0, kHalfRoot, 0},
                                       {0, 0, 1, 0},
@@ -198,7 +200,7 @@ void build_turntable(WorldDef& def, const std::string&) {
   def.environment.drag = 0.1;
 }
 
-/// A ball under a sheet that goes up at 1 m/s at most, waits, and comes down.
+/// A ball under a sheet that rises at up to 1 m/s, waits, and comes down.
 void build_lift_sphere(WorldDef& def, const std::string&) {
   def.cloths[0] = lying_cloth(41, 1.2, 0.43);
   def.cloths[0].fabric = make_fabric("silk");
@@ -211,7 +213,7 @@ void build_lift_sphere(WorldDef& def, const std::string&) {
   def.environment.drag = 0.3;
 }
 
-/// A cloth lies on a table and hangs over its edge, where jaws take it, lift it and hold it.
+/// A cloth lies on a table and overhangs its edge, where jaws grasp, lift and hold it.
 void build_gripper(WorldDef& def, const std::string&) {
   constexpr double kTop = 0.3, kHalf = 0.25, kOver = 0.08;
   def.cloths[0] = lying_cloth(33, 2 * kHalf, kTop + 0.01);

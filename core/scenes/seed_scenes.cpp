@@ -1,3 +1,5 @@
+// Builds the figures and experiments of the seed's paper.
+
 #include "core/scenes/seed_scenes.h"
 
 #include <numbers>
@@ -7,7 +9,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// What all of them have: the seed's model, particles of equal mass, and rigid springs.
+/// Common to all of them: the seed's model, particles of equal mass, and rigid springs.
 void use_seed(WorldDef& def) {
   def.model = Model::seed;
   for (ClothDef& cloth : def.cloths) {
@@ -23,7 +25,7 @@ void use_seed(WorldDef& def) {
   def.contact.seed.passes = 4;
 }
 
-/// A square cloth that falls on a ball, as Figs. 4, 11 and 12 have it.
+/// A square cloth that falls on a ball, as in Figs. 4, 11 and 12.
 void drop_on_ball(WorldDef& def, double side, const SphereDef& ball) {
   def.cloths[0] = lying_cloth(33, side, 1.1);
   // Turned over: positive rest angles curl the cloth downwards.
@@ -33,7 +35,7 @@ void drop_on_ball(WorldDef& def, double side, const SphereDef& ball) {
   def.colliders = {ground(), {"ball", ball}};
 }
 
-/// Fig. 4: one cloth, by its bending alone different.
+/// Fig. 4: one cloth with different bending.
 void build_fig4(WorldDef& def, double bending, double rest_angle) {
   drop_on_ball(def, 1.2, {Vec3d(0, 0.75, 0), 0.28});
   def.contact.seed.self = SelfContact::triangles;
@@ -50,7 +52,7 @@ void build_fig4_rest_angle(WorldDef& def, const std::string&) {
   build_fig4(def, 1e-3, 15 * kDegree);
 }
 
-/// Fig. 8: a cloth that is let down on the ground edge first and lies in folds.
+/// Fig. 8: a cloth lowered on the ground edge first, which lies in folds.
 void build_fig8(WorldDef& def, Correction correction) {
   def.cloths[0] = lying_cloth(33, 1.2, 0.35);
   use_seed(def);
@@ -68,8 +70,8 @@ void build_fig8_fold_map(WorldDef& def, const std::string&) {
   build_fig8(def, Correction::fold_map);
 }
 
-/// Figs. 11 and 12: a cloth without bending that falls in folds upon itself, on a ball so small
-/// that they press together.
+/// Figs. 11 and 12: a cloth without bending that falls on itself in folds, on a ball so small that
+/// they press together.
 void build_self_collision(WorldDef& def, SelfContact self) {
   drop_on_ball(def, 1.4, {Vec3d(0, 0.86, 0), 0.16});
   def.contact.seed.self = self;
@@ -89,7 +91,7 @@ void build_fig9(WorldDef& def, const std::string& mesh_directory) {
   def.name = name;
   def.description = description;
   use_seed(def);
-  // The third kind of springs as well. Rigid springs only need to be there.
+  // Adds the third kind of springs. Rigid springs only need to exist.
   def.cloths[0].skip_stiffness = 1;
 }
 
@@ -109,7 +111,7 @@ void build_fig10_edge_pairs(WorldDef& def, const std::string&) {
   build_fig10(def, ObjectContact::particles_and_edges);
 }
 
-/// A sheet in the air, for experiments with fixing.
+/// A sheet in the air, for experiments with pins.
 void hang_sheet(WorldDef& def, double height) {
   def.cloths[0] = lying_cloth(25, 1.0, height);
   use_seed(def);
@@ -117,7 +119,7 @@ void hang_sheet(WorldDef& def, double height) {
   def.colliders = {ground()};
 }
 
-/// Figs. 13 and 14, experiment V.B.4: a sheet fixed at five particles.
+/// Figs. 13 and 14, experiment V.B.4: a sheet pinned at five particles.
 void build_fig14(WorldDef& def, const std::string&) {
   hang_sheet(def, 1.3);
   for (const MaterialPoint point : {MaterialPoint{0.25, 0.25}, MaterialPoint{0.75, 0.25},
@@ -125,7 +127,7 @@ void build_fig14(WorldDef& def, const std::string&) {
     def.pins.push_back({point, 0, {}});
 }
 
-/// Fig. 15, experiment V.B.5: a sheet by its four corners.
+/// Fig. 15, experiment V.B.5: a sheet pinned at its four corners.
 void build_fig15(WorldDef& def, const std::string&) {
   hang_sheet(def, 1.5);
   for (const Corner corner :

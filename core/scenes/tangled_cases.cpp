@@ -26,7 +26,7 @@ ClothDef sheet(const std::string& name, double side, const Vec3d& centre, const 
   return cloth;
 }
 
-/// A lying sheet, one that cuts right through its middle, one with a corner through it, one half
+/// A lying sheet, one that passes through its middle, one with a corner through it, one halfway
 /// over its border, and one nearly in its plane.
 void build_start_through(WorldDef& def, const std::string&) {
   const Vec3d x = Vec3d::UnitX(), y = Vec3d::UnitY(), z = Vec3d::UnitZ(), middle = 0.7 * y;
@@ -39,7 +39,7 @@ void build_start_through(WorldDef& def, const std::string&) {
   fall_and_come_apart(def);
 }
 
-/// A strip whose ends go through each other; it is at rest as it lies.
+/// A strip with ends that pass through each other; this shape is its rest shape.
 void build_start_fold(WorldDef& def, const std::string&) {
   ClothDef& cloth = def.cloths[0];
   MeshPlacement placement;

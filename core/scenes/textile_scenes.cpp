@@ -1,3 +1,5 @@
+// Builds the textile tests.
+
 #include "core/scenes/textile_scenes.h"
 
 #include "core/cloth/fabric_presets.h"
@@ -6,7 +8,7 @@
 namespace weft {
 namespace {
 
-// Small specimens close above the ground, so that the picture is full of them.
+// Small specimens just above the ground, so that they fill the picture.
 constexpr double kHeight = 0.3;  // [m]
 constexpr double kFloor = kHeight - 0.08;
 const ColliderDef kGround{"ground", PlaneDef{Vec3d(0, kFloor, 0)}};
@@ -21,13 +23,13 @@ void build_drape_test(WorldDef& def, const std::string&) {
   cloth.origin = Vec3d(-kDrapeSpecimenRadius, kHeight, -kDrapeSpecimenRadius);
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("cotton");
-  // The outermost pinned particles lie half a cell inside the pin's radius in the mean, and the
+  // The outermost pinned particles lie on average half a cell inside the pin's radius, and the
   // fabric is clamped half a cell behind them.
   const double cell = cloth.width / (cloth.columns - 1);
   def.pins = {{MaterialPoint{0.5, 0.5}, kDrapeSupportRadius + cell, {}}};
   def.test = TextileTest::drape;
   def.colliders = {kGround};
-  // A breath of air, a thousandth of the weight, decides where the folds begin.
+  // A breath of air, a thousandth of the weight, determines where folds begin.
   def.environment.gust_speed = 0.05;
   def.environment.gust_length = 0.1;
   def.environment.drag = 4;
@@ -46,7 +48,7 @@ void build_cantilever_test(WorldDef& def, const std::string&) {
   cloth.fabric = make_fabric("cotton");
   def.pins = {{EdgeStrip{Side::left, kCell * (kClamped - 0.5)}, 0, {}}};
   def.test = TextileTest::cantilever;
-  // The platform ends where it never touches what hangs over.
+  // The platform ends short of the overhang, so that they never touch.
   constexpr double kEdge = -0.003, kTop = kHeight - 0.003;
   const Vec3d half(0.02, 0.5 * (kTop - kFloor), 0.02);
   const BoxDef platform{Vec3d(kEdge - half[0], kTop - half[1], 0), half,
