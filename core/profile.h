@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 
+// Time and work of a step's stages.
+
 namespace weft {
 
-/// The stages of a step, in the order in which a substep meets them; then those that only the
-/// seed's parts have.
+/// The stages of a step, in the order of a substep; then those of the seed's components.
 enum class Stage : std::uint8_t {
   attachments,     ///< work: hand forces evaluated
   fans,            ///< work: fans' jets evaluated at a particle (their time is part of air)
-  air,             ///< work: triangles evaluated
+  air,             ///< triangles evaluated
   stretch,         ///< work: springs evaluated
   bending,         ///< work: hinges evaluated
   integration,     ///< work: particles kicked and moved
@@ -37,14 +38,14 @@ class StageTimer;
 
 struct StageProfile {
   double seconds = 0;      ///< by the given clock; 0 without one
-  std::uint64_t work = 0;  ///< what was done, counted; the same on every machine
+  std::uint64_t work = 0;  ///< amount of work; the same on every machine
 };
 
-/// What one tick did. The work counts are part of the physics and repeatable; the seconds are for
+/// Profile of one tick. The work counts are part of the physics and repeatable; the seconds are for
 /// people and never decide anything.
 struct Profile {
   std::array<StageProfile, kStageCount> stages{};
-  double (*clock)() = nullptr;    ///< seconds from any origin, given from outside; may be null
+  double (*clock)() = nullptr;    ///< seconds from any origin, supplied by the owner; may be null
   StageTimer* running = nullptr;  ///< the innermost; null between steps
 
   StageProfile& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
@@ -54,8 +55,8 @@ struct Profile {
   void clear() { stages = {}; }
 };
 
-/// Times its own life into a stage and counts its work. The life of another one within it belongs
-/// to that one's stage alone.
+/// Times its own lifetime for a stage and counts its work. The lifetime of a nested timer counts
+/// for the nested stage only.
 class StageTimer {
  public:
   StageTimer(Profile& profile, Stage stage, std::size_t work) : profile_(profile), stage_(stage) {

@@ -6,6 +6,8 @@
 
 #include "core/types.h"
 
+// Starts with cloth inside objects or through cloth.
+
 namespace weft {
 
 /// A cloth and what it passes through: itself, another cloth, or an object.
@@ -13,7 +15,7 @@ struct Meeting {
   Index cloth = 0;
   Index other = kNone;     ///< cloth, the same for itself; kNone: an object
   Index collider = kNone;  ///< the object
-  std::size_t count = 0;   ///< of edges through triangles, or of triangles in a round object
+  std::size_t count = 0;   ///< edges through triangles, or triangles in a round object
 
   /// Whether the same two meet.
   bool is_of(const Meeting& m) const {
@@ -21,15 +23,15 @@ struct Meeting {
   }
 };
 
-/// What nothing is promised about, because it started where it should not be.
+/// Starts about which nothing is promised: features that began crossed or penetrated.
 struct BadStarts {
   std::vector<std::string> what;  ///< in words, e.g. "sheet started inside ball"
-  /// Particles inside objects, and pairs of features of cloths that cross or touch, with those
-  /// around them; of what else passes through each other, the crossings.
+  /// Particles inside objects, and pairs of cloth features that cross or touch, with their
+  /// neighbourhoods; for other intersections, the crossings.
   std::size_t pairs = 0;
 };
 
-/// What a start that was looked at has: also in numbers, and what contact does not keep apart too.
+/// Starts found by looking ahead: also in numbers, including those that contact does not separate.
 struct ComingStarts : BadStarts {
   std::vector<Meeting> meetings;
 };

@@ -2,18 +2,20 @@
 
 #include "core/definition.h"
 
+// Time budget of a scene.
+
 namespace weft {
 
-/// What a room does that needs more time for its ticks than it may.
+/// Remedy of a room whose ticks exceed their time budget.
 enum class OverBudget {
   slow,    ///< simulated time passes more slowly
-  soften,  ///< the springs become softer, so that fewer substeps do; then time slows down
+  soften,  ///< softer springs, so that fewer substeps suffice; then slower time
 };
 
-/// The time that a scene asks to be kept to. A world knows no clock: whoever steps it measures,
-/// decides, and makes the change by a command.
+/// The time budget of a scene. A world has no clock: its owner measures, decides, and changes the
+/// setting by a command.
 struct BudgetDef {
-  double milliseconds = 0;  ///< for each tick that is due, at the tick rate [ms]; 0: no bound
+  double milliseconds = 0;  ///< for each due tick, at the tick rate [ms]; 0: no bound
   OverBudget remedy = OverBudget::slow;
 };
 

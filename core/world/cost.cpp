@@ -1,3 +1,5 @@
+// Checks sizes and estimated costs against their limits.
+
 #include "core/world/cost.h"
 
 #include <algorithm>
@@ -6,8 +8,8 @@
 namespace weft {
 namespace {
 
-/// What a step of Newton's method with its linear systems is worth in sweeps: 5 to 10 iterations of
-/// conjugate gradients, each with a cycle over all levels of the grid.
+/// Cost of a Newton step with its linear systems in sweeps: 5 to 10 iterations of conjugate
+/// gradients, each with a cycle over all levels of the grid.
 constexpr double kSweepsOfNewton = 60;
 
 std::size_t triangles_of(const ColliderDef& collider) {
@@ -15,7 +17,7 @@ std::size_t triangles_of(const ColliderDef& collider) {
   return mesh ? mesh->mesh.triangles.size() : 0;
 }
 
-/// All its digits: people compare the two numbers.
+/// All digits, so that the two numbers can be compared.
 std::string whole(double value) {
   return std::to_string(std::llround(value));
 }

@@ -1,3 +1,5 @@
+// Counts crossings, and finds cloth inside round objects.
+
 #include "core/world/crossing_counter.h"
 
 #include <algorithm>
@@ -10,14 +12,14 @@
 namespace weft {
 namespace {
 
-/// A collider's triangles as it is defined; none if it has no triangles.
+/// Triangles of a collider as defined; empty for a shape without triangles.
 TriangleMesh mesh_of(const ShapeDef& shape) {
   if (const auto* box = std::get_if<BoxDef>(&shape)) return world_mesh(*box);
   if (const auto* given = std::get_if<MeshDef>(&shape)) return given->mesh;
   return {};
 }
 
-/// What is deeper than this part of the radius is inside a round object; contact in float keeps no
+/// Depth inside a round object that counts, as a fraction of its radius; contact in float keeps no
 /// finer distance.
 constexpr double kInRound = 1e-5;
 
@@ -30,7 +32,7 @@ void note(const Meeting& meeting, std::vector<Meeting>& list) {
     known->count += meeting.count;
 }
 
-/// Number of the cloth that a particle belongs to.
+/// Index of the cloth that contains a particle.
 template <class Real>
 Index cloth_of(const ClothModel<Real>& model, Index particle) {
   Index cloth = 0;
@@ -50,8 +52,8 @@ double distance_of(const std::array<Vec3d, 3>& t, const Vec3d& a, const Vec3d& b
   return least;
 }
 
-/// Distance of two features of cloths where they are now [m]: the normals of rows are from when
-/// these were built, and a pair that has just come near has no row yet.
+/// Present distance of two features of cloths [m]: normals of rows date from their construction,
+/// and a pair that has just come near has no row yet.
 template <class Real>
 double gap_of(const GuardedPair<Real>& pair, const Vec3Array<Real>& x) {
   std::array<Vec3d, 4> p;
@@ -106,7 +108,7 @@ WorldCrossings CrossingCounter<Real>::count(const World<Real>& world,
     const Pose& pose = world.colliders()[object.collider].pose;
     if (!object.pose || !(*object.pose == pose)) {
       const ShapeDef& shape = world.def().colliders[object.collider].shape;
-      // At rest to the bit, as turning it by nothing would round.
+      // Bitwise at rest, because even a zero rotation would round.
       const bool rests = pose == rest_pose(shape);
       const Vec3d pivot = pivot_of(shape);
       object.surface.place(object.own.size(), [&](std::size_t i) -> Vec3d {
@@ -127,8 +129,8 @@ WorldCrossings CrossingCounter<Real>::count(const World<Real>& world,
   return found;
 }
 
-/// Triangles nearer to the centre of a ball or the axis of a rod than its radius. The cloth has
-/// been placed.
+/// Finds triangles nearer to the centre of a ball or the axis of a capsule than its radius. The
+/// cloth must have been placed.
 template <class Real>
 void CrossingCounter<Real>::find_in_rounds(const World<Real>& world,
                                            std::vector<Meeting>& meetings) const {

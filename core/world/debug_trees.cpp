@@ -1,3 +1,5 @@
+// Builds and refits the trees for pictures of boxes.
+
 #include "core/world/debug_trees.h"
 
 #include <algorithm>

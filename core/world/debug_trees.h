@@ -9,11 +9,13 @@
 #include "core/geometry/bottom_up_tree.h"
 #include "core/geometry/cloth_trees.h"
 
+// Box hierarchies of a world, for pictures.
+
 namespace weft {
 
-/// The seed's trees over a world, whatever contact it uses, for a picture of their boxes:
-/// "particles", "edges" and "triangles" of all cloths, and "object:<name>" over the triangles of
-/// each mesh collider.
+/// The seed's trees over a world, for any contact model, for pictures of their boxes: "particles",
+/// "edges" and "triangles" of all cloths, and "object:<name>" over the triangles of each mesh
+/// collider.
 template <class Real>
 class DebugTrees {
  public:
@@ -23,11 +25,11 @@ class DebugTrees {
   std::vector<std::string> names() const;
 
   /// Boxes of one level of a tree around the cloth at x; level 0 is one box around everything, and
-  /// a level below the last is the last. Throws DefinitionError, with the names, if there is no
-  /// such tree, and if the level is below 0.
+  /// levels below the last give the last. Throws DefinitionError, with the names, if there is no
+  /// such tree, and if the level is negative.
   std::vector<Aabb<float>> boxes(const std::string& tree, int level, const Vec3Array<Real>& x);
 
-  /// Levels of a tree, at least 1. Throws as `boxes` does.
+  /// Number of levels of a tree, at least 1. Throws as `boxes` does.
   int level_count(const std::string& tree) const;
 
  private:

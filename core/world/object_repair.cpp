@@ -1,3 +1,5 @@
+// Repairs objects' meshes and reports what was done.
+
 #include "core/world/object_repair.h"
 
 #include <variant>

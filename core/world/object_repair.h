@@ -5,10 +5,12 @@
 
 #include "core/world/world_def.h"
 
+// Repair of objects' meshes at the start of a world.
+
 namespace weft {
 
-/// Repairs the meshes of a scene's objects where there is no doubt what is meant (mesh_repair.h),
-/// and says what was done: a sentence each, for people, with the object's name.
+/// Repairs the meshes of a scene's objects where their meaning is clear (mesh_repair.h). Returns
+/// one sentence per repair, with the object's name.
 std::vector<std::string> repair_objects(WorldDef& def);
 
 }  // namespace weft

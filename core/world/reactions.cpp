@@ -1,3 +1,5 @@
+// Reaction forces at pinned particles.
+
 #include "core/world/reactions.h"
 
 #include "core/forces/force_pass.h"

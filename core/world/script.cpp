@@ -1,3 +1,5 @@
+// Validates and evaluates scheduled events.
+
 #include "core/world/script.h"
 
 #include "core/error.h"

@@ -6,67 +6,69 @@
 #include "core/definition.h"
 #include "core/types.h"
 
+// Scheduled events of a scene, and the limits of hard cases.
+
 namespace weft {
 
-/// Where a hand of a scene pulls to from an instant on, until the next one in a straight line.
+/// Target of a scene's hand at an instant; it moves in a straight line to the next one.
 struct HandKey {
-  double time = 0;               ///< [s], 0 to 3600, growing from one to the next
-  Vec3d offset = Vec3d::Zero();  ///< from where it took hold [m], within 1000
+  double time = 0;               ///< [s], 0 to 3600, increasing from key to key
+  Vec3d offset = Vec3d::Zero();  ///< from the held point at the start [m], within 1000
 };
 
-/// A hand that belongs to the scene: it takes hold at its first key and lets go after the last.
+/// A hand of the scene itself: it takes hold at its first key and lets go after the last.
 struct HandDef {
   std::string cloth;          ///< name; empty: the first
-  double u = 0.5, v = 0.5;    ///< where it holds, each 0 to 1 of the fabric's extent
+  double u = 0.5, v = 0.5;    ///< held point, each 0 to 1 of the fabric's extent
   double radius = 0.03;       ///< of the held disc in the fabric [m], 0 to 100
   double stiffness = 150;     ///< [N/m], 0 to 1e5
   double max_force = 50;      ///< [N], 0 to 1e6
   std::vector<HandKey> path;  ///< 1 to kMostHandKeys
 };
 
-/// Something that is done to a scene at once.
+/// A sudden disturbance of a scene.
 struct InsultDef {
   double time = 0;               ///< [s], 0 to 3600
-  double noise = 0;              ///< added to each component of all velocities, at most [m/s]
-  Vec3d pinned = Vec3d::Zero();  ///< by which the targets of all pins jump [m], within 100
-  double pin_speed = 2;          ///< with which pins then go there [m/s], 0.001 to 20
-  double gather = 0;  ///< radius of a ball into which all that is free is put [m], 0 to 10; 0: not
+  double noise = 0;              ///< most that is added to each component of velocities [m/s]
+  Vec3d pinned = Vec3d::Zero();  ///< jump of all pins' targets [m], within 100
+  double pin_speed = 2;          ///< of the pins towards them [m/s], 0.001 to 20
+  double gather = 0;  ///< radius of a ball that all free particles are put into [m], 0 to 10; 0: no
 };
 
 /// A wind that blows from an instant on, until the next one.
 struct WindKey {
-  double time = 0;             ///< [s], 0 to 3600, growing from one to the next
+  double time = 0;             ///< [s], 0 to 3600, increasing from key to key
   Vec3d wind = Vec3d::Zero();  ///< mean velocity [m/s], components within 100
 };
 
 inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostInsults = 100,
                              kMostWinds = 1000;
 
-/// What a hard case must keep to while it runs.
+/// Limits that a hard case must keep.
 struct VerdictDef {
-  double strain = 0;         ///< largest one allowed, 0 to 1000; 0: the scene is no hard case
-  double lost_motion = 0.2;  ///< part of the wanted motion that the guard may take, 0 to 1
-  double clear_after = 0;    ///< from when on nothing may cross [s], 0 to 3600
-  double rest_at = 0;        ///< when it rests as it shall rest again [s], 0 to 3600
-  double back_by = 0;        ///< when it must rest so, to 1 % [s], 0 to 3600; 0: never
-  /// Most by which the mean height of any cloth may be off then, wherever its particles are [m], 0
-  /// to 100; 0: all particles must be where they were.
+  double strain = 0;         ///< largest allowed, 0 to 1000; 0: the scene is not a hard case
+  double lost_motion = 0.2;  ///< fraction of the wanted motion that the guard may take, 0 to 1
+  double clear_after = 0;    ///< time after which nothing may cross [s], 0 to 3600
+  double rest_at = 0;        ///< when it has the rest shape to return to [s], 0 to 3600
+  double back_by = 0;        ///< when it must have returned, to 1 % [s], 0 to 3600; 0: never
+  /// Largest error of any cloth's mean height then, wherever its particles are [m], 0 to 100; 0:
+  /// all particles must be where they were.
   double heights = 0;
-  double hands_lag = 0;  ///< most that a hand may ever lack of its target [m], 0 to 100; 0: any
+  double hands_lag = 0;  ///< largest distance of a hand from its target [m], 0 to 100; 0: any
 };
 
-/// Throws DefinitionError if a field is out of range; `path` stands before the name of the field.
+/// Throws DefinitionError if a field is out of range; `path` precedes the field's name.
 void validate(const HandDef& def, const std::string& path);
 void validate(const InsultDef& def, const std::string& path);
 void validate(const std::vector<WindKey>& winds);
 
-/// Where the hand pulls to, from where it took hold [m].
+/// Displacement of the hand's target from the held point at the start [m].
 Vec3d offset_at(const HandDef& def, double time);
 
-/// A number from -1 to 1 that depends on its arguments alone.
+/// A number from -1 to 1 that depends only on its arguments.
 double noise_at(std::uint64_t seed, std::uint64_t particle, std::uint64_t axis);
 
-// Describe each field to `visit(info, value)`.
+// Pass each field to `visit(info, value)`.
 
 template <class Def, class Visitor>
 void visit_fields_of_hand(Def& hand, Visitor&& visit) {

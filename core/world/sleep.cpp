@@ -1,3 +1,5 @@
+// Finds islands of touching cloths, puts them to sleep and wakes them.
+
 #include "core/world/sleep.h"
 
 #include <algorithm>
@@ -9,7 +11,7 @@
 namespace weft {
 namespace {
 
-/// For how many ticks boxes are carried on: what wakes is awake before it is touched.
+/// Number of ticks for which boxes are extrapolated, so that a cloth wakes before it is touched.
 constexpr int kTicksAhead = 2;
 
 }  // namespace
@@ -75,7 +77,7 @@ void Sleep<Real>::disturb_all() {
   std::fill(disturbed_.begin(), disturbed_.end(), char{1});
 }
 
-/// Makes a box hold where a particle is and soon could be.
+/// Extends a box by a particle's present position and its positions in the coming ticks.
 template <class Real>
 void Sleep<Real>::add_coming(Index particle, const ClothState<Real>& state, Aabb<Real>& box) const {
   const auto k = static_cast<std::size_t>(particle);
@@ -105,7 +107,7 @@ void Sleep<Real>::fit(std::size_t part, const ClothState<Real>& state) {
   boxes.fitted = true;
 }
 
-/// Whether two cloths could touch in the coming ticks, as far as boxes around a few triangles tell.
+/// Whether two cloths could touch in the coming ticks, judged by boxes around a few triangles.
 template <class Real>
 bool Sleep<Real>::could_touch(std::size_t a, std::size_t b, const ClothState<Real>& state) {
   if (together_) return true;
@@ -145,7 +147,7 @@ void Sleep<Real>::begin_stillness(std::size_t part, const ClothState<Real>& stat
   still_ticks_[part] = 0;
 }
 
-/// Gives a cloth its masses back.
+/// Restores the masses of a cloth.
 template <class Real>
 void Sleep<Real>::wake_cloth(std::size_t part, const Pins& pins, ClothState<Real>& state) {
   begin_stillness(part, state);
@@ -188,7 +190,7 @@ bool Sleep<Real>::rouse(const Pins& pins, ClothState<Real>& state) {
   for (std::size_t p = 0; p < asleep_.size(); ++p) {
     if (is_asleep(p) && disturbed_[p]) wake_up(p);
   }
-  // One that wakes may wake others in turn.
+  // A woken cloth may wake others in turn.
   for (bool again = !all_asleep(); again;) {
     again = false;
     for (std::size_t p = 0; p < asleep_.size(); ++p) {
@@ -213,7 +215,7 @@ bool Sleep<Real>::has_left(std::size_t part, const ClothState<Real>& state) cons
   return false;
 }
 
-/// Numbers the islands of the cloths that are awake by the first of their cloths.
+/// Numbers the islands of awake cloths by the first cloth of each.
 template <class Real>
 void Sleep<Real>::find_islands(const ClothState<Real>& state) {
   const std::size_t parts = asleep_.size();

@@ -11,12 +11,14 @@
 #include "core/definition.h"
 #include "core/geometry/bvh.h"
 
+// Sleep of resting cloths.
+
 namespace weft {
 
-/// When cloth that lies or hangs still is no longer stepped.
+/// When a resting cloth is no longer stepped.
 struct SleepDef {
-  double after = 0;         ///< for how long it must have been still [s], 0 to 3600; 0: never
-  double distance = 0.001;  ///< from its place, which no particle of it may have left by more [m]
+  double after = 0;         ///< duration of stillness [s], 0 to 3600; 0: never
+  double distance = 0.001;  ///< largest displacement of any particle during stillness [m]
 };
 
 template <class Def, class Visitor>
@@ -26,60 +28,58 @@ void visit_fields_of_sleep(Def& def, Visitor&& visit) {
         def.distance);
 }
 
-/// Decides which cloths sleep. Cloths that touch, or soon could, are one island and sleep and wake
-/// together. A cloth is still while no particle is farther than a distance from where it was when
-/// the stillness began, so a jitter that leads nowhere counts as rest and a creep does not.
+/// Decides which cloths sleep. Cloths that touch, or soon could, form an island, and sleep and wake
+/// together. A cloth is still while no particle is farther than a distance from its position at the
+/// beginning of the stillness, so a jitter counts as rest and a creep does not.
 ///
-/// What sleeps has velocity 0 and is immovable for all others (ClothState::inverse_mass), so what
-/// comes upon it too fast to wake it is stopped and does not pass. All of it depends on positions
-/// and velocities alone, in a fixed order: the same for any number of threads.
+/// A sleeping cloth has velocity 0 and is immovable for all others (ClothState::inverse_mass), so a
+/// body that is too fast to wake it is stopped and does not pass through. Everything depends on
+/// positions and velocities only, in a fixed order: the same for any number of threads.
 template <class Real>
 class Sleep {
  public:
   /// @param tick_seconds  length of a tick [s]
-  /// @param together      whether all cloths are one island, as the contact does not tell them
-  ///                      apart
+  /// @param together      all cloths are one island, because the contact does not distinguish them
   Sleep(const ClothModel<Real>& model, const SleepDef& def, double tick_seconds, bool together);
 
-  /// Whether anything ever sleeps.
+  /// Whether sleep is enabled.
   bool wanted() const { return def_.after > 0; }
   bool is_asleep(std::size_t part) const { return asleep_[part] != 0; }
   bool any_asleep() const;
   bool all_asleep() const;
-  /// Of each cloth, in the order of the model: 1 if it sleeps.
+  /// For each cloth, in the order of the model: 1 if it sleeps.
   const std::vector<char>& asleep() const { return asleep_; }
-  /// Number of the first cloth of the island with which a sleeping one fell asleep.
+  /// Index of the first cloth of the island with which a sleeping cloth fell asleep.
   std::size_t island_of(std::size_t part) const { return island_[part]; }
 
-  /// Says that something acts on a cloth in the coming tick: its stillness begins anew.
+  /// Marks a cloth on which something acts in the coming tick: its stillness restarts.
   void disturb(std::size_t part) { disturbed_[part] = 1; }
   void disturb_all();
 
-  /// The same of all cloths that an object which moves, or presses, could touch in the coming
-  /// ticks.
+  /// The same for all cloths that a moving or pressing object could touch in the coming ticks.
   void disturb_near(const ClothState<Real>& state, const ColliderDef& def,
                     const ColliderState& collider);
 
-  /// Wakes the islands of sleeping cloths that were disturbed, or that one which is awake could
-  /// touch in the coming tick.
+  /// Wakes the islands of sleeping cloths that were disturbed, or that an awake one could touch in
+  /// the coming tick.
   /// @return whether any woke
   bool rouse(const Pins& pins, ClothState<Real>& state);
-  /// Wakes the island of a cloth, or all; what is awake begins its stillness anew.
+  /// Wakes the island of a cloth, or all; stillness of awake cloths restarts.
   void wake(std::size_t part, const Pins& pins, ClothState<Real>& state);
   void wake_all(const Pins& pins, ClothState<Real>& state);
 
-  /// Looks at the cloths after a tick and puts islands to sleep that have been still for long.
+  /// Checks the cloths after a tick and puts islands to sleep that have been still long enough.
   /// @return whether any fell asleep
   bool settle(ClothState<Real>& state);
 
  private:
-  /// Boxes around neighbouring triangles, and around all of a cloth, with its coming motion.
+  /// Boxes around neighbouring triangles and around a whole cloth, including its coming motion.
   struct Boxes {
-    std::vector<std::vector<Index>> patches;  ///< the particles of each
+    std::vector<std::vector<Index>> patches;  ///< the particles of each patch
     std::vector<Aabb<Real>> list;
     Bvh<Real> tree;
     Aabb<Real> whole;
-    bool fitted = false;  ///< list and tree belong to `whole`
+    bool fitted = false;  ///< list and tree are up to date with `whole`
   };
 
   void add_coming(Index particle, const ClothState<Real>& state, Aabb<Real>& box) const;
@@ -93,16 +93,16 @@ class Sleep {
 
   SleepDef def_;
   Real tick_seconds_;
-  std::uint32_t ticks_;  ///< of stillness until cloth sleeps
+  std::uint32_t ticks_;  ///< of stillness before a cloth sleeps
   bool together_;
   std::vector<IndexRange> particles_;  ///< of each cloth
   std::vector<Real> mass_;             ///< of each particle [kg]
   std::vector<Real> margin_;           ///< of each cloth, around its boxes [m]
   std::vector<Boxes> boxes_;           ///< of each cloth
   std::vector<char> asleep_, disturbed_;
-  std::vector<std::size_t> island_;         ///< of each cloth; of those awake as last looked for
-  std::vector<std::uint32_t> still_ticks_;  ///< for which each cloth has been still
-  Vec3Array<Real> place_;                   ///< where each particle was when that began [m]
+  std::vector<std::size_t> island_;         ///< of each cloth; for awake ones as last determined
+  std::vector<std::uint32_t> still_ticks_;  ///< number of still ticks of each cloth
+  Vec3Array<Real> place_;                   ///< of each particle when stillness began [m]
 };
 
 extern template class Sleep<float>;

@@ -1,3 +1,5 @@
+// Hashes the state of a world.
+
 #include "core/world/state_hash.h"
 
 #include <algorithm>
@@ -22,7 +24,7 @@ std::array<double, 9> numbers_of(const Pose& pose, double first, double second) 
   return {first, second, p[0], p[1], p[2], q.x(), q.y(), q.z(), q.w()};
 }
 
-/// A collider that was never moved adds nothing.
+/// A collider that never moved adds nothing.
 void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
           const ColliderState& state) {
   if (state.pose == rest_pose(def.shape) && !state.move && state.pace == 1) return;
@@ -44,7 +46,7 @@ void feed(XXH64_state_t& hash, const Gripper& gripper) {
   feed(hash, rest.data(), rest.size());
 }
 
-/// A pin that stays where it is adds nothing.
+/// A pin at rest adds nothing.
 void feed(XXH64_state_t& hash, const Pin& pin) {
   if (!pin.path) return;
   const PinPath& path = *pin.path;

@@ -1,3 +1,5 @@
+// Accumulates a hard case's measurements and compares them with its limits.
+
 #include "core/world/verdict.h"
 
 #include <algorithm>
@@ -8,7 +10,7 @@
 namespace weft {
 namespace {
 
-/// Parts of the energy at play, and of the extent, that may be amiss.
+/// Tolerated errors, as fractions of the energy in play and of the extent.
 constexpr double kMostExcess = 0.01, kBack = 0.01;
 
 /// Largest change of a cloth's mean height between two states [m].
@@ -33,7 +35,7 @@ template <class Real>
 void Verdict<Real>::look_at_energy(const World<Real>& world) {
   const TickReport& report = world.report();
   const double now = report.energies.total();
-  // What leads a start that intersects apart does work that is not logged.
+  // Separating a start that intersects does work that is not recorded.
   if (!start_energy_ || report.time <= world.def().verdict.clear_after) {
     start_energy_ = now;
     return;

@@ -1,3 +1,5 @@
+// Construction, ticks and state of a world.
+
 #include "core/world/world.h"
 
 #include <algorithm>
@@ -12,11 +14,11 @@
 namespace weft {
 namespace {
 
-/// How often a tick that diverged is tried again, each time with twice the substeps.
+/// Number of retries of a diverged tick, each with twice the substeps.
 constexpr int kMostRetries = 2;
 
-/// With the solver implicit, verlet goes the ticks that are violent or in which anything touches
-/// or could (see advance_implicit), if its substeps are at least that long [s].
+/// With the implicit solver, verlet steps the ticks that are violent or in which anything touches
+/// or could touch (see advance_implicit), if its substeps are at least this long [s].
 constexpr double kShortestForVerlet = 1.0 / 120000;
 
 template <class Real>
@@ -38,8 +40,8 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                        runtime.executor);
 }
 
-/// The definition, once it is known to be valid, with the jaws of grippers among its colliders;
-/// nothing is built from a wrong one.
+/// The definition after validation, with the jaws of grippers among its colliders; nothing is built
+/// from an invalid one.
 WorldDef validated(WorldDef def) {
   validate(def);
   for (const GripperDef& gripper : def.grippers) {
@@ -131,7 +133,7 @@ const TickReport& World<Real>::step() {
   return report_;
 }
 
-/// A tick, stage by stage.
+/// One tick, stage by stage.
 template <class Real>
 void World<Real>::step_in_order() {
   report_.brought = 0;
@@ -168,7 +170,7 @@ void World<Real>::prepare_solver() {
   const SolverKind kind = solver_of(def_);
   if (kind == SolverKind::relaxation)
     relaxation_.prepare(model_);
-  else  // implicit has some ticks gone by verlet
+  else  // verlet steps some ticks for implicit
     verlet_.prepare(model_, def_.solver, runtime_.executor);
   if (kind == SolverKind::implicit) implicit_.prepare(model_);
   if (guard_ && kind != SolverKind::relaxation) verlet_.make_room_for_paths();
@@ -176,7 +178,7 @@ void World<Real>::prepare_solver() {
   make_room();
 }
 
-/// Arrays for air and shots, as soon as there are any: no tick allocates.
+/// Sizes the arrays for air and shots as soon as there are any, so that no tick allocates.
 template <class Real>
 void World<Real>::make_room() {
   const bool air = !is_calm(environment_) || !def_.winds.empty();
@@ -258,7 +260,7 @@ void World<Real>::advance_or_recover(int substeps) {
   }
 }
 
-/// The contact that was chosen; none where there is nothing to meet.
+/// The chosen contact; none if there is nothing to meet.
 template <class Real>
 Collision<Real> World<Real>::collision() {
   PinDrive<Real>* pins = pins_.any_on_way() ? &pin_drive_ : nullptr;
@@ -299,7 +301,7 @@ void World<Real>::restore_last_good() {
   take_back_motion(colliders_);
   forget_motion();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
-    if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was kept
+    if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was saved
   }
 }
 
@@ -311,7 +313,7 @@ void World<Real>::report_present_state() {
   report_.largest_strain = reading.largest_strain;
 }
 
-/// As above, after what moved nobody: the springs are as the report has them.
+/// As above, after a change that moved no particle: the springs' figures in the report still hold.
 template <class Real>
 void World<Real>::report_motion() {
   const Vec3<Real> gravity = environment_.gravity.template cast<Real>();

@@ -24,72 +24,74 @@
 #include "core/world/sleep.h"
 #include "core/world/world_def.h"
 
+// The world: cloths, objects and everything that acts, advanced tick by tick.
+
 namespace weft {
 
 /// Why a tick had to be taken back.
 enum class DivergenceCause : std::uint8_t {
   not_finite,      ///< a position, velocity or energy is NaN or infinite
-  too_fast,        ///< a particle went farther in a substep than its cloth is long
+  too_fast,        ///< a particle moved farther in a substep than its cloth's diagonal
   too_far,         ///< a particle is more than kFarthestFromOrigin from the origin
-  energy_runaway,  ///< more energy than there was and than hands and air did work
-  unsolved,        ///< a linear system of the solver implicit has no solution that was found
+  energy_runaway,  ///< more energy than before plus the work of hands and air
+  unsolved,        ///< the implicit solver could not solve a linear system
 };
 
-/// What was done about it.
+/// The remedy.
 enum class DivergenceRemedy : std::uint8_t {
-  more_substeps,  ///< the tick was done again from the last good state with more substeps
-  stopped_cloth,  ///< the last good state is back, with all velocities zero
+  more_substeps,  ///< the tick was repeated from the last good state with more substeps
+  stopped_cloth,  ///< the last good state was restored, with all velocities zero
 };
 
-/// A blow-up that was seen and taken back in the same tick.
+/// A blow-up that was detected and taken back in the same tick.
 struct Divergence {
   DivergenceCause cause = DivergenceCause::not_finite;
   DivergenceRemedy remedy = DivergenceRemedy::stopped_cloth;
   std::uint64_t tick = 0;
-  Index particle = kNone;  ///< the first one at fault, or the fastest
+  Index particle = kNone;  ///< the first faulty one, or the fastest
   double value = 0;        ///< unexplained energy [J], speed [m/s], distance [m], or that number
-  int substeps = 0;        ///< of the last attempt that failed
+  int substeps = 0;        ///< of the last failed attempt
 };
 
 std::string describe(const Divergence& divergence);
 
-/// What a tick did.
+/// Report of a tick.
 struct TickReport {
-  std::uint64_t tick = 0;  ///< number of the state that it led to; the start is 0
+  std::uint64_t tick = 0;  ///< number of the resulting state; the start is 0
   double time = 0;         ///< simulated [s]
   int substeps = 0;
-  Energies energies;   ///< at the end [J]; kept up to date when commands change it between ticks
-  double work = 0;     ///< by hands, air, objects and pins that move [J]
-  double brought = 0;  ///< energy that the scene's insults brought right before [J]
+  Energies energies;   ///< at the end [J]; updated when commands change it between ticks
+  double work = 0;     ///< by hands, air, and moving objects and pins [J]
+  double brought = 0;  ///< energy added by the scene's insults just before [J]
   double largest_strain = 0;
-  int damped_substeps = 0;  ///< that the solver implicit had to go again by backward Euler
-  bool violent = false;     ///< gone by verlet, as the solver implicit would have lost too much
-  bool touching = false;    ///< gone by verlet instead of implicit, as something touched or could
+  int damped_substeps = 0;  ///< that the implicit solver repeated by backward Euler
+  bool violent = false;     ///< stepped by verlet: implicit would have dissipated too much
+  bool touching = false;    ///< stepped by verlet: something touched or could have
   bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
-  /// The tick was ended from outside (stop_signal.h): the state at its start is back, and all else
-  /// here is as it was then.
+  /// The tick was ended from outside (stop_signal.h): the state at its start is restored, and all
+  /// other fields are as before it.
   bool halted = false;
   std::optional<Divergence> divergence;
   Profile profile;
 };
 
-/// Where a ray meets the cloth.
+/// Intersection of a ray with the cloth.
 struct ClothHit {
   double distance = 0;  ///< along the unit direction [m]
   Index triangle = kNone;
   std::array<double, 3> barycentric = {};
   Vec3d position = Vec3d::Zero();
-  Index nearest_particle = kNone;  ///< the corner nearest to the hit
+  Index nearest_particle = kNone;  ///< the corner nearest to the intersection
 };
 
-/// What the world takes from outside. Neither changes any result.
+/// Services supplied by the owner. Neither changes any result.
 struct Runtime {
-  Executor* executor = nullptr;  ///< runs independent chunks; null: one after the other
-  double (*clock)() = nullptr;   ///< seconds, for the profile alone
+  Executor* executor = nullptr;  ///< runs independent chunks; null: serially
+  double (*clock)() = nullptr;   ///< seconds, only for the profile
 };
 
-/// Cloths with all that acts on them, advanced tick by tick. Not safe for use from several threads
-/// at once. Everything that changes it is called between steps.
+/// Cloths with everything that acts on them, advanced tick by tick. Not thread-safe. All functions
+/// that change it must be called between steps.
 template <class Real>
 class World {
  public:
@@ -101,22 +103,22 @@ class World {
   /// legal scene does, and which is thrown on.
   const TickReport& step();
 
-  /// What a tick that was given up leaves: the state at its start, contact that has to look for
-  /// everything anew, and no time passed. The same whatever of the tick was done, so that a log
-  /// that tells of it can be replayed.
+  /// Result of a tick that was given up: the state at its start, contact without memory of the
+  /// past, and no time passed. The same wherever the tick was ended, so that a log that contains it
+  /// can be replayed.
   const TickReport& halt();
 
-  /// Back to the start: pins as defined, no grabs, tick 0. The environment stays as it was set, but
-  /// for a wind that the scene itself changes.
+  /// Returns to the start: pins as defined, no grabs, tick 0. The environment keeps its settings,
+  /// except a wind that the scene itself changes.
   void reset();
 
   PinId pin(const PinDef& def);
   bool unpin(PinId id);
 
-  /// Sends a pin somewhere, with bounded speed and force.
+  /// Sends a pin to a target, with bounded speed and force.
   /// Throws DefinitionError if a field is out of range. False if there is no such pin.
   bool move_pin(PinId id, const PinMove& move);
-  /// Fixes a pin that is on its way where it is. False if there is no such pin.
+  /// Fixes a moving pin where it is. False if there is no such pin.
   bool stop_pin(PinId id);
 
   GrabId grab(const GrabDef& def);
@@ -125,66 +127,65 @@ class World {
 
   /// Lets go of a sling and fires it: from the coming tick on, the cloth gets its force for
   /// kSlingSeconds, rounded to ticks.
-  /// @returns the impulse that it gives [N s]; nothing if there is no such sling
+  /// @returns its impulse [N s]; nothing if there is no such sling
   std::optional<Vec3d> fire(GrabId id);
 
   /// Sends a collider to a pose, at bounded speed, where it then stays; keyframes no longer move
   /// it. Throws DefinitionError if a field is out of range. False if there is no such collider.
   bool move_collider(std::size_t collider, const MoveDef& move);
 
-  /// Lets a collider follow its keyframes again, or stay where it is if it has none.
-  /// Throws DefinitionError if it is the jaw of a gripper. False if there is no such collider.
+  /// Returns a collider to its keyframes; without keyframes it stays where it is. Throws
+  /// DefinitionError if it is a gripper's jaw. False if there is no such collider.
   bool release_collider(std::size_t collider);
 
   /// Throws DefinitionError if a field is out of range. False if there is no such gripper.
   bool command_gripper(std::size_t gripper, const GripperCommand& command);
 
-  /// Throws DefinitionError if a field is out of range; nothing changes then.
+  /// Throws DefinitionError, without any change, if a field is out of range.
   void set_environment(const EnvironmentDef& environment);
 
-  /// Makes the springs of all cloths `softness` times as stiff as the definition says, openly: for
-  /// those who would rather have fewer substeps than the right stretch. Outlives a reset.
-  /// @param softness  kLeastSoftness to 1, else throws DefinitionError and nothing changes
+  /// Makes the springs of all cloths `softness` times as stiff as defined, for owners that prefer
+  /// fewer substeps to accurate stretch. Survives a reset.
+  /// @param softness  kLeastSoftness to 1; otherwise throws DefinitionError without any change
   void set_softness(double softness);
   double softness() const { return softness_; }
 
   /// First triangle of the cloth that the ray meets, from either side.
-  /// @param direction  need not be of unit length
+  /// @param direction  of any length but zero
   /// Throws DefinitionError if the ray is not finite or has no direction.
   std::optional<ClothHit> pick(const Vec3d& origin, const Vec3d& direction) const;
 
-  /// Hash of all that decides the future beside the definition: positions, velocities, pins, grabs,
-  /// poses of colliders that move, environment and softness where they were set, tick.
-  /// While all cloths sleep the tick is not part of it.
+  /// Hash of everything besides the definition that determines the future: positions, velocities,
+  /// pins, grabs, poses of moving colliders, changed environment and softness, tick. Excludes the
+  /// tick while all cloths sleep.
   std::uint64_t hash() const;
 
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;
 
-  /// What nothing is promised about, because it started where it should not be, in words; empty as
-  /// soon as all is clear.
+  /// Starts about which nothing is promised, in words; empty as soon as all are clear.
   std::vector<std::string> bad_starts() const;
-  /// So many pairs nothing is promised about; see BadStarts.
+  /// Number of pairs about which nothing is promised; see BadStarts.
   std::size_t open_pairs() const;
-  /// Those that the coming tick would find and leave, if nothing were changed until then: in a
-  /// world at its start nobody has looked yet. Works on a copy, as `coming_reactions` does, and may
-  /// throw the same.
+  /// Bad starts that the coming tick would find and leave, without further commands: a world at its
+  /// start has not been checked yet. Works on a copy, as `coming_reactions` does, and may throw the
+  /// same.
   ComingStarts coming_bad_starts() const;
 
-  /// Measures contacts and forces in each tick from now on, or no longer; changes no result.
+  /// Switches measuring contacts and forces in each tick; changes no result.
   void measure_forces(bool wanted);
-  /// Looks one tick ahead, once, where forces are wanted and no tick has measured them since the
-  /// state was set: `reactions` tells those of `coming_reactions` then.
+  /// Looks one tick ahead, once, if forces are wanted and no tick has measured them since the state
+  /// was set: `reactions` then returns those of `coming_reactions`.
   void measure_present_forces();
-  /// Those of the last tick, if they were measured in it, or of the coming one; null otherwise.
+  /// Those of the last tick if they were measured in it, else of the coming one; null if unknown.
   const Reactions* reactions() const { return reactions_ ? &*reactions_ : nullptr; }
-  /// Those that the coming tick would have, if nothing were changed until then. Works on a copy of
-  /// the world: costs a tick and more memory than the world itself, and changes nothing. Throws
-  /// Stopped if that tick was ended from outside, as the two functions that call it do.
+  /// Those of the coming tick without further commands. Works on a copy of the world: costs a tick
+  /// and more memory than the world itself, and changes nothing. Throws Stopped if that tick was
+  /// ended from outside, as do its two callers.
   Reactions coming_reactions() const;
 
-  /// What the state of the cloth, the copy to go back to and the arrays of `verlet` take [B]. Those
-  /// for air and hands count from their first use on.
+  /// Size of the cloth's state, its checkpoint and the arrays of `verlet` [B]. Arrays for air and
+  /// hands count from their first use on.
   std::size_t solver_bytes() const;
 
   /// Boxes of one level of one of the seed's trees around the present state; see debug_trees.h.
@@ -193,30 +194,31 @@ class World {
   std::vector<std::string> debug_tree_names();
   int debug_tree_levels(const std::string& tree);
 
-  /// Estimate of a tick's cost without contact from the present state on, were the environment this
-  /// one; see check_cost.
+  /// Estimated cost of a tick without contact, from the present state in this environment; see
+  /// check_cost.
   TickCost cost_in(const EnvironmentDef& environment) const;
 
-  /// As built: the jaws of grippers are the last of its colliders.
+  /// As built: the jaws of grippers are its last colliders.
   const WorldDef& def() const { return def_; }
   const EnvironmentDef& environment() const { return environment_; }
   const ClothModel<Real>& model() const { return model_; }
   const ClothState<Real>& state() const { return state_; }
-  /// For tests that put the cloth somewhere; call `accept_state` afterwards.
+  /// For tests that move the cloth; call `accept_state` afterwards.
   ClothState<Real>& state() { return state_; }
-  /// Declares the present state good, as the one to go back to.
+  /// Accepts the present state as the one to return to.
   void accept_state();
   const Pins& pins() const { return pins_; }
   const Grabs<Real>& grabs() const { return grabs_; }
-  /// Which of the scene's hands holds by this grab, in the order of the definition, if one does.
+  /// Index of the scene's hand that holds by this grab, if there is one.
   std::optional<std::size_t> scene_hand(GrabId id) const;
   const ColliderStates& colliders() const { return colliders_; }
   const std::vector<Gripper>& grippers() const { return grippers_; }
   const TickReport& report() const { return report_; }
   const Contact<Real>& contact() const { return contact_; }
-  /// Contact of cloths with themselves and each other; null if there is none.
+  /// Contact of cloths with themselves and each other; null without it.
   const ClothGuard<Real>* guard() const { return guard_ ? &*guard_ : nullptr; }
-  /// Which cloths sleep, where the scene lets them (SleepDef). What acts on one wakes it.
+  /// Which cloths sleep, if the scene permits it (SleepDef). Anything that acts on a cloth wakes
+  /// it.
   const Sleep<Real>& sleep() const { return sleep_; }
   std::uint64_t tick() const { return tick_; }
   double tick_seconds() const { return 1 / def_.tick_rate; }
@@ -224,7 +226,7 @@ class World {
  private:
   /// A hand of the scene while it holds.
   struct SceneHand {
-    GrabId grab = 0;  ///< 0: it holds nothing
+    GrabId grab = 0;  ///< 0: not holding
     Vec3d start = Vec3d::Zero();
   };
 
@@ -276,7 +278,7 @@ class World {
   struct Motion {
     Vec3Array<Real> x, v;
   };
-  Motion last_good_;  ///< at the end of the last tick that went well
+  Motion last_good_;  ///< at the end of the last good tick
   Pins pins_;
   PinDrive<Real> pin_drive_;
   Grabs<Real> grabs_;
@@ -286,15 +288,15 @@ class World {
   double thickest_ = 0;  ///< cloth [m]
   Surroundings<Real> surroundings_;
   Contact<Real> contact_;
-  std::optional<SeedContact<Real>> seed_contact_;  ///< if it was chosen
-  std::optional<ClothGuard<Real>> guard_;          ///< if it was chosen
+  std::optional<SeedContact<Real>> seed_contact_;  ///< if chosen
+  std::optional<ClothGuard<Real>> guard_;          ///< if chosen
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   ImplicitWorkspace<Real> implicit_;
-  bool touching_ = false;  ///< with the solver implicit: something touched when the last tick ended
+  bool touching_ = false;  ///< with the implicit solver: something touched when the last tick ended
   EnergyAccount account_;
   Sleep<Real> sleep_;
-  /// At the start of the tick under way, for `go_back`.
+  /// State at the start of the running tick, for `go_back`.
   struct Checkpoint {
     ClothState<Real> state;
     Pins pins;
@@ -304,11 +306,11 @@ class World {
     std::vector<SceneHand> scene_hands;
     Vec3d wind = Vec3d::Zero();
     EnergyAccount account{0};
-    std::optional<Sleep<Real>> sleep;  ///< where a scene lets cloth sleep
+    std::optional<Sleep<Real>> sleep;  ///< if the scene lets cloth sleep
     TickReport report;
   };
   Checkpoint checkpoint_;
-  std::optional<DebugTrees<Real>> debug_trees_;  ///< made when they are first asked for
+  std::optional<DebugTrees<Real>> debug_trees_;  ///< made at the first request
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;

@@ -1,4 +1,4 @@
-// What is asked of a world between its steps, and commands to it.
+// Commands to a world, and queries, between its steps.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ PinId World<Real>::pin(const PinDef& def) {
   masses_changed();
   const PinId id = add_pin(model_, def, pins_, state_);
   wake(pins_.list.back().centre);
-  report_motion();  // what is pinned has lost its velocity
+  report_motion();  // pinned particles have lost their velocity
   return id;
 }
 
@@ -40,11 +40,11 @@ template <class Real>
 bool World<Real>::stop_pin(PinId id) {
   if (!weft::stop_pin(id, pins_, state_)) return false;
   masses_changed();
-  report_motion();  // what is fixed has lost its velocity
+  report_motion();  // fixed particles have lost their velocity
   return true;
 }
 
-/// What has arrived is fixed again.
+/// Fixes pins that have arrived.
 template <class Real>
 void World<Real>::finish_pins() {
   if (PinDrive<Real>::finish(tick_seconds(), state_, pins_)) masses_changed();

@@ -1,3 +1,5 @@
+// Validates definitions of worlds, and sets and lists their fields.
+
 #include "core/world/world_def.h"
 
 #include <algorithm>
@@ -186,7 +188,7 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
     parse_field(path, info, text, value);
   });
   if (!found) throw unknown_key(def, key);
-  // The guard belongs to Weft's contact: a scene that has it gets the seed's own in its place.
+  // The guard belongs to Weft's contact: the seed's own self-contact replaces it.
   if (wanted == "model" && contact_of(def) == ContactModel::seed &&
       def.contact.seed.self == SelfContact::guard)
     def.contact.seed.self = SelfContact::triangles;

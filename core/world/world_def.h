@@ -17,24 +17,26 @@
 #include "core/world/script.h"
 #include "core/world/sleep.h"
 
+// Definition of a world: a scene.
+
 namespace weft {
 
 inline constexpr std::size_t kMostCloths = 64;
 
-/// Which set of parts a world is made of, where it does not choose them one by one.
+/// The set of components of a world, unless they are chosen individually.
 enum class Model {
-  weft,  ///< the best we have
-  seed,  ///< that of H.-H. Cheng, "Interactive Cloth Simulation": the baseline to compare with
+  weft,  ///< the best available
+  seed,  ///< that of H.-H. Cheng, "Interactive Cloth Simulation": the baseline
 };
 
-/// Which contact keeps the cloth off objects and itself.
+/// The contact that keeps the cloth off objects and itself.
 enum class ContactModel {
   automatic,  ///< that of the world's model
   weft,       ///< certified planes (contact.h): nothing passes through
   seed,       ///< proximity and impulses (seed_contact.h)
 };
 
-/// The choice of the contact, and the settings of the seed's.
+/// Choice of the contact, and settings of the seed's.
 struct CollisionDef {
   ContactModel model = ContactModel::automatic;
   SeedContactDef seed;
@@ -45,8 +47,8 @@ struct WorldDef {
   std::string name = "unnamed";
   std::string description;  ///< one sentence on what to look at
   Model model = Model::weft;
-  double tick_rate = 60;                 ///< ticks a simulated second [1/s]
-  TextileTest test = TextileTest::none;  ///< what is measured of the first cloth
+  double tick_rate = 60;                 ///< ticks per simulated second [1/s]
+  TextileTest test = TextileTest::none;  ///< textile test performed on the first cloth
   EnvironmentDef environment;
   SolverDef solver;
   RelaxationDef relaxation;
@@ -56,16 +58,16 @@ struct WorldDef {
   SleepDef sleep;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
-  std::vector<PinDef> pins;          ///< made at the start
+  std::vector<PinDef> pins;          ///< present at the start
   std::vector<HandDef> hands;        ///< of the scene itself, at most kMostSceneHands
-  std::vector<InsultDef> insults;    ///< what is done to it, at most kMostInsults
-  std::vector<WindKey> winds;        ///< that blow one after the other, at most kMostWinds
-  VerdictDef verdict;                ///< what it must keep to
-  std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need the contact weft
+  std::vector<InsultDef> insults;    ///< its disturbances, at most kMostInsults
+  std::vector<WindKey> winds;        ///< in succession, at most kMostWinds
+  VerdictDef verdict;                ///< its limits as a hard case
+  std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need contact weft
 };
 
-/// Describes every field that is not a cloth's, a collider's or a pin's to `visit(path, info,
-/// value)`. A path such as "solver." is an object of that name in a scene file, too.
+/// Passes every field that does not belong to a cloth, collider or pin to `visit(path, info,
+/// value)`. A path such as "solver." is also the name of an object in a scene file.
 template <class Def, class Visitor>
 void visit_fields_of_world(Def& def, Visitor&& visit) {
   const auto below = [&visit](const std::string& path) {
@@ -88,7 +90,7 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
   visit_fields_of_verdict(def.verdict, below("verdict."));
 }
 
-/// The same with the fields of all cloths.
+/// The same, including the fields of all cloths.
 template <class Def, class Visitor>
 void visit_fields(Def& def, Visitor&& visit) {
   const auto below = [&visit](const std::string& path) {
@@ -101,37 +103,37 @@ void visit_fields(Def& def, Visitor&& visit) {
   }
 }
 
-/// The solver that the definition asks for, not `automatic`.
+/// The solver chosen by the definition, never `automatic`.
 SolverKind solver_of(const WorldDef& def);
 
-/// The contact that the definition asks for: weft or seed.
+/// The contact chosen by the definition: weft or seed.
 ContactModel contact_of(const WorldDef& def);
 
-/// Name of a cloth as people are told it; by number if it has none.
+/// Name of a cloth for messages; its number if it has none.
 std::string cloth_name(const WorldDef& def, Index cloth);
 
-/// Whether the definition asks for the guard of cloths against themselves and each other.
+/// Whether the definition has the guard of cloths against themselves and each other.
 bool has_guard(const WorldDef& def);
 
-/// Name of the solver, as reports give it.
+/// Name of the solver in reports.
 const char* solver_name(const WorldDef& def);
 
 /// Checks all ranges and combinations that need no model. Throws DefinitionError.
 void validate(const WorldDef& def);
 
-/// Sets one field by its path, e.g. "fabric.shear" = "20", "environment.wind" = "3,0,0" or, where
-/// there are several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." are those of the
-/// first. "fabric" = "cotton" (or "cloths[1].fabric") takes all values of a preset. "model" =
-/// "seed" takes the seed's contact of particles with triangles where contact.self is the guard.
-/// Throws DefinitionError, with nothing changed, on an unknown key or a value out of range.
+/// Sets one field by its path, e.g. "fabric.shear" = "20", "environment.wind" = "3,0,0" or, with
+/// several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." refer to the first. "fabric" =
+/// "cotton" (or "cloths[1].fabric") takes all values of a preset. "model" = "seed" selects the
+/// seed's contact of particles with triangles if contact.self is the guard. Throws DefinitionError,
+/// without any change, on an unknown key or a value out of range.
 void set_field(WorldDef& def, const std::string& key, const std::string& text);
 
-/// A field as people see it.
+/// A field in text form.
 struct FieldListing {
   std::string key, value, allowed, meaning;
 };
 
-/// Every field that `set_field` takes, with its present value.
+/// Every field that `set_field` accepts, with its present value.
 std::vector<FieldListing> list_fields(const WorldDef& def);
 
 }  // namespace weft

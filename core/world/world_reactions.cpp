@@ -1,4 +1,4 @@
-// What holds the cloth, and with which forces: nothing is measured unless somebody asks.
+// Measures contacts and reaction forces of a world, on request only.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ void World<Real>::measure_forces(bool wanted) {
   measures_forces_ = wanted;
   contact_.log_impulses(wanted);
   if (!wanted) reactions_.reset();
-  if (wanted && rests()) reactions_ = coming_reactions();  // no tick will take them
+  if (wanted && rests()) reactions_ = coming_reactions();  // no tick will measure them
 }
 
 template <class Real>
@@ -48,7 +48,7 @@ void World<Real>::take_reactions() {
   reactions_ = std::move(found);
 }
 
-/// The arrays of solvers hold pointers into themselves; the copy gets its own.
+/// The solvers' arrays contain pointers into themselves; the copy gets its own.
 template <class Real>
 World<Real> World<Real>::copy() const {
   World other(*this);
@@ -56,14 +56,14 @@ World<Real> World<Real>::copy() const {
   other.verlet_ = {};
   other.relaxation_ = {};
   other.prepare_solver();
-  other.implicit_ = implicit_;  // it has no pointers, and knows the substep before
+  other.implicit_ = implicit_;  // it has no pointers, and knows the previous substep
   return other;
 }
 
 template <class Real>
 Reactions World<Real>::coming_reactions() const {
   World trial = copy();
-  trial.wake_all();  // what sleeps is held by forces all the same
+  trial.wake_all();  // forces hold sleeping cloth too
   trial.measure_forces(true);
   if (trial.step().halted) throw Stopped();
   return *trial.reactions();

@@ -1,4 +1,4 @@
-// What ends a tick before its end, and what is back then.
+// Ends ticks early, and restores the state before them.
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   }
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
-  // Relaxation keeps lengths and not energy: what it has no bound for cannot be held against it.
+  // Relaxation keeps lengths, not energy: it has no bound to be judged by.
   const bool solved = kind != SolverKind::implicit || !implicit_.unsolved;
   if (finite && solved && (kind == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
@@ -96,7 +96,7 @@ const TickReport& World<Real>::halt() {
   return report_;
 }
 
-/// Everything that a tick changes and that decides the future.
+/// Saves everything that a tick changes and that determines the future.
 template <class Real>
 void World<Real>::keep_checkpoint() {
   checkpoint_.state = state_;
@@ -131,7 +131,7 @@ void World<Real>::go_back() {
   last_good_.v = state_.v;
 }
 
-/// Nothing that solvers and contact remember of the way here holds any longer.
+/// Clears the memory of solvers and contact, which no longer applies.
 template <class Real>
 void World<Real>::forget_motion() {
   verlet_.elastic.reset();

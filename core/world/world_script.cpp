@@ -1,4 +1,4 @@
-// What a scene does by itself: hands of its own, and what is done to it at once.
+// Scheduled events of a scene: its own hands, winds and sudden disturbances.
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace weft {
 namespace {
 
-/// A triangle with a particle as a corner, and the weights of that corner alone.
+/// A triangle with the particle as a corner, with all weight on that corner.
 template <class Real>
 GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
   GrabDef def;
@@ -32,7 +32,7 @@ GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
 
 }  // namespace
 
-/// Puts all that is free into a ball about its middle.
+/// Puts all free particles into a ball around their middle.
 template <class Real>
 void World<Real>::gather(double radius, std::uint64_t seed) {
   Vec3d middle = Vec3d::Zero();

@@ -1,4 +1,4 @@
-// What lets cloth sleep and what wakes it: sleep.h decides, the world says what acts on it.
+// Puts cloth to sleep and wakes it: sleep.h decides, the world reports what acts on it.
 
 #include <algorithm>
 
@@ -15,21 +15,21 @@ std::size_t part_of(const ClothModel<Real>& model, Index particle) {
 
 }  // namespace
 
-/// Says that masses changed.
+/// Tells contact that masses changed.
 template <class Real>
 void World<Real>::masses_changed() {
   contact_.invalidate_rows();
   if (guard_) guard_->invalidate_rows();
 }
 
-/// Says that other cloths sleep now.
+/// Tells contact that other cloths sleep now.
 template <class Real>
 void World<Real>::sleep_changed() {
   contact_.let_rest(state_);
   if (guard_) guard_->let_rest(state_.asleep);
 }
 
-/// Wakes the cloth of a particle, and what touches it.
+/// Wakes the cloth of a particle, and everything that touches it.
 template <class Real>
 void World<Real>::wake(Index particle) {
   if (!sleep_.wanted()) return;
@@ -54,7 +54,7 @@ void World<Real>::wake_all() {
   if (any) sleep_changed();
 }
 
-/// Wakes whom hands, pins, air, objects or neighbours act on in the coming tick.
+/// Wakes cloths on which hands, pins, air, objects or neighbours act in the coming tick.
 template <class Real>
 void World<Real>::rouse_sleepers() {
   if (!sleep_.wanted()) return;
@@ -64,7 +64,7 @@ void World<Real>::rouse_sleepers() {
   for (const Pin& pin : pins_.list) {
     if (pin.path) disturb(pin.centre);
   }
-  // A wind that does not change leaves cloth that has come to rest in it at rest.
+  // A steady wind leaves cloth that has come to rest in it at rest.
   if (changes_by_itself(environment_)) sleep_.disturb_all();
   for (const BadStart<Real>& start : contact_.bad_starts())
     sleep_.disturb(static_cast<std::size_t>(start.cloth));
@@ -83,7 +83,7 @@ bool World<Real>::rests() const {
                       [](const ColliderState& collider) { return collider.is_active(); });
 }
 
-/// The tick of a world that rests: time passes.
+/// The tick of a resting world: only time passes.
 template <class Real>
 const TickReport& World<Real>::rest() {
   report_.rested = true;
@@ -95,7 +95,7 @@ const TickReport& World<Real>::rest() {
   return report_;
 }
 
-/// After a tick: what has been still for long falls asleep.
+/// After a tick: puts cloths to sleep that have been still long enough.
 template <class Real>
 void World<Real>::put_to_sleep() {
   if (!sleep_.settle(state_)) return;

@@ -1,4 +1,4 @@
-// How many substeps a tick has.
+// Number of substeps of a tick.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// Hands get at most so many times the substeps that the cloth needs, or so many a tick.
+/// Limits of the substeps for hands: a multiple of those for the cloth, or a number per tick.
 constexpr long kMostForHands = 2, kEnoughForHands = 40;
 
 }  // namespace
@@ -31,9 +31,9 @@ int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environm
   return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
 }
 
-/// No hand needs more than the cloth to be stable, but what one presses against an object or into
-/// other cloth loses less of its motion. Few substeps are made as many as if hands were explicit
-/// springs.
+/// Hands do not need more substeps than the cloth for stability, but with more of them cloth that a
+/// hand presses against an object or other cloth loses less of its motion. Small numbers are raised
+/// as if hands were explicit springs.
 template <class Real>
 long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& environment,
                                      long cloth_alone, int fewest) const {
@@ -61,7 +61,7 @@ template <class Real>
 StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind,
                                             const EnvironmentDef& environment) const {
   StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
-  if (kind == SolverKind::verlet) {  // there the springs are forces too
+  if (kind == SolverKind::verlet) {  // in verlet springs are forces too
     bound.omega2 += part.bounds.membrane_omega2;
     bound.damping_rate += part.bounds.membrane_damping_rate;
   }

@@ -5,21 +5,23 @@
 #include "core/definition.h"
 #include "core/forces/air/fan.h"
 
+// Gravity, wind and other properties of the air.
+
 namespace weft {
 
-/// What surrounds the cloth.
+/// Gravity and air around the cloth.
 struct EnvironmentDef {
   Vec3d gravity = Vec3d(0, -9.81, 0);  ///< [m/s^2]
   Vec3d wind = Vec3d::Zero();          ///< mean wind velocity [m/s]
-  double gust_speed = 0;               ///< typical size of the gusts' velocity [m/s]
+  double gust_speed = 0;               ///< typical gust velocity [m/s]
   double gust_length = 0.6;            ///< size of an eddy [m]
   double air_density = 1.225;          ///< rho [kg/m^3]
-  bool still_air = false;              ///< evaluate the air where no wind blows as well
+  bool still_air = false;              ///< compute air forces even without wind
   double drag = 0;                     ///< alpha, uniform velocity damping [1/s]
   std::vector<FanDef> fans;            ///< local winds, at most kMostFans
 };
 
-/// Describes each field to `visit(info, value)`.
+/// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_environment(Def& e, Visitor&& visit) {
   visit(FieldInfo{"gravity", -1000, 1000, "m/s^2", "acceleration of gravity"}, e.gravity);

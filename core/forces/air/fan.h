@@ -4,13 +4,15 @@
 
 #include "core/definition.h"
 
+// Fans: local jets of air.
+
 namespace weft {
 
-/// A local wind: a jet that leaves a disc, keeps its speed along its core and then slows down as it
-/// widens, as free round jets do (speed ~ 1 / distance beyond the potential core; Rajaratnam 1976).
+/// A local wind: a jet from a disc that keeps its speed along its core and then slows down as it
+/// widens, like free round jets (speed ~ 1 / distance beyond the potential core; Rajaratnam 1976).
 struct FanDef {
-  Vec3d position = Vec3d(0, 1, 1);    ///< centre of the disc that it leaves [m]
-  Vec3d direction = -Vec3d::UnitZ();  ///< where it blows; of any length but 0
+  Vec3d position = Vec3d(0, 1, 1);    ///< centre of the outlet disc [m]
+  Vec3d direction = -Vec3d::UnitZ();  ///< of the jet; any length but 0
   double speed = 5;                   ///< in the core [m/s]; 0: off
   double radius = 0.25;               ///< of the disc [m]
   double spread = 0.2;                ///< growth of the jet's radius per distance, a slope
@@ -19,12 +21,12 @@ struct FanDef {
 
 inline constexpr std::size_t kMostFans = 4;
 
-/// Part of the jet's radius within which the speed is that of the core; it fades out to the edge.
+/// Fraction of the jet's radius with the speed of the core; from there it fades to the edge.
 inline constexpr double kFanCore = 0.7;
-/// Distance before the disc within which the speed rises from 0, in radii of the disc.
+/// Distance from the disc over which the speed rises from 0, in radii of the disc.
 inline constexpr double kFanStart = 0.25;
 
-/// Describes each field to `visit(info, value)`.
+/// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_fan(Def& f, Visitor&& visit) {
   visit(FieldInfo{"position", -1e4, 1e4, "m", "centre of the disc that the air leaves"},
@@ -36,7 +38,7 @@ void visit_fields_of_fan(Def& f, Visitor&& visit) {
   visit(FieldInfo{"reach", 0.01, 100, "m", "length of the core"}, f.reach);
 }
 
-/// A fan made ready to be evaluated at many points.
+/// A fan prepared for evaluation at many points.
 template <class Real>
 struct FanJet {
   Vec3<Real> position, direction;  ///< direction of unit length
@@ -48,7 +50,7 @@ struct FanJet {
         speed(static_cast<Real>(def.speed)), radius(static_cast<Real>(def.radius)),
         spread(static_cast<Real>(def.spread)), reach(static_cast<Real>(def.reach)) {}
 
-  /// Velocity of its air at a point [m/s]; exactly 0 behind the disc and outside of the jet.
+  /// Velocity of its air at a point [m/s]; exactly 0 behind the disc and outside the jet.
   Vec3<Real> operator()(const Vec3<Real>& point) const {
     const Vec3<Real> from_disc = point - position;
     const Real along = from_disc.dot(direction);
@@ -64,7 +66,7 @@ struct FanJet {
   }
 
  private:
-  /// 0 up to 0, 1 from 1 on, with zero slope at both.
+  /// 0 below 0, 1 above 1, with zero slope at both.
   static Real smooth(Real t) {
     t = std::clamp(t, Real(0), Real(1));
     return t * t * (Real(3) - Real(2) * t);
