@@ -112,7 +112,7 @@ void validate(const GripperCommand& command, const std::string& path) {
     if (value) check_field(path, info, *value);
   };
   check({"opening", 0, 1, "m", "between the jaws"}, command.opening);
-  check({"force", 0, 1000, "N", "with which each jaw presses"}, command.force);
+  check({"force", 0, 1000, "N", "force of each jaw"}, command.force);
   check({"position", -1000, 1000, "m", "of its middle"}, command.position);
   check({"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle"}, command.speed);
   check({"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "at most"}, command.turn_speed);

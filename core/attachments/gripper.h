@@ -95,21 +95,22 @@ void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
   visit(FieldInfo{"half_extents", 1e-3, 1, "m", "half of each side of a jaw; it closes along x"},
         gripper.half_extents);
   visit(FieldInfo{"opening", 0, 1, "m", "between the jaws' faces at the start"}, gripper.opening);
-  visit(FieldInfo{"force", 0, 1000, "N", "with which each jaw presses"}, gripper.force);
+  visit(FieldInfo{"force", 0, 1000, "N", "force of each jaw"}, gripper.force);
   visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which it lags"},
         gripper.max_force);
-  visit(FieldInfo{"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle, at most"},
+  visit(FieldInfo{"speed", 1e-3, kMostColliderSpeed, "m/s", "speed limit of its middle"},
         gripper.speed);
-  visit(FieldInfo{"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "about it, at most"},
+  visit(FieldInfo{"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "limit of its rotation"},
         gripper.turn_speed);
-  visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "of each jaw"}, gripper.closing_speed);
+  visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "closing speed of each jaw"},
+        gripper.closing_speed);
 }
 
 /// The same for a step, except its rotation.
 template <class Def, class Visitor>
 void visit_fields_of_gripper_step(Def& step, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "from when on"}, step.time);
-  visit(FieldInfo{"offset", -1000, 1000, "m", "from where it is defined"}, step.offset);
+  visit(FieldInfo{"time", 0, 3600, "s", "start time"}, step.time);
+  visit(FieldInfo{"offset", -1000, 1000, "m", "offset from its defined position"}, step.offset);
   visit(FieldInfo{"opening", 0, 1, "m", "between the jaws; 0 closes on what is there"},
         step.opening);
 }

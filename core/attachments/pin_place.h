@@ -67,8 +67,8 @@ void visit_fields_of_strip(Def& strip, Visitor&& visit) {
 }
 template <class Def, class Visitor>
 void visit_fields_of_point(Def& point, Visitor&& visit) {
-  visit(FieldInfo{"u", 0, 1, "", "place along u, as a part of the fabric's extent"}, point.u);
-  visit(FieldInfo{"v", 0, 1, "", "place along v, as a part of the fabric's extent"}, point.v);
+  visit(FieldInfo{"u", 0, 1, "", "place along u, as a fraction of the fabric's extent"}, point.u);
+  visit(FieldInfo{"v", 0, 1, "", "place along v, as a fraction of the fabric's extent"}, point.v);
 }
 template <class Def, class Visitor>
 void visit_fields_of_pin(Def& pin, Visitor&& visit) {

@@ -79,10 +79,10 @@ void visit_fields_of_grid(Def& c, Visitor&& visit) {
   visit(FieldInfo{"columns", 2, 2048, "", "particles along u"}, c.columns);
   visit(FieldInfo{"width", 1e-3, 100, "m", "extent along u"}, c.width);
   visit(FieldInfo{"height", 1e-3, 100, "m", "extent along v"}, c.height);
-  visit(FieldInfo{"origin", -100, 100, "m", "where particle 0 starts"}, c.origin);
+  visit(FieldInfo{"origin", -100, 100, "m", "initial position of particle 0"}, c.origin);
   visit(FieldInfo{"u", -1e3, 1e3, "", "direction of a row"}, c.u);
   visit(FieldInfo{"v", -1e3, 1e3, "", "direction of a column"}, c.v);
-  visit(choice("outline", "rectangle|ellipse", "what is cut out of the rectangle"), c.outline);
+  visit(choice("outline", "rectangle|ellipse", "outline within the rectangle"), c.outline);
   visit(FieldInfo{"skip_stiffness", 0, 1e6, "N/m", "springs to every second neighbour"},
         c.skip_stiffness);
 }

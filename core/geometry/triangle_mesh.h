@@ -27,8 +27,8 @@ struct MeshPlacement {
 /// Passes each field of a placement except its orientation to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_placement(Def& placement, Visitor&& visit) {
-  visit(FieldInfo{"scale", 1e-4, 1e4, "", "metres in a unit of the mesh"}, placement.scale);
-  visit(FieldInfo{"position", -1000, 1000, "m", "where its origin stands"}, placement.position);
+  visit(FieldInfo{"scale", 1e-4, 1e4, "", "metres per unit of the mesh"}, placement.scale);
+  visit(FieldInfo{"position", -1000, 1000, "m", "position of its origin"}, placement.position);
 }
 
 /// The mesh with the placement applied.

@@ -39,7 +39,7 @@ struct SolverDef {
 template <class Def, class Visitor>
 void visit_fields_of_solver(Def& s, Visitor&& visit) {
   visit(choice("kind", "automatic|verlet|relaxation|implicit", "automatic: by the model"), s.kind);
-  visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps a tick of verlet"},
+  visit(FieldInfo{"min_substeps", 1, kMostSubsteps, "", "fewest substeps per tick of verlet"},
         s.min_substeps);
   visit(FieldInfo{"damping_sweeps", 1, 10, "", "fixed-point sweeps on the dashpots"},
         s.damping_sweeps);

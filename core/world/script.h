@@ -72,48 +72,50 @@ double noise_at(std::uint64_t seed, std::uint64_t particle, std::uint64_t axis);
 
 template <class Def, class Visitor>
 void visit_fields_of_hand(Def& hand, Visitor&& visit) {
-  visit(FieldInfo{"u", 0, 1, "", "place along u, as a part of the fabric's extent"}, hand.u);
-  visit(FieldInfo{"v", 0, 1, "", "place along v, as a part of the fabric's extent"}, hand.v);
+  visit(FieldInfo{"u", 0, 1, "", "place along u, as a fraction of the fabric's extent"}, hand.u);
+  visit(FieldInfo{"v", 0, 1, "", "place along v, as a fraction of the fabric's extent"}, hand.v);
   visit(FieldInfo{"radius", 0, 100, "m", "radius of the held disc"}, hand.radius);
-  visit(FieldInfo{"stiffness", 0, 1e5, "N/m", "of its spring"}, hand.stiffness);
-  visit(FieldInfo{"max_force", 0, 1e6, "N", "beyond which it lags"}, hand.max_force);
+  visit(FieldInfo{"stiffness", 0, 1e5, "N/m", "stiffness of its spring"}, hand.stiffness);
+  visit(FieldInfo{"max_force", 0, 1e6, "N", "force beyond which it lags"}, hand.max_force);
 }
 template <class Def, class Visitor>
 void visit_fields_of_hand_key(Def& key, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "when it is there"}, key.time);
-  visit(FieldInfo{"offset", -1000, 1000, "m", "from where it took hold"}, key.offset);
+  visit(FieldInfo{"time", 0, 3600, "s", "when it is reached"}, key.time);
+  visit(FieldInfo{"offset", -1000, 1000, "m", "offset from the held point at the start"},
+        key.offset);
 }
 template <class Def, class Visitor>
 void visit_fields_of_insult(Def& insult, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "when it is done"}, insult.time);
-  visit(FieldInfo{"noise", 0, 1000, "m/s", "added to all velocities, at most, by component"},
-        insult.noise);
-  visit(FieldInfo{"pinned", -100, 100, "m", "by which the targets of all pins jump"},
-        insult.pinned);
-  visit(FieldInfo{"pin_speed", 1e-3, 20, "m/s", "with which pins then go there"}, insult.pin_speed);
-  visit(FieldInfo{"gather", 0, 10, "m", "radius of a ball into which all that is free is put"},
+  visit(FieldInfo{"time", 0, 3600, "s", "when it happens"}, insult.time);
+  visit(
+      FieldInfo{"noise", 0, 1000, "m/s", "most that is added to each component of all velocities"},
+      insult.noise);
+  visit(FieldInfo{"pinned", -100, 100, "m", "jump of all pins' targets"}, insult.pinned);
+  visit(FieldInfo{"pin_speed", 1e-3, 20, "m/s", "speed of the pins towards them"},
+        insult.pin_speed);
+  visit(FieldInfo{"gather", 0, 10, "m", "radius of a ball that all free particles are put into"},
         insult.gather);
 }
 template <class Def, class Visitor>
 void visit_fields_of_wind_key(Def& key, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "from when on"}, key.time);
+  visit(FieldInfo{"time", 0, 3600, "s", "start time"}, key.time);
   visit(FieldInfo{"wind", -100, 100, "m/s", "mean wind velocity"}, key.wind);
 }
 template <class Def, class Visitor>
 void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {
-  visit(FieldInfo{"strain", 0, 1000, "", "largest one allowed; 0: no hard case"}, verdict.strain);
-  visit(FieldInfo{"lost_motion", 0, 1, "", "part of the wanted motion that may be taken"},
+  visit(FieldInfo{"strain", 0, 1000, "", "largest allowed; 0: not a hard case"}, verdict.strain);
+  visit(FieldInfo{"lost_motion", 0, 1, "", "fraction of the wanted motion that the guard may take"},
         verdict.lost_motion);
-  visit(FieldInfo{"clear_after", 0, 3600, "s", "from when on nothing may cross"},
+  visit(FieldInfo{"clear_after", 0, 3600, "s", "time after which nothing may cross"},
         verdict.clear_after);
-  visit(FieldInfo{"rest_at", 0, 3600, "s", "when it rests as it shall rest again"},
+  visit(FieldInfo{"rest_at", 0, 3600, "s", "when it has the rest shape to return to"},
         verdict.rest_at);
-  visit(FieldInfo{"back_by", 0, 3600, "s", "when it must rest so again, to 1 %; 0: never"},
+  visit(FieldInfo{"back_by", 0, 3600, "s", "when it must have returned to it, to 1 %; 0: never"},
         verdict.back_by);
   visit(FieldInfo{"heights", 0, 100, "m",
-                  "by which mean heights may be off then; 0: all must be where it was"},
+                  "largest error of mean heights then; 0: all particles must be back"},
         verdict.heights);
-  visit(FieldInfo{"hands_lag", 0, 100, "m", "that a hand may ever lack of its target; 0: any"},
+  visit(FieldInfo{"hands_lag", 0, 100, "m", "largest distance of a hand from its target; 0: any"},
         verdict.hands_lag);
 }
 

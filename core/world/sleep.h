@@ -23,8 +23,9 @@ struct SleepDef {
 
 template <class Def, class Visitor>
 void visit_fields_of_sleep(Def& def, Visitor&& visit) {
-  visit(FieldInfo{"after", 0, 3600, "s", "of stillness, until cloth sleeps; 0: never"}, def.after);
-  visit(FieldInfo{"distance", 1e-7, 1, "m", "that still cloth may be from where it was"},
+  visit(FieldInfo{"after", 0, 3600, "s", "duration of stillness before cloth sleeps; 0: never"},
+        def.after);
+  visit(FieldInfo{"distance", 1e-7, 1, "m", "largest displacement that counts as still"},
         def.distance);
 }
 

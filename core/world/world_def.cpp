@@ -121,7 +121,7 @@ void validate_grippers(const WorldDef& def) {
     for (const ColliderDef& jaw : jaws_of(def.grippers[k])) {
       if (std::find(names.begin(), names.end(), jaw.name) != names.end())
         throw DefinitionError(path + "name", def.grippers[k].name,
-                              "a name whose jaws no other object is called like");
+                              "a name whose jaws share no name with another object");
       names.push_back(jaw.name);
     }
   }
@@ -163,7 +163,7 @@ void validate(const WorldDef& def) {
   }
   if (def.sleep.after > 0 && def.test != TextileTest::none)
     throw DefinitionError("sleep.after", number_text(def.sleep.after), "0 in a textile test",
-                          "what is measured shall come to rest by itself");
+                          "what is measured must come to rest by itself");
   validate(def.environment);
   validate_grippers(def);
   validate_script(def);

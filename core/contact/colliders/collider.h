@@ -61,7 +61,7 @@ template <class Def, class Visitor>
 void visit_fields_of_collider(Def& collider, Visitor&& visit) {
   visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which a moving one lags"},
         collider.max_force);
-  visit(FieldInfo{"force", 0, 1, "", "it goes on where cloth cannot give way, through it"},
+  visit(FieldInfo{"force", 0, 1, "", "it moves on through cloth that cannot yield"},
         collider.force);
 }
 

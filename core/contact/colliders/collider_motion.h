@@ -56,8 +56,8 @@ Pose offset_at(const MotionDef& def, double time);
 /// Describes each field of a keyframe to `visit(info, value)`, but for the rotation.
 template <class Def, class Visitor>
 void visit_fields_of_keyframe(Def& keyframe, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "when it is there"}, keyframe.time);
-  visit(FieldInfo{"offset", -1000, 1000, "m", "from where it is defined"}, keyframe.offset);
+  visit(FieldInfo{"time", 0, 3600, "s", "when it is reached"}, keyframe.time);
+  visit(FieldInfo{"offset", -1000, 1000, "m", "offset from its defined position"}, keyframe.offset);
 }
 
 /// The same for the motion, but for the keyframes.

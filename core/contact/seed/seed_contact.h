@@ -65,12 +65,12 @@ void visit_fields_of_seed_contact(Def& c, Visitor&& visit) {
   visit(self_contact_info(), c.self);
   visit(choice("objects", "particles|particles_and_edges", "pairs of the cloth with objects"),
         c.objects);
-  visit(choice("correction", "projection|fold_map", "what is done about penetration"),
-        c.correction);
+  visit(choice("correction", "projection|fold_map", "correction of penetration"), c.correction);
   visit(FieldInfo{"lift", 0, 0.1, "m", "distance from the surface after correction"}, c.lift);
   visit(FieldInfo{"fold_depth", 1e-3, 1, "m", "layer that the fold map keeps in order"},
         c.fold_depth);
-  visit(FieldInfo{"passes", 1, 100, "", "over the pairs of self-contact a substep"}, c.passes);
+  visit(FieldInfo{"passes", 1, 100, "", "passes over the pairs of self-contact per substep"},
+        c.passes);
 }
 
 /// Contact as the seed has it: proximity at the present instant, found by its trees; impulses on

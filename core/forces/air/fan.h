@@ -29,9 +29,8 @@ inline constexpr double kFanStart = 0.25;
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_fan(Def& f, Visitor&& visit) {
-  visit(FieldInfo{"position", -1e4, 1e4, "m", "centre of the disc that the air leaves"},
-        f.position);
-  visit(FieldInfo{"direction", -1e4, 1e4, "", "where it blows"}, f.direction);
+  visit(FieldInfo{"position", -1e4, 1e4, "m", "centre of the outlet disc"}, f.position);
+  visit(FieldInfo{"direction", -1e4, 1e4, "", "direction of the jet"}, f.direction);
   visit(FieldInfo{"speed", 0, 50, "m/s", "speed in the core"}, f.speed);
   visit(FieldInfo{"radius", 0.01, 10, "m", "radius of the disc"}, f.radius);
   visit(FieldInfo{"spread", 0, 2, "", "growth of the jet's radius per distance"}, f.spread);

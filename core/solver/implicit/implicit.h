@@ -33,9 +33,11 @@ inline constexpr int kFewestInContact = 4;
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_implicit(Def& s, Visitor&& visit) {
-  visit(FieldInfo{"substeps", 1, kMostSubsteps, "", "fewest substeps a tick"}, s.substeps);
-  visit(FieldInfo{"iterations", 1, 20, "", "of Newton's method a substep"}, s.iterations);
-  visit(FieldInfo{"tolerance", 1e-10, 0.5, "", "of each linear system, relative"}, s.tolerance);
+  visit(FieldInfo{"substeps", 1, kMostSubsteps, "", "fewest substeps per tick"}, s.substeps);
+  visit(FieldInfo{"iterations", 1, 20, "", "iterations of Newton's method per substep"},
+        s.iterations);
+  visit(FieldInfo{"tolerance", 1e-10, 0.5, "", "relative tolerance of each linear system"},
+        s.tolerance);
 }
 
 /// Contribution of a live hand to the linear system: stiffness (sum w x) w.
