@@ -1,3 +1,5 @@
+// Checks, parses and lists fields of definitions.
+
 #include "core/definition.h"
 
 #include <algorithm>
@@ -20,7 +22,7 @@ double parse_number(const std::string& field, const FieldInfo& info, std::string
   return value;
 }
 
-/// Number of single-character changes between two words; finds the key that was meant.
+/// Number of single-character edits between two words; finds the intended key.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -80,7 +82,7 @@ std::string allowed_values(const FieldInfo& info) {
 }
 
 void check_field(const std::string& path, const FieldInfo& info, double value) {
-  // Written so that NaN fails as well.
+  // Written so that NaN fails too.
   if (!(value >= info.minimum && value <= info.maximum))
     throw DefinitionError(path + info.name, number_text(value), allowed_values(info), info.meaning);
 }

@@ -6,31 +6,31 @@
 
 #include "core/types.h"
 
-// How definitions are described: each definition struct has one function `visit_fields` that names
-// its fields with unit, allowed range and meaning. Validation, `--set key=value` and the listing of
-// what is allowed all walk the same description, so they cannot disagree.
+// Description of definitions: each definition struct has one function `visit_fields` that names its
+// fields with unit, allowed range and meaning. Validation, `--set key=value` and the listing of
+// allowed values all walk the same description, so they cannot disagree.
 
 namespace weft {
 
-/// What is allowed for a field and how to speak of it. Both ends of a range are allowed.
+/// Allowed values and description of a field. Ranges include their ends.
 struct FieldInfo {
-  const char* name;             ///< as written in a key, e.g. "areal_density"
+  const char* name;             ///< as in a key, e.g. "areal_density"
   double minimum;               ///< smallest allowed value (of each component)
   double maximum;               ///< largest allowed value (of each component)
-  const char* unit;             ///< e.g. "kg/m^2"; empty if it has none
+  const char* unit;             ///< e.g. "kg/m^2"; may be empty
   const char* meaning;          ///< one clause for people
-  const char* words = nullptr;  ///< of a choice: the words for 0, 1, 2 ..., parted by '|'
+  const char* words = nullptr;  ///< of a choice: the words for 0, 1, 2 ..., separated by '|'
 };
 
-/// A field that takes one of a few words, kept as an enumeration that counts from 0.
+/// A field that takes one of several words, stored as an enumeration that counts from 0.
 /// @param words  e.g. "verlet|relaxation"
 FieldInfo choice(const char* name, const char* words, const char* meaning);
 
 /// The word for a value of a choice.
 std::string choice_word(const FieldInfo& info, int value);
 
-/// One number with a range. Throws DefinitionError if it is not finite or outside.
-/// @param path   where the field stands, e.g. "fabric." ; put before the name in the error
+/// Checks a number against its range. Throws DefinitionError if it is not finite or outside.
+/// @param path   prefix of the field's name in the error, e.g. "fabric."
 void check_field(const std::string& path, const FieldInfo& info, double value);
 void check_field(const std::string& path, const FieldInfo& info, int value);
 void check_field(const std::string& path, const FieldInfo& info, bool value);
@@ -41,8 +41,8 @@ void check_field(const std::string& path, const FieldInfo& info, Enum value) {
   check_field(path, info, static_cast<int>(value));
 }
 
-/// Reads a value from text ("0.2", "12", "true", "0,-9.81,0") into a field and checks its range.
-/// Throws DefinitionError, with the field untouched, if the text does not fit.
+/// Parses a value ("0.2", "12", "true", "0,-9.81,0") into a field and checks its range. Throws
+/// DefinitionError, with the field unchanged, if the text is invalid.
 void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
                  double& value);
 void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
@@ -51,7 +51,7 @@ void parse_field(const std::string& path, const FieldInfo& info, const std::stri
                  bool& value);
 void parse_field(const std::string& path, const FieldInfo& info, const std::string& text,
                  Vec3d& value);
-/// Number of the word in a choice.
+/// Index of a word in a choice.
 int parse_choice(const std::string& path, const FieldInfo& info, const std::string& text);
 template <class Enum>
 requires std::is_enum_v<Enum>
@@ -63,10 +63,10 @@ void parse_field(const std::string& path, const FieldInfo& info, const std::stri
 /// The allowed values in words, e.g. "0.001 to 10 kg/m^2" or "verlet or relaxation".
 std::string allowed_values(const FieldInfo& info);
 
-/// Of some words the one that is most like the given one; empty if none is like it.
+/// The most similar of some words; empty if none is similar.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
-/// A number as short text that reads back to the same number.
+/// A number as short text that parses to the same number.
 std::string number_text(double value);
 
 }  // namespace weft

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+// The error of an unacceptable definition.
+
 namespace weft {
 
 /// A definition, parameter or file that cannot be accepted. Thrown only when something is built or
@@ -11,8 +13,8 @@ namespace weft {
 ///
 /// @field field  path of the offending entry, e.g. "cloth.rows"
 /// @field value  the value as given
-/// @field limit  what is allowed, e.g. "2 to 2048"
-/// @field hint   what to do about it; may be empty
+/// @field limit  allowed values, e.g. "2 to 2048"
+/// @field hint   suggested remedy; may be empty
 struct DefinitionError : std::runtime_error {
   std::string field;
   std::string value;

@@ -2,11 +2,13 @@
 
 #include "core/stop_signal.h"
 
+// Interface to the owner's threads.
+
 namespace weft {
 
-/// Runs independent chunks of work, on whatever threads its owner has. The physics owns no thread:
-/// it is given one of these, or none and then works through the chunks one after the other. Chunks
-/// never depend on the number of threads, and their results are merged in their order.
+/// Runs independent chunks of work on its owner's threads. The physics owns no thread: it is given
+/// an executor, or none and then runs the chunks serially. Chunks never depend on the number of
+/// threads, and their results are merged in order.
 class Executor {
  public:
   virtual ~Executor() = default;
@@ -20,8 +22,8 @@ namespace detail {
 inline constinit thread_local bool runs_serially = false;
 }
 
-/// While it lives, chunks of this thread run one after the other: for work beside the thread whose
-/// executor it is.
+/// During its lifetime, chunks of this thread run serially: for work on a thread that may not use
+/// the executor.
 class SerialScope {
  public:
   SerialScope() : outer_(detail::runs_serially) { detail::runs_serially = true; }
@@ -33,8 +35,8 @@ class SerialScope {
   bool outer_;
 };
 
-/// Runs a callable through an executor, or serially if there is none. A stop point lies between
-/// chunks; with an executor it lies behind the last one, because no chunk may throw there.
+/// Runs a callable through an executor, or serially without one. Stop points lie between chunks;
+/// with an executor the stop point follows the last chunk, because a chunk must not throw there.
 template <class Work>
 void run_chunks(Executor* executor, int chunks, Work&& work) {
   if (!executor || detail::runs_serially) {

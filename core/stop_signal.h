@@ -5,14 +5,14 @@
 #include <functional>
 #include <stdexcept>
 
-// How long work is ended from outside: a signal that any thread may raise, and points in every loop
-// that can be long which look at it. Nothing in core reads a clock or counts; when to stop is the
-// owner's decision.
+// Ends long work from outside: any thread may raise the signal, and every potentially long loop
+// checks it at its stop points. Nothing in core reads a clock or counts; the owner decides when to
+// stop.
 
 namespace weft {
 
-/// Thrown by `stop_point` where the work in hand shall end. What was being changed is in no defined
-/// state; its owner sets it back.
+/// Thrown by `stop_point` to end the current work. The data being changed is left undefined; its
+/// owner restores it.
 struct Stopped : std::runtime_error {
   Stopped() : std::runtime_error("the work was ended from outside") {}
 };
@@ -20,13 +20,13 @@ struct Stopped : std::runtime_error {
 /// Ends work on one thread.
 class StopSignal {
  public:
-  /// Makes the coming stop points ask `attend`. From any thread.
+  /// Makes the coming stop points call `attend`. Callable from any thread.
   void raise() { raised_.store(true, std::memory_order_release); }
   void lower() { raised_.store(false, std::memory_order_release); }
   bool raised() const { return raised_.load(std::memory_order_acquire); }
 
-  /// Asked on the working thread while the signal is raised; true ends the work. It may lower the
-  /// signal, and must not touch what is being worked on. Set before the signal is used.
+  /// Called on the working thread while the signal is raised; true ends the work. It may lower the
+  /// signal, and must not touch the data being worked on. Set it before the signal is used.
   std::function<bool()> attend = [] { return true; };
 
  private:
@@ -38,7 +38,7 @@ inline constinit thread_local StopSignal* present_signal = nullptr;
 void ask(StopSignal& signal);
 }  // namespace detail
 
-/// Makes a signal the one of this thread while it lives; null: nothing ends the work meanwhile.
+/// Makes a signal that of this thread during its lifetime; null: nothing ends the work meanwhile.
 class StopScope {
  public:
   explicit StopScope(StopSignal* signal) : outer_(detail::present_signal) {
@@ -52,18 +52,18 @@ class StopScope {
   StopSignal* outer_;
 };
 
-/// The signal of this thread; null if there is none.
+/// The signal of this thread; null without one.
 inline StopSignal* current_stop_signal() {
   return detail::present_signal;
 }
 
-/// A place at which long work may end; costs a load. Throws Stopped.
+/// A point where long work may end; costs one load. Throws Stopped.
 inline void stop_point() {
   StopSignal* const signal = detail::present_signal;
   if (signal && signal->raised()) detail::ask(*signal);
 }
 
-/// The same for the `k`th turn of a loop whose turns are short: looks at every 256th.
+/// The same for the `k`th iteration of a tight loop: checks every 256th.
 inline void stop_point(std::size_t k) {
   if (k % 256 == 0) stop_point();
 }

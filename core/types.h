@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-// Scalars, vectors and index types that the whole physics shares.
+// Scalars, vectors and index types shared by the whole physics.
 //
 // Units are SI everywhere: metres, kilograms, seconds, newtons, radians. The y axis points up.
 // `Real` is float in use and double in tests and references.

@@ -119,11 +119,10 @@ struct ClothPart {
   std::string name;
   FabricDef fabric;
   IndexRange particles, triangles, edges, springs, hinges;
-  int rows = 0,
-      columns =
-          0;  ///< of a whole grid: particle (r, c) is particles.first + r * columns + c; else 0
-  Real cell_u = 0, cell_v = 0;                     ///< h_x, h_y, cell size of a grid [m]
-  Real rest_diagonal = 0;                          ///< of the box around its rest positions [m]
+  int rows = 0, columns = 0;    ///< of a whole grid, with particle (r, c) at particles.first +
+                                ///< r * columns + c; else 0
+  Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
+  Real rest_diagonal = 0;       ///< of the box around its rest positions [m]
   std::optional<GridSprings<Real>> grid_springs;   ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;        ///< of a grid; it then has no hinges
   std::vector<HingeStencil<Real>> hinge_stencils;  ///< of a mesh that is flat at rest

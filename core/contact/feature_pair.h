@@ -14,42 +14,42 @@ namespace weft {
 /// A particle and a triangle, or two edges.
 enum class PairKind : std::uint8_t { vertex_triangle, edge_edge };
 
-/// Number of a pair's particles that belong to its first side; the rest of the four to the second.
+/// Number of a pair's particles on its first side; the rest of the four are on the second.
 inline constexpr std::size_t first_side(PairKind kind) {
   return kind == PairKind::vertex_triangle ? 1 : 2;
 }
 
-/// Positions of the particles of a pair: particle and corners of the triangle, or the ends of
-/// either edge [m].
+/// Positions of a pair's particles: particle and corners of the triangle, or the ends of both edges
+/// [m].
 template <class Real>
 using PairPoints = std::array<Vec3<Real>, 4>;
 
-/// How the two sides of a pair lie apart.
+/// Separation of the two sides of a pair.
 template <class Real>
 struct PairSeparation {
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< unit, from the second side to the first
   Real gap = 0;  ///< certified: min over the first side minus max over the second of n.x [m]
-  std::array<Real, 4> weight = {0, 0, 0,
-                                0};  ///< closest points: sum w x leads from second to first
+  /// Of the closest points: sum w x leads from the second side to the first.
+  std::array<Real, 4> weight = {0, 0, 0, 0};
   bool inside = true;  ///< both closest points lie inside their triangle or between the edge's ends
 };
 
-/// min over the first side minus max over the second of n.x: as both sides are convex, a positive
-/// one proves that they are at least so far apart, whatever n is [m].
+/// min over the first side minus max over the second of n.x [m]. Both sides are convex, so a
+/// positive value proves a distance of at least that, for any n.
 /// @param n  unit
 template <class Real>
 Real gap_along(PairKind kind, const PairPoints<Real>& x, const Vec3<Real>& n) {
-  // Relative to one of the points, so that the place of the pair costs no precision.
+  // Relative to one of the points, so that distance from the origin costs no precision.
   const Real b = n.dot(x[1] - x[0]), c = n.dot(x[2] - x[0]), d = n.dot(x[3] - x[0]);
   if (kind == PairKind::vertex_triangle) return -std::max(b, std::max(c, d));
   return std::min(Real(0), b) - std::max(c, d);
 }
 
-/// Pairs nearer than this are separated by the best of several axes, found in double [m].
+/// Closer pairs are separated by the best of several axes, computed in double [m].
 inline constexpr double kCloseGap = 3e-4;
 
-/// The largest gap along the axes that can separate the pair where closest points are lost in
-/// rounding: the cross product of edges or of the triangle, and vectors between the features.
+/// The largest gap along candidate axes for a pair whose closest points are lost in rounding: the
+/// cross product of the edges or of the triangle, and vectors between the features.
 template <class Real>
 void improve_separation(PairKind kind, const PairPoints<Real>& x, PairSeparation<Real>& best) {
   PairPoints<double> p;
@@ -81,9 +81,9 @@ void improve_separation(PairKind kind, const PairPoints<Real>& x, PairSeparation
   }
 }
 
-/// Separates a pair along the line of its closest points, or along a better axis where these are
-/// nearly the same. A gap that is not positive means that no axis was found: the pair meets, or is
-/// as good as touching.
+/// Separates a pair along the line of its closest points, or along a better axis if these nearly
+/// coincide. A gap that is not positive means that no axis was found: the pair intersects, or
+/// nearly touches.
 template <class Real>
 PairSeparation<Real> separate_pair(PairKind kind, const PairPoints<Real>& x) {
   PairSeparation<Real> s;

@@ -1,3 +1,4 @@
+// Displacements of particles for one instruction set.
 // Included once for each instruction set by Highway's foreach_target, hence no plain #pragma once.
 #if defined(WEFT_TRAVEL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef WEFT_TRAVEL_INL_H
@@ -15,7 +16,7 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Squared lengths of the way now and after the drift, of the particles from number n on.
+/// Squared lengths of the displacement now and after the drift, for particles from number n on.
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE bool travel_of(D d, const TravelPass<Real>& p, std::size_t n) {
   hn::Vec<D> x[3], v[3], from[3];
@@ -45,7 +46,7 @@ HWY_INLINE bool travel(const TravelPass<Real>& p) {
   return within;
 }
 
-/// The largest number that is the same for any width of vectors.
+/// The largest number, the same for any vector width.
 template <class Real>
 HWY_INLINE Real deviation(const PathPass<Real>& p) {
   const hn::ScalableTag<Real> wide;

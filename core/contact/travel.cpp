@@ -1,3 +1,5 @@
+// Compiles the passes for each instruction set and dispatches to them.
+
 #include "core/contact/travel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -5,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Compiled once for each instruction set; the second inclusion guard belongs to that.
+// Compiled once for each instruction set; the second include guard serves that.
 #include "core/contact/travel-inl.h"
 
 #if HWY_ONCE

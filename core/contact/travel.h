@@ -6,41 +6,41 @@
 
 namespace weft {
 
-// Vector code of the contact over all particles, chosen for the processor when the program runs.
-// Each particle is computed by itself, so the choice does not change a bit.
+// Vector code of contact over all particles, selected for the processor at run time. Each particle
+// is computed separately, so the selection does not change a bit.
 
-/// Where particles are, were, and may go; three numbers a particle unless said otherwise.
+/// Present positions, origins and allowed displacements of particles; three numbers per particle
+/// unless stated otherwise.
 template <class Real>
 struct TravelPass {
   std::size_t particles = 0;
   const Real* x = nullptr;      ///< [m]
   const Real* v = nullptr;      ///< [m/s]
   Real dt = 0;                  ///< of the coming drift [s]
-  const Real* from = nullptr;   ///< where the way begins [m]
-  const Real* reach = nullptr;  ///< how far each may go, one number a particle [m]
-  Real* travel2 = nullptr;      ///< squared way, now or after the drift, whichever is longer [m^2]
+  const Real* from = nullptr;   ///< origin of the displacement [m]
+  const Real* reach = nullptr;  ///< allowed displacement, one number per particle [m]
+  Real* travel2 = nullptr;  ///< squared displacement, the longer of now and after the drift [m^2]
 };
 
-/// Measures the way of every particle.
-/// @param executor  shares many particles out to its threads; may be null
-/// @return whether all end within their reach; false if something is not a number
+/// Measures the displacement of every particle.
+/// @param executor  distributes many particles to its threads; may be null
+/// @return whether all end within their reach; false if any number is NaN
 bool measure_travel(const TravelPass<float>& pass, Executor* executor);
 bool measure_travel(const TravelPass<double>& pass, Executor* executor);
 
-/// Where particles are before a drift, and the straight paths that they are held against; three
-/// numbers a particle.
+/// Positions before a drift, and the straight paths for comparison; three numbers per particle.
 template <class Real>
 struct PathPass {
   std::size_t particles = 0;
   const Real* x = nullptr;         ///< [m]
   const Real* v = nullptr;         ///< [m/s]
   Real dt = 0;                     ///< of the drift [s]
-  const Real* base = nullptr;      ///< where the paths are at time 0 [m]
-  const Real* velocity = nullptr;  ///< along them [m/s]
+  const Real* base = nullptr;      ///< positions on the paths at time 0 [m]
+  const Real* velocity = nullptr;  ///< along the paths [m/s]
   Real time = 0;                   ///< at the end of the drift [s]
 };
 
-/// The largest component of anybody's way off his path after the drift [m]; NaN does not count.
+/// Largest component of any particle's displacement from its path after the drift [m]; ignores NaN.
 float largest_deviation(const PathPass<float>& pass);
 double largest_deviation(const PathPass<double>& pass);
 

@@ -7,11 +7,13 @@
 #include "core/contact/seed/seed_contact.h"
 #include "core/profile.h"
 
+// Interface of contact to the solvers.
+
 namespace weft {
 
-/// What keeps the cloth off objects and itself while a solver moves it: one of the two models of
-/// contact, the other is null; or none. The guard of cloths against each other goes with `weft`.
-/// Pins that are on their way stand beside, because they too act between kick and drift.
+/// Contact and moving pins, as a solver calls them. One of the two contact models is set, the other
+/// is null; or neither is. The guard of cloths against each other accompanies `weft`. Moving pins
+/// are included because they too act between kick and drift.
 template <class Real>
 struct Collision {
   Contact<Real>* weft = nullptr;
@@ -27,11 +29,11 @@ struct Collision {
            (seed && seed->touches());
   }
 
-  /// Before a kick, with the velocities of the last drift.
+  /// Call before a kick, with the velocities of the last drift.
   void before_kick(const ClothState<Real>& state) const {
     if (weft) weft->note_motion(state);
   }
-  /// Between the kick and the drift of `dt` [s]: makes the velocities admissible.
+  /// Call between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->before_drift(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
@@ -47,13 +49,13 @@ struct Collision {
     if (weft && !weft->move_objects(state, dt, guard && guard->counts().truncated > truncated))
       guard->stand_still();
   }
-  /// After the drift: puts back what got in.
+  /// Call after the drift: corrects penetrations.
   void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     const StageTimer timer(profile, Stage::contact, 0);
     if (guard) guard->finish(state);
     if (seed) seed->collide(state, dt, profile);
   }
-  /// At the end of a tick, after the closing kick.
+  /// Call at the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     if (pins) pins->settle(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);

@@ -1,3 +1,5 @@
+// Validates colliders and turns boxes into meshes.
+
 #include "core/contact/colliders/collider.h"
 
 #include <cmath>
@@ -8,7 +10,7 @@
 namespace weft {
 namespace {
 
-/// Unit within what rounding to three digits does.
+/// Checks for unit norm, within the rounding of three digits.
 void check_unit(const std::string& field, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
   if (!(std::abs(norm - 1) < 1e-3))

@@ -10,9 +10,11 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/types.h"
 
+// Definitions of colliders: objects that cloth cannot enter.
+
 namespace weft {
 
-/// Everything on the side opposite to the normal is solid.
+/// A half space, solid on the side opposite to the normal.
 struct PlaneDef {
   Vec3d point = Vec3d::Zero();    ///< on the plane [m], within 1000
   Vec3d normal = Vec3d::UnitY();  ///< any length but zero
@@ -38,25 +40,25 @@ struct BoxDef {
 /// A triangle mesh, given in world coordinates. A closed one is solid; an open one has two sides.
 struct MeshDef {
   TriangleMesh mesh;
-  MeshPlacement placement = {};  ///< how `mesh` was made, for scene files; not applied again
+  MeshPlacement placement = {};  ///< origin of `mesh`, for scene files; not applied again
 };
 
-/// Matches a definition, constant or not.
+/// Matches a definition, const or not.
 template <class T, class Def>
 concept DefOf = std::is_same_v<std::remove_const_t<T>, Def>;
 
 using ShapeDef = std::variant<PlaneDef, SphereDef, CapsuleDef, BoxDef, MeshDef>;
 
-/// An object that the cloth cannot enter.
+/// An object that cloth cannot enter.
 struct ColliderDef {
   std::string name;
   ShapeDef shape;
-  MotionDef motion = {};   ///< keyframes, if it moves by itself
-  double max_force = 100;  ///< beyond which it lags [N], 0.01 to 1e6
-  bool force = false;      ///< follows its keyframes where cloth cannot give way; see MoveDef
+  MotionDef motion = {};   ///< keyframes, if it has its own motion
+  double max_force = 100;  ///< resistance beyond which it lags [N], 0.01 to 1e6
+  bool force = false;      ///< follows its keyframes even if cloth cannot yield; see MoveDef
 };
 
-/// Describes each field of a collider, but for shape and motion, to `visit(info, value)`.
+/// Passes each field of a collider except shape and motion to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_collider(Def& collider, Visitor&& visit) {
   visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which a moving one lags"},
@@ -65,7 +67,8 @@ void visit_fields_of_collider(Def& collider, Visitor&& visit) {
         collider.force);
 }
 
-// Describe each field of a shape to `visit(info, value)`; orientations, unit quaternions, apart.
+// Pass each field of a shape except orientations, which are unit quaternions, to `visit(info,
+// value)`.
 
 template <class Visitor>
 void visit_fields_of_shape(DefOf<PlaneDef> auto& plane, Visitor&& visit) {
@@ -89,14 +92,14 @@ void visit_fields_of_shape(DefOf<BoxDef> auto& box, Visitor&& visit) {
   visit(FieldInfo{"half_extents", 1e-3, 100, "m", "half of each side"}, box.half_extents);
 }
 
-/// Throws DefinitionError if a shape or its motion is out of range; `path` stands before
-/// the name of the field.
+/// Throws DefinitionError if a shape or its motion is out of range; `path` precedes the field's
+/// name.
 void validate(const ColliderDef& def, const std::string& path);
 
-/// Throws DefinitionError if the pose would turn a plane, which has no bound on its speed.
+/// Throws DefinitionError if the pose would rotate a plane, whose speed would be unbounded.
 void check_may_turn(const ColliderDef& def, const Pose& pose, const std::string& path);
 
-/// The mesh that stands for a box in contact, in world coordinates.
+/// The mesh that represents a box in contact, in world coordinates.
 TriangleMesh world_mesh(const BoxDef& box);
 
 }  // namespace weft

@@ -1,3 +1,5 @@
+// Plans a collider's motion in a substep.
+
 #include "core/contact/colliders/collider_frame.h"
 
 namespace weft {

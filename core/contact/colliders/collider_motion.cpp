@@ -1,3 +1,5 @@
+// Validates and interpolates keyframes.
+
 #include "core/contact/colliders/collider_motion.h"
 
 #include <algorithm>
@@ -9,17 +11,17 @@
 namespace weft {
 namespace {
 
-/// The steepest slope of the cubic that eases.
+/// The steepest slope of the easing cubic.
 constexpr double kSteepestEase = 1.5;
 
-/// Two poses nearer than this are the same place: what rounding in a file does [m], [rad].
+/// Poses nearer than this are equal: the rounding in a file [m], [rad].
 constexpr double kSamePlace = 1e-6;
 
 struct Difference {
   Vec3d step, turn;
 };
 
-/// From one keyframe to another by the shortest turn.
+/// From one keyframe to another by the shortest rotation.
 Difference between(const Keyframe& from, const Keyframe& to) {
   return {to.offset - from.offset,
           rotation_vector(to.rotation.normalized() * from.rotation.normalized().conjugate())};
@@ -36,7 +38,7 @@ double fastest(const MotionDef& def) {
   return def.interpolation == Interpolation::smooth ? kSteepestEase : 1;
 }
 
-/// No jump from keyframe k - 1 to keyframe k.
+/// Refuses a jump from keyframe k - 1 to keyframe k.
 void check_stretch(const MotionDef& def, std::size_t k, const std::string& path) {
   const Keyframe &from = def.keyframes[k - 1], &to = def.keyframes[k];
   const double seconds = to.time - from.time;

@@ -6,61 +6,64 @@
 #include "core/contact/colliders/pose.h"
 #include "core/definition.h"
 
+// Keyframes and commands that move colliders.
+
 namespace weft {
 
-/// Where a collider shall be at an instant, told from how it is defined: moved by an offset and
-/// turned about its pivot.
+/// Pose of a collider at an instant, relative to its definition: moved by an offset and rotated
+/// about its pivot.
 struct Keyframe {
-  double time = 0;               ///< [s], 0 to 3600, growing from one to the next
+  double time = 0;               ///< [s], 0 to 3600, increasing from keyframe to keyframe
   Vec3d offset = Vec3d::Zero();  ///< of the pivot [m], within 1000
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit
 };
 
-/// How poses between two keyframes are found.
+/// Interpolation of poses between two keyframes.
 enum class Interpolation {
-  linear,  ///< at constant velocity, and by the shortest turn at constant rate (slerp)
-  smooth,  ///< the same path; at rest at each keyframe, time eased by the cubic 3 s^2 - 2 s^3
+  linear,  ///< constant velocity, and shortest rotation at constant rate (slerp)
+  smooth,  ///< the same path, at rest at each keyframe; time eased by the cubic 3 s^2 - 2 s^3
 };
 
-/// Keyframes of a collider. Before the first and, unless it loops, after the last it stays there.
+/// Keyframes of a collider. It stays at the first before its time and, unless it loops, at the
+/// last.
 struct MotionDef {
-  std::vector<Keyframe> keyframes;  ///< none: it does not move by itself; at most kMostKeyframes
+  std::vector<Keyframe> keyframes;  ///< none: no motion of its own; at most kMostKeyframes
   Interpolation interpolation = Interpolation::linear;
-  bool loop = false;  ///< from the last keyframe on to the first one, which must be the same pose
+  bool loop = false;  ///< from the last keyframe back to the first, which must be the same pose
 };
 
 inline constexpr std::size_t kMostKeyframes = 1000;
 
-/// Fastest that a collider may be asked to move [m/s] and turn [rad/s].
+/// Limits of a commanded speed [m/s] and rotation [rad/s].
 inline constexpr double kMostColliderSpeed = 20, kMostColliderTurnSpeed = 60;
 
-/// A command: go to a pose at no more than these speeds, and stay there.
+/// A command: move to a pose at no more than these speeds, and stay there.
 struct MoveDef {
   Pose target;            ///< position within 1000 m, rotation unit
   double speed = 0.5;     ///< of the pivot [m/s], 0.001 to kMostColliderSpeed
   double turn_speed = 2;  ///< [rad/s], 0.001 to kMostColliderTurnSpeed
-  bool force = false;     ///< go on where cloth cannot give way; what it promised is void then
+  bool force = false;     ///< move on even if cloth cannot yield; its guarantee is then void
 };
 
-/// Throws DefinitionError, with `path` before the field's name, if a keyframe is out of range, not
-/// later than the one before it, or so far from it that it would be a jump.
+/// Throws DefinitionError, with `path` in front of the field's name, if a keyframe is out of range,
+/// not later than the previous one, or so far from it that it would be a jump.
 void validate(const MotionDef& def, const std::string& path);
 
 /// Throws DefinitionError if a field is out of range.
 void validate(const MoveDef& def, const std::string& path);
 
-/// The offset and rotation that the keyframes, of which there is at least one, ask for.
+/// Offset and rotation of the keyframes, of which there must be at least one.
 /// @param time  [s], at least 0
 Pose offset_at(const MotionDef& def, double time);
 
-/// Describes each field of a keyframe to `visit(info, value)`, but for the rotation.
+/// Passes each field of a keyframe except the rotation to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_keyframe(Def& keyframe, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "when it is reached"}, keyframe.time);
   visit(FieldInfo{"offset", -1000, 1000, "m", "offset from its defined position"}, keyframe.offset);
 }
 
-/// The same for the motion, but for the keyframes.
+/// The same for the motion, except the keyframes.
 template <class Def, class Visitor>
 void visit_fields_of_motion(Def& motion, Visitor&& visit) {
   visit(choice("interpolation", "linear|smooth", "smooth: at rest at each keyframe"),

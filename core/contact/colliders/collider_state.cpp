@@ -1,3 +1,5 @@
+// Plans and executes the motion of colliders within their force limits.
+
 #include "core/contact/colliders/collider_state.h"
 
 #include <algorithm>
@@ -9,30 +11,30 @@
 namespace weft {
 namespace {
 
-/// Pace that a collider regains a tick, where nothing resists.
+/// Fraction of its speed that a collider regains per tick without resistance.
 constexpr double kPaceGain = 0.1;
 
-/// Slower than this it stands [part of its speed].
+/// Below this fraction of its speed it stands.
 constexpr double kLeastPace = 0.01;
 
-/// What resists for no longer is an impact, to which force has no time to answer [s]; and how many
-/// times that impulse is made good at most.
+/// Resistance for a shorter time is an impact, which leaves the force no time to act [s]; and how
+/// many times that impulse is compensated at most.
 constexpr double kImpactSeconds = 1e-3, kMostOverload = 4;
 
-/// A collider that was held back follows its keyframes by this much faster than they ever go.
+/// A collider that was held back follows its keyframes faster than their top speed by this factor.
 constexpr double kCatchUp = 1.25;
 
-/// The part of a way that may be gone.
+/// Allowed fraction of a displacement.
 double allowed_part(double way, double most) {
   return way > most ? most / way : 1;
 }
 
 struct Wish {
   Pose goal;
-  double speed, turn_speed;  // at most
+  double speed, turn_speed;  // limits
 };
 
-/// Where the collider shall be after the tick.
+/// Target pose at the end of the tick.
 std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderState& state) {
   if (state.move) return Wish{state.move->target, state.move->speed, state.move->turn_speed};
   if (def.motion.keyframes.empty()) return std::nullopt;
@@ -40,7 +42,7 @@ std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderS
   return Wish{keyframed_pose(def, time), top.linear * kCatchUp, top.angular * kCatchUp};
 }
 
-/// Surface speed of a wanted twist, for the resistance against it [m/s].
+/// Surface speed of the wanted twist, for the resistance against it [m/s].
 double surface_speed(const ColliderState& state) {
   const double turn = state.wanted.angular.norm();
   return state.wanted.linear.norm() + (turn > 0 ? turn * state.radius : 0);
@@ -114,7 +116,8 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     if (!wish) continue;
     const Vec3d step = wish->goal.position - state.pose.position;
     const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
-    // A command takes both ways in the same time, so that the path does not depend on the tick.
+    // Translation and rotation of a command take the same time, so that the path does not depend on
+    // the tick.
     double part = allowed_part(step.norm(), wish->speed * seconds);
     part = std::min(part, allowed_part(turn.norm(), wish->turn_speed * seconds));
     state.wanted = {step * (part / seconds), turn * (part / seconds)};

@@ -6,86 +6,88 @@
 #include "core/contact/colliders/collider.h"
 #include "core/contact/colliders/collider_motion.h"
 
+// State of moving colliders.
+
 namespace weft {
 
-/// A collider as it stands and moves now. Its motion is planned for a tick, with a constant twist,
-/// and made a substep at a time by the contact, which may hold it back.
+/// Present state of a collider. Its motion is planned for a tick, with a constant twist, and
+/// executed per substep by contact, which may hold it back.
 struct ColliderState {
   Pose pose;
-  std::optional<MoveDef> move;  ///< the command that it follows, instead of its keyframes
-  double pace = 1;              ///< part of its speed that the resistance of the cloth leaves, 0..1
+  std::optional<MoveDef> move;  ///< the command that overrides its keyframes
+  double pace = 1;              ///< fraction of its speed left by the resistance of the cloth, 0..1
 
-  // The tick under way.
-  Pose start, goal;      ///< at its beginning; at its end, if nothing holds the collider back
-  Twist wanted;          ///< towards what keyframes or command ask for, at full pace
+  // The running tick.
+  Pose start, goal;      ///< at its start; at its end, unless the collider is held back
+  Twist wanted;          ///< towards the pose of keyframes or command, at full pace
   Twist twist;           ///< from start to goal
-  double progress = 0;   ///< of the twist [s]
-  bool blocked = false;  ///< held back, because cloth could not give way
-  bool forced = false;   ///< is not held back in this tick
-  bool voided = false;   ///< has gone on through cloth since the start: nothing is promised
+  double progress = 0;   ///< along the twist [s]
+  bool blocked = false;  ///< held back, because cloth could not yield
+  bool forced = false;   ///< not held back in this tick
+  bool voided = false;   ///< has moved on through cloth since the start: nothing is promised
   Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 
-  // Of a jaw of a gripper.
-  Vec3d press = Vec3d::Zero();     ///< unit direction in which it presses; zero: it is none
-  double squeeze = 0;              ///< with which it presses what is before it in this tick [N]
-  Vec3d squeezed = Vec3d::Zero();  ///< impulse of that on the cloth so far in the tick [N s]
-  double facing = 0;  ///< thickness of the cloth that is before it; 0: there is none [m]
+  // For the jaw of a gripper.
+  Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: not a jaw
+  double squeeze = 0;              ///< pressing force on the cloth in front of it in this tick [N]
+  Vec3d squeezed = Vec3d::Zero();  ///< its impulse on the cloth so far in the tick [N s]
+  double facing = 0;               ///< thickness of the cloth in front of it; 0: none [m]
 
-  // Its force, in a substep: beyond it, it stands.
+  // Its force limit within a substep: beyond it, the collider stands.
   double radius = 0;              ///< of the surface about the pivot [m]
   double max_force = 0;           ///< [N]
-  Index mate = kNone;             ///< stands when this one does: the other jaw
-  Vec3d counted = Vec3d::Zero();  ///< of `impulse`, so much has been held against the force
+  Index mate = kNone;             ///< stands together with this one: the other jaw
+  Vec3d counted = Vec3d::Zero();  ///< part of `impulse` already compared with the limit
   Vec3d angular_counted = Vec3d::Zero();
-  double overload = 0;        ///< impulse above what the force gives, not yet made good [N s]
-  double start_overload = 0;  ///< the same at the beginning of the tick
+  double overload = 0;        ///< impulse beyond the limit, not yet compensated [N s]
+  double start_overload = 0;  ///< the same at the start of the tick
 
   Vec3d force = Vec3d::Zero();  ///< of the cloth on it, mean of the last tick [N]
 
   bool is_moving() const { return !twist.is_zero(); }
-  /// It moves, or would like to.
+  /// Whether it moves, or is meant to.
   bool is_active() const { return !wanted.is_zero() || squeeze > 0; }
 };
 
 using ColliderStates = std::vector<ColliderState>;
 
-/// The point of a collider that its pose places and about which it turns: the centre of a sphere or
-/// box, the middle of a capsule, the point of a plane, the centre of the box around a mesh [m].
+/// Reference point of a collider's pose and rotation: the centre of a sphere or box, the middle of
+/// a capsule, the point of a plane, the centre of the box around a mesh [m].
 Vec3d pivot_of(const ShapeDef& shape);
 
-/// Farthest that a point of the surface is from the pivot [m]; infinite for a plane.
+/// Largest distance of a surface point from the pivot [m]; infinite for a plane.
 double radius_of(const ShapeDef& shape);
 
-/// Where the keyframes want a collider that has some [s].
+/// Pose by the keyframes, for a collider that has some.
 Pose keyframed_pose(const ColliderDef& def, double time);
 
 /// The pose as defined.
 Pose rest_pose(const ShapeDef& shape);
 
-/// All colliders where their definitions put them, or at time 0 of their keyframes.
+/// All colliders as defined, or at time 0 of their keyframes.
 ColliderStates initial_states(const std::vector<ColliderDef>& colliders);
 
-/// Plans the coming tick: from where they are to where keyframes or commands want them at its end,
-/// no faster than they may.
+/// Plans the coming tick: from the present poses towards those of keyframes or commands, within the
+/// speed limits.
 /// @param time     at the start of the tick [s]
 /// @param seconds  length of the tick
 void plan_motion(const std::vector<ColliderDef>& colliders, double time, double seconds,
                  ColliderStates& states);
 
-/// Back to the start of the tick under way.
+/// Returns to the start of the running tick.
 void take_back_motion(ColliderStates& states);
 
-/// Holds what has resisted a collider since the last time against its force.
+/// Compares the resistance since the last call with the collider's force.
 /// @param seconds  since then
-/// @return whether it is to stand: it has been resisted by more than its force, and for longer than
-///         an impact lasts
+/// @return whether it must stand: the resistance exceeds its force, for longer than an impact
+///         lasts
 bool count_resistance(double seconds, ColliderState& state);
 
-/// Moves a collider on by part of the tick [s]; it ends exactly at its goal.
+/// Moves a collider by part of the tick [s]; it ends exactly at its goal.
 void advance_collider(double seconds, double tick_seconds, ColliderState& state);
 
-/// Ends the tick: slows what is resisted by more than its force allows.
+/// Ends the tick: slows colliders whose resistance exceeds their force.
 void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
                    ColliderStates& states);
 

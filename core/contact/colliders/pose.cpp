@@ -1,3 +1,5 @@
+// Rotations and rigid motion.
+
 #include "core/contact/colliders/pose.h"
 
 #include <cmath>

@@ -2,10 +2,12 @@
 
 #include "core/types.h"
 
+// Poses and twists of rigid objects.
+
 namespace weft {
 
-/// Where a rigid object is, relative to how its definition places it: a point p of the definition
-/// is at position + rotation (p - pivot), where the pivot is the object's own (collider.h).
+/// Pose of a rigid object relative to its definition: a point p of the definition is at position +
+/// rotation (p - pivot), with the object's pivot (collider.h).
 struct Pose {
   Vec3d position = Vec3d::Zero();                                ///< of the pivot [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit
@@ -13,7 +15,7 @@ struct Pose {
 
 bool operator==(const Pose& a, const Pose& b);
 
-/// Rigid motion that is constant for a while.
+/// Rigid motion at constant velocities.
 struct Twist {
   Vec3d linear = Vec3d::Zero();   ///< velocity of the pivot [m/s]
   Vec3d angular = Vec3d::Zero();  ///< about the pivot, along the axis [rad/s]

@@ -1,3 +1,5 @@
+// Contact of the seed with objects.
+
 #include "core/contact/seed/seed_contact.h"
 
 #include <algorithm>
@@ -49,7 +51,7 @@ void SeedContact<Real>::begin_tick(double tick_seconds, ColliderStates* collider
   }
 }
 
-/// Objects move through what is in their way: the seed asks where things are now, and only that.
+/// Moves objects through anything in their path: the seed considers only present positions.
 template <class Real>
 void SeedContact<Real>::move_colliders(Real dt) {
   for (std::size_t k = 0; k < frames_.size(); ++k) {
@@ -62,7 +64,7 @@ void SeedContact<Real>::move_colliders(Real dt) {
   }
 }
 
-/// The particles as an object sees them.
+/// Positions of the particles in an object's frame.
 template <class Real>
 const Vec3Array<Real>& SeedContact<Real>::in_frame_of(std::size_t object,
                                                       const Vec3Array<Real>& x) {
@@ -73,22 +75,22 @@ const Vec3Array<Real>& SeedContact<Real>::in_frame_of(std::size_t object,
   return x_own_;
 }
 
-/// Keeps the nearest of all offers for a particle.
+/// Keeps the nearest candidate for a particle.
 template <class Real>
 void SeedContact<Real>::offer(std::size_t i, Real distance, const Vec3<Real>& normal,
                               Index object) {
   if (std::abs(distance) < std::abs(nearest_[i].distance)) nearest_[i] = {distance, normal, object};
 }
 
-/// Eqs. (7) and (8) for all particles near a mesh, found by both trees; for simple shapes the
-/// distance itself. What is inside a simple shape is near however deep it is; what is inside a mesh
-/// only as deep as the reach.
+/// Eqs. (7) and (8) for all particles near a mesh, found by both trees; the distance itself for
+/// simple shapes. A particle inside a simple shape counts as near at any depth; inside a mesh only
+/// within the reach.
 template <class Real>
 void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Profile& profile) {
   std::fill(nearest_.begin(), nearest_.end(),
             Nearest{std::numeric_limits<Real>::infinity(), Vec3<Real>::Zero(), kNone});
   const BottomUpTree<Real>* particles = nullptr;
-  const Vec3Array<Real>* around = nullptr;  // what the tree is fitted to
+  const Vec3Array<Real>* around = nullptr;  // positions that the tree is fitted to
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const SeedShape<Real>& shape = shapes_[k];
     const ColliderFrame<Real>& frame = frames_[k];
@@ -116,7 +118,7 @@ void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Pro
       const Vec3<Real>& x3 = shape.positions[static_cast<std::size_t>(t[2])];
       const seed::Proximity<Real> p = seed::proximity<Real>(x[i], x1, x2, x3, reach_);
       if (!p.near) return;
-      // A surface without an inside belongs to the side from which the particle came.
+      // At a surface without an inside, the particle belongs on the side from which it came.
       Vec3<Real> came_from = state.x[i] - state.v[i] * dt;
       if (frame.moves) came_from += frame.velocity_at(state.x[i]) * dt;
       const bool flip = !shape.closed && (frame.own(came_from) - x3).dot(p.normal) < 0;
@@ -131,7 +133,8 @@ void SeedContact<Real>::find_nearest(const ClothState<Real>& state, Real dt, Pro
   }
 }
 
-/// Eq. (10) for all that touch and come nearer or are behind the surface, and the correction.
+/// Eq. (10) for all particles that touch and approach, or are behind the surface, and the
+/// correction.
 template <class Real>
 void SeedContact<Real>::respond(ClothState<Real>& state) {
   const Real lift = static_cast<Real>(def_.lift);

@@ -12,6 +12,8 @@
 #include "core/geometry/cloth_trees.h"
 #include "core/profile.h"
 
+// The contact model of the seed.
+
 namespace weft {
 
 /// Contact of cloths with themselves and each other.
@@ -20,32 +22,31 @@ enum class SelfContact {
   none,
   particles,            ///< particle pairs, eq. (11)
   triangles,            ///< particle-triangle pairs, eq. (12)
-  triangles_and_edges,  ///< edge-edge pairs as well, which the seed lacked
+  triangles_and_edges,  ///< also edge-edge pairs, which the seed lacked
   guard,                ///< not the seed's: safe regions (cloth_guard.h), nothing crosses
 };
 
-/// Between what of the cloth and an object.
+/// Feature pairs between cloth and objects.
 enum class ObjectContact {
   particles,            ///< eqs. (7) to (10)
-  particles_and_edges,  ///< edges of the cloth against sharp edges of meshes as well
+  particles_and_edges,  ///< also edges of the cloth against sharp edges of meshes
 };
 
-/// What is done about particles that are behind the surface of an object.
+/// Treatment of particles behind the surface of an object.
 enum class Correction {
   projection,  ///< eq. (9): onto the surface; flattens folds
-  fold_map,    ///< all that is near is lifted by a monotone map of its distance; keeps folds
+  fold_map,    ///< lifts all nearby particles by a monotone map of their distance; keeps folds
 };
 
-/// Settings of the seed's contact. Thickness h, friction k_f and dissipation k_diss are the
-/// fabric's.
+/// Settings of the seed's contact. Thickness h, friction k_f and dissipation k_diss are those of
+/// the fabric.
 struct SeedContactDef {
-  SelfContact self = SelfContact::automatic;  ///< here as none
+  SelfContact self = SelfContact::automatic;  ///< automatic means none here
   ObjectContact objects = ObjectContact::particles;
   Correction correction = Correction::projection;
   double lift = 0;           ///< eps: distance from the surface after correction [m]; 0 is eq. (9)
-  double fold_depth = 0.02;  ///< tau: what is nearer to an object than this is lifted with the rest
-                             ///< [m]
-  int passes = 1;            ///< over all pairs of self-contact, a substep
+  double fold_depth = 0.02;  ///< tau: nearer particles are lifted together [m]
+  int passes = 1;            ///< over all pairs of self-contact, per substep
 
   bool has_self_contact() const {
     return self != SelfContact::automatic && self != SelfContact::none;
@@ -59,7 +60,7 @@ inline FieldInfo self_contact_info() {
                 "seed's contact");
 }
 
-/// Describes each field to `visit(info, value)`.
+/// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_seed_contact(Def& c, Visitor&& visit) {
   visit(self_contact_info(), c.self);
@@ -73,9 +74,9 @@ void visit_fields_of_seed_contact(Def& c, Visitor&& visit) {
         c.passes);
 }
 
-/// Contact as the seed has it: proximity at the present instant, found by its trees; impulses on
-/// velocities and positions put back. It promises nothing: what moves farther than the thickness
-/// within a substep passes through.
+/// Contact of the seed: proximity at the present instant, found by its trees; impulses on
+/// velocities and corrections of positions. It promises nothing: a particle that moves farther than
+/// the thickness within a substep passes through.
 template <class Real>
 class SeedContact {
  public:
@@ -86,32 +87,33 @@ class SeedContact {
               const std::vector<ColliderDef>& colliders);
 
   /// @param tick_seconds  length of the tick [s]
-  /// @param colliders     as planned for the tick; moved on in each `collide` of it
+  /// @param colliders     as planned for the tick; advanced in each `collide` of it
   void begin_tick(double tick_seconds, ColliderStates* colliders);
 
-  /// Self-collision, before the particles move: takes the approach of near pairs out of the
+  /// Self-collision, before the particles move: removes the approach of near pairs from the
   /// velocities, eqs. (11) and (12).
   void separate(ClothState<Real>& state, Profile& profile);
 
-  /// Objects, after the particles have moved by v dt: eqs. (7) to (10) and the correction.
+  /// Contact with objects, after the particles have moved by v dt: eqs. (7) to (10) and the
+  /// correction.
   void collide(ClothState<Real>& state, Real dt, Profile& profile);
 
-  /// Whether anything has met since the tick began.
+  /// Whether anything has touched since the tick began.
   bool touches() const { return touches_; }
 
  private:
-  /// What of the objects is nearest to a particle.
+  /// The nearest object surface of a particle.
   struct Nearest {
     Real distance;      ///< signed; at least the reach if nothing is near [m]
-    Vec3<Real> normal;  ///< unit, to the side on which the particle belongs
+    Vec3<Real> normal;  ///< unit, to the side where the particle belongs
     Index object;
   };
 
-  /// Two sides of the cloth that are near each other: a particle and another, or a triangle, or
-  /// two edges. Found once a substep, since impulses move nothing.
+  /// Two nearby features of the cloth: two particles, a particle and a triangle, or two edges.
+  /// Found once per substep, since impulses move nothing.
   struct SelfPair {
     std::array<Index, 4> particle;
-    std::array<Real, 4> weight;  ///< positive on the side to which the normal points; sum 0
+    std::array<Real, 4> weight;  ///< positive on the side that the normal points to; sum 0
     Vec3<Real> normal;           ///< unit
   };
 
@@ -134,7 +136,7 @@ class SeedContact {
 
   SeedContactDef def_;
   bool touches_ = false;
-  Real reach_ = 0;                            ///< at which objects are looked for [m]
+  Real reach_ = 0;                            ///< search distance around objects [m]
   std::vector<Index> cloth_of_;               ///< of each particle
   std::vector<Real> thickness_;               ///< h of each cloth [m]
   std::vector<Real> friction_, dissipation_;  ///< k_f, k_diss of each cloth
@@ -145,7 +147,7 @@ class SeedContact {
   ClothTrees<Real> trees_;
   std::vector<SeedShape<Real>> shapes_;
   std::vector<ColliderFrame<Real>> frames_;  ///< of each shape
-  ColliderStates* colliders_ = nullptr;      ///< of the tick under way
+  ColliderStates* colliders_ = nullptr;      ///< of the running tick
   double tick_seconds_ = 0;
   Vec3Array<Real> x_own_;  ///< particles in the frame of one shape
   std::vector<Nearest> nearest_;

@@ -6,29 +6,29 @@
 
 #include "core/types.h"
 
-// The equations of contact of H.-H. Cheng, "Interactive Cloth Simulation" (the seed), as pure
+// The contact equations of H.-H. Cheng, "Interactive Cloth Simulation" (the seed), as pure
 // functions: (7) to (12), and the map that keeps folds (after Bridson, Marino, Fedkiw 2003). Where
-// the seed has equal masses m, these take inverse masses w, so that w = 1/m gives its formulas and
-// w = 0 is a pinned particle.
+// the seed has equal masses m, these take inverse masses w: w = 1/m gives its formulas, and w = 0
+// is a pinned particle.
 
 namespace weft::seed {
 
-/// Where a point lies over a triangle.
+/// Position of a point relative to a triangle.
 template <class Real>
 struct Proximity {
-  bool near = false;           ///< within h of the plane and over the triangle, grown by delta
+  bool near = false;           ///< within h of the plane and over the triangle grown by delta
   Real distance = 0;           ///< signed, x43 . n [m]
   Vec3<Real> normal;           ///< unit
   std::array<Real, 3> weight;  ///< barycentric, sum 1
 };
 
-/// delta: how far outside a triangle weights may lie, h over the side of a square of its area.
+/// delta: margin of weights outside a triangle, h over the side of a square of its area.
 template <class Real>
 Real weight_margin(const Vec3<Real>& doubled_normal, Real h) {
   return h / std::sqrt(Real(0.5) * doubled_normal.norm());
 }
 
-/// Proximity of x4 to triangle x1 x2 x3 by (7) and (8). A triangle without area is near to nothing.
+/// Proximity of x4 to triangle x1 x2 x3 by (7) and (8). Nothing is near to a triangle without area.
 /// @param h  thickness [m]
 template <class Real>
 Proximity<Real> proximity(const Vec3<Real>& x4, const Vec3<Real>& x1, const Vec3<Real>& x2,
@@ -52,7 +52,7 @@ Proximity<Real> proximity(const Vec3<Real>& x4, const Vec3<Real>& x1, const Vec3
   return result;
 }
 
-/// (9): the point of the triangle's plane that has the weights.
+/// (9): the point of the triangle's plane with these weights.
 template <class Real>
 Vec3<Real> weighted(const std::array<Real, 3>& weight, const Vec3<Real>& a, const Vec3<Real>& b,
                     const Vec3<Real>& c) {
@@ -74,11 +74,10 @@ Vec3<Real> after_contact(const Vec3<Real>& v, const Vec3<Real>& n, Real friction
   return back;
 }
 
-/// (11) and (12) with any number of weights: impulse [N s] that takes the approach v_n of two
-/// weighted points; 0 if all are pinned. For two particles of mass m (weights 1 and -1) it is
-/// m v_n / 2, for a particle and a triangle (1, -w1, -w2, -w3) it is
-/// m v_n / (1 + w1^2 + w2^2 + w3^2). Each particle then changes its velocity by (its signed weight)
-/// (its inverse mass) (impulse) n.
+/// (11) and (12) with any number of weights: impulse [N s] that removes the approach v_n of two
+/// weighted points; 0 if all are pinned. For two particles of mass m (weights 1 and -1) it is m v_n
+/// / 2, for a particle and a triangle (1, -w1, -w2, -w3) it is m v_n / (1 + w1^2 + w2^2 + w3^2).
+/// Each particle then changes its velocity by (its signed weight) (its inverse mass) (impulse) n.
 template <class Real, std::size_t Count>
 Real weighted_impulse(Real v_n, const std::array<Real, Count>& weight,
                       const std::array<Real, Count>& inverse_mass) {
@@ -87,10 +86,10 @@ Real weighted_impulse(Real v_n, const std::array<Real, Count>& weight,
   return mobility > 0 ? v_n / mobility : Real(0);
 }
 
-/// The map that keeps folds: takes signed distances phi, phi_min <= phi < tau, to
-/// eps + (phi - phi_min)(tau - eps)/(tau - phi_min), monotonely: the deepest comes to eps, tau
-/// stays, and who was higher is higher. What is beyond tau, or needs no help (phi_min >= eps),
-/// stays.
+/// The map that keeps folds: takes signed distances phi, phi_min <= phi < tau, to eps + (phi -
+/// phi_min)(tau - eps)/(tau - phi_min). It is monotone: the deepest particle moves to eps, tau
+/// stays, and the order of heights is kept. Distances beyond tau, and those that need no lift
+/// (phi_min >= eps), stay.
 template <class Real>
 Real fold_map(Real phi, Real phi_min, Real tau, Real eps) {
   if (!(phi < tau) || !(phi_min < eps)) return phi;

@@ -9,11 +9,11 @@
 namespace weft {
 namespace {
 
-/// Particles of one cloth that lie nearer than this many thicknesses in the fabric are neighbours;
-/// contact between them would keep the cloth from being one.
+/// Particles of one cloth within this many thicknesses in the fabric are neighbours; contact
+/// between them would push the cloth apart.
 constexpr double kNeighbourhood = 1.5;
 
-/// Room for pairs from the start, as a multiple of the particles; more is taken when it is needed.
+/// Initial capacity for pairs, as a multiple of the particles; it grows on demand.
 constexpr std::size_t kPairsPerParticle = 8;
 
 }  // namespace
@@ -26,7 +26,7 @@ bool SeedContact<Real>::are_neighbours(Index i, Index j) const {
   return i == j || (rest_positions_[a] - rest_positions_[b]).squaredNorm() < reach * reach;
 }
 
-/// The larger of the thicknesses of two particles' cloths.
+/// The larger thickness of two particles' cloths.
 template <class Real>
 Real SeedContact<Real>::thickness_between(Index i, Index j) const {
   const auto of = [&](Index k) {
@@ -105,7 +105,7 @@ std::uint64_t SeedContact<Real>::find_edge_pairs(const Vec3Array<Real>& x) {
   return tests;
 }
 
-/// Takes out of the velocities what brings the two sides of a pair nearer along its normal.
+/// Removes the approach of a pair's sides along its normal from the velocities.
 template <class Real>
 void SeedContact<Real>::take_approach(const SelfPair& pair, ClothState<Real>& state) {
   Real speed = 0;

@@ -1,3 +1,5 @@
+// Prepares objects for the seed's contact.
+
 #include "core/contact/seed/seed_shape.h"
 
 #include <cmath>
@@ -8,7 +10,7 @@
 namespace weft {
 namespace {
 
-/// Faces that turn outwards by less than this leave no edge that could cut [cosine of 20 degrees].
+/// Faces that bend outwards by less than this form no sharp edge [cosine of 20 degrees].
 constexpr double kFlat = 0.94;
 
 template <class Real>

@@ -7,27 +7,29 @@
 #include "core/geometry/bottom_up_tree.h"
 #include "core/types.h"
 
+// Objects in the seed's contact.
+
 namespace weft {
 
-/// Signed distance of a point from a simple shape, negative inside, and the way out.
+/// Signed distance of a point from a simple shape, negative inside, and the outward normal.
 template <class Real>
 struct SurfacePoint {
   Real distance = 0;                        ///< [m]
   Vec3<Real> normal = Vec3<Real>::UnitY();  ///< unit
 };
 
-/// A static model as the seed sees it: a simple shape, or triangles with their tree, made once.
+/// A static model of the seed: a simple shape, or triangles with a tree that is built once.
 template <class Real>
 struct SeedShape {
-  /// An edge that sticks out, where cloth can be cut although no particle is near.
+  /// A protruding edge, which can cut into cloth between its particles.
   struct SharpEdge {
     Index a = 0, b = 0;
     Vec3<Real> normal;  ///< unit, mean of the faces
   };
 
   bool is_mesh = false;
-  ShapeDef simple;            ///< if it is no mesh
-  bool closed = false;        ///< a solid, whose triangles face outwards
+  ShapeDef simple;            ///< for shapes other than meshes
+  bool closed = false;        ///< a solid with outward triangles
   Vec3Array<Real> positions;  ///< [m]
   std::vector<Triangle> triangles;
   BottomUpTree<Real> tree;  ///< over the triangles
@@ -35,9 +37,9 @@ struct SeedShape {
   BottomUpTree<Real> edge_tree;  ///< over the sharp edges
 };
 
-/// Whether edges that are closest here are a pair of their own; nearer to an end the particle or
-/// vertex there stands for them.
-/// @param s  part of the edge's length, 0 to 1
+/// Whether edges that are closest here form an edge-edge pair; nearer to an end the particle or
+/// vertex there represents them.
+/// @param s  fraction of the edge's length, 0 to 1
 template <class Real>
 bool is_within_edge(Real s) {
   constexpr double kEnd = 0.01;
@@ -45,7 +47,7 @@ bool is_within_edge(Real s) {
 }
 
 /// Prepares a collider.
-/// @param reach  at which triangles shall be found [m]
+/// @param reach  search distance around triangles [m]
 template <class Real>
 SeedShape<Real> make_seed_shape(const ShapeDef& def, Real reach);
 
@@ -54,9 +56,9 @@ SeedShape<Real> make_seed_shape(const ShapeDef& def, Real reach);
 template <class Real>
 SurfacePoint<Real> distance_from(const ShapeDef& simple, const Vec3<Real>& p);
 
-/// Box of a triangle that overlaps, with boxes that reach h/2 around particles, those of all points
-/// that eqs. (7) and (8) call near to it. (Boxes of flat cloth need some volume, or the search
-/// would go down the wrong tree first.)
+/// Box of a triangle that overlaps the boxes, reaching h/2 around particles, of all points that
+/// eqs. (7) and (8) call near to it. (Boxes of flat cloth need some volume, or the search would
+/// descend the wrong tree first.)
 /// @param h  thickness [m]
 template <class Real>
 Aabb<Real> proximity_box(const Vec3<Real>& x1, const Vec3<Real>& x2, const Vec3<Real>& x3, Real h);

@@ -1,3 +1,5 @@
+// Searches for crossings and frees the pairs around contours.
+
 #include "core/contact/tangles/cloth_tangles.h"
 
 #include <algorithm>
@@ -7,10 +9,10 @@
 namespace weft {
 namespace {
 
-/// Contours share the bits of particles beyond this number: more is free then than has to be.
+/// Contours beyond this number share bits of particles, which frees more pairs than necessary.
 constexpr std::size_t kBits = 64;
 
-/// Exact sign of how p q passes edge a b, the same whichever way a b is written, and never 0.
+/// Exact sign of how p q passes edge a b, independent of the order of a and b, and never 0.
 int side_of_line(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b, bool in_order) {
   const int sign = in_order ? orientation(p, q, a, b) : -orientation(p, q, b, a);
   if (sign != 0) return sign;
@@ -51,7 +53,7 @@ void ClothTangles<Real>::look_at(Index edge, Index triangle, const QuadArray<Rea
   const Edge& e = edges_[static_cast<std::size_t>(edge)];
   const Triangle& t = triangles_[static_cast<std::size_t>(triangle)];
   const Vec3d p = at(e[0], x), q = at(e[1], x), a = at(t[0], x), b = at(t[1], x), c = at(t[2], x);
-  // What lies exactly in the plane counts as above it, so that neighbours agree.
+  // A point exactly in the plane counts as above it, so that neighbouring triangles agree.
   const bool above = orientation(a, b, c, p) <= 0;
   if (above == (orientation(a, b, c, q) <= 0)) return;
   const int ab = side_of_line(p, q, a, b, t[0] < t[1]), bc = side_of_line(p, q, b, c, t[1] < t[2]),

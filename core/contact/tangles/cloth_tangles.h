@@ -10,60 +10,62 @@
 #include "core/contact/tangles/tangle_contours.h"
 #include "core/math/quad.h"
 
+// Undoes crossings that exist at the start.
+
 namespace weft {
 
-/// Where cloths pass through themselves or each other, and how they are drawn apart.
+/// Finds where cloths pass through themselves or each other, and pulls them apart.
 ///
-/// Nothing that the guard allows crosses, so this is only for what crosses when it begins. All
-/// edges that pass through triangles are looked for then, exactly, and again many times a second
-/// until there are none. They line up as contours, each of which says which sheet goes which way
-/// (TangleContours). Drawn are the crossings themselves, by impulses that give edge and triangle a
-/// small speed past each other; the fabric takes its other particles along and keeps its folds.
+/// The guard prevents new crossings, so this only treats those present at the start. All edges that
+/// pass through triangles are then searched for, exactly, and again many times a second until none
+/// are left. They line up as contours, each of which determines which sheet moves in which
+/// direction (TangleContours). Impulses act on the crossings themselves and give edge and triangle
+/// a small speed past each other; the fabric carries its other particles along and keeps its folds.
 /// Pairs of features near a contour, one of either sheet, are free: they have to pass each other
-/// for the tangle to come undone, and those that are apart on the wrong side would hold it fast.
+/// for the tangle to come undone, and pairs that are apart on the wrong side would hold it fast.
 template <class Real>
 class ClothTangles {
  public:
   ClothTangles() = default;
   explicit ClothTangles(const ClothModel<Real>& model);
 
-  /// Forgets everything.
+  /// Clears everything.
   void reset();
 
-  /// Begins to look again.
+  /// Begins a new search.
   void clear();
 
-  /// Notes that an edge passes through a triangle, if it does. They have no particle in common.
+  /// Records a crossing if the edge passes through the triangle. They must share no particle.
   /// @param x  positions of all particles [m]
   void look_at(Index edge, Index triangle, const QuadArray<Real>& x);
-  /// Forgets crossings again for which unwanted(crossing) is true.
+  /// Removes crossings for which unwanted(crossing) is true.
   template <class Unwanted>
   void leave_out(Unwanted&& unwanted) {
     std::erase_if(crossings_, unwanted);
   }
-  /// Notes features that touch without a side, which are drawn apart too.
-  /// @param particle  as GuardedPair has them
+  /// Records features that touch without a side; they are pulled apart too.
+  /// @param particle  as in GuardedPair
   void note_touch(PairKind kind, const std::array<Index, 4>& particle, const QuadArray<Real>& x);
-  /// After all have been looked at: finds the ways out.
+  /// Call after the search: determines the directions out of the tangle.
   /// @param inverse_mass  of each particle [1/kg]
   void decide(const QuadArray<Real>& x, const std::vector<Real>& inverse_mass);
 
   /// Whether the features of a pair may pass each other.
   bool frees(PairKind kind, const std::array<Index, 4>& particle) const;
 
-  /// Draws apart what crosses: bounded impulses, after the kick of `dt` [s].
+  /// Pulls crossings apart by bounded impulses, after the kick of `dt` [s].
   void draw(ClothState<Real>& state, Real dt);
 
   std::size_t size() const { return crossings_.size(); }
   const std::vector<TangleCrossing>& crossings() const { return crossings_; }
   const TangleContours& contours() const { return contours_; }
-  /// Work that `draw` has done since the start of the tick [J]; see begin_tick.
+  /// Work of `draw` since the start of the tick [J]; see begin_tick.
   double work() const { return work_; }
   void begin_tick() { work_ = 0; }
 
  private:
   // tangle_rows.cpp
-  /// Two features with the direction in which the first is drawn past the second.
+  /// Two features, with the direction in which the first is pulled past the second.
   struct Row {
     std::array<Index, 5> particle = {0, 0, 0, 0, 0};
     std::array<Real, 5> weight = {0, 0, 0, 0, 0};
@@ -72,7 +74,7 @@ class ClothTangles {
     Real pull = 0;     ///< impulse in this step [N s]
     Real wanted = 0;   ///< speed along the direction [m/s]
     Real speed = 0;    ///< along the direction before this step's kick, and now [m/s]
-    Vec3<Real> apart;  ///< sum of weight x position a step ago [m]
+    Vec3<Real> apart;  ///< sum of weight x position at the previous step [m]
   };
 
   Vec3d at(Index particle, const QuadArray<Real>& x) const {
@@ -90,14 +92,14 @@ class ClothTangles {
 
   std::vector<Edge> edges_;
   std::vector<Triangle> triangles_;
-  std::vector<Index> triangle_at_;  ///< one of each particle's
+  std::vector<Index> triangle_at_;  ///< one triangle of each particle
   std::vector<TangleCrossing> crossings_;
   TangleContours contours_;
   std::vector<char> is_held_;
-  /// Of each particle a bit for each contour near by whose first or second sheet it belongs to.
+  /// Per particle a bit for each nearby contour, by the first and second sheet.
   std::array<std::vector<std::uint64_t>, 2> near_;
   std::vector<Row> rows_;
-  double drawn_ = 0;  ///< for how long [s]
+  double drawn_ = 0;  ///< duration of the pull [s]
   double work_ = 0;   ///< [J]
 };
 

@@ -1,3 +1,5 @@
+// Floods a sheet from both sides of a line.
+
 #include "core/contact/tangles/contour_regions.h"
 
 #include <algorithm>
@@ -5,7 +7,7 @@
 namespace weft {
 namespace {
 
-/// What a part with held particles counts for beside its area [m^2].
+/// Weight of held particles in the size of a part, in addition to its area [m^2].
 constexpr double kHeldArea = 1e3;
 
 }  // namespace
@@ -39,7 +41,7 @@ void ContourRegions::seed(Index particle, std::size_t side, const std::vector<ch
   floods_[side].held |= is_held[i] != 0;
 }
 
-/// Goes on from one particle to its neighbours.
+/// Continues from one particle to its neighbours.
 /// @return whether there was one left
 bool ContourRegions::spread(std::size_t side, const std::vector<char>& is_held) {
   Flood& flood = floods_[side];
@@ -81,13 +83,13 @@ ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
   for (std::size_t k = 0, last = 0; k < cuts.size(); k = last + 1) {
     for (last = k; last + 1 < cuts.size() && cuts[last + 1].edge == cuts[k].edge;) ++last;
     const Edge& edge = edges_[static_cast<std::size_t>(cuts[k].edge)];
-    // Only what is next to an end tells on which side that is.
+    // Only particles next to an end determine its side.
     const bool first = cuts[k].above, second = !cuts[last].above;
     if (first != second) is_cut_[static_cast<std::size_t>(cuts[k].edge)] = search_;
     seed(edge[0], first ? 1 : 0, is_held);
     seed(edge[1], second ? 1 : 0, is_held);
   }
-  // From both sides in turn: the smaller part is known when it is full.
+  // From both sides in turn: the smaller part is known once it is exhausted.
   std::size_t small = 0;
   for (bool going = true; going && !meet_;) {
     for (small = 0; small < 2 && (going = spread(small, is_held)); ++small) {

@@ -8,13 +8,15 @@
 #include "core/cloth/neighbours.h"
 #include "core/types.h"
 
+// Parts of a sheet on the two sides of a line.
+
 namespace weft {
 
-/// A place where a line cuts an edge of a sheet.
+/// A point where a line cuts an edge of a sheet.
 struct EdgeCut {
   Index edge = kNone;
   double along = 0;    ///< from the edge's first end, 0 to 1
-  bool above = false;  ///< on which side of the line the first end is
+  bool above = false;  ///< side of the line where the first end lies
 };
 
 /// The parts into which a line cuts a sheet of cloth.
@@ -24,18 +26,18 @@ class ContourRegions {
   template <class Real>
   explicit ContourRegions(const ClothModel<Real>& model);
 
-  /// The smaller of the two parts, and if it holds what cannot be moved the other one.
+  /// The smaller of the two parts, or the other one if that holds particles that cannot move.
   struct Part {
-    int side = 0;     ///< 1 above the line, -1 below; 0: the line does not cut the sheet in two
-    double area = 0;  ///< at rest [m^2]; a metre squared more for each particle that is held
+    int side = 0;     ///< 1 above the line, -1 below; 0: the line does not divide the sheet
+    double area = 0;  ///< at rest [m^2]; larger if a particle is held
   };
-  /// @param cuts     all of the line, in any order; sorted
+  /// @param cuts     of the whole line, in any order; sorted
   /// @param through  particles that the line passes through; kNone: none
-  /// @param is_held  of each particle 1 if it cannot be moved
+  /// @param is_held  of each particle 1 if it cannot move
   Part smaller_part(std::vector<EdgeCut>& cuts, const std::array<Index, 2>& through,
                     const std::vector<char>& is_held);
 
-  /// Whether a particle next to the line that was looked at last is on this side of it.
+  /// Whether a particle next to the latest line is on this side of it.
   bool is_on(Index particle, int side) const {
     return reached_[static_cast<std::size_t>(particle)] == 2 * search_ + (side > 0 ? 1 : 0);
   }
@@ -61,7 +63,7 @@ class ContourRegions {
   std::array<Index, 2> through_ = {kNone, kNone};
   std::uint32_t search_ = 0;
   std::array<Flood, 2> floods_;  ///< below and above
-  bool meet_ = false;            ///< both sides are one
+  bool meet_ = false;            ///< both sides are connected
 };
 
 }  // namespace weft

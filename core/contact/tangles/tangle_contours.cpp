@@ -1,3 +1,5 @@
+// Links crossings and decides how each contour is undone.
+
 #include "core/contact/tangles/tangle_contours.h"
 
 #include <algorithm>
@@ -42,8 +44,8 @@ Index TangleContours::fold_at(const TangleCrossing& crossing) const {
   return kNone;
 }
 
-/// Two triangles meet in a piece of line, both ends of which are crossings of an edge of the one
-/// with the other; only one is, where they share a particle.
+/// Two triangles intersect in a segment, both ends of which are crossings of an edge of one with
+/// the other; only one end is if they share a particle.
 void TangleContours::link(std::vector<TangleCrossing>& crossings) {
   keys_.clear();
   for (std::size_t c = 0; c < crossings.size(); ++c) {
@@ -65,7 +67,7 @@ void TangleContours::link(std::vector<TangleCrossing>& crossings) {
   }
 }
 
-/// Collects a contour from one of its crossings on.
+/// Collects a contour, starting at one of its crossings.
 void TangleContours::follow(std::vector<TangleCrossing>& crossings, Index first) {
   TangleContour contour;
   contour.begin = order_.size();
@@ -80,7 +82,7 @@ void TangleContours::follow(std::vector<TangleCrossing>& crossings, Index first)
       if (to == kNone || crossings[static_cast<std::size_t>(to)].contour != kNone) continue;
       next = to;
       TangleCrossing& d = crossings[static_cast<std::size_t>(to)];
-      // Through the same triangle go edges of the other sheet.
+      // Edges of the other sheet pass through the same triangle.
       d.side = d.triangle == c.triangle ? c.side : static_cast<std::uint8_t>(1 - c.side);
       break;
     }
@@ -138,15 +140,15 @@ void TangleContours::decide(const std::vector<TangleCrossing>& crossings,
   set_free(crossings, contour);
 }
 
-/// Lists the particles of what crosses here; of the sheet that was cut last those on the wrong
-/// side.
+/// Lists the particles of the crossing features; of the sheet that was cut last only those on the
+/// wrong side.
 void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
                               TangleContour& contour) {
   contour.free_begin = free_.size();
   const auto add = [&](std::uint8_t sheet, const auto& particles) {
     const bool goes = contour.way == TangleWay::back && sheet == contour.sheet;
     const auto is_wrong = [&](Index i) { return regions_.is_on(i, contour.wrong); };
-    // An edge that goes there and back has no end there.
+    // An edge that crosses twice has no end there.
     const bool some = goes && std::any_of(particles.begin(), particles.end(), is_wrong);
     for (const Index i : particles) {
       if (!some || is_wrong(i)) free_.push_back({sheet, i});
@@ -162,7 +164,7 @@ void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
 
 void TangleContours::join(std::vector<TangleCrossing>& crossings,
                           const std::vector<char>& is_held) {
-  // Room for what comes while it is undone: steps shall not ask for more.
+  // Capacity for crossings that arise while it is undone, so that steps do not allocate.
   const std::size_t room = 4 * crossings.size();
   if (order_.capacity() < 2 * crossings.size()) {
     keys_.reserve(2 * room);

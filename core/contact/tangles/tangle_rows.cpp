@@ -1,4 +1,4 @@
-// How ClothTangles draws apart what crosses: impulses on edges and triangles.
+// Pulls crossings apart: impulses of ClothTangles on edges and triangles.
 
 #include <algorithm>
 #include <utility>
@@ -8,15 +8,15 @@
 namespace weft {
 namespace {
 
-/// Speed at which edge and triangle are drawn past each other [m/s], and a pucker is pulled flat,
-/// which faster only wanders about; and the largest acceleration that this may take [m/s^2], as
-/// that of a fold drawn through by its rim alone.
+/// Speed at which edge and triangle are pulled past each other, and at which a pucker is pulled
+/// flat, since a higher one makes it wander [m/s]; and the largest acceleration for this, such as
+/// that of a fold pulled through by its rim alone [m/s^2].
 constexpr double kDrawSpeed = 0.5, kUnfoldSpeed = 0.05, kMostAcceleration = 2000;
 
-/// What is tangled for so long [s] may be held so by pins: it is drawn more and more weakly.
+/// A tangle that lasts longer may be held by pins: it is pulled more and more weakly [s].
 constexpr double kPatience = 4;
 
-/// Sweeps over the rows a step.
+/// Sweeps over the rows per step.
 constexpr int kSweeps = 2;
 
 Vec3d unit(const Vec3d& v) {
@@ -55,7 +55,7 @@ Vec3d ClothTangles<Real>::way_along(const TangleContour& contour, std::size_t pl
   const auto crossing = [&](std::size_t k) -> const TangleCrossing& {
     return crossings_[static_cast<std::size_t>(contours_.order()[k])];
   };
-  // Where it ends in a fold that is its last point.
+  // If it ends in a fold, that is its last point.
   const auto end = [&](std::size_t k) {
     const Index fold = contours_.fold_at(crossing(k));
     return fold != kNone ? at(fold, x) : point_of(crossing(k), x);
@@ -67,7 +67,7 @@ Vec3d ClothTangles<Real>::way_along(const TangleContour& contour, std::size_t pl
   return unit(to - from);
 }
 
-/// Notes where a new row's features are.
+/// Records the positions of a new row's features.
 template <class Real>
 void ClothTangles<Real>::place(Row& row, const QuadArray<Real>& x) const {
   row.apart = Vec3<Real>::Zero();
@@ -79,7 +79,7 @@ template <class Real>
 void ClothTangles<Real>::add_rows(const TangleContour& contour, const QuadArray<Real>& x) {
   for (std::size_t k = contour.begin; k < contour.end; ++k) {
     const TangleCrossing& c = crossings_[static_cast<std::size_t>(contours_.order()[k])];
-    // The way in which the edge has to move past the triangle.
+    // The direction in which the edge has to move past the triangle.
     Vec3d way = Vec3d::Zero();
     const bool edge_goes = c.side == contour.sheet;
     switch (contour.way) {
@@ -111,7 +111,7 @@ template <class Real>
 void ClothTangles<Real>::note_touch(PairKind kind, const std::array<Index, 4>& particle,
                                     const QuadArray<Real>& x) {
   const std::size_t middle = first_side(kind);
-  // Away from the sheet that comes first, on the side of its normals: all along it alike.
+  // Away from the sheet that comes first, on the side of its normals: the same all along it.
   const bool first = particle[0] < particle[middle];
   const Index of = first ? particle[0] : particle[middle];
   Row row;
@@ -128,7 +128,7 @@ void ClothTangles<Real>::note_touch(PairKind kind, const std::array<Index, 4>& p
   rows_.push_back(row);
 }
 
-/// How fast the features of a row part along its direction [m/s].
+/// Speed at which the features of a row separate along its direction [m/s].
 template <class Real>
 Real ClothTangles<Real>::speed_of(const Row& row, const ClothState<Real>& state) const {
   Real speed = 0;
@@ -137,7 +137,7 @@ Real ClothTangles<Real>::speed_of(const Row& row, const ClothState<Real>& state)
   return speed;
 }
 
-/// Starts a step: what can move, and how fast it did in the last drift.
+/// Starts a step: updates the mobility of the features, and their speed in the last drift.
 template <class Real>
 void ClothTangles<Real>::begin_row(Row& row, const ClothState<Real>& state, Real dt) const {
   Real mobility = 0;
@@ -172,7 +172,7 @@ void ClothTangles<Real>::draw(ClothState<Real>& state, Real dt) {
       }
     }
   }
-  // The mean of the speeds in the drifts before and behind: that in between is none of leapfrog's.
+  // The mean of the speeds in the previous and the next drift, because leapfrog has none between.
   for (const Row& row : rows_)
     work_ += static_cast<double>(row.pull * (row.speed + speed_of(row, state)) / 2);
 }
