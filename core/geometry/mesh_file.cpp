@@ -1,3 +1,5 @@
+// Reads and writes mesh files; the only file that includes assimp.
+
 #include "core/geometry/mesh_file.h"
 
 #include <algorithm>
@@ -14,8 +16,6 @@
 
 #include "core/definition.h"
 #include "core/error.h"
-
-// The only file that includes assimp.
 
 namespace weft {
 namespace {

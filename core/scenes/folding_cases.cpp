@@ -1,10 +1,10 @@
+// The fourth list of hard cases: cloth that hands fold and unfold.
+
 #include <cmath>
 #include <numbers>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/hard_cases.h"
-
-// Cloth that hands fold and unfold.
 
 namespace weft {
 namespace {

@@ -1,10 +1,10 @@
+// The second list of hard cases: ratios, ticks, forces and winds far beyond normal use.
+
 #include <cmath>
 #include <numbers>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/scenes/hard_cases.h"
-
-// The second list of hard cases: ratios, ticks, forces and winds far beyond normal use.
 
 namespace weft {
 namespace {

@@ -1,7 +1,7 @@
+// The third list of hard cases: cloth that starts through cloth.
+
 #include "core/scenes/built_in_meshes.h"
 #include "core/scenes/hard_cases.h"
-
-// Cloth that starts through cloth.
 
 namespace weft {
 namespace {
