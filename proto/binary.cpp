@@ -73,9 +73,9 @@ Result<BinaryHeader> read_header(std::span<const std::byte> message, BinaryType 
   if (header.version != kBinaryVersion) return binary_error("unknown version");
   if (header.codec > last_codec) return binary_error("unknown codec");
   if (header.length != message.size() || header.length % kAlignment != 0)
-    return binary_error("the length does not fit");
+    return binary_error("the length does not match");
   if (checksum(message) != Sums{header.sum_a, header.sum_b})
-    return binary_error("the checksum does not fit");
+    return binary_error("the checksum does not match");
   return header;
 }
 
@@ -103,7 +103,7 @@ Result<std::vector<Section>> read_sections(std::span<const std::byte> message, s
   for (const Section& section : sections) names.emplace_back(section.kind, section.index);
   std::sort(names.begin(), names.end());
   if (std::adjacent_find(names.begin(), names.end()) != names.end())
-    return binary_error("a section comes twice");
+    return binary_error("a section appears twice");
   return sections;
 }
 

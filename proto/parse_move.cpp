@@ -23,7 +23,8 @@ void read_rotation(FieldReader& in, std::optional<Quat>& rotation) {
 void refuse_beside(FieldReader& in, const char* other, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     if (in.ok() && in.has(key))
-      in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " does not go with " + other);
+      in.fail(ErrorCode::conflicting_fields, key,
+              std::string(key) + " cannot be combined with " + other);
   }
 }
 

@@ -229,14 +229,14 @@ Command read_query(FieldReader& in) {
       query.what == QueryWhat::positions || query.what == QueryWhat::velocities || boxes;
   if (query.format != QueryFormat::json && !numbers) {
     in.fail(ErrorCode::conflicting_fields, "format",
-            "a binary format is for positions, velocities and boxes alone");
+            "only positions, velocities and boxes have binary formats");
   }
   if (query.viewer && query.what != QueryWhat::camera)
-    in.fail(ErrorCode::conflicting_fields, "viewer", "viewer goes with camera alone");
+    in.fail(ErrorCode::conflicting_fields, "viewer", "viewer is only for camera");
   if (boxes) read_tree(in, query);
   for (const char* key : {"tree", "level"}) {
     if (!boxes && in.has(key))
-      in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " goes with boxes alone");
+      in.fail(ErrorCode::conflicting_fields, key, std::string(key) + " is only for boxes");
   }
   return query;
 }

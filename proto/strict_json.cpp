@@ -39,7 +39,7 @@ class StrictBuilder {
     Level& level = levels_.back();
     level.key = std::move(name);
     if (!level.container->contains(level.key)) return true;
-    return fail(ErrorCode::duplicate_key, "the key " + path() + " stands twice in an object");
+    return fail(ErrorCode::duplicate_key, "the key " + path() + " appears twice in an object");
   }
 
   bool parse_error(std::size_t position, const std::string& token,

@@ -224,11 +224,11 @@ std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpReque
   if (hosts > 1) return bad_request(request, "more than one Host", "");
   if (hosts == 0 && request.version() >= 11) return bad_request(request, "no Host", "");
   if (!take_absolute_target(request))
-    return bad_request(request, "the target's host is none", view_of(request.target()));
+    return bad_request(request, "the target's host is invalid", view_of(request.target()));
   const auto field = request.find(http::field::host);
   if (field == request.end()) return std::nullopt;  // HTTP/1.0: not a browser
   const std::optional<Authority> host = parse_authority(view_of(field->value()));
-  if (!host) return bad_request(request, "Host is no host", view_of(field->value()));
+  if (!host) return bad_request(request, "Host is invalid", view_of(field->value()));
   const OriginRules rules = rules_of(context);
   if (!rules.host_allowed(*host)) return foreign_host(request, rules, host->host);
   return std::nullopt;

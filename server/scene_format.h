@@ -198,7 +198,7 @@ template <class Io>
 void describe_pin(Io& io, PinDef& pin) {
   io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, pin.cloth);
   io.fields([&](auto&& visit) { visit_fields_of_pin(pin, visit); });
-  io.tagged({choice("place", "particle|corner|edge|point", "how the place is told"), true},
+  io.tagged({choice("place", "particle|corner|edge|point", "how the place is given"), true},
             static_cast<int>(pin.place.index()), [&](Io& in, int place) {
               choose_alternative(pin.place, place);
               in.fields([&](auto&& visit) {

@@ -162,7 +162,7 @@ void Session::on_binary() {
   const std::span<const std::byte> bytes(static_cast<const std::byte*>(incoming_.data().data()),
                                          incoming_.size());
   const auto sequence = proto::decode_ack(bytes);
-  if (!sequence) return close_by_policy(kCloseNotAnAck, "a binary message that is no ack");
+  if (!sequence) return close_by_policy(kCloseNotAnAck, "a binary message that is not an ack");
   if (!acks_.take(context_.clock())) return close_by_policy(kClosePolicy, "too many acks");
   channel_->on_acknowledged(*sequence);
 }

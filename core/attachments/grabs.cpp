@@ -15,7 +15,7 @@ namespace {
 /// Damping ratio of the hand's spring with the held mass.
 constexpr double kGrabDampingRatio = 0.7;
 
-const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "where the held point shall go"};
+const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "target of the held point"};
 
 void validate(const GrabDef& def, std::size_t triangles) {
   check_field("drag.", {"triangle", 0, static_cast<double>(triangles) - 1, "", "a triangle"},

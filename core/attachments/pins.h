@@ -98,7 +98,7 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
 template <class Def, class Visitor>
 void visit_fields_of_pin_move(Def& move, Visitor&& visit) {
   visit(FieldInfo{"position", -kFarthestPinTarget, kFarthestPinTarget, "m",
-                  "where the middle of the pin goes"},
+                  "target of the pin's middle"},
         move.target);
   visit(FieldInfo{"speed", kLeastPinSpeed, kMostPinSpeed, "m/s", "of the pin, at most"},
         move.speed);

@@ -34,7 +34,7 @@ void validate(const ClothDef& def) {
   const bool cut = !def.mesh && def.outline != Outline::rectangle;
   if (cut && (def.skip_stiffness != 0 || def.direct_springs))
     throw DefinitionError("cloth.outline", "ellipse", "rectangle with these springs",
-                          "a cut grid has the springs of its fabric alone");
+                          "a cut grid has only the springs of its fabric");
   if (def.mesh && def.skip_stiffness != 0)
     throw DefinitionError("cloth.skip_stiffness", number_text(def.skip_stiffness), "0 on a mesh",
                           "only a grid has second neighbours");

@@ -31,8 +31,8 @@ void refuse_unused_and_coincident(const TriangleMesh& mesh) {
   std::map<std::array<Real, 3>, std::size_t> places;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     if (!used[i])
-      throw DefinitionError(at("positions", i), "in no triangle", "vertices of triangles alone",
-                            "a particle that nothing holds is no cloth");
+      throw DefinitionError(at("positions", i), "in no triangle", "only vertices of triangles",
+                            "a particle without a triangle is not part of a cloth");
     const Vec3<Real> p = mesh.positions[i].template cast<Real>();
     const auto [there, is_new] = places.insert({{p[0], p[1], p[2]}, i});
     if (!is_new)
@@ -58,8 +58,8 @@ void refuse_crowded_edges(const TriangleMesh& mesh) {
         throw DefinitionError(at("triangles", t), "third at " + edge,
                               "at most two triangles at an edge", "a cloth is a surface");
       if (beside.opposite == opposite)
-        throw DefinitionError(at("triangles", t), "a triangle that is there already",
-                              "each triangle once", "remove double triangles");
+        throw DefinitionError(at("triangles", t), "a repeated triangle", "each triangle once",
+                              "remove double triangles");
       beside.opposite = opposite;
     }
   }

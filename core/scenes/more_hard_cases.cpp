@@ -213,7 +213,7 @@ std::vector<SceneEntry> more_hard_cases() {
         "was."},
        build_point},
       {{"hard-far-teleport",
-        "The edge that holds a cloth goes 10 m away at 20 m/s and back: it follows whole."},
+        "The edge that holds a cloth moves 10 m away at 20 m/s and back: it follows in one piece."},
        build_far_teleport},
       {{"hard-meganewton",
         "A hand of up to a million newtons tears at a cloth through a ball: it stretches, and "

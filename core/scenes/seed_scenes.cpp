@@ -157,7 +157,7 @@ std::vector<SceneEntry> seed_scenes() {
         "round folds."},
        build_fig4_rest_angle},
       {{"seed-fig8-projection",
-        "A cloth is projected onto the ground where it gets in: watch its folds go flat."},
+        "A cloth that sinks into the ground is projected onto it: watch its folds flatten."},
        build_fig8_projection},
       {{"seed-fig8-fold-map",
         "The same cloth, lifted by the map that keeps the order in depth: its folds stay."},
@@ -169,7 +169,7 @@ std::vector<SceneEntry> seed_scenes() {
         "A cloth falls over a sharp ridge, held by its particles alone: the ridge cuts through."},
        build_fig10_sharp_edge},
       {{"seed-fig10-edge-pairs",
-        "The same cloth with pairs of edges as well, which the seed lacked: the ridge stays "
+        "The same cloth with pairs of edges too, which the seed lacked: the ridge stays "
         "below."},
        build_fig10_edge_pairs},
       {{"seed-fig11-particle-pairs",

@@ -80,7 +80,7 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
 template <class Real>
 void World<Real>::refuse_jaw(std::size_t collider) const {
   if (collider < colliders_.size() - 2 * grippers_.size()) return;
-  throw DefinitionError("collider", def_.colliders[collider].name, "an object that is no jaw",
+  throw DefinitionError("collider", def_.colliders[collider].name, "an object that is not a jaw",
                         "a gripper moves its jaws: command the gripper");
 }
 

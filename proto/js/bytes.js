@@ -64,10 +64,10 @@ export function readMessage(bytes) {
   demand(view.byteLength >= COMMON_BYTES, 'the message is too short');
   demand(view.getUint8(1) === VERSION, 'unknown version');
   const fits = view.getUint32(4, true) === view.byteLength && view.byteLength % 8 === 0;
-  demand(fits, 'the length does not fit');
+  demand(fits, 'the length does not match');
   const [a, b] = checksum(view);
   const right = a === view.getUint32(8, true) && b === view.getUint32(12, true);
-  demand(right, 'the checksum does not fit');
+  demand(right, 'the checksum does not match');
   return { type: view.getUint8(0), codec: view.getUint8(2), flags: view.getUint8(3), view };
 }
 
@@ -109,7 +109,7 @@ export function readSections(view, offset, count) {
     const next = offset + padded(length);
     demandZero(view, offset + length, next);
     const name = kind * 65536 + index;
-    demand(!names.has(name), 'a section comes twice');
+    demand(!names.has(name), 'a section appears twice');
     names.add(name);
     sections.push({ kind, index, offset, length });
     offset = next;

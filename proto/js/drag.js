@@ -52,7 +52,7 @@ export class Drag {
     );
   }
 
-  /** @param {number[]} target  where the held point shall go [m] */
+  /** @param {number[]} target  target of the held point [m] */
   move(target) {
     if (!this.active) return;
     this.#target = [...target];

@@ -293,8 +293,8 @@ def _read_common(message: bytes, type_: int, least: int, last_codec: int) -> tup
     _demand(version == _VERSION, "unknown version")
     _demand(codec <= last_codec, "unknown codec")
     _demand(len(message) >= least, "the message is too short")
-    _demand(length == len(message) and length % 8 == 0, "the length does not fit")
-    _demand(_checksum(message) == (a, b), "the checksum does not fit")
+    _demand(length == len(message) and length % 8 == 0, "the length does not match")
+    _demand(_checksum(message) == (a, b), "the checksum does not match")
     return codec, flags
 
 
@@ -308,7 +308,7 @@ def _read_sections(message: bytes, offset: int, count: int) -> dict[tuple[int, i
         _demand(length <= len(message) - offset, "a section is too long")
         end = offset + _padded(length)
         _demand(not any(view[offset + length : end]), "padding is not zero")
-        _demand((kind, index) not in sections, "a section comes twice")
+        _demand((kind, index) not in sections, "a section appears twice")
         sections[kind, index] = view[offset : offset + length]
         offset = end
     _demand(offset == len(message), "bytes are left over")

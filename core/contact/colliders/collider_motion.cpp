@@ -83,7 +83,7 @@ void validate(const MotionDef& def, const std::string& path) {
 }
 
 void validate(const MoveDef& def, const std::string& path) {
-  check_field(path, {"position", -1000, 1000, "m", "where the pivot goes"}, def.target.position);
+  check_field(path, {"position", -1000, 1000, "m", "target of the pivot"}, def.target.position);
   check_unit(def.target.rotation, path);
   check_field(path, {"speed", 1e-3, kMostColliderSpeed, "m/s", "of the pivot"}, def.speed);
   check_field(path, {"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "of the turn"},
