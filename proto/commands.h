@@ -295,7 +295,7 @@ Result<Request> parse_request(std::string_view text);
 
 /// Finds the id that `parse_request` would answer with, without parsing the rest, for messages that
 /// are refused unread. Takes any bytes, of any length and depth, in one pass and without
-/// allocating. Empty if the text is not an object, does not end with it, or has no id or two.
+/// building a tree. Empty if the text is not an object, does not end with it, or has no id or two.
 std::optional<Id> find_id(std::string_view text);
 
 /// The JSON text that parses to the same request; for logs and clients.

@@ -1,5 +1,5 @@
 const RATE_PART = 0.95; // of the limit, sustained
-const BURST = 250; // span whose share of messages may be sent at once [ms]
+const BURST = 250; // a burst has the messages of this time [ms]
 const USUAL_RATE = 1000; // messages a second, if the server names no limit
 
 /**

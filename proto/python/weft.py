@@ -60,7 +60,7 @@ CALL_SECONDS = 30.0  # for an answer or a frame
 LOAD_SECONDS = 300.0  # for an answer to `load`
 ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for an answer to `advance`, and more for each tick
 USUAL_RATE = 1000  # messages a second, if `welcome` names no limit
-RATE_PART, BURST_SECONDS = 0.95, 0.25  # of the limit, sustained, and span of a burst
+RATE_PART, BURST_SECONDS = 0.95, 0.25  # of the limit, sustained; a burst has the messages of this time
 FIRST_PAUSE, LONGEST_PAUSE = 0.25, 8.0  # before a new attempt to connect [s]
 FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # a new attempt would fail alike
 

@@ -26,7 +26,7 @@ class ContourRegions {
   template <class Real>
   explicit ContourRegions(const ClothModel<Real>& model);
 
-  /// The smaller of the two parts, or the other one if that holds particles that cannot move.
+  /// The smaller of the two parts; if only that one holds particles that cannot move, the other.
   struct Part {
     int side = 0;     ///< 1 above the line, -1 below; 0: the line does not divide the sheet
     double area = 0;  ///< at rest [m^2]; larger if a particle is held
