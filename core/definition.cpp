@@ -3,6 +3,7 @@
 #include "core/definition.h"
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -47,12 +48,15 @@ std::string number_text(double value) {
 }
 
 FieldInfo choice(const char* name, const char* words, const char* meaning) {
+  assert(name && words && *words != '\0');
   const std::string_view all = words;
   const auto bars = std::count(all.begin(), all.end(), '|');
   return {name, 0, static_cast<double>(bars), "", meaning, words};
 }
 
 std::string choice_word(const FieldInfo& info, int value) {
+  assert(info.words && "a choice");
+  assert(value >= 0);
   std::string_view rest = info.words;
   for (int k = 0; k < value && !rest.empty(); ++k) {
     const std::size_t bar = rest.find('|');
@@ -62,6 +66,7 @@ std::string choice_word(const FieldInfo& info, int value) {
 }
 
 int parse_choice(const std::string& path, const FieldInfo& info, const std::string& text) {
+  assert(info.words && "a choice");
   for (int value = 0; value <= static_cast<int>(info.maximum); ++value) {
     if (choice_word(info, value) == text) return value;
   }
@@ -82,6 +87,7 @@ std::string allowed_values(const FieldInfo& info) {
 }
 
 void check_field(const std::string& path, const FieldInfo& info, double value) {
+  assert(info.minimum <= info.maximum);
   // Written so that NaN fails too.
   if (!(value >= info.minimum && value <= info.maximum))
     throw DefinitionError(path + info.name, number_text(value), allowed_values(info), info.meaning);
@@ -94,6 +100,7 @@ void check_field(const std::string& path, const FieldInfo& info, int value) {
 void check_field(const std::string&, const FieldInfo&, bool) {}
 
 void check_field(const std::string& path, const FieldInfo& info, const Vec3d& value) {
+  assert(info.minimum <= info.maximum);
   static constexpr const char* kAxes[] = {"[0]", "[1]", "[2]"};
   for (int axis = 0; axis < 3; ++axis) {
     if (!(value[axis] >= info.minimum && value[axis] <= info.maximum))

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/stop_signal.h"
 
 // Interface to the owner's threads.
@@ -39,6 +41,7 @@ class SerialScope {
 /// with an executor the stop point follows the last chunk, because a chunk must not throw there.
 template <class Work>
 void run_chunks(Executor* executor, int chunks, Work&& work) {
+  assert(chunks >= 0);
   if (!executor || detail::runs_serially) {
     for (int chunk = 0; chunk < chunks; ++chunk) {
       stop_point();

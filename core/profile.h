@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -48,11 +49,18 @@ struct Profile {
   double (*clock)() = nullptr;    ///< seconds from any origin, supplied by the owner; may be null
   StageTimer* running = nullptr;  ///< the innermost; null between steps
 
-  StageProfile& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
+  StageProfile& operator[](Stage stage) {
+    assert(static_cast<std::size_t>(stage) < kStageCount);
+    return stages[static_cast<std::size_t>(stage)];
+  }
   const StageProfile& operator[](Stage stage) const {
     return stages[static_cast<std::size_t>(stage)];
   }
-  void clear() { stages = {}; }
+  /// Between steps.
+  void clear() {
+    assert(running == nullptr);
+    stages = {};
+  }
 };
 
 /// Times its own lifetime for a stage and counts its work. The lifetime of a nested timer counts
@@ -69,6 +77,7 @@ class StageTimer {
   }
   ~StageTimer() {
     if (!profile_.clock) return;
+    assert(profile_.running == this && "timers end in the reverse order of their start");
     const double end = profile_.clock();
     book(end);
     if (outer_) outer_->start_ = end;

@@ -2,9 +2,12 @@
 
 #include "core/stop_signal.h"
 
+#include <cassert>
+
 namespace weft::detail {
 
 void ask(StopSignal& signal) {
+  assert(signal.attend && "set before the signal is raised");
   // `attend` may itself do work with stop points.
   const StopScope nothing_else(nullptr);
   if (signal.attend()) throw Stopped();
