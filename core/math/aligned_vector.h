@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
+#include <limits>
 #include <new>
 #include <vector>
 
@@ -19,6 +21,7 @@ struct CacheLineAllocator {
   CacheLineAllocator(const CacheLineAllocator<Other>&) {}
 
   T* allocate(std::size_t count) {
+    assert(count <= std::numeric_limits<std::size_t>::max() / sizeof(T));
     return static_cast<T*>(::operator new(count * sizeof(T), kCacheLine));
   }
   void deallocate(T* at, std::size_t) { ::operator delete(at, kCacheLine); }

@@ -3,6 +3,7 @@
 #include "core/math/exact_sign.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -24,6 +25,7 @@ struct Expansion {
   std::size_t size = 0;
 
   void add(double b) {
+    assert(size < term.size());
     std::size_t kept = 0;
     for (std::size_t k = 0; k < size; ++k) {
       double error;
@@ -35,6 +37,7 @@ struct Expansion {
   }
   /// @param sign  1 or -1
   void add(const Expansion& e, double sign = 1) {
+    assert(sign == 1 || sign == -1);
     for (std::size_t k = 0; k < e.size; ++k) add(sign * e.term[k]);
   }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -67,6 +68,7 @@ using QuadArray = AlignedVector<Quad<Real>>;
 template <class Real>
 void to_quads(std::span<const Vec3<Real>> from, Quad<Real>* to) {
   if (from.empty()) return;
+  assert(to != nullptr);
   const std::size_t last = from.size() - 1;
   for (std::size_t i = 0; i < last; ++i) {
     std::memcpy(&to[i].lanes, static_cast<const void*>(&from[i]), sizeof to[i].lanes);
@@ -81,6 +83,7 @@ void to_quads(std::span<const Vec3<Real>> from, Quad<Real>* to) {
 template <class Real>
 void to_vectors(std::span<const Quad<Real>> from, Vec3<Real>* to) {
   if (from.empty()) return;
+  assert(to != nullptr);
   const std::size_t last = from.size() - 1;
   for (std::size_t i = 0; i < last; ++i)
     std::memcpy(static_cast<void*>(&to[i]), &from[i].lanes, sizeof from[i].lanes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cmath>
 
 // Sine and cosine from + - * / only, like the inverse tangent in angle.h: the same bits on every
@@ -13,6 +14,7 @@ struct SineCosine {
 
 /// Sine and cosine of an angle within +-1000 [rad]. Absolute error below 4e-16 times (1 + |angle|).
 inline SineCosine sine_cosine(double angle) {
+  assert(!(std::abs(angle) > 1000));
   // A quarter turn in two parts; the first has few enough bits that its multiples are exact.
   constexpr double kQuarterHigh = 1.5707963267341256, kQuarterLow = 6.0771005065061922e-11;
   const double quarters = std::nearbyint(angle / (kQuarterHigh + kQuarterLow));
