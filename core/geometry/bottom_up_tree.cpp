@@ -3,6 +3,7 @@
 #include "core/geometry/bottom_up_tree.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace weft {
 namespace {
@@ -18,8 +19,10 @@ std::vector<Edge> touching(const std::vector<Primitive>& primitives) {
     largest = std::max(largest, *std::max_element(p.begin(), p.end()));
   std::vector<std::vector<Index>> around(static_cast<std::size_t>(largest + 1));
   for (std::size_t p = 0; p < primitives.size(); ++p) {
-    for (const Index v : primitives[p])
+    for (const Index v : primitives[p]) {
+      assert(v >= 0);
       around[static_cast<std::size_t>(v)].push_back(static_cast<Index>(p));
+    }
   }
   std::vector<Edge> pairs;
   for (const std::vector<Index>& fan : around) {
@@ -41,6 +44,8 @@ void sort_unique(std::vector<Index>& list) {
 std::vector<std::vector<Index>> neighbour_lists(const std::vector<Edge>& pairs, std::size_t count) {
   std::vector<std::vector<Index>> lists(count);
   for (const Edge& pair : pairs) {
+    assert(pair[0] >= 0 && static_cast<std::size_t>(pair[0]) < count);
+    assert(pair[1] >= 0 && static_cast<std::size_t>(pair[1]) < count);
     lists[static_cast<std::size_t>(pair[0])].push_back(pair[1]);
     lists[static_cast<std::size_t>(pair[1])].push_back(pair[0]);
   }
@@ -53,6 +58,7 @@ std::vector<std::vector<Index>> neighbour_lists(const std::vector<Edge>& pairs, 
 std::vector<std::vector<Index>> merge_neighbours(const std::vector<std::vector<Index>>& members,
                                                  const std::vector<Index>& group_of,
                                                  std::size_t groups) {
+  assert(group_of.size() == members.size());
   std::vector<std::vector<Index>> merged(groups);
   for (std::size_t m = 0; m < members.size(); ++m) {
     const Index own = group_of[m];
@@ -82,6 +88,7 @@ void BottomUpTree<Real>::set_box(const Aabb<Real>& box, Node& node) {
 
 template <class Real>
 void BottomUpTree<Real>::pull_up(Node& n) const {
+  assert(n.left != kNone && "an inner node");
   Aabb<Real> box = node(n.left).box;
   if (n.right != kNone) box.add(node(n.right).box);
   set_box(box, n);
@@ -96,6 +103,7 @@ std::vector<Index> BottomUpTree<Real>::group_level(
   std::vector<Index> group_of(neighbours.size(), kNone);
   Index groups = 0, waiting = kNone;
   const auto join = [&](Index a, Index b) {
+    assert(a != b && group_of[static_cast<std::size_t>(a)] == kNone);
     Node parent;
     parent.left = first + a;
     if (b != kNone) parent.right = first + b;
@@ -165,12 +173,19 @@ void BottomUpTree<Real>::build(const std::vector<Aabb<Real>>& boxes,
 
 template <class Real>
 void BottomUpTree<Real>::refit(const std::vector<Aabb<Real>>& boxes) {
+  assert(boxes.size() == leaf_count());
   for (Node& n : nodes_) {
     if (n.is_leaf())
       set_box(boxes[static_cast<std::size_t>(n.primitive)], n);
     else
       pull_up(n);
   }
+}
+
+template <class Real>
+std::size_t BottomUpTree<Real>::leaf_count() const {
+  const std::size_t levels = first_of_level_.size();
+  return levels > 1 ? static_cast<std::size_t>(first_of_level_[levels - 2]) : nodes_.size();
 }
 
 template <class Real>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <vector>
 
 #include "core/geometry/aabb.h"
@@ -61,6 +62,7 @@ class BottomUpTree {
   using Stack = std::array<NodePair, kDeepest>;
 
   const Node& node(Index k) const { return nodes_[static_cast<std::size_t>(k)]; }
+  std::size_t leaf_count() const;
   Index root() const { return static_cast<Index>(nodes_.size()) - 1; }
   static void set_box(const Aabb<Real>& box, Node& node);
   void pull_up(Node& node) const;
@@ -108,6 +110,7 @@ void BottomUpTree<Real>::walk(const BottomUpTree& a, const BottomUpTree& b, Stac
                               std::size_t size, Visit&& visit) {
   while (size > 0) {
     const NodePair pair = stack[--size];
+    assert(size + 2 <= kDeepest);
     const Node &na = a.node(pair.a), &nb = b.node(pair.b);
     if (!na.box.overlaps(nb.box)) continue;
     if (na.is_leaf() && nb.is_leaf()) {

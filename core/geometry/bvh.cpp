@@ -3,6 +3,7 @@
 #include "core/geometry/bvh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace weft {
@@ -39,6 +40,7 @@ void Bvh<Real>::build(const std::vector<Aabb<Real>>& boxes) {
 /// @return where the second half begins
 template <class Real>
 Index Bvh<Real>::halve(Index begin, Index end, const std::vector<Aabb<Real>>& boxes) {
+  assert(end - begin >= 2);
   const auto centre = [&](Index primitive) {
     return boxes[static_cast<std::size_t>(primitive)].centre();
   };
@@ -63,6 +65,7 @@ Index Bvh<Real>::halve(Index begin, Index end, const std::vector<Aabb<Real>>& bo
 template <class Real>
 void Bvh<Real>::split(std::size_t node, Index begin, Index end,
                       const std::vector<Aabb<Real>>& boxes) {
+  assert(begin < end && static_cast<std::size_t>(end) <= order_.size());
   nodes_[node].child.fill(kNoChild);
   std::array<Index, kWidth + 1> border{begin, end, end, end, end};
   std::size_t parts = 1;
@@ -89,6 +92,10 @@ void Bvh<Real>::split(std::size_t node, Index begin, Index end,
 
 template <class Real>
 void Bvh<Real>::refit(const std::vector<Aabb<Real>>& boxes) {
+  const auto box_of = [&](Index primitive) -> const Aabb<Real>& {
+    assert(static_cast<std::size_t>(primitive) < boxes.size());
+    return boxes[static_cast<std::size_t>(primitive)];
+  };
   // Children follow their parents, so a backward pass visits them first.
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
@@ -97,7 +104,7 @@ void Bvh<Real>::refit(const std::vector<Aabb<Real>>& boxes) {
       if (child == kNoChild)
         node.set_box(k, {});
       else if (child < 0)
-        node.set_box(k, boxes[static_cast<std::size_t>(~child)]);
+        node.set_box(k, box_of(~child));
       else
         node.set_box(k, nodes_[static_cast<std::size_t>(child)].bounds());
     }

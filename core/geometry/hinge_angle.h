@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "core/math/angle.h"
@@ -30,6 +31,7 @@ template <class Real>
 inline HingeAngle<Real> hinge_angle(const Vec3<Real>& x0, const Vec3<Real>& x1,
                                     const Vec3<Real>& x2, const Vec3<Real>& x3,
                                     Real smallest_normal2 = 0) {
+  assert(smallest_normal2 >= 0);
   HingeAngle<Real> result;
   for (Vec3<Real>& g : result.gradient) g.setZero();
   const Vec3<Real> e = x1 - x0, a = x2 - x0, b = x3 - x0;

@@ -3,6 +3,7 @@
 #include "core/geometry/mesh_file.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -46,8 +47,10 @@ std::unique_ptr<aiMesh> to_assimp(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     result->mFaces[t].mNumIndices = 3;
     result->mFaces[t].mIndices = new unsigned[3];
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k) {
+      assert(static_cast<std::size_t>(mesh.triangles[t][k]) < mesh.positions.size());
       result->mFaces[t].mIndices[k] = static_cast<unsigned>(mesh.triangles[t][k]);
+    }
   }
   return result;
 }
@@ -62,6 +65,7 @@ DefinitionError unreadable(const std::string& name, const std::string& why) {
 }
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
+  assert(at + 4 <= bytes.size());
   std::uint32_t value = 0;
   for (std::size_t k = 0; k < 4; ++k)
     value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << (8 * k);

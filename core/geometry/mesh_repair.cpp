@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -20,6 +21,7 @@ constexpr double kLeastDoubledArea = 1e-14;  // [m^2]
 constexpr double kLeastVolume = 1e-6;
 
 const Vec3d& at(const TriangleMesh& mesh, Index vertex) {
+  assert(static_cast<std::size_t>(vertex) < mesh.positions.size());
   return mesh.positions[static_cast<std::size_t>(vertex)];
 }
 
@@ -89,6 +91,7 @@ class FlatTriangles {
     const std::optional<std::size_t> other = only_triangle_along({p, q});
     if (!other || *other == t || !only_triangle_along({q, p})) return false;
     const Index c = corner_opposite(mesh_.triangles[*other], {p, q});
+    assert(c != kNone && "that triangle runs along the side");
     if (c == m || sides_.contains({m, c}) || sides_.contains({c, m})) return false;
     remove(t);
     remove(*other);
@@ -159,6 +162,7 @@ class FlatTriangles {
 /// The enclosed volume, relative to a point near the mesh so that rounding does not decide its
 /// sign.
 double volume_of(const TriangleMesh& mesh) {
+  assert(!mesh.positions.empty());
   double sum = 0;
   const Vec3d& origin = mesh.positions.front();
   for (const Triangle& t : mesh.triangles) {

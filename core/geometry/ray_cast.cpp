@@ -3,6 +3,7 @@
 #include "core/geometry/ray_cast.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -111,6 +112,7 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
         return t <= nearest ? static_cast<Real>(0) : std::numeric_limits<Real>::infinity();
       },
       [&](Index triangle, Real bound) {
+        assert(static_cast<std::size_t>(triangle) < triangles.size());
         const Triangle& t = triangles[static_cast<std::size_t>(triangle)];
         const auto hit = cast_in_frame(frame, corner(t[0]), corner(t[1]), corner(t[2]));
         if (!hit) return bound;

@@ -2,6 +2,7 @@
 
 #include "core/geometry/triangle_mesh.h"
 
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -17,8 +18,10 @@ constexpr std::size_t kMostVertices = 1'000'000;
 constexpr std::size_t kMostTriangles = 2'000'000;
 
 const Vec3d& corner(const TriangleMesh& mesh, Index triangle, std::size_t k) {
-  return mesh
-      .positions[static_cast<std::size_t>(mesh.triangles[static_cast<std::size_t>(triangle)][k])];
+  assert(static_cast<std::size_t>(triangle) < mesh.triangles.size() && k < 3);
+  const Index vertex = mesh.triangles[static_cast<std::size_t>(triangle)][k];
+  assert(static_cast<std::size_t>(vertex) < mesh.positions.size());
+  return mesh.positions[static_cast<std::size_t>(vertex)];
 }
 
 Vec3d doubled_normal(const TriangleMesh& mesh, Index t) {
@@ -119,6 +122,7 @@ void validate(const TriangleMesh& mesh, const std::string& path) {
 }
 
 TriangleMesh box_mesh(const Vec3d& half) {
+  assert(half.minCoeff() > 0);
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k)
     mesh.positions.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1],
