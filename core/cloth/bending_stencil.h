@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 
 #include "core/cloth/cloth_model.h"
 
@@ -38,6 +39,7 @@ inline double share_bend_v(const GridCells& g, int r, int c) {
 /// that meet there, 1 or 2.
 template <class Real>
 std::array<Real, 4> bending_line(int k, int count) {
+  assert(k >= 0 && k < count);
   const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
   const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
   return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
@@ -53,6 +55,8 @@ void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
   static constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
   const QuadraticBending<Real>& q = part.quadratic_bending;
   const GridCells& g = part.cells;
+  assert(g.particles.size() ==
+         static_cast<std::size_t>(g.rows) * static_cast<std::size_t>(g.columns));
   const auto particle = [&](int r, int c) { return part.particles.first + g.particle(r, c); };
   for (const HingeStencil<Real>& hinge : part.hinge_stencils) {
     Index corners[4];

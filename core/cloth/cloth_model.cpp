@@ -3,6 +3,7 @@
 #include "core/cloth/cloth_model.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "core/cloth/cut_grid.h"
@@ -24,6 +25,7 @@ IndexRange append(std::vector<T>& to, const std::vector<T>& from) {
 /// Appends a cloth to a model, with its indices shifted.
 template <class Real>
 void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
+  assert(cloth.parts.size() == 1);
   const Index shift = model.particle_count();
   for (Triangle& triangle : cloth.triangles) {
     for (Index& corner : triangle) corner += shift;
@@ -72,6 +74,7 @@ ClothModel<Real> build_cloth(const ClothDef& def) {
 
 template <class Real>
 ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs) {
+  assert(!defs.empty());
   ClothModel<Real> model = build_cloth<Real>(defs.front());
   for (std::size_t k = 1; k < defs.size(); ++k) {
     try {
@@ -85,6 +88,7 @@ ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs) {
 
 template <class Real>
 const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index particle) {
+  assert(particle >= 0 && particle < model.particle_count());
   const auto after = std::upper_bound(
       model.parts.begin(), model.parts.end(), particle,
       [](Index i, const ClothPart<Real>& part) { return i < part.particles.first; });
@@ -93,6 +97,8 @@ const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index par
 
 template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius) {
+  assert(centre >= 0 && centre < model.particle_count());
+  assert(radius >= 0);
   const auto& middle = model.material[static_cast<std::size_t>(centre)];
   const IndexRange& part = part_of_particle(model, centre).particles;
   std::vector<Index> inside;

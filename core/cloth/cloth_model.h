@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -95,6 +96,7 @@ struct GridCells {
     return has_cell(r - 1, c - 1) + has_cell(r - 1, c) + has_cell(r, c - 1) + has_cell(r, c);
   }
   Index particle(int r, int c) const {
+    assert(r >= 0 && r < rows && c >= 0 && c < columns);
     return particles[static_cast<std::size_t>(r * columns + c)];
   }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -19,17 +20,24 @@ struct ClothState {
   /// For each cloth 1 if it sleeps: sleeping cloths are not computed. Empty if none sleeps.
   std::vector<char> asleep;
 
-  bool is_asleep(std::size_t part) const { return !asleep.empty() && asleep[part] != 0; }
+  bool is_asleep(std::size_t part) const {
+    assert(asleep.empty() || part < asleep.size());
+    return !asleep.empty() && asleep[part] != 0;
+  }
 };
 
 /// At rest at the model's rest positions, with nothing pinned.
 template <class Real>
 ClothState<Real> initial_state(const ClothModel<Real>& model) {
+  assert(model.rest_positions.size() == model.mass.size());
   ClothState<Real> state;
   state.x = model.rest_positions;
   state.v.assign(model.mass.size(), Vec3<Real>::Zero());
   state.inverse_mass.reserve(model.mass.size());
-  for (const Real mass : model.mass) state.inverse_mass.push_back(Real(1) / mass);
+  for (const Real mass : model.mass) {
+    assert(mass > 0);
+    state.inverse_mass.push_back(Real(1) / mass);
+  }
   return state;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/cloth/cut_grid.h"
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -52,6 +53,7 @@ void place_particles(const ClothDef& def, const Cut& cut, ClothModel<Real>& mode
       model.rest_positions.push_back((def.origin + s * u + t * v).template cast<Real>());
       model.material.push_back({static_cast<Real>(s), static_cast<Real>(t)});
       const double mass = quarter * cut.cells.cells_around(r, c);
+      assert(mass > 0);
       model.mass.push_back(static_cast<Real>(mass));
       whole += mass;
     }
@@ -66,6 +68,8 @@ template <class Real>
 void add_springs(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
   const GridStiffness k = grid_stiffness(def.fabric, cut.cell_u, cut.cell_v);
   const auto add = [&](Index i, Index j, double length, double stiffness, SpringKind kind) {
+    assert(i != kNone && j != kNone);
+    assert(length > 0 && stiffness >= 0);
     if (stiffness == 0) return;
     Spring<Real> spring;
     spring.i = i;
@@ -98,6 +102,7 @@ void add_springs(const ClothDef& def, const Cut& cut, ClothModel<Real>& model) {
 
 template <class Real>
 ClothModel<Real> build_cut_grid(const ClothDef& def) {
+  assert(!def.mesh && def.outline != Outline::rectangle);
   Cut cut = cut_out(def);
   ClothModel<Real> model;
   model.parts.emplace_back();

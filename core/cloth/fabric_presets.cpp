@@ -2,6 +2,8 @@
 
 #include "core/cloth/fabric_presets.h"
 
+#include <cassert>
+
 #include "core/error.h"
 
 // Sources:
@@ -110,6 +112,7 @@ const std::vector<FabricPreset>& fabric_presets() {
 }
 
 double bending_rigidity(double areal_density, double bending_length) {
+  assert(areal_density > 0 && bending_length >= 0);
   return areal_density * kGravity * bending_length * bending_length * bending_length;
 }
 

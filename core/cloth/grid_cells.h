@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
@@ -22,6 +24,8 @@ void finish_grid(const ClothDef& def, ClothModel<Real>& model);
 /// @param first  0 or 1: the diagonal of the first cell
 template <class Real>
 void split_cells(const GridCells& shape, double area, int first, ClothModel<Real>& model) {
+  assert(area > 0);
+  assert(first == 0 || first == 1);
   for (int r = 0; r + 1 < shape.rows; ++r) {
     for (int c = 0; c + 1 < shape.columns; ++c) {
       if (!shape.has_cell(r, c)) continue;

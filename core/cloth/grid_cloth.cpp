@@ -2,6 +2,7 @@
 
 #include "core/cloth/grid_cloth.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "core/cloth/bending_stencil.h"
@@ -92,6 +93,7 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
 }  // namespace
 
 GridCells whole_grid(int rows, int columns) {
+  assert(rows >= 2 && columns >= 2);
   GridCells cells;
   cells.rows = rows;
   cells.columns = columns;
@@ -102,6 +104,7 @@ GridCells whole_grid(int rows, int columns) {
 
 template <class Real>
 void finish_grid(const ClothDef& def, ClothModel<Real>& model) {
+  assert(model.parts.size() == 1);
   ClothPart<Real>& part = model.parts.front();
   bound_frequencies(model, part);
   if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
@@ -116,6 +119,7 @@ template void finish_grid(const ClothDef&, ClothModel<double>&);
 // is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean: so every direction
 // has the rigidity of the fabric (tests/laws/bending_test.cpp).
 double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
+  assert(du >= 0 && dv >= 0);
   constexpr double kAlongAxis = 1e-9;
   if (du < kAlongAxis) return fabric.bending_warp;
   if (dv < kAlongAxis) return fabric.bending_weft;
@@ -125,6 +129,7 @@ double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
 
 template <class Real>
 ClothModel<Real> build_grid_cloth(const ClothDef& def) {
+  assert(!def.mesh && def.outline == Outline::rectangle);
   ClothModel<Real> model;
   model.parts.emplace_back();
   ClothPart<Real>& part = model.parts.front();

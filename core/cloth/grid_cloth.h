@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/cloth/cloth_model.h"
 
 // Rectangular cloths as grids.
@@ -18,6 +20,11 @@ double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv);
 /// Sets name, fabric and ranges of the only part of a model whose lists are filled.
 template <class Real>
 void complete_part(const ClothDef& def, ClothModel<Real>& model) {
+  assert(model.parts.size() == 1);
+  assert(model.rest_positions.size() == model.mass.size());
+  assert(model.material.size() == model.mass.size());
+  assert(model.triangle_area.size() == model.triangles.size());
+  assert(model.spring_kinds.size() == model.springs.size());
   const auto all = [](const auto& list) { return IndexRange{0, static_cast<Index>(list.size())}; };
   ClothPart<Real>& part = model.parts.front();
   part.name = def.name;

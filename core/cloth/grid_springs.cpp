@@ -2,6 +2,7 @@
 
 #include "core/cloth/grid_springs.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "core/error.h"
@@ -43,6 +44,7 @@ std::vector<Pattern> patterns(const ClothDef& def) {
 }  // namespace
 
 GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell_v) {
+  assert(cell_u > 0 && cell_v > 0);
   const double ratio = cell_u / cell_v;
   GridStiffness k;
   k.warp = (fabric.stretch_warp - fabric.shear * ratio * ratio) / ratio;
@@ -78,6 +80,7 @@ std::vector<Spring<Real>> grid_springs(const ClothDef& def, std::vector<SpringKi
         spring.rest_length = static_cast<Real>(std::hypot(p.dc * cell_u, p.dr * cell_v));
         spring.stiffness = static_cast<Real>(share * p.stiffness);
         spring.damping = static_cast<Real>(share * p.damping);
+        assert(spring.rest_length > 0 && spring.stiffness >= 0 && spring.damping >= 0);
         springs.push_back(spring);
         kinds.push_back(p.kind);
       }

@@ -2,6 +2,7 @@
 
 #include "core/cloth/hinges.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "core/geometry/hinge_angle.h"
@@ -13,12 +14,14 @@ namespace {
 template <class Real>
 void add_hinge(const HingeSettings& settings, const TriangleSide& first, const TriangleSide& second,
                ClothModel<Real>& model) {
+  assert(first.ends == second.ends && first.triangle != second.triangle);
   const auto& material = model.material;
   const auto i = static_cast<std::size_t>(first.ends[0]),
              j = static_cast<std::size_t>(first.ends[1]);
   const double rigidity = settings.rigidity(
       std::abs(static_cast<double>(material[j][0]) - static_cast<double>(material[i][0])),
       std::abs(static_cast<double>(material[j][1]) - static_cast<double>(material[i][1])));
+  assert(rigidity >= 0);
   if (rigidity == 0) return;
   const Triangle& t1 = model.triangles[static_cast<std::size_t>(first.triangle)];
   const Triangle& t2 = model.triangles[static_cast<std::size_t>(second.triangle)];
@@ -33,6 +36,7 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
   const double area =
       static_cast<double>(model.triangle_area[static_cast<std::size_t>(first.triangle)]) +
       static_cast<double>(model.triangle_area[static_cast<std::size_t>(second.triangle)]);
+  assert(length2 > 0 && area > 0);
   hinge.stiffness = static_cast<Real>(rigidity * length2 / area);
   hinge.damping = static_cast<Real>(settings.damping) * hinge.stiffness;
   hinge.rest_angle = static_cast<Real>(settings.rest_angle);
@@ -51,6 +55,9 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
 
 template <class Real>
 void connect_triangles(const HingeSettings& settings, ClothModel<Real>& model) {
+  assert(settings.rigidity && settings.damping >= 0);
+  assert(model.material.size() == model.rest_positions.size());
+  assert(model.triangle_area.size() == model.triangles.size());
   const std::vector<TriangleSide> sides = sorted_sides(model.triangles);
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const TriangleSide& first = sides[s];

@@ -3,6 +3,7 @@
 #include "core/cloth/mesh_cloth.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -131,6 +132,7 @@ void place_particles(const ClothDef& def, const std::vector<Index>& order,
                      ClothModel<Real>& model) {
   const TriangleMesh& mesh = def.mesh->mesh;
   const Uv material = material_of(*def.mesh);
+  assert(order.size() == mesh.positions.size());
   std::vector<Index> place(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const auto old = static_cast<std::size_t>(order[k]);
@@ -170,7 +172,10 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   }
   if (def.mass_lumping == MassLumping::equal)
     std::fill(mass.begin(), mass.end(), whole / static_cast<double>(mass.size()));
-  for (const double m : mass) model.mass.push_back(static_cast<Real>(m));
+  for (const double m : mass) {
+    assert(m > 0);
+    model.mass.push_back(static_cast<Real>(m));
+  }
 }
 
 /// Adds one spring per edge, in the order of the edges.
@@ -190,6 +195,7 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
     const double length2 =
         (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
     const double stiffness = stiffness_along(fabric, cos2) * area.at(edge) / length2;
+    assert(length2 > 0 && stiffness >= 0);
     if (stiffness == 0) continue;
     Spring<Real> spring;
     spring.i = edge[0];
@@ -270,11 +276,13 @@ std::vector<Index> breadth_first_order(std::size_t vertices,
       for (const Index i : beside) visit(i);
     }
   }
+  assert(order.size() == vertices);
   return order;
 }
 
 template <class Real>
 ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
+  assert(def.mesh);
   const TriangleMesh& mesh = def.mesh->mesh;
   validate(mesh, "cloth.mesh.");
   refuse_unused_and_coincident<Real>(mesh);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ class Neighbours {
   Neighbours(std::size_t particles, const std::vector<Edge>& edges);
 
   std::span<const Neighbour> of(std::size_t particle) const {
+    assert(particle + 1 < first_.size());
     const auto first = static_cast<std::size_t>(first_[particle]),
                end = static_cast<std::size_t>(first_[particle + 1]);
     return {list_.data() + first, end - first};

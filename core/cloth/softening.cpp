@@ -2,12 +2,14 @@
 
 #include "core/cloth/softening.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace weft {
 
 template <class Real>
 void soften(double softness, ClothModel<Real>& model) {
+  assert(softness >= kLeastSoftness && softness <= 1);
   // c = 2 zeta k / omega, and omega scales with the root.
   const double root = std::sqrt(softness);
   const Real stiffness = static_cast<Real>(softness), damping = static_cast<Real>(root);

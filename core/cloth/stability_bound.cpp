@@ -3,6 +3,7 @@
 #include "core/cloth/stability_bound.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,7 @@ constexpr double kShakenMargin = 1.15;
 }  // namespace
 
 double largest_stable_substep(const StabilityBound& bound) {
+  assert(!(bound.omega2 < 0) && !(bound.damping_rate < 0));
   if (bound.omega2 <= 0)
     return bound.damping_rate > 0 ? 2 / bound.damping_rate
                                   : std::numeric_limits<double>::infinity();
@@ -30,6 +32,7 @@ double largest_stable_substep(const StabilityBound& bound) {
 }
 
 long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest) {
+  assert(tick_seconds > 0 && fewest >= 1);
   const double count = std::ceil(tick_seconds / largest_stable_substep(bound));
   if (!(count <= kMostSubsteps)) return kMostSubsteps + 1L;
   return std::max(static_cast<long>(count), static_cast<long>(fewest));
@@ -37,6 +40,8 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest) 
 
 template <class Real>
 void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
+  assert(part.springs.end() <= static_cast<Index>(model.springs.size()));
+  assert(part.hinges.end() <= static_cast<Index>(model.hinges.size()));
   const std::size_t n = model.mass.size();
   std::vector<double> stretch(n, 0), stretch_damping(n, 0), bend(n, 0), bend_damping(n, 0);
   for (Index k = part.springs.first; k < part.springs.end(); ++k) {
@@ -77,6 +82,7 @@ void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
 
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part) {
+  assert(part.particles.end() <= model.particle_count());
   std::vector<double> row_sum(model.mass.size(), 0);
   visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
     double sum = 0;
@@ -97,6 +103,7 @@ template void bound_quadratic_bending(const ClothModel<double>&, ClothPart<doubl
 
 template <class Real>
 void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio) {
+  assert(damping_ratio >= 0);
   if (part.bounds.membrane_omega2 <= 0) return;
   const double beta = 2 * damping_ratio / std::sqrt(part.bounds.membrane_omega2);
   for (Index k = part.springs.first; k < part.springs.end(); ++k) {
