@@ -2,6 +2,8 @@
 
 #include "core/forces/energy_pass.h"
 
+#include <cassert>
+
 namespace weft {
 
 template <class Real>
@@ -14,6 +16,8 @@ void EnergyPass<Real>::prepare(const ClothModel<Real>& model) {
 template <class Real>
 ElasticEnergy EnergyPass<Real>::elastic_energy(const ClothModel<Real>& model,
                                                const Vec3Array<Real>& x) {
+  assert(grids_.size() == model.parts.size() && "prepared for this model");
+  assert(x.size() == model.mass.size());
   ElasticEnergy sum;
   for (std::size_t p = 0; p < grids_.size(); ++p) {
     GridPass<Real>& grid = grids_[p];

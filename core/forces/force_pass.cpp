@@ -3,6 +3,7 @@
 #include "core/forces/force_pass.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/cloth/bending_stencil.h"
@@ -38,6 +39,8 @@ Vec3<Real> stencil_value(const Vec3Array<Real>& x, const Index* corners, const d
 template <class Real>
 void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                        const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  assert(v.size() == x.size() && force.size() == x.size());
+  assert(part.springs.end() <= static_cast<Index>(model.springs.size()));
   for (Index n = part.springs.first; n < part.springs.end(); ++n) {
     const Spring<Real>& s = at(model.springs, n);
     const Vec3<Real> f = spring_force<Real>(s, at(x, s.j) - at(x, s.i), at(v, s.j) - at(v, s.i));
@@ -49,6 +52,8 @@ void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& par
 template <class Real>
 void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                       const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  assert(v.size() == x.size() && force.size() == x.size());
+  assert(part.hinges.end() <= static_cast<Index>(model.hinges.size()));
   for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
     const Hinge<Real>& h = at(model.hinges, n);
     const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
@@ -63,6 +68,7 @@ void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part
 template <class Real>
 void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force) {
+  assert(force.size() == x.size());
   visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
     const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
     for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
@@ -73,6 +79,8 @@ template <class Real>
 void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                     const Vec3Array<Real>& wind, double density, const Vec3Array<Real>& x,
                     const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  assert(density >= 0);
+  assert(wind.size() == x.size() && v.size() == x.size() && force.size() == x.size());
   const Real pressure = static_cast<Real>(0.5 * density * part.fabric.air_normal);
   const Real skin = static_cast<Real>(density > 0 ? part.fabric.air_tangential : 0);
   for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
@@ -103,6 +111,8 @@ void add(const ElasticEnergy& part, ElasticEnergy& sum) {
 template <class Real>
 ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real>& part,
                              const Vec3Array<Real>& x) {
+  assert(x.size() == model.mass.size());
+  assert(model.spring_kinds.size() == model.springs.size());
   ElasticEnergy energy;
   for (Index n = part.springs.first; n < part.springs.end(); ++n) {
     const Spring<Real>& s = at(model.springs, n);

@@ -3,6 +3,7 @@
 #include "core/forces/grid_pass.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "core/cloth/bending_stencil.h"
@@ -42,7 +43,10 @@ void GridPass<Real>::lay_out(const ClothPart<Real>& part) {
     GridRow<Real>& row = rows_[static_cast<std::size_t>(r)];
     for (int c = 0; c < cells.columns; ++c) {
       if (cells.particle(r, c) == kNone) continue;
-      if (row.count++ > 0) continue;
+      if (row.count++ > 0) {
+        assert(c == row.column + row.count - 1 && "no row has a gap");
+        continue;
+      }
       row.column = c;
       row.particle = part.particles.first + cells.particle(r, c);
     }
@@ -118,18 +122,22 @@ Real* GridPass<Real>::allocate(AlignedVector<Real>& array, std::ptrdiff_t lines)
 
 template <class Real>
 void GridPass<Real>::make_room(bool air) {
+  assert(fits());
   if (external_.empty()) view_.external = allocate(external_, view_.rows * 3);
   if (air && wind_.empty()) view_.wind = allocate(wind_, (view_.rows + 1) * 3);
 }
 
 template <class Real>
 void GridPass<Real>::make_room_for_paths() {
+  assert(fits());
   allocate(paths_, view_.rows * 6);
   kept_ = motion_;
 }
 
 template <class Real>
 void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Real>& velocity) {
+  assert(!paths_.empty() && "make_room_for_paths comes first");
+  assert(base.size() == velocity.size());
   const std::ptrdiff_t pitch = 6 * view_.line;
   grid_take_apart(view_, base.data()->data(), paths_.data(), pitch);
   grid_take_apart(view_, velocity.data()->data(), paths_.data() + 3 * view_.line, pitch);
@@ -137,6 +145,7 @@ void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Rea
 
 template <class Real>
 Aabb<Real> GridPass<Real>::box_off_paths(Real time) const {
+  assert(!paths_.empty() && "make_room_for_paths comes first");
   std::array<Real, 6> corners;
   grid_box_paths(view_, paths_.data(), time, corners.data());
   return {{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
@@ -150,17 +159,20 @@ void GridPass<Real>::load_velocities(const Vec3Array<Real>& v) {
 
 template <class Real>
 void GridPass<Real>::load_positions(const Vec3Array<Real>& x) {
+  assert(fits());
   grid_take_apart(view_, x.data()->data(), view_.motion, view_.pitch());
 }
 
 template <class Real>
 void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
+  assert(v.size() == x.size());
   load_positions(x);
   load_velocities(v);
 }
 
 template <class Real>
 void GridPass<Real>::load_inverse_mass(const std::vector<Real>& inverse_mass) {
+  assert(fits());
   Real* to = view_.motion + GridView<Real>::kInverseMassLine * view_.line;
   for (const GridRow<Real>& row : rows_) {
     std::copy_n(inverse_mass.begin() + row.particle, row.count, to + row.column);
@@ -170,11 +182,13 @@ void GridPass<Real>::load_inverse_mass(const std::vector<Real>& inverse_mass) {
 
 template <class Real>
 void GridPass<Real>::load_wind(const Vec3Array<Real>& wind) {
+  assert(!wind_.empty() && "make_room(true) comes first");
   grid_take_apart(view_, wind.data()->data(), view_.wind, 3 * view_.line);
 }
 
 template <class Real>
 void GridPass<Real>::load_external(const Vec3Array<Real>& force) {
+  assert(!external_.empty() && "make_room comes first");
   grid_take_apart(view_, force.data()->data(), view_.external, 3 * view_.line);
 }
 
@@ -191,6 +205,7 @@ void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
 
 template <class Real>
 void GridPass<Real>::store_external(Vec3Array<Real>& force) const {
+  assert(!external_.empty() && "make_room comes first");
   grid_put_together(view_, view_.external, 3 * view_.line, force.data()->data());
 }
 
@@ -205,6 +220,7 @@ int GridPass<Real>::band_count() const {
 template <class Real>
 std::ptrdiff_t GridPass<Real>::first_row(int band) const {
   const int bands = band_count();
+  assert(band >= 0 && band <= bands);
   return band == bands ? view_.rows : std::ptrdiff_t{view_.rows} * band / bands / 2 * 2;
 }
 
@@ -259,6 +275,8 @@ void GridPass<Real>::advance_band(int number, const GridStep<Real>& step) {
 
 template <class Real>
 double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
+  assert(fits());
+  assert(!step.pulled || !external_.empty());
   const int bands = band_count();
   double power = 0;
   if (!executor || bands_.empty()) {
@@ -277,6 +295,8 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
 
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x) {
+  assert(x.size() == v.size());
+  assert(!pulled || !external_.empty());
   grid_drift(view_, dt, pulled, v.data()->data(), x.data()->data());
   return take_power(view_, pulled);
 }
@@ -290,6 +310,8 @@ void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
 
 template <class Real>
 void GridPass<Real>::compute_air_forces(double density) {
+  assert(density >= 0);
+  assert(!wind_.empty() && "make_room(true) comes first");
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
   grid_air_forces(view_, pressure, density > 0 ? air_tangential_ : Real(0));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -57,8 +58,14 @@ class GridPass {
   Aabb<Real> box_off_paths(Real time) const;
 
   /// Saves positions and velocities for `take_back`.
-  void keep() { kept_ = motion_; }
-  void take_back() { motion_ = kept_; }
+  void keep() {
+    assert(kept_.size() == motion_.size() && "make_room_for_paths comes first");
+    kept_ = motion_;
+  }
+  void take_back() {
+    assert(kept_.size() == motion_.size());
+    motion_ = kept_;
+  }
 
   void store_positions(Vec3Array<Real>& x) const;
   void store_velocities(Vec3Array<Real>& v) const;

@@ -3,6 +3,7 @@
 #include "core/forces/mesh_pass.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -30,6 +31,7 @@ bool MeshPass<Real>::collect_springs(const ClothModel<Real>& model, const ClothP
     const Spring<Real>& s = model.springs[static_cast<std::size_t>(n)];
     const Real expected = damping_per_stiffness * s.stiffness;
     if (!(std::abs(s.damping - expected) <= Real(1e-5) * expected)) return false;
+    assert(part.particles.contains(s.i) && part.particles.contains(s.j));
     const auto [earlier, later] = std::minmax(s.i, s.j);
     for (const Index end : {earlier, later}) {
       if (++springs[static_cast<std::size_t>(end - part.particles.first)] > kMostSprings)
@@ -68,6 +70,7 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
 /// Lists of one group, by slot. Lanes without a particle repeat the last one.
 template <class Real>
 void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t block) {
+  assert(!members.empty() && members.size() <= kMeshGroup);
   MeshGroup group;
   const auto member = [&](std::size_t lane) { return members[std::min(lane, members.size() - 1)]; };
   const auto own = [&](std::size_t lane) {
@@ -150,6 +153,7 @@ template <class Real>
 void MeshPass<Real>::list_pulls(const Rows& rows, const std::vector<Members>& groups) {
   in_reach_ = in_reach_ && view_.ring_size < kLongestRing;
   if (!in_reach_) return;
+  assert(groups.size() == groups_.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::size_t slots = 0;
     for (const std::size_t i : groups[g]) slots = std::max(slots, rows[i].earlier.size());
@@ -209,12 +213,18 @@ void MeshPass<Real>::point_view() {
 template <class Real>
 void MeshPass<Real>::compute_forces(const Vec3Array<Real>& x, const Vec3Array<Real>& v,
                                     Vec3Array<Real>& force) {
+  assert(fits());
+  assert(static_cast<std::ptrdiff_t>(x.size()) == view_.last + 1);
+  assert(v.size() == x.size() && force.size() == x.size());
   mesh_forces(view_, x.data()->data(), v.data()->data(), force.data()->data());
 }
 
 template <class Real>
 void MeshPass<Real>::kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
                           const Vec3Array<Real>& x, Vec3Array<Real>& v) {
+  assert(fits());
+  assert(static_cast<std::ptrdiff_t>(x.size()) == view_.last + 1);
+  assert(v.size() == x.size() && particles.inverse_mass != nullptr);
   mesh_kick(view_, law, particles, x.data()->data(), v.data()->data());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/definition.h"
 
@@ -47,7 +48,10 @@ struct FanJet {
       : position(def.position.cast<Real>()),
         direction((def.direction / def.direction.norm()).template cast<Real>()),
         speed(static_cast<Real>(def.speed)), radius(static_cast<Real>(def.radius)),
-        spread(static_cast<Real>(def.spread)), reach(static_cast<Real>(def.reach)) {}
+        spread(static_cast<Real>(def.spread)), reach(static_cast<Real>(def.reach)) {
+    assert(def.direction.norm() > 0);
+    assert(def.radius > 0 && def.spread >= 0 && def.reach > 0);
+  }
 
   /// Velocity of its air at a point [m/s]; exactly 0 behind the disc and outside the jet.
   Vec3<Real> operator()(const Vec3<Real>& point) const {
