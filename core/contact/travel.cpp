@@ -13,6 +13,7 @@
 #if HWY_ONCE
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace weft {
 
@@ -33,6 +34,7 @@ bool run_travel(const TravelPass<double>& pass) {
 
 template <class Real>
 bool run_travel_in_parts(const TravelPass<Real>& pass, Executor* executor) {
+  assert(pass.particles == 0 || (pass.x && pass.v && pass.from && pass.reach && pass.travel2));
   constexpr std::size_t kParts = 4, kFewParticles = 4096;
   if (!executor || pass.particles < kFewParticles) return run_travel(pass);
   std::array<bool, kParts> within;

@@ -2,10 +2,13 @@
 
 #include "core/contact/colliders/collider_frame.h"
 
+#include <cassert>
+
 namespace weft {
 
 template <class Real>
 void ColliderFrame<Real>::place(const Pose& at) {
+  assert(std::abs(at.rotation.squaredNorm() - 1) < 1e-3);
   pose = at;
   displaced = !(at == Pose{pivot, Eigen::Quaterniond::Identity()});
   const Eigen::Matrix3d turned = at.rotation.toRotationMatrix();
@@ -15,6 +18,7 @@ void ColliderFrame<Real>::place(const Pose& at) {
 
 template <class Real>
 void ColliderFrame<Real>::plan(const ColliderState& state, double dt, double tick_seconds) {
+  assert(dt > 0 && tick_seconds > 0);
   ColliderState next = state;
   advance_collider(dt, tick_seconds, next);
   blocked = false;

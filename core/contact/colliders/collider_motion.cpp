@@ -3,6 +3,7 @@
 #include "core/contact/colliders/collider_motion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/definition.h"
@@ -91,10 +92,13 @@ void validate(const MoveDef& def, const std::string& path) {
 }
 
 Pose offset_at(const MotionDef& def, double time) {
+  assert(!def.keyframes.empty());
+  assert(time >= 0);
   const Keyframe &first = def.keyframes.front(), &last = def.keyframes.back();
   const auto pose_of = [](const Keyframe& k) { return Pose{k.offset, k.rotation.normalized()}; };
   if (def.loop && time > first.time) {
     const double period = last.time - first.time;
+    assert(period > 0);
     const double since = time - first.time;
     time = first.time + (since - period * std::floor(since / period));
   }
@@ -114,6 +118,7 @@ TopSpeeds top_speeds(const MotionDef& def) {
   TopSpeeds top;
   for (std::size_t k = 1; k < def.keyframes.size(); ++k) {
     const Keyframe &from = def.keyframes[k - 1], &to = def.keyframes[k];
+    assert(to.time > from.time);
     const double rate = fastest(def) / (to.time - from.time);
     const Difference way = between(from, to);
     top.linear = std::max(top.linear, way.step.norm() * rate);

@@ -3,6 +3,7 @@
 #include "core/contact/colliders/collider_state.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +27,7 @@ constexpr double kCatchUp = 1.25;
 
 /// Allowed fraction of a displacement.
 double allowed_part(double way, double most) {
+  assert(!(way < 0) && most >= 0);
   return way > most ? most / way : 1;
 }
 
@@ -61,6 +63,7 @@ Vec3d pivot_of(const ShapeDef& shape) {
   if (const auto* sphere = std::get_if<SphereDef>(&shape)) return sphere->centre;
   if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) return (capsule->a + capsule->b) / 2;
   if (const auto* box = std::get_if<BoxDef>(&shape)) return box->centre;
+  assert(!std::get<MeshDef>(shape).mesh.positions.empty());
   Aabb<double> bounds;
   for (const Vec3d& p : std::get<MeshDef>(shape).mesh.positions) bounds.add(p);
   return bounds.centre();
@@ -103,8 +106,11 @@ ColliderStates initial_states(const std::vector<ColliderDef>& colliders) {
 
 void plan_motion(const std::vector<ColliderDef>& colliders, double time, double seconds,
                  ColliderStates& states) {
+  assert(states.size() == colliders.size());
+  assert(time >= 0 && seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
+    assert(state.pace >= 0 && state.pace <= 1);
     state.start = state.goal = state.pose;
     state.start_overload = state.overload;
     state.wanted = state.twist = {};
@@ -142,6 +148,7 @@ void take_back_motion(ColliderStates& states) {
 }
 
 bool count_resistance(double seconds, ColliderState& state) {
+  assert(seconds > 0);
   const Vec3d impulse = state.impulse - state.counted;
   const Vec3d angular = state.angular_impulse - state.angular_counted;
   state.counted = state.impulse;
@@ -156,6 +163,7 @@ bool count_resistance(double seconds, ColliderState& state) {
 }
 
 void advance_collider(double seconds, double tick_seconds, ColliderState& state) {
+  assert(seconds > 0 && tick_seconds > 0);
   if (!state.is_moving()) return;
   state.progress += seconds;
   const bool arrived = state.progress > tick_seconds * (1 - 1e-6);
@@ -164,6 +172,8 @@ void advance_collider(double seconds, double tick_seconds, ColliderState& state)
 
 void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
                    ColliderStates& states) {
+  assert(states.size() == colliders.size());
+  assert(seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
     state.force = -(state.impulse + state.squeezed) / seconds;

@@ -2,6 +2,7 @@
 
 #include "core/contact/colliders/pose.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "core/math/angle.h"
@@ -22,6 +23,7 @@ Eigen::Quaterniond rotation_by(const Vec3d& v) {
 }
 
 Vec3d rotation_vector(const Eigen::Quaterniond& q) {
+  assert(std::abs(q.squaredNorm() - 1) < 1e-3);
   const Vec3d axis = q.w() < 0 ? (-q.vec()).eval() : q.vec().eval();
   const double sine = std::sqrt(axis.squaredNorm());
   if (!(sine > 0)) return Vec3d::Zero();
@@ -29,6 +31,7 @@ Vec3d rotation_vector(const Eigen::Quaterniond& q) {
 }
 
 Pose moved(const Pose& from, const Twist& twist, double seconds) {
+  assert(std::abs(from.rotation.squaredNorm() - 1) < 1e-3);
   Pose pose = from;
   pose.position += twist.linear * seconds;
   if (!twist.angular.isZero(0)) {
