@@ -3,6 +3,7 @@
 #include "core/contact/seed/seed_contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include "core/geometry/distance.h"
@@ -21,6 +22,7 @@ SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>
     dissipation_.push_back(static_cast<Real>(part.fabric.restitution));
     thickest_ = std::max(thickest_, thickness_.back());
   }
+  assert(thickest_ > 0 && def.lift >= 0 && def.passes >= 1);
   reach_ = thickest_;
   if (def.correction == Correction::fold_map)
     reach_ = std::max(reach_, static_cast<Real>(def.fold_depth));
@@ -40,6 +42,8 @@ SeedContact<Real>::SeedContact(const SeedContactDef& def, const ClothModel<Real>
 
 template <class Real>
 void SeedContact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
+  assert(tick_seconds > 0);
+  assert(frames_.empty() || (colliders && colliders->size() == frames_.size()));
   tick_seconds_ = tick_seconds;
   touches_ = false;
   colliders_ = colliders;
@@ -57,6 +61,7 @@ void SeedContact<Real>::move_colliders(Real dt) {
   for (std::size_t k = 0; k < frames_.size(); ++k) {
     ColliderFrame<Real>& frame = frames_[k];
     if (!frame.tracked) continue;
+    assert(colliders_ && "begin_tick comes first");
     ColliderState& state = (*colliders_)[k];
     frame.plan(state, static_cast<double>(dt), tick_seconds_);
     advance_collider(static_cast<double>(dt), tick_seconds_, state);
@@ -79,6 +84,7 @@ const Vec3Array<Real>& SeedContact<Real>::in_frame_of(std::size_t object,
 template <class Real>
 void SeedContact<Real>::offer(std::size_t i, Real distance, const Vec3<Real>& normal,
                               Index object) {
+  assert(object >= 0 && static_cast<std::size_t>(object) < frames_.size());
   if (std::abs(distance) < std::abs(nearest_[i].distance)) nearest_[i] = {distance, normal, object};
 }
 
@@ -228,6 +234,8 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
 
 template <class Real>
 void SeedContact<Real>::collide(ClothState<Real>& state, Real dt, Profile& profile) {
+  assert(dt > 0);
+  assert(state.x.size() == nearest_.size() && state.v.size() == nearest_.size());
   if (shapes_.empty()) return;
   move_colliders(dt);
   find_nearest(state, dt, profile);

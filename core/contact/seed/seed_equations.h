@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "core/types.h"
@@ -33,6 +34,7 @@ Real weight_margin(const Vec3<Real>& doubled_normal, Real h) {
 template <class Real>
 Proximity<Real> proximity(const Vec3<Real>& x4, const Vec3<Real>& x1, const Vec3<Real>& x2,
                           const Vec3<Real>& x3, Real h) {
+  assert(h > 0);
   Proximity<Real> result;
   const Vec3<Real> x13 = x1 - x3, x23 = x2 - x3, x43 = x4 - x3;
   const Vec3<Real> doubled = x13.cross(x23);
@@ -66,6 +68,8 @@ Vec3<Real> weighted(const std::array<Real, 3>& weight, const Vec3<Real>& a, cons
 template <class Real>
 Vec3<Real> after_contact(const Vec3<Real>& v, const Vec3<Real>& n, Real friction,
                          Real dissipation) {
+  assert(friction >= 0);
+  assert(dissipation >= 0 && dissipation < 1);
   const Real normal_speed = v.dot(n);
   const Vec3<Real> v_n = n * normal_speed, v_t = v - v_n;
   const Real slip = v_t.norm(), lost = friction * std::abs(normal_speed);
@@ -92,7 +96,9 @@ Real weighted_impulse(Real v_n, const std::array<Real, Count>& weight,
 /// (phi_min >= eps), stay.
 template <class Real>
 Real fold_map(Real phi, Real phi_min, Real tau, Real eps) {
+  assert(!(phi < phi_min));
   if (!(phi < tau) || !(phi_min < eps)) return phi;
+  assert(eps < tau);
   return eps + (phi - phi_min) * (tau - eps) / (tau - phi_min);
 }
 

@@ -1,6 +1,7 @@
 // Self-collision of SeedContact: eqs. (11) and (12), and edge-edge pairs, which the seed lacked.
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/contact/seed/seed_contact.h"
 #include "core/geometry/distance.h"
@@ -21,6 +22,7 @@ constexpr std::size_t kPairsPerParticle = 8;
 template <class Real>
 bool SeedContact<Real>::are_neighbours(Index i, Index j) const {
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+  assert(a < cloth_of_.size() && b < cloth_of_.size());
   if (cloth_of_[a] != cloth_of_[b]) return false;
   const Real reach = thickness_[static_cast<std::size_t>(cloth_of_[a])] * Real(kNeighbourhood);
   return i == j || (rest_positions_[a] - rest_positions_[b]).squaredNorm() < reach * reach;
@@ -125,6 +127,7 @@ void SeedContact<Real>::take_approach(const SelfPair& pair, ClothState<Real>& st
 
 template <class Real>
 void SeedContact<Real>::separate(ClothState<Real>& state, Profile& profile) {
+  assert(state.x.size() == rest_positions_.size() && state.v.size() == state.x.size());
   if (!def_.has_self_contact()) return;
   pairs_.clear();
   {

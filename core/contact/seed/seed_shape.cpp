@@ -2,6 +2,7 @@
 
 #include "core/contact/seed/seed_shape.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "core/contact/seed/seed_equations.h"
@@ -70,6 +71,7 @@ void add_sharp_edges(const TriangleMesh& mesh, Real reach, SeedShape<Real>& shap
 
 template <class Real>
 Aabb<Real> proximity_box(const Vec3<Real>& x1, const Vec3<Real>& x2, const Vec3<Real>& x3, Real h) {
+  assert(h > 0);
   const Vec3<Real> doubled = (x1 - x3).cross(x2 - x3);
   // The corners where two weights are -delta.
   const Real delta = doubled.squaredNorm() > 0 ? seed::weight_margin(doubled, h) : Real(0);
@@ -81,6 +83,7 @@ Aabb<Real> proximity_box(const Vec3<Real>& x1, const Vec3<Real>& x2, const Vec3<
 
 template <class Real>
 SeedShape<Real> make_seed_shape(const ShapeDef& def, Real reach) {
+  assert(reach > 0);
   SeedShape<Real> shape;
   const auto* mesh_def = std::get_if<MeshDef>(&def);
   if (!mesh_def) {
@@ -105,6 +108,7 @@ SeedShape<Real> make_seed_shape(const ShapeDef& def, Real reach) {
 
 template <class Real>
 SurfacePoint<Real> distance_from(const ShapeDef& simple, const Vec3<Real>& p) {
+  assert(!std::holds_alternative<MeshDef>(simple));
   if (const auto* plane = std::get_if<PlaneDef>(&simple)) {
     const Vec3<Real> n = plane->normal.normalized().template cast<Real>();
     return {n.dot(p - plane->point.template cast<Real>()), n};

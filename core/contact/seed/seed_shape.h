@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <variant>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct SeedShape {
 /// @param s  fraction of the edge's length, 0 to 1
 template <class Real>
 bool is_within_edge(Real s) {
+  assert(!(s < 0) && !(s > 1));
   constexpr double kEnd = 0.01;
   return s > Real(kEnd) && s < Real(1 - kEnd);
 }
