@@ -3,6 +3,7 @@
 #include "core/contact/tangles/cloth_tangles.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/math/exact_sign.h"
 
@@ -50,8 +51,12 @@ void ClothTangles<Real>::clear() {
 
 template <class Real>
 void ClothTangles<Real>::look_at(Index edge, Index triangle, const QuadArray<Real>& x) {
+  assert(static_cast<std::size_t>(edge) < edges_.size());
+  assert(static_cast<std::size_t>(triangle) < triangles_.size());
   const Edge& e = edges_[static_cast<std::size_t>(edge)];
   const Triangle& t = triangles_[static_cast<std::size_t>(triangle)];
+  assert(std::find(t.begin(), t.end(), e[0]) == t.end());
+  assert(std::find(t.begin(), t.end(), e[1]) == t.end());
   const Vec3d p = at(e[0], x), q = at(e[1], x), a = at(t[0], x), b = at(t[1], x), c = at(t[2], x);
   // A point exactly in the plane counts as above it, so that neighbouring triangles agree.
   const bool above = orientation(a, b, c, p) <= 0;
@@ -78,6 +83,7 @@ void ClothTangles<Real>::look_at(Index edge, Index triangle, const QuadArray<Rea
 
 template <class Real>
 void ClothTangles<Real>::decide(const QuadArray<Real>& x, const std::vector<Real>& inverse_mass) {
+  assert(inverse_mass.size() == is_held_.size());
   rows_.clear();
   if (crossings_.empty()) {
     drawn_ = 0;
@@ -99,6 +105,7 @@ void ClothTangles<Real>::decide(const QuadArray<Real>& x, const std::vector<Real
 template <class Real>
 void ClothTangles<Real>::free_around(const TangleContour& contour) {
   const auto number = static_cast<std::size_t>(&contour - contours_.list().data());
+  assert(number < contours_.list().size());
   const std::uint64_t bit = std::uint64_t{1} << (number % kBits);
   for (std::size_t k = contour.free_begin; k < contour.free_end; ++k) {
     const TangleContours::Free& free = contours_.free()[k];

@@ -3,6 +3,7 @@
 #include "core/contact/tangles/contour_regions.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace weft {
 namespace {
@@ -27,6 +28,7 @@ ContourRegions::ContourRegions(const ClothModel<Real>& model)
 }
 
 void ContourRegions::seed(Index particle, std::size_t side, const std::vector<char>& is_held) {
+  assert(side < 2);
   if (particle == through_[0] || particle == through_[1]) return;
   const auto i = static_cast<std::size_t>(particle);
   const std::uint32_t mark = 2 * search_ + static_cast<std::uint32_t>(side);
@@ -44,6 +46,7 @@ void ContourRegions::seed(Index particle, std::size_t side, const std::vector<ch
 /// Continues from one particle to its neighbours.
 /// @return whether there was one left
 bool ContourRegions::spread(std::size_t side, const std::vector<char>& is_held) {
+  assert(side < 2);
   Flood& flood = floods_[side];
   if (flood.next == flood.particles.size()) return false;
   const auto i = static_cast<std::size_t>(flood.particles[flood.next++]);
@@ -74,6 +77,7 @@ void ContourRegions::begin() {
 ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
                                                   const std::array<Index, 2>& through,
                                                   const std::vector<char>& is_held) {
+  assert(is_held.size() == area_.size());
   if (cuts.empty()) return {};
   begin();
   through_ = through;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -39,6 +40,7 @@ class ContourRegions {
 
   /// Whether a particle next to the latest line is on this side of it.
   bool is_on(Index particle, int side) const {
+    assert(side == 1 || side == -1);
     return reached_[static_cast<std::size_t>(particle)] == 2 * search_ + (side > 0 ? 1 : 0);
   }
 

@@ -3,6 +3,7 @@
 #include "core/contact/tangles/tangle_contours.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/geometry/triangle_sides.h"
 
@@ -69,6 +70,7 @@ void TangleContours::link(std::vector<TangleCrossing>& crossings) {
 
 /// Collects a contour, starting at one of its crossings.
 void TangleContours::follow(std::vector<TangleCrossing>& crossings, Index first) {
+  assert(crossings[static_cast<std::size_t>(first)].contour == kNone);
   TangleContour contour;
   contour.begin = order_.size();
   const auto number = static_cast<Index>(contours_.size());
@@ -96,6 +98,7 @@ void TangleContours::follow(std::vector<TangleCrossing>& crossings, Index first)
 ContourRegions::Part TangleContours::cut(const std::vector<TangleCrossing>& crossings,
                                          const std::vector<char>& is_held,
                                          const TangleContour& contour, bool first, bool second) {
+  assert(contour.begin < contour.end && contour.end <= order_.size());
   const std::array<Index, 2> folds = {
       fold_at(crossings[static_cast<std::size_t>(order_[contour.begin])]),
       fold_at(crossings[static_cast<std::size_t>(order_[contour.end - 1])])};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -74,6 +75,7 @@ class TangleContours {
   const std::vector<Free>& free() const { return free_; }
   /// The triangles at an edge; kNone for the second one at a border.
   const std::array<Index, 2>& triangles_of(Index edge) const {
+    assert(static_cast<std::size_t>(edge) < triangles_of_.size());
     return triangles_of_[static_cast<std::size_t>(edge)];
   }
   /// The particle that a crossing's triangle shares with a triangle at its edge, where a contour

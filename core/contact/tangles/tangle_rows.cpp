@@ -1,6 +1,7 @@
 // Pulls crossings apart: impulses of ClothTangles on edges and triangles.
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "core/contact/tangles/cloth_tangles.h"
@@ -52,6 +53,7 @@ Vec3d ClothTangles<Real>::point_of(const TangleCrossing& crossing, const QuadArr
 template <class Real>
 Vec3d ClothTangles<Real>::way_along(const TangleContour& contour, std::size_t place,
                                     const QuadArray<Real>& x) const {
+  assert(place >= contour.begin && place < contour.end);
   const auto crossing = [&](std::size_t k) -> const TangleCrossing& {
     return crossings_[static_cast<std::size_t>(contours_.order()[k])];
   };
@@ -155,7 +157,9 @@ void ClothTangles<Real>::begin_row(Row& row, const ClothState<Real>& state, Real
 
 template <class Real>
 void ClothTangles<Real>::draw(ClothState<Real>& state, Real dt) {
+  assert(dt > 0);
   if (rows_.empty()) return;
+  assert(state.x.size() == is_held_.size() && state.v.size() == is_held_.size());
   drawn_ += static_cast<double>(dt);
   const double age2 = drawn_ * drawn_ / (kPatience * kPatience);
   const auto most = static_cast<Real>(kMostAcceleration / (1 + age2 * age2)) * dt;
