@@ -37,6 +37,7 @@ void validate(const GrabDef& def, std::size_t triangles) {
 /// uniformly.
 template <class Real>
 void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
+  assert(def.radius > 0);
   const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
   double u = 0, v = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -57,6 +58,7 @@ void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& g
     weights.push_back(inside * inside * static_cast<double>(model.mass[p]));
     sum += weights.back();
   }
+  assert(weights.empty() || sum > 0);
   for (const double w : weights) grab.weights.push_back(static_cast<Real>(w / sum));
 }
 
@@ -71,6 +73,7 @@ void weigh_corners(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>
 
 template <class Real>
 Vec3<Real> weighted_mean(const Grab<Real>& grab, const Vec3Array<Real>& values) {
+  assert(grab.weights.size() == grab.particles.size());
   Vec3<Real> sum = Vec3<Real>::Zero();
   for (std::size_t n = 0; n < grab.particles.size(); ++n)
     sum += values[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
@@ -96,6 +99,7 @@ auto find(GrabId id, Grabs<Real>& grabs) {
 
 template <class Real>
 Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
+  assert(limit >= 0);
   const Real size = force.norm(), most = static_cast<Real>(limit);
   return size > most ? Vec3<Real>(force * (most / size)) : force;
 }
@@ -103,6 +107,7 @@ Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
 /// The point between `from` and `to` that is at most `reach` from `from` [m].
 template <class Real>
 Vec3<Real> within_reach(const Vec3<Real>& from, const Vec3<Real>& to, double reach) {
+  assert(reach > 0);
   const Vec3d way = (to - from).template cast<double>();
   const double length = way.norm();
   if (length <= reach) return to;
@@ -136,6 +141,8 @@ Real mobility(const Grab<Real>& grab, const ClothState<Real>& state) {
 template <class Real>
 Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real seconds,
                       const Vec3Array<Real>& x, const Vec3<Real>& velocity, Real mobility) {
+  assert(step.dt > 0 && step.rate > 0 && seconds > 0);
+  assert(step.progress >= 0 && step.progress <= 1);
   const auto stiffness = static_cast<Real>(grab.def.stiffness);
   const Vec3<Real> path = grab.path_end - grab.path_begin;
   const Vec3<Real> target = grab.path_begin + path * step.progress;
@@ -149,6 +156,7 @@ Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real s
 /// Stores the impulses that a force gives the held particles in `seconds` [N s].
 template <class Real>
 void note_impulses(const Vec3<Real>& force, Real seconds, Grab<Real>& grab) {
+  assert(grab.impulse.size() == grab.particles.size());
   for (std::size_t n = 0; n < grab.particles.size(); ++n)
     grab.impulse[n] = force * (grab.weights[n] * seconds);
 }
@@ -203,6 +211,7 @@ void share_force(const std::vector<Index>& particles, const std::vector<Real>& w
 template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs) {
+  assert(state.x.size() == model.mass.size());
   validate(def, model.triangles.size());
   if (!has_room(grabs))
     throw DefinitionError("drag", std::to_string(kMostGrabs + 1),
@@ -252,6 +261,7 @@ bool remove_grab(GrabId id, Grabs<Real>& grabs) {
 template <class Real>
 std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real>& state,
                                      Grabs<Real>& grabs) {
+  assert(ticks >= 1);
   const auto found = find(id, grabs);
   if (found == grabs.list.end() || found->def.mode != GrabMode::sling) return std::nullopt;
   const Vec3<Real> force = sling_force(*found, state);
@@ -275,7 +285,10 @@ void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grab
 template <class Real>
 void finish_tick(Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) grab.path_begin = grab.path_end;
-  for (Shot<Real>& shot : grabs.shots) --shot.ticks_left;
+  for (Shot<Real>& shot : grabs.shots) {
+    assert(shot.ticks_left > 0);
+    --shot.ticks_left;
+  }
   std::erase_if(grabs.shots, [](const Shot<Real>& shot) { return shot.ticks_left <= 0; });
 }
 
@@ -302,6 +315,8 @@ void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& st
 template <class Real>
 void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gravity,
                      const ClothState<Real>& state, Grabs<Real>& grabs, Vec3Array<Real>& force) {
+  assert(keep >= 0 && keep <= 1);
+  assert(force.size() == state.x.size());
   for_live(grabs, state, [&](const Grab<Real>& grab) {
     share_force(grab.particles, grab.weights, grab.force, force);
   });
@@ -348,6 +363,7 @@ template <class Real>
 double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   double work = 0;
   for (Grab<Real>& grab : grabs.list) {
+    assert(grab.velocity.size() == grab.particles.size());
     for (std::size_t n = 0; n < grab.particles.size(); ++n) {
       const Vec3<Real>& now = v[static_cast<std::size_t>(grab.particles[n])];
       const Vec3<Real> before = std::exchange(grab.velocity[n], now);

@@ -3,6 +3,7 @@
 #include "core/attachments/gripper.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/error.h"
@@ -23,12 +24,14 @@ Eigen::Quaterniond turned(const Gripper& gripper, const Eigen::Quaterniond& rota
 
 /// Offset of a jaw's middle from the gripper's, as defined [m].
 Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
+  assert(jaw < 2 && opening >= 0);
   const double x = opening / 2 + def.half_extents[0];
   return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
 }
 
 /// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
 Pose next_pose(const Gripper& gripper, double seconds) {
+  assert(seconds > 0 && gripper.speed > 0 && gripper.turn_speed > 0);
   const Vec3d way = gripper.target.position - gripper.pose.position;
   const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
   double part = 1;
@@ -41,6 +44,7 @@ Pose next_pose(const Gripper& gripper, double seconds) {
 
 /// Opening of the jaws at the end of the tick [m].
 double next_opening(const Gripper& gripper, double seconds, double thickest) {
+  assert(gripper.opening >= 0 && gripper.facing >= 0);
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
   if (gripper.gripping) return gripper.opening;
@@ -133,7 +137,10 @@ void command_gripper(const GripperCommand& command, Gripper& gripper) {
 
 void plan_grippers(double time, double seconds, double thickest, std::vector<Gripper>& grippers,
                    ColliderStates& colliders) {
+  assert(time >= 0 && seconds > 0);
+  assert(grippers.empty() || thickest > 0);
   for (Gripper& gripper : grippers) {
+    assert(gripper.jaw[0] < colliders.size() && gripper.jaw[1] < colliders.size());
     for (const GripperStep& step : gripper.def.steps) {
       if (gripper.commanded || step.time > time) break;
       gripper.target.position = gripper.def.centre + step.offset;
@@ -158,7 +165,9 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
 
 void finish_grippers(double seconds, const ColliderStates& colliders,
                      std::vector<Gripper>& grippers) {
+  assert(seconds > 0);
   for (Gripper& gripper : grippers) {
+    assert(gripper.jaw[0] < colliders.size() && gripper.jaw[1] < colliders.size());
     const ColliderState &left = colliders[gripper.jaw[0]], &right = colliders[gripper.jaw[1]];
     const Vec3d axis = left.pose.rotation * (gripper.def.orientation * Vec3d::UnitX());
     const Vec3d between = right.pose.position - left.pose.position;
@@ -181,6 +190,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
 }
 
 Vec3d press_of(const Gripper& gripper, std::size_t jaw) {
+  assert(jaw < 2);
   const Vec3d axis = turned(gripper, gripper.pose.rotation) * Vec3d::UnitX();
   return jaw == 0 ? axis : Vec3d(-axis);
 }

@@ -3,6 +3,7 @@
 #include "core/attachments/pin_drive.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,7 @@ constexpr double kCatchUp = 1.5;
 /// Largest distance of a particle from its place.
 template <class Real>
 double farthest(const Pin& pin, const ClothState<Real>& state) {
+  assert(pin.path && pin.path->start.size() == pin.particles.size());
   double most2 = 0;
   for (std::size_t n = 0; n < pin.particles.size(); ++n) {
     const auto& x = state.x[static_cast<std::size_t>(pin.particles[n])];
@@ -41,9 +43,11 @@ double farthest(const Pin& pin, const ClothState<Real>& state) {
 
 /// Remaining displacement [m].
 Vec3d rest_of(const Pin& pin) {
+  assert(pin.path);
   const auto centre = static_cast<std::size_t>(
       std::lower_bound(pin.particles.begin(), pin.particles.end(), pin.centre) -
       pin.particles.begin());
+  assert(centre < pin.particles.size() && pin.particles[centre] == pin.centre);
   return pin.path->move.target - (pin.path->start[centre] + pin.path->offset);
 }
 
@@ -65,12 +69,14 @@ void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path
 }  // namespace
 
 double least_seconds(double way, double tick_seconds) {
+  assert(way >= 0 && tick_seconds > 0);
   const double pace = std::min(kMostPinSpeed, std::sqrt(kAcceleration * way));
   const double moving = pace > 0 ? way / pace + pace / kAcceleration : 0;
   return moving + kTicksAtTarget * tick_seconds;
 }
 
 double speed_within(double way, double seconds, double tick_seconds) {
+  assert(way >= 0 && tick_seconds > 0);
   const double moving = seconds - kTicksAtTarget * tick_seconds;
   // way / v + v / a = moving; the slower of the two solutions.
   const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kAcceleration));
@@ -87,6 +93,7 @@ double way_left(const Pin& pin, const ClothState<Real>& state, const Vec3d& targ
 
 template <class Real>
 void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pins& pins) {
+  assert(tick_seconds > 0);
   for (Pin& pin : pins.list) {
     if (!pin.path) continue;
     PinPath& path = *pin.path;
@@ -106,6 +113,8 @@ void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pi
 
 template <class Real>
 void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& model, Pins& pins) {
+  assert(tick_seconds > 0);
+  assert(pins.pin_count.size() == model.mass.size());
   model_ = &model;
   pins_ = &pins;
   tick_seconds_ = tick_seconds;
@@ -117,6 +126,7 @@ void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& mod
 
 template <class Real>
 void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
+  assert(dt > 0);
   // The first kick of a tick is half a kick, and limits the pins' impulse likewise.
   const bool first = elapsed_ == 0;
   elapsed_ += static_cast<double>(dt);
@@ -125,12 +135,15 @@ void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
 
 template <class Real>
 void PinDrive<Real>::settle(ClothState<Real>& state, Real dt) {
+  assert(dt > 0);
   elapsed_ += static_cast<double>(dt);
   drive(state, dt, static_cast<double>(dt) / 2);
 }
 
 template <class Real>
 void PinDrive<Real>::drive(ClothState<Real>& state, Real dt, double seconds) {
+  assert(pins_ && model_ && "begin_tick comes first");
+  assert(state.x.size() == model_->mass.size());
   for (Pin& pin : pins_->list) {
     if (pin.path) drive(pin, *pin.path, state, dt, seconds);
   }
@@ -187,6 +200,7 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
 
 template <class Real>
 bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& pins) {
+  assert(tick_seconds > 0);
   bool changed = false;
   for (Pin& pin : pins.list) {
     if (!pin.path) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 
 #include "core/error.h"
@@ -47,6 +48,7 @@ Index nearest_particle(const ClothModel<Real>& model, const IndexRange& range,
                        const MaterialPoint& point) {
   visit_fields_of_point(
       point, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
+  assert(range.count > 0);
   const MaterialBounds bounds = bounds_of(model, range);
   const std::array<double, 2> part = {point.u, point.v};
   Index nearest = range.first;
@@ -80,6 +82,7 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRan
     const double inside = far_side ? bounds.high[axis] - value : value - bounds.low[axis];
     if (inside <= strip.width + slack) held.particles.push_back(i);
   }
+  assert(!held.particles.empty());
   const double across = far_side ? 1 : 0;
   held.centre = nearest_particle(
       model, range, axis == 0 ? MaterialPoint{across, 0.5} : MaterialPoint{0.5, across});
@@ -112,6 +115,7 @@ PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def) {
     held.centre = nearest_particle(model, part, std::get<MaterialPoint>(def.place));
   }
   held.particles = particles_in_disc(model, held.centre, def.radius);
+  assert(std::binary_search(held.particles.begin(), held.particles.end(), held.centre));
   return held;
 }
 

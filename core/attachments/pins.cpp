@@ -3,6 +3,7 @@
 #include "core/attachments/pins.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "core/error.h"
@@ -10,6 +11,7 @@
 namespace weft {
 
 bool is_fixed(const Pins& pins, Index particle) {
+  assert(particle >= 0 && static_cast<std::size_t>(particle) < pins.pin_count.size());
   if (pins.pin_count[static_cast<std::size_t>(particle)] == 0) return false;
   return std::any_of(pins.list.begin(), pins.list.end(), [particle](const Pin& pin) {
     return !pin.path && std::binary_search(pin.particles.begin(), pin.particles.end(), particle);
@@ -35,6 +37,8 @@ Pins make_pins(const ClothModel<Real>& model) {
 template <class Real>
 PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state) {
+  assert(pins.pin_count.size() == model.mass.size());
+  assert(state.x.size() == model.mass.size());
   PinnedParticles held = find_pinned(model, def);
   if (pins.list.size() >= kMostPins)
     throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
@@ -97,6 +101,7 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
   pins.list.erase(found);
   for (const Index i : particles) {
     const auto p = static_cast<std::size_t>(i);
+    assert(pins.pin_count[p] > 0);
     --pins.pin_count[p];
     if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
   }
