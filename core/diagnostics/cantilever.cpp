@@ -3,6 +3,7 @@
 #include "core/diagnostics/cantilever.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -40,6 +41,7 @@ Curve shoot(double gamma, double tip_angle) {
 }  // namespace
 
 double elastica_chord_angle(double gamma) {
+  assert(gamma >= 0 && gamma <= kLargestGamma);
   double low = 0, high = pi / 2;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (low + high);
@@ -59,6 +61,7 @@ double elastica_gamma(double angle) {
 }
 
 CantileverMeasurement measure_cantilever(const Vec3d& clamp, const Vec3d& tip, double overhang) {
+  assert(overhang > 0);
   CantileverMeasurement result;
   result.droop = clamp[1] - tip[1];
   const double angle = std::atan2(result.droop, std::hypot(tip[0] - clamp[0], tip[2] - clamp[2]));

@@ -2,6 +2,7 @@
 
 #include "core/diagnostics/crossings.h"
 
+#include <cassert>
 #include <utility>
 
 #include "core/math/exact_sign.h"
@@ -12,6 +13,7 @@ namespace {
 using Positions = std::vector<Vec3d>;
 
 const Vec3d& at(const Positions& x, Index i) {
+  assert(static_cast<std::size_t>(i) < x.size());
   return x[static_cast<std::size_t>(i)];
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -41,6 +42,7 @@ class CrossingSurface {
   /// @param count  number of vertices, the same each time
   template <class At>
   void place(std::size_t count, At&& at) {
+    assert(positions_.empty() || positions_.size() == count);
     positions_.resize(count);
     for (std::size_t i = 0; i < count; ++i) positions_[i] = at(i);
     fit();
@@ -79,6 +81,7 @@ void for_each_crossing(const std::vector<Vec3d>& x, const std::vector<Edge>& edg
     box.add(p);
     box.add(q);
     tree.for_each_overlap(box, [&](Index k) {
+      assert(static_cast<std::size_t>(k) < triangles.size());
       const Triangle& t = triangles[static_cast<std::size_t>(k)];
       if (one_cloth && share_vertex(edge, t)) return;
       const Crossings how = crossing_of(p, q, at(y, t[0]), at(y, t[1]), at(y, t[2]));

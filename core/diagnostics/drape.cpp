@@ -3,6 +3,7 @@
 #include "core/diagnostics/drape.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -41,6 +42,7 @@ class Shadow {
  private:
   double at(int k) const { return (k - 0.5 * (side_ - 1)) * kPointDistance; }
   std::size_t index(int i, int j) const {
+    assert(i >= 0 && i < side_ && j >= 0 && j < side_);
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(side_) +
            static_cast<std::size_t>(j);
   }
@@ -89,6 +91,7 @@ std::vector<Index> hem_particles(const ClothModel<Real>& model, const ClothPart<
 /// Number of crests of a closed line of heights: a crest counts if the line falls by `least` on
 /// both sides.
 int count_crests(const std::vector<double>& heights, double least) {
+  assert(!heights.empty() && least > 0);
   const std::size_t n = heights.size();
   const auto start =
       static_cast<std::size_t>(std::min_element(heights.begin(), heights.end()) - heights.begin());
@@ -122,6 +125,8 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
   const auto from_centre = [&](Index i) {
     return (x[static_cast<std::size_t>(i)].template cast<double>() - centre).eval();
   };
+  assert(x.size() == model.mass.size());
+  assert(part.triangles.count > 0);
   Shadow shadow(2 * kDrapeSpecimenRadius);
   double flat = 0;
   for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {

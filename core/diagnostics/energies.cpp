@@ -2,11 +2,14 @@
 
 #include "core/diagnostics/energies.h"
 
+#include <cassert>
+
 namespace weft {
 
 template <class Real>
 EnergyReading read_energies(const ClothModel<Real>& model, const ClothState<Real>& state,
                             const Vec3<Real>& gravity, const ElasticEnergy& elastic) {
+  assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
   Energies e;
   e.stretch = elastic.stretch;
   e.bending = elastic.bending;

@@ -3,6 +3,7 @@
 #include "core/diagnostics/measurements.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/cantilever.h"
@@ -84,6 +85,8 @@ std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothSt
 template <class Real>
 std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,
                                       const ClothState<Real>& state, double gravity) {
+  assert(!model.parts.empty() && gravity >= 0);
+  assert(state.inverse_mass.size() == model.mass.size());
   if (test == TextileTest::drape) return drape(model, state);
   if (test == TextileTest::cantilever) return cantilever(model, state, gravity);
   return {};

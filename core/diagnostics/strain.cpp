@@ -3,6 +3,7 @@
 #include "core/diagnostics/strain.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -11,10 +12,13 @@ namespace {
 template <class Real>
 void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
                      std::vector<Real>& strains) {
+  assert(x.size() == model.mass.size());
+  assert(model.spring_kinds.size() == model.springs.size());
   strains.clear();
   for (std::size_t n = 0; n < model.springs.size(); ++n) {
     if (model.spring_kinds[n] == SpringKind::skip) continue;
     const Spring<Real>& s = model.springs[n];
+    assert(s.rest_length > 0);
     const Vec3<Real> d = x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)];
     strains.push_back(std::abs(d.norm() - s.rest_length) / s.rest_length);
   }
