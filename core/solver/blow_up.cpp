@@ -37,6 +37,7 @@ template <class Real>
 std::optional<BlowUp> find_blow_up(const ClothModel<Real>& model, const ClothState<Real>& state,
                                    Real dt) {
   assert(dt > 0);
+  assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
   const auto farthest = static_cast<Real>(kFarthestFromOrigin);
   const Real per_component = 1 / std::sqrt(Real(3));  // of a vector as long as the limit
   for (std::size_t p = 0; p < model.parts.size(); ++p) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/attachments/pin_drive.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/guard/cloth_guard.h"
@@ -35,6 +37,8 @@ struct Collision {
   }
   /// Call between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+    assert(dt > 0);
+    assert(!(weft && seed) && !(guard && seed) && "one model of contact");
     if (pins) pins->before_drift(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
     if (weft) weft->note_kicked(state);
@@ -46,8 +50,10 @@ struct Collision {
     if (seed) seed->separate(state, profile);
     const double truncated = guard ? guard->counts().truncated : 0;
     if (guard) guard->certify(state, dt, profile);
-    if (weft && !weft->move_objects(state, dt, guard && guard->counts().truncated > truncated))
+    if (weft && !weft->move_objects(state, dt, guard && guard->counts().truncated > truncated)) {
+      assert(guard && "only what it truncates makes objects stand");
       guard->stand_still();
+    }
   }
   /// Call after the drift: corrects penetrations.
   void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
@@ -57,6 +63,7 @@ struct Collision {
   }
   /// Call at the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
+    assert(dt > 0);
     if (pins) pins->settle(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
     if (weft) weft->note_kicked(state);

@@ -3,6 +3,7 @@
 #include "core/solver/fused_steps.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/stop_signal.h"
 
@@ -81,6 +82,7 @@ bool may_be_calm(const Tick<Real>& tick) {
 /// @returns work of the external forces over the drift [J]
 template <class Real>
 double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real drift) {
+  assert(tick.by_rows(p) && drift >= 0);
   const ClothPart<Real>& part = tick.part(p);
   const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
   tick.profile[Stage::bending].work += quadratic_stencil_count(part);
@@ -103,6 +105,8 @@ void load_grids(Tick<Real>& tick) {
 /// @returns work of the air [J]
 template <class Real>
 double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
+  assert(tick.by_rows(p) && substeps >= 1);
+  assert(!tick.hands && tick.collision.empty() && "nothing else moves the particles");
   GridPass<Real>& grid = tick.grid(p);
   double work = 0;
   for (int s = 0; s <= substeps; ++s) {
@@ -126,6 +130,7 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
 template <class Real>
 double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, int& s,
                     NextCalm& next) {
+  assert(s >= 0 && s < substeps);
   if (s < next.substep || !may_be_calm(tick)) return 0;
   ClothGuard<Real>& guard = *tick.collision.guard;
   const CalmPaths<Real>* paths = guard.calm_paths();

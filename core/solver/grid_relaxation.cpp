@@ -3,6 +3,7 @@
 #include "core/solver/grid_relaxation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "core/cloth/bending_stencil.h"
@@ -12,6 +13,7 @@ namespace {
 
 template <class Real>
 Real cells_at(int k, int count) {
+  assert(k >= 0 && k < count);
   return k == 0 || k + 1 == count ? Real(1) : Real(2);
 }
 
@@ -81,6 +83,7 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
 
 template <class Real>
 void GridRelaxation<Real>::set_masses(const std::vector<Real>& inverse_mass, Real softness) {
+  assert(fits() && softness >= 0);
   const Real stiffness[3] = {springs_.warp, springs_.weft, springs_.shear};
   for (int kind = 0; kind < 3; ++kind)
     view_.alpha[kind] = stiffness[kind] > 0 ? softness / stiffness[kind] : Real(0);
@@ -118,6 +121,8 @@ void GridRelaxation<Real>::set_masses(const std::vector<Real>& inverse_mass, Rea
 
 template <class Real>
 void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt) {
+  assert(fits() && dt > 0);
+  assert(v.size() == x.size());
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {
@@ -132,6 +137,7 @@ void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>&
 
 template <class Real>
 void GridRelaxation<Real>::load_force(const Vec3Array<Real>& force) {
+  assert(fits());
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {
@@ -143,6 +149,8 @@ void GridRelaxation<Real>::load_force(const Vec3Array<Real>& force) {
 
 template <class Real>
 void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const {
+  assert(fits() && dt > 0);
+  assert(v.size() == x.size());
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {

@@ -3,6 +3,7 @@
 #include "core/solver/relaxation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/forces/force_pass.h"
@@ -159,6 +160,7 @@ template <class Real>
 void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
   const auto first = static_cast<std::size_t>(springs.first);
   const auto count = static_cast<std::size_t>(springs.count);
+  assert(first + count <= tick.model.springs.size());
   if (count == 0) return;
   for (int s = 0; s < tick.solver.sweeps; ++s) {
     stop_point();
@@ -174,6 +176,7 @@ void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
 
 template <class Real>
 void sweep_rows(const SweepView<Real>& grid, int sweeps, int turn) {
+  assert(sweeps >= 1 && turn >= 0);
   for (int s = 0; s < sweeps; ++s) {
     stop_point();
     sweep_grid(grid, (turn + s) % 2 == 0, s == 0, s + 1 == sweeps);
@@ -298,6 +301,11 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                                  Grabs<Real>& grabs, const Collision<Real>& collision,
                                  ClothState<Real>& state, RelaxationWorkspace<Real>& work,
                                  Profile& profile) {
+  assert(dt > 0 && substeps >= 1 && solver.sweeps >= 1);
+  assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
+  assert(state.inverse_mass.size() == model.mass.size());
+  assert(work.force.size() == model.mass.size() && "prepared for this model");
+  assert(work.grids.size() == model.parts.size());
   Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
                   state, work,         profile};
   AdvanceResult result;

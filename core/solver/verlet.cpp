@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
@@ -85,6 +86,7 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
           const Vec3Array<Real>& from, Vec3Array<Real>& to) {
   const StageTimer timer(tick.profile, Stage::integration, size_of(range));
   const VerletWorkspace<Real>& work = tick.work;
+  assert(work.internal.size() == tick.model.mass.size());
   KickPass<Real> pass;
   pass.count = size_of(range);
   pass.from = numbers(range, from);
@@ -232,6 +234,7 @@ void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
 template <class Real>
 void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
   if (tick.grabs.list.empty()) return;
+  assert(s >= 0 && s <= substeps);
   const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
   const auto count = static_cast<Real>(substeps);
   pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.push, tick.state,
@@ -311,6 +314,11 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
                              const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
                              const Collision<Real>& collision, ClothState<Real>& state,
                              VerletWorkspace<Real>& work, Profile& profile) {
+  assert(dt > 0 && substeps >= 1 && solver.damping_sweeps >= 1);
+  assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
+  assert(state.inverse_mass.size() == model.mass.size());
+  assert(work.grids.size() == model.parts.size() && "prepared for this model");
+  assert(!surroundings.air || surroundings.wind.size() == model.mass.size());
   const bool hands = !idle(grabs), shots = !grabs.shots.empty();
   Tick<Real> tick{model,   surroundings, solver, static_cast<Real>(dt),
                   grabs,   collision,    state,  work,

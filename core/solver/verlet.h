@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <optional>
 
 #include "core/attachments/grabs.h"
@@ -97,6 +98,7 @@ struct VerletWorkspace {
 
   /// Whether a part is kicked in one pass with its forces, without sweeps.
   bool kicks_at_once(const ClothModel<Real>& model, std::size_t part) const {
+    assert(part < grids.size() && part < meshes.size());
     return grids[part].fits() || (meshes[part].fits() && model.parts[part].hinges.count == 0);
   }
 

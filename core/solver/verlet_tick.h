@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/solver/verlet.h"
 
 // Shared by the files of verlet: the kicks of a tick and its inputs and state.
@@ -18,6 +20,7 @@ struct Kicks {
   Kick<Real> opening, full, closing;
 
   Kicks(double dt, double drag) {
+    assert(dt > 0 && drag >= 0);
     const double lost = 0.5 * drag * dt;
     opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
     full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
@@ -49,12 +52,14 @@ struct Tick {
 };
 
 inline std::size_t size_of(const IndexRange& range) {
+  assert(range.count >= 0);
   return static_cast<std::size_t>(range.count);
 }
 
 /// The numbers of a range of particles, three each.
 template <class Array>
 auto* numbers(const IndexRange& range, Array& array) {
+  assert(range.first >= 0 && static_cast<std::size_t>(range.end()) <= array.size());
   return (array.data() + range.first)->data();
 }
 

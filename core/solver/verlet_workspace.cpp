@@ -1,3 +1,4 @@
+#include <cassert>
 // Sizes the arrays of verlet.
 
 #include <utility>
@@ -32,6 +33,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
 template <class Real>
 void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool shots) {
   if (!air && !shots) return;
+  assert(grids.size() == model.parts.size() && "prepared for this model");
   for (GridPass<Real>& grid : grids) {
     if (grid.fits()) grid.make_room(air);
   }
@@ -47,6 +49,7 @@ void VerletWorkspace<Real>::make_room_for_paths() {
 
 template <class Real>
 void VerletWorkspace<Real>::load_paths(const CalmPaths<Real>& paths) {
+  assert(all_grids && paths.number != 0);
   if (std::exchange(loaded_paths, paths.number) == paths.number) return;
   for (GridPass<Real>& grid : grids) grid.load_paths(paths.base, paths.velocity);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -23,8 +24,10 @@ struct BendingLine {
 /// @param unit  the regular distance
 template <class Real>
 std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int unit) {
+  assert(at.size() >= 2 && unit >= 1);
   std::vector<BendingLine<Real>> lines(at.size());
   const auto step = [&](std::size_t k) {  // from line k to the next
+    assert(at[k + 1] > at[k]);
     return static_cast<Real>(at[k + 1] - at[k]) / static_cast<Real>(unit);
   };
   for (std::size_t k = 0; k + 1 < at.size(); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -35,6 +36,8 @@ struct LinearVectors {
 template <class Real, class Apply, class Precondition>
 LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, double enough,
                             Apply&& apply, Precondition&& precondition) {
+  assert(tolerance > 0 && tolerance < 1);
+  assert(v.count > 0 && v.count % static_cast<std::size_t>(kGridMargin) == 0);
   LinearSolution result;
   for (std::size_t n = 0; n < v.count; ++n) v.solution[n] = 0;
   precondition(v.residual, v.preconditioned);

@@ -3,6 +3,7 @@
 #include "core/solver/implicit/element_system.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/hinge.h"
@@ -38,6 +39,7 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
   free_.assign(count, Real(1));
   for (Index k = springs_.first; k < springs_.end(); ++k) {
     const Spring<Real>& spring = model.springs[static_cast<std::size_t>(k)];
+    assert(particles_.contains(spring.i) && particles_.contains(spring.j));
     ends_.push_back({spring.i - particles_.first, spring.j - particles_.first});
   }
   blocks_.assign(ends_.size(), {});
@@ -61,6 +63,7 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
 
 template <class Real>
 void ElementSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
+  assert(static_cast<std::size_t>(particles_.end()) <= inverse_mass.size());
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i] = inverse_mass[static_cast<std::size_t>(particles_.first) + i] > 0 ? Real(1) : Real(0);
 }
@@ -68,6 +71,9 @@ void ElementSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
 template <class Real>
 void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& point,
                                     Vec3Array<Real>& force) {
+  assert(point.rate > 0);
+  assert(point.v.size() == point.x.size() && point.inertia.size() == point.x.size());
+  assert(force.size() == point.x.size());
   const auto first = static_cast<std::size_t>(particles_.first);
   for (std::size_t i = 0; i < own_.size(); ++i) {
     const Real inertia = point.inertia[first + i];

@@ -2,6 +2,8 @@
 
 #include "core/solver/implicit/grid_system.h"
 
+#include <cassert>
+
 namespace weft {
 
 template <class Real>
@@ -17,12 +19,14 @@ bool GridSystem<Real>::fits(const ClothModel<Real>& model, const ClothPart<Real>
 template <class Real>
 GridSystem<Real>::GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
     : springs_(GridLayout(part.rows, part.columns), model, part), particles_(part.particles) {
+  assert(fits(model, part));
   multigrid_.prepare(GridLayout(part.rows, part.columns), part.quadratic_bending);
   for (GridVector<Real>* vector : {&x_, &v_, &force_}) vector->assign(size(), Real(0));
 }
 
 template <class Real>
 std::array<std::size_t, 3> GridSystem<Real>::places(Index particle) const {
+  assert(particle >= 0 && particle < particles_.count);
   const GridLayout& layout = grid().layout;
   const std::ptrdiff_t at = layout.at(particle / layout.columns, particle % layout.columns);
   return {static_cast<std::size_t>(at), static_cast<std::size_t>(at + layout.plane),
@@ -39,6 +43,9 @@ void GridSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
 template <class Real>
 void GridSystem<Real>::linearise(const ClothModel<Real>&, const NewtonPoint<Real>& at,
                                  Vec3Array<Real>& force) {
+  assert(at.rate > 0);
+  assert(at.v.size() == at.x.size() && at.inertia.size() == at.x.size());
+  assert(force.size() == at.x.size());
   SpringGrid<Real>& grid = multigrid_.finest();
   load(at.x, x_.data());
   load(at.v, v_.data());

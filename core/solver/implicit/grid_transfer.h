@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/math/aligned_vector.h"
 #include "core/solver/implicit/spring_grid.h"
 
@@ -13,6 +15,7 @@ namespace weft {
 
 /// Number of kept lines out of `count`.
 inline int coarse_count(int count) {
+  assert(count >= 2);
   return count / 2 + 1;
 }
 

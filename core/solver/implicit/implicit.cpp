@@ -3,6 +3,7 @@
 #include "core/solver/implicit/implicit.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/solver/implicit/implicit_step.h"
@@ -32,6 +33,7 @@ constexpr double kViolentStrain = 0.1;
 /// Discards the history of particles that were moved between ticks.
 template <class Real>
 void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<Real>& work) {
+  assert(work.history.size() == state.x.size() && work.end_x.size() == state.x.size());
   const bool same_step = work.last_dt == dt;
   bool all_same = same_step;
   for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -111,6 +113,7 @@ bool is_violent(const Step<Real>& step, const EnergyReading& before, const Energ
 /// @returns whether all linear systems were solved
 template <class Real>
 bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double& brought) {
+  assert(pieces >= 1 && begin < end);
   ImplicitWorkspace<Real>& work = step.work;
   ClothState<Real>& state = step.state;
   work.start_x = state.x;
@@ -254,6 +257,10 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
                                double dt, int substeps, Grabs<Real>& grabs,
                                const Collision<Real>& collision, ClothState<Real>& state,
                                ImplicitWorkspace<Real>& work, Profile& profile) {
+  assert(dt > 0 && substeps >= 1 && solver.iterations >= 1);
+  assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
+  assert(work.systems.size() == model.parts.size() && "prepared for this model");
+  assert(!surroundings.air || surroundings.wind.size() == model.mass.size());
   Step<Real> step{model, surroundings, solver, static_cast<Real>(dt), grabs, state, work, profile};
   AdvanceResult result;
   EnergyReading reading = energies_at(step, state.x, state.v);

@@ -1,6 +1,7 @@
 // Newton's method for one substep of the implicit solver.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/forces/air/air_force.h"
@@ -94,6 +95,7 @@ void add_hands(Step<Real>& step, Real progress) {
   const StageTimer timer(step.profile, Stage::attachments, work.hand_count);
   for (std::size_t h = 0; h < work.hand_count; ++h) {
     HandTerm<Real>& hand = work.hands[h];
+    assert(hand.grab < step.grabs.list.size() && "take_hands comes first");
     Grab<Real>& grab = step.grabs.list[hand.grab];
     const auto stiffness = static_cast<Real>(grab.def.stiffness);
     const Vec3<Real> target = grab.path_begin + (grab.path_end - grab.path_begin) * progress;
@@ -202,6 +204,7 @@ void take_hands(Step<Real>& step) {
   for (std::size_t g = 0; g < step.grabs.list.size(); ++g) {
     Grab<Real>& grab = step.grabs.list[g];
     if (grab.def.mode != GrabMode::live) continue;
+    assert(!grab.particles.empty());
     if (work.hands.size() == work.hand_count) work.hands.emplace_back();
     HandTerm<Real>& hand = work.hands[work.hand_count++];
     hand.grab = g;
@@ -209,6 +212,7 @@ void take_hands(Step<Real>& step) {
     hand.places.clear();
     hand.weights.clear();
     while (!step.model.parts[hand.part].particles.contains(grab.particles.front())) ++hand.part;
+    assert(hand.part < step.model.parts.size());
     const Index first = step.model.parts[hand.part].particles.first;
     for (std::size_t n = 0; n < grab.particles.size(); ++n) {
       const Index i = grab.particles[n];
@@ -222,6 +226,8 @@ void take_hands(Step<Real>& step) {
 template <class Real>
 bool find_ways(Step<Real>& step, Real progress) {
   ImplicitWorkspace<Real>& work = step.work;
+  assert(step.dt > 0);
+  assert(progress > 0 && progress < Real(1.001));
   for (std::size_t i = 0; i < work.way.size(); ++i)
     work.way[i] = step.movable(i) ? (step.state.v[i] * step.dt).eval() : Vec3<Real>::Zero().eval();
   bool solved = true;

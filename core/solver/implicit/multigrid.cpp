@@ -3,6 +3,7 @@
 #include "core/solver/implicit/multigrid.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -32,6 +33,7 @@ std::vector<int> every_second(const std::vector<int>& at) {
 
 template <class Real>
 void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<Real>& bending) {
+  assert(finest.rows >= 2 && finest.columns >= 2);
   levels_.clear();
   std::vector<int> rows(static_cast<std::size_t>(finest.rows)),
       columns(static_cast<std::size_t>(finest.columns));
@@ -56,12 +58,15 @@ void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<R
 
 template <class Real>
 void Multigrid<Real>::coarsen() {
+  assert(!levels_.empty() && "prepare comes first");
   double mean_inertia = 0;
   for (const Real inertia : finest().inertia) mean_inertia += static_cast<double>(inertia);
   mean_inertia /= finest().layout.rows * finest().layout.columns;
   for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
     const SpringGrid<Real>& fine = levels_[k].grid;
     SpringGrid<Real>& coarse = levels_[k + 1].grid;
+    assert(coarse.layout.rows == coarse_count(fine.layout.rows));
+    assert(coarse.layout.columns == coarse_count(fine.layout.columns));
     coarsen_springs(fine, coarse, lines_);
     const auto restrict = [&](const AlignedVector<Real>& from, AlignedVector<Real>& to) {
       const Real* numbers = from.data();
@@ -84,6 +89,7 @@ void Multigrid<Real>::coarsen() {
 
 template <class Real>
 void Multigrid<Real>::cycle(std::size_t number, const Real* r, Real* z) {
+  assert(number < levels_.size());
   Level& level = levels_[number];
   const auto omega = static_cast<Real>(kOmega);
   smooth_from_zero(level.grid, omega, r, z);

@@ -11,6 +11,7 @@
 #include "core/solver/implicit/spring_grid-inl.h"
 
 #if HWY_ONCE
+#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -72,6 +73,7 @@ void invert_diagonal(SpringGrid<double>& grid) {
 }
 
 GridLayout::GridLayout(int row_count, int column_count) : rows(row_count), columns(column_count) {
+  assert(row_count >= 2 && column_count >= 2);
   const std::ptrdiff_t whole = (column_count + 2 + kGridMargin - 1) / kGridMargin * kGridMargin;
   stride = whole + kGridMargin;
   origin = 2 * stride + kGridMargin;
@@ -121,6 +123,8 @@ template <class Real>
 void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form,
                                    const std::vector<int>& rows_at,
                                    const std::vector<int>& columns_at, int unit) {
+  assert(static_cast<int>(rows_at.size()) == layout.rows);
+  assert(static_cast<int>(columns_at.size()) == layout.columns);
   // A stencil over cells of twice the size has twice the width and an eighth of the value for the
   // same differences.
   const Real size = Real(1) / static_cast<Real>(unit * unit);

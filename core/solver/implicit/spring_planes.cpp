@@ -2,6 +2,8 @@
 
 #include "core/solver/implicit/spring_planes.h"
 
+#include <cassert>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/solver/implicit/spring_planes.cpp"
 #include <hwy/foreach_target.h>
@@ -49,6 +51,7 @@ SpringPlanes<Real>::SpringPlanes(const GridLayout& layout, const ClothModel<Real
       kind = kRising;
       --c;
     }
+    assert(r + 1 <= layout.rows && c >= 0 && c < layout.columns);
     const auto cell = static_cast<std::size_t>(layout.at(r, c));
     stiffness[kind][cell] = spring.stiffness;
     damping[kind][cell] = spring.damping;
