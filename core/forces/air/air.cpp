@@ -25,6 +25,7 @@ void sample_weather(const EnvironmentDef& environment, double time, const Vec3Ar
     std::fill(air.begin(), air.end(), mean);
     return;
   }
+  assert(environment.gust_length > 0);
   const auto speed = static_cast<Real>(environment.gust_speed);
   const Vec3d carried = (environment.wind + kDriftOfStillAir) * time;
   SmoothNoise<Real> noise;
