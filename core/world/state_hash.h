@@ -22,8 +22,8 @@ struct Conditions {
 
 /// XXH64 over the bits of everything that determines the future of a world: positions, velocities,
 /// pin counts of particles, grabs with their targets, colliders that moved or have a command,
-/// grippers, sleeping cloths, an environment or softness that differs from the scene's, and the tick
-/// unless all cloths sleep.
+/// grippers, sleeping cloths, an environment or softness that differs from the scene's, and the
+/// tick unless all cloths sleep.
 /// @param asleep  for each cloth 1 if it sleeps
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,
