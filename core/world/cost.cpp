@@ -3,6 +3,7 @@
 #include "core/world/cost.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -46,6 +47,7 @@ void check_size(const WorldDef& def) {
 }
 
 double sweeps_of(const WorldDef& def, SolverKind kind) {
+  assert(kind != SolverKind::automatic && "solver_of tells which");
   switch (kind) {
     case SolverKind::relaxation:
       return def.relaxation.sweeps;
@@ -57,6 +59,7 @@ double sweeps_of(const WorldDef& def, SolverKind kind) {
 }
 
 void check_cost(const TickCost& cost, const std::string& field, const std::string& value) {
+  assert(cost.particles >= 0 && cost.substeps >= 0 && cost.sweeps >= 0 && cost.tick_rate >= 0);
   const double a_tick = cost.updates(), a_second = a_tick * cost.tick_rate;
   if (a_tick <= kMostTickUpdates && a_second <= kMostUpdatesPerSecond) return;
   const bool tick = a_tick > kMostTickUpdates;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -35,6 +36,7 @@ void note(const Meeting& meeting, std::vector<Meeting>& list) {
 /// Index of the cloth that contains a particle.
 template <class Real>
 Index cloth_of(const ClothModel<Real>& model, Index particle) {
+  assert(particle >= 0 && particle < model.particle_count());
   Index cloth = 0;
   while (!model.parts[static_cast<std::size_t>(cloth)].particles.contains(particle)) ++cloth;
   return cloth;
@@ -134,6 +136,7 @@ WorldCrossings CrossingCounter<Real>::count(const World<Real>& world,
 template <class Real>
 void CrossingCounter<Real>::find_in_rounds(const World<Real>& world,
                                            std::vector<Meeting>& meetings) const {
+  assert(cloth_ && "a count comes first");
   for (std::size_t k = 0; k < world.colliders().size(); ++k) {
     const ShapeDef& shape = world.def().colliders[k].shape;
     const auto* ball = std::get_if<SphereDef>(&shape);

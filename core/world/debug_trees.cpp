@@ -3,6 +3,7 @@
 #include "core/world/debug_trees.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/error.h"
 
@@ -62,6 +63,7 @@ std::vector<Aabb<float>> DebugTrees<Real>::boxes(const std::string& tree, int le
   if (tree == "particles") return boxes_of_level(cloth_.particles(x, Real(0)), shown);
   if (tree == "edges") return boxes_of_level(cloth_.edges(x, edges_, Real(0)), shown);
   if (tree == "triangles") return boxes_of_level(cloth_.triangles(x, triangles_, Real(0)), shown);
+  assert(object(tree) && "level_count knows no other tree");
   return boxes_of_level(*object(tree), shown);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "core/solver/verlet.h"
 
 // Detects energy that has no source.
@@ -17,7 +19,9 @@ namespace weft {
 class EnergyAccount {
  public:
   /// @param total_mass  of the cloth [kg]
-  explicit EnergyAccount(double total_mass) : floor_(total_mass * kFloorSpeed * kFloorSpeed / 2) {}
+  explicit EnergyAccount(double total_mass) : floor_(total_mass * kFloorSpeed * kFloorSpeed / 2) {
+    assert(total_mass >= 0);
+  }
 
   /// Restarts with the next tick's initial energy.
   void clear() { credit_ = 0; }

@@ -2,6 +2,8 @@
 
 #include "core/world/reactions.h"
 
+#include <cassert>
+
 #include "core/forces/force_pass.h"
 
 namespace weft {
@@ -11,6 +13,8 @@ void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& st
                        const Surroundings<Real>& surroundings, const Vec3Array<Real>& pulled,
                        const Pins& pins, Reactions& reactions) {
   if (pins.list.empty()) return;
+  assert(pulled.empty() || pulled.size() == model.mass.size());
+  assert(pins.pin_count.size() == model.mass.size());
   Vec3Array<Real> force = pulled;
   force.resize(model.mass.size(), Vec3<Real>::Zero());
   add_spring_forces(model, state.x, state.v, force);
@@ -33,6 +37,7 @@ void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& st
     }
     for (const Index k : pin.particles) {
       const auto i = static_cast<std::size_t>(k);
+      assert(pins.pin_count[i] > 0);
       const Vec3<Real> all = force[i] + surroundings.gravity * model.mass[i];
       reaction.force -= all.template cast<double>() / pins.pin_count[i];
     }

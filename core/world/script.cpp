@@ -2,6 +2,8 @@
 
 #include "core/world/script.h"
 
+#include <cassert>
+
 #include "core/error.h"
 
 namespace weft {
@@ -42,6 +44,7 @@ void validate(const std::vector<WindKey>& winds) {
 }
 
 Vec3d offset_at(const HandDef& def, double time) {
+  assert(!def.path.empty());
   std::size_t next = 0;
   while (next < def.path.size() && def.path[next].time <= time) ++next;
   if (next == 0) return def.path.front().offset;
@@ -52,6 +55,7 @@ Vec3d offset_at(const HandDef& def, double time) {
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 double noise_at(std::uint64_t seed, std::uint64_t particle, std::uint64_t axis) {
+  assert(axis < 3);
   std::uint64_t z = seed * 0x9e3779b97f4a7c15 + particle * 3 + axis + 1;
   for (int round = 0; round < 2; ++round) {
     z += 0x9e3779b97f4a7c15;

@@ -3,6 +3,7 @@
 #include "core/world/sleep.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,7 @@ Sleep<Real>::Sleep(const ClothModel<Real>& model, const SleepDef& def, double ti
     : def_(def), tick_seconds_(static_cast<Real>(tick_seconds)),
       ticks_(static_cast<std::uint32_t>(std::max(1L, std::lround(def.after / tick_seconds)))),
       together_(together), mass_(model.mass) {
+  assert(tick_seconds > 0);
   const std::size_t parts = model.parts.size();
   asleep_.assign(parts, 0);
   disturbed_.assign(parts, 0);
@@ -87,6 +89,7 @@ void Sleep<Real>::add_coming(Index particle, const ClothState<Real>& state, Aabb
 
 template <class Real>
 void Sleep<Real>::enclose(std::size_t part, const ClothState<Real>& state) {
+  assert(part < particles_.size());
   const IndexRange& all = particles_[part];
   Aabb<Real> box;
   for (Index i = all.first; i < all.end(); ++i) add_coming(i, state, box);
@@ -96,6 +99,7 @@ void Sleep<Real>::enclose(std::size_t part, const ClothState<Real>& state) {
 
 template <class Real>
 void Sleep<Real>::fit(std::size_t part, const ClothState<Real>& state) {
+  assert(part < boxes_.size());
   Boxes& boxes = boxes_[part];
   if (boxes.fitted) return;
   for (std::size_t k = 0; k < boxes.patches.size(); ++k) {
@@ -125,6 +129,7 @@ bool Sleep<Real>::could_touch(std::size_t a, std::size_t b, const ClothState<Rea
 template <class Real>
 void Sleep<Real>::disturb_near(const ClothState<Real>& state, const ColliderDef& def,
                                const ColliderState& collider) {
+  assert(wanted());
   const double radius = radius_of(def.shape);
   if (!std::isfinite(radius)) return disturb_all();
   Aabb<Real> reach;
@@ -165,6 +170,7 @@ void Sleep<Real>::wake_cloth(std::size_t part, const Pins& pins, ClothState<Real
 template <class Real>
 void Sleep<Real>::wake(std::size_t part, const Pins& pins, ClothState<Real>& state) {
   if (!wanted()) return;
+  assert(state.x.size() == mass_.size() && state.inverse_mass.size() == mass_.size());
   const bool slept = is_asleep(part);
   const std::size_t island = island_[part];
   wake_cloth(part, pins, state);
@@ -238,6 +244,7 @@ void Sleep<Real>::find_islands(const ClothState<Real>& state) {
 template <class Real>
 bool Sleep<Real>::settle(ClothState<Real>& state) {
   if (!wanted()) return false;
+  assert(state.x.size() == mass_.size() && state.v.size() == mass_.size());
   const std::size_t parts = asleep_.size();
   bool any_ready = false;
   for (std::size_t p = 0; p < parts; ++p) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -45,7 +46,10 @@ class Sleep {
 
   /// Whether sleep is enabled.
   bool wanted() const { return def_.after > 0; }
-  bool is_asleep(std::size_t part) const { return asleep_[part] != 0; }
+  bool is_asleep(std::size_t part) const {
+    assert(part < asleep_.size());
+    return asleep_[part] != 0;
+  }
   bool any_asleep() const;
   bool all_asleep() const;
   /// For each cloth, in the order of the model: 1 if it sleeps.
@@ -54,7 +58,10 @@ class Sleep {
   std::size_t island_of(std::size_t part) const { return island_[part]; }
 
   /// Marks a cloth on which something acts in the coming tick: its stillness restarts.
-  void disturb(std::size_t part) { disturbed_[part] = 1; }
+  void disturb(std::size_t part) {
+    assert(part < disturbed_.size());
+    disturbed_[part] = 1;
+  }
   void disturb_all();
 
   /// The same for all cloths that a moving or pressing object could touch in the coming ticks.

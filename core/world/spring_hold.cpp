@@ -3,6 +3,7 @@
 #include "core/world/spring_hold.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -11,6 +12,7 @@ namespace {
 /// Side of the square that a particle of a part stands for [m]: a grid's cell, about a mesh's edge.
 template <class Real>
 double spacing_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+  assert(part.particles.count > 0 && part.fabric.areal_density > 0);
   double mass = 0;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
     mass += static_cast<double>(model.mass[static_cast<std::size_t>(i)]);
@@ -32,6 +34,7 @@ double extent_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
 }  // namespace
 
 double strain_of_hanging(double rows, double h, double gravity, double dt, int sweeps) {
+  assert(rows >= 0 && h > 0 && dt > 0 && sweeps >= 1);
   return 3 * rows * gravity * dt * dt / (h * sweeps);
 }
 

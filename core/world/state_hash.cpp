@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <type_traits>
 #include <vector>
 
@@ -87,6 +88,8 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
                          const std::vector<Gripper>& grippers, const std::vector<char>& asleep,
                          const Conditions& conditions, std::uint64_t tick) {
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(Real), "positions are hashed as plain numbers");
+  assert(state.x.size() == state.v.size());
+  assert(defs.size() == colliders.size());
   XXH64_state_t hash;
   XXH64_reset(&hash, 0);
   const auto awake = static_cast<std::size_t>(std::count(asleep.begin(), asleep.end(), 0));

@@ -3,6 +3,7 @@
 #include "core/world/verdict.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/error.h"
@@ -17,6 +18,7 @@ constexpr double kMostExcess = 0.01, kBack = 0.01;
 template <class Real>
 double change_of_heights(const ClothModel<Real>& model, const Vec3Array<Real>& from,
                          const Vec3Array<Real>& to) {
+  assert(from.size() == model.mass.size() && to.size() == model.mass.size());
   double largest = 0;
   for (const ClothPart<Real>& part : model.parts) {
     double sum = 0;

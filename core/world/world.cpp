@@ -3,6 +3,7 @@
 #include "core/world/world.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -86,6 +87,7 @@ void World<Real>::reset() {
   scene_hands_.assign(def_.hands.size(), {});
   grabs_.list.clear();
   grabs_.shots.clear();
+  assert(def_.colliders.size() >= 2 * def_.grippers.size() && "their jaws are colliders");
   colliders_ = initial_states(def_.colliders);
   grippers_ = initial_grippers(def_.grippers, def_.colliders.size() - 2 * def_.grippers.size());
   for (std::size_t k = 0; k < def_.pins.size(); ++k) {
@@ -108,6 +110,8 @@ void World<Real>::reset() {
 
 template <class Real>
 void World<Real>::accept_state() {
+  assert(state_.x.size() == model_.mass.size() && state_.v.size() == model_.mass.size());
+  assert(state_.inverse_mass.size() == model_.mass.size());
   reactions_.reset();
   wake_all();
   last_good_.x = state_.x;
@@ -203,6 +207,7 @@ void World<Real>::blow_wind() {
   surroundings_.air_density = environment_.air_density;
   surroundings_.air = !is_calm(environment_);
   if (!surroundings_.air) return;
+  assert(surroundings_.wind.size() == model_.mass.size() && "make_room comes first");
   const StageTimer timer(report_.profile, Stage::air, 0);
   const double time = static_cast<double>(tick_) / def_.tick_rate;
   report_.profile[Stage::fans].work += sample_air(environment_, time, state_.x, surroundings_.wind);
@@ -210,6 +215,7 @@ void World<Real>::blow_wind() {
 
 template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
+  assert(substeps >= 1);
   SolverKind kind = solver_of(def_);
   int without_loss = 0;
   if (kind == SolverKind::implicit) {
@@ -272,6 +278,8 @@ Collision<Real> World<Real>::collision() {
 /// One tick of the chosen solver.
 template <class Real>
 AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
+  assert(kind != SolverKind::automatic && substeps >= 1);
+  assert(colliders_.size() == def_.colliders.size());
   const double dt = tick_seconds() / substeps;
   contact_.begin_tick(tick_seconds(), &colliders_);
   if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
@@ -296,6 +304,7 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
 
 template <class Real>
 void World<Real>::restore_last_good() {
+  assert(last_good_.x.size() == model_.mass.size() && last_good_.v.size() == model_.mass.size());
   state_.x = last_good_.x;
   state_.v = last_good_.v;
   take_back_motion(colliders_);

@@ -1,6 +1,7 @@
 // Commands to a world, and queries, between its steps.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,7 @@ void World<Real>::finish_pins() {
 template <class Real>
 GrabId World<Real>::grab(const GrabDef& def) {
   const GrabId id = add_grab(model_, state_, def, grabs_);
+  assert(!grabs_.list.back().particles.empty());
   wake(grabs_.list.back().particles.front());
   return id;
 }
@@ -79,6 +81,8 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
 /// Throws DefinitionError if the collider is a jaw.
 template <class Real>
 void World<Real>::refuse_jaw(std::size_t collider) const {
+  assert(collider < colliders_.size());
+  assert(colliders_.size() >= 2 * grippers_.size());
   if (collider < colliders_.size() - 2 * grippers_.size()) return;
   throw DefinitionError("collider", def_.colliders[collider].name, "an object that is not a jaw",
                         "a gripper moves its jaws: command the gripper");
@@ -127,6 +131,8 @@ void World<Real>::set_softness(double softness) {
   ClothModel<Real> model = build_cloths<Real>(def_.cloths);
   soften(softness, model);
   softness_ = softness;
+  assert(model.springs.size() == model_.springs.size());
+  assert(model.parts.size() == model_.parts.size());
   model_.springs = std::move(model.springs);
   for (std::size_t p = 0; p < model_.parts.size(); ++p) {
     model_.parts[p].grid_springs = model.parts[p].grid_springs;

@@ -3,6 +3,7 @@
 #include "core/world/world_def.h"
 
 #include <algorithm>
+#include <cassert>
 #include <type_traits>
 
 #include "core/cloth/fabric_presets.h"
@@ -55,6 +56,7 @@ ContactModel contact_of(const WorldDef& def) {
 }
 
 std::string cloth_name(const WorldDef& def, Index cloth) {
+  assert(cloth >= 0 && static_cast<std::size_t>(cloth) < def.cloths.size());
   const std::string& name = def.cloths[static_cast<std::size_t>(cloth)].name;
   return name.empty() ? "cloth " + std::to_string(cloth) : name;
 }

@@ -1,6 +1,7 @@
 // Measures contacts and reaction forces of a world, on request only.
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/contact/guard/guard_contacts.h"
 #include "core/stop_signal.h"
@@ -28,8 +29,10 @@ void World<Real>::take_reactions() {
   found.tick = tick_;
   found.colliders.assign(def_.colliders.size(), Vec3d::Zero());
   if (collision().weft) found.contacts = contact_.contacts(state_.x);
-  for (const ContactPoint& contact : found.contacts)
+  for (const ContactPoint& contact : found.contacts) {
+    assert(static_cast<std::size_t>(contact.collider) < found.colliders.size());
     found.colliders[static_cast<std::size_t>(contact.collider)] -= contact.force();
+  }
   if (seed_contact_) {
     for (std::size_t k = 0; k < colliders_.size(); ++k) found.colliders[k] = colliders_[k].force;
   }

@@ -1,6 +1,7 @@
 // Ends ticks early, and restores the state before them.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -54,6 +55,7 @@ std::string describe(const Divergence& d) {
 template <class Real>
 std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, SolverKind kind,
                                                int substeps) const {
+  assert(kind != SolverKind::automatic && substeps >= 1);
   Divergence d;
   d.tick = tick_ + 1;
   d.substeps = substeps;
@@ -113,6 +115,7 @@ void World<Real>::keep_checkpoint() {
 
 template <class Real>
 void World<Real>::go_back() {
+  assert(checkpoint_.state.x.size() == model_.mass.size() && "keep_checkpoint comes first");
   state_ = checkpoint_.state;
   pins_ = checkpoint_.pins;
   grabs_ = checkpoint_.grabs;
@@ -121,6 +124,7 @@ void World<Real>::go_back() {
   scene_hands_ = checkpoint_.scene_hands;
   environment_.wind = checkpoint_.wind;
   account_ = checkpoint_.account;
+  assert(!sleep_.wanted() || checkpoint_.sleep);
   if (sleep_.wanted()) sleep_ = *checkpoint_.sleep;
   report_ = checkpoint_.report;
   report_.halted = true;

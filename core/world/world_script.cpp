@@ -1,5 +1,6 @@
 // Scheduled events of a scene: its own hands, winds and sudden disturbances.
 
+#include <cassert>
 #include <cmath>
 
 #include "core/error.h"
@@ -35,6 +36,7 @@ GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
 /// Puts all free particles into a ball around their middle.
 template <class Real>
 void World<Real>::gather(double radius, std::uint64_t seed) {
+  assert(radius > 0);
   Vec3d middle = Vec3d::Zero();
   std::size_t count = 0;
   for (std::size_t i = 0; i < state_.x.size(); ++i) {
@@ -93,8 +95,10 @@ void World<Real>::run_script() {
     environment_.wind = key.wind;
     wake_all();
   }
+  assert(scene_hands_.size() == def_.hands.size());
   for (std::size_t k = 0; k < def_.hands.size(); ++k) {
     const HandDef& hand = def_.hands[k];
+    assert(!hand.path.empty());
     SceneHand& held = scene_hands_[k];
     if (tick_of(hand.path.front().time) == tick_ && has_room(grabs_)) {
       GrabDef def = hold_of(model_, hand);

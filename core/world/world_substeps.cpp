@@ -1,6 +1,7 @@
 // Number of substeps of a tick.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/forces/air/air.h"
@@ -16,6 +17,7 @@ constexpr long kMostForHands = 2, kEnoughForHands = 40;
 
 template <class Real>
 int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environment) const {
+  assert(kind != SolverKind::automatic);
   if (kind == SolverKind::implicit) {
     const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
     return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
@@ -37,6 +39,7 @@ int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environm
 template <class Real>
 long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& environment,
                                      long cloth_alone, int fewest) const {
+  assert(cloth_alone >= 1 && fewest >= 1);
   const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts) {
