@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -39,11 +40,13 @@ constexpr double kBustHeight = 1.215, kBustAngle = 0.62, kBustDepth = 0.042, kBu
 
 /// Catmull-Rom interpolation of four values at 0 <= t <= 1 between the middle two.
 double interpolate(double a, double b, double c, double d, double t) {
+  assert(t >= 0 && t <= 1);
   return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
 /// Section at `position` in the table, 0 to 11.
 Section section_at(double position) {
+  assert(position >= 0 && position <= 11);
   const auto k = static_cast<std::ptrdiff_t>(std::min(std::floor(position), 10.0));
   const double t = position - static_cast<double>(k);
   const auto at = [](std::ptrdiff_t n) {
@@ -75,6 +78,7 @@ class Loft {
   /// @param point  point(phi) for angles phi from the front, turning towards +x
   template <class Point>
   void add_ring(int count, Point&& point) {
+    assert(count >= 3);
     const auto start = static_cast<Index>(mesh_.positions.size());
     for (int n = 0; n < count; ++n) mesh_.positions.push_back(point(2 * pi * n / count));
     if (count_ == 0)
@@ -86,6 +90,7 @@ class Loft {
   }
 
   TriangleMesh close(const Vec3d& top) {
+    assert(count_ > 0 && "a ring comes first");
     mesh_.positions.push_back(top);
     fan(start_, count_, static_cast<Index>(mesh_.positions.size()) - 1, true);
     return std::move(mesh_);

@@ -1,3 +1,4 @@
+#include <cassert>
 // The fourth list of hard cases: cloth that hands fold and unfold.
 
 #include <cmath>
@@ -22,6 +23,7 @@ struct Hold {
 /// @param way      displacement to the place where they let go [m]
 void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, double seconds,
                const Vec3d& way) {
+  assert(!holds.empty() && start >= 0 && seconds > 0);
   constexpr int kKeys = 20;
   constexpr double kHeld = 0.1, kArch = 0.15;  // arch: height per length of the displacement
   for (const Hold& hold : holds) {

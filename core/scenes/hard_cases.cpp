@@ -2,6 +2,7 @@
 
 #include "core/scenes/hard_cases.h"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -13,10 +14,12 @@ namespace {
 using std::numbers::pi;
 
 Eigen::Quaterniond turn(double angle, const Vec3d& axis) {
+  assert(std::abs(axis.squaredNorm() - 1) < 1e-12);
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
 HandDef hand_at(double u, double v, std::vector<HandKey> path) {
+  assert(u >= 0 && u <= 1 && v >= 0 && v <= 1);
   HandDef hand;
   hand.u = u;
   hand.v = v;
@@ -225,6 +228,9 @@ void build_start_inside(WorldDef& def, const std::string&) {
 }  // namespace
 
 void judge(WorldDef& def, double strain, double lost_motion, double clear_after) {
+  assert(strain > 0 && strain <= 1000);
+  assert(lost_motion >= 0 && lost_motion <= 1);
+  assert(clear_after >= 0 && clear_after <= 3600);
   def.contact.seed.self = SelfContact::guard;
   def.verdict = {strain, lost_motion, clear_after, 0, 0};
 }

@@ -1,3 +1,4 @@
+#include <cassert>
 // The second list of hard cases: ratios, ticks, forces and winds far beyond normal use.
 
 #include <cmath>
@@ -20,6 +21,7 @@ FabricDef weave(double areal_density, double warp, double weft, double shear) {
 
 /// Square sheets above each other and above a ball, each slightly offset.
 void drop_on_ball(WorldDef& def, int particles, const std::vector<FabricDef>& fabrics) {
+  assert(particles >= 2 && !fabrics.empty());
   def.cloths.clear();
   for (std::size_t k = 0; k < fabrics.size(); ++k) {
     const auto layer = static_cast<double>(k);
@@ -51,6 +53,7 @@ void build_warp_and_weft(WorldDef& def, const std::string&) {
 
 /// Two sheets on a ball, one lifted and dropped by a hand, in ticks of any length.
 void drop_in_ticks(WorldDef& def, double ticks_a_second) {
+  assert(ticks_a_second > 0);
   drop_on_ball(def, 21, {make_fabric("cotton"), make_fabric("silk")});
   HandDef hand;
   hand.cloth = "sheet0";  // the lower one

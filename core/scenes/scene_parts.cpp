@@ -2,6 +2,8 @@
 
 #include "core/scenes/scene_parts.h"
 
+#include <cassert>
+
 #include "core/scenes/built_in_meshes.h"
 
 namespace weft {
@@ -12,6 +14,7 @@ ColliderDef ground() {
 
 ClothDef hanging_cloth(int rows, int columns, double width, double height, double top,
                        double depth) {
+  assert(rows >= 2 && columns >= 2 && width > 0 && height > 0);
   ClothDef cloth;
   cloth.rows = rows;
   cloth.columns = columns;
@@ -22,6 +25,7 @@ ClothDef hanging_cloth(int rows, int columns, double width, double height, doubl
 }
 
 ClothDef lying_cloth(int particles, double side, double height) {
+  assert(particles >= 2 && side > 0);
   ClothDef cloth;
   cloth.rows = cloth.columns = particles;
   cloth.width = cloth.height = side;

@@ -3,6 +3,7 @@
 #include "core/scenes/scenes.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/cloth/fabric_presets.h"
 #include "core/error.h"
@@ -16,6 +17,7 @@ namespace {
 
 /// Pins discs along the edge v = 0, evenly from corner to corner.
 void pin_along_top(WorldDef& def, int count, double radius) {
+  assert(count >= 2 && radius >= 0);
   for (int k = 0; k < count; ++k)
     def.pins.push_back({MaterialPoint{static_cast<double>(k) / (count - 1), 0}, radius, {}});
 }

@@ -2,6 +2,7 @@
 
 #include "core/scenes/seed_scenes.h"
 
+#include <cassert>
 #include <numbers>
 
 namespace weft {
@@ -37,6 +38,7 @@ void drop_on_ball(WorldDef& def, double side, const SphereDef& ball) {
 
 /// Fig. 4: one cloth with different bending.
 void build_fig4(WorldDef& def, double bending, double rest_angle) {
+  assert(bending >= 0);
   drop_on_ball(def, 1.2, {Vec3d(0, 0.75, 0), 0.28});
   def.contact.seed.self = SelfContact::triangles;
   ClothDef& cloth = def.cloths[0];

@@ -1,3 +1,4 @@
+#include <cassert>
 // The third list of hard cases: cloth that starts through cloth.
 
 #include "core/scenes/built_in_meshes.h"
@@ -16,6 +17,7 @@ void fall_and_come_apart(WorldDef& def) {
 
 ClothDef sheet(const std::string& name, double side, const Vec3d& centre, const Vec3d& u,
                const Vec3d& v) {
+  assert(side > 0 && u.norm() > 0);
   ClothDef cloth;
   cloth.name = name;
   cloth.rows = cloth.columns = 25;
