@@ -126,7 +126,6 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
     return (x[static_cast<std::size_t>(i)].template cast<double>() - centre).eval();
   };
   assert(x.size() == model.mass.size());
-  assert(part.triangles.count > 0);
   Shadow shadow(2 * kDrapeSpecimenRadius);
   double flat = 0;
   for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
