@@ -124,10 +124,19 @@ void World<Real>::accept_state() {
 
 template <class Real>
 const TickReport& World<Real>::step() {
-  keep_checkpoint();
-  report_.halted = false;
+  begin_tick();
   try {
-    step_in_order();
+    run_script();      // hands, winds and disturbances of the scene itself
+    plan_targets();    // of grippers, objects and pins, at their speeds
+    rouse_sleepers();  // on which something acts
+    if (rests()) return rest();
+    const int substeps = choose_substeps(solver_of(def_));
+    sample_surroundings();                         // gravity, drag, the air at each particle
+    lead_hands(tick_seconds(), state_.x, grabs_);  // no farther than the cloth can follow
+    advance_or_recover(substeps);  // forces, kick, contact, drift; more substeps if that blew up
+    finish_targets();              // what was reached, held back or gripped
+    put_to_sleep();
+    end_tick();
   } catch (const Stopped&) {
     go_back();
   } catch (...) {
@@ -137,33 +146,33 @@ const TickReport& World<Real>::step() {
   return report_;
 }
 
-/// One tick, stage by stage.
 template <class Real>
-void World<Real>::step_in_order() {
+void World<Real>::begin_tick() {
+  keep_checkpoint();
+  report_.halted = report_.rested = false;
   report_.brought = 0;
-  run_script();
   report_.profile.clear();
   report_.divergence.reset();
-  plan_grippers(static_cast<double>(tick_) / def_.tick_rate, tick_seconds(), thickest_, grippers_,
-                colliders_);
-  plan_motion(def_.colliders, static_cast<double>(tick_) / def_.tick_rate, tick_seconds(),
-              colliders_);
+}
+
+template <class Real>
+void World<Real>::plan_targets() {
+  const double time = static_cast<double>(tick_) / def_.tick_rate;
+  plan_grippers(time, tick_seconds(), thickest_, grippers_, colliders_);
+  plan_motion(def_.colliders, time, tick_seconds(), colliders_);
   PinDrive<Real>::plan(tick_seconds(), state_, pins_);
-  rouse_sleepers();
-  if (rests()) {
-    rest();
-    return;
-  }
-  const int substeps = choose_substeps(solver_of(def_));
-  blow_wind();
-  lead_hands(tick_seconds(), state_.x, grabs_);
-  advance_or_recover(substeps);
+}
+
+template <class Real>
+void World<Real>::finish_targets() {
   finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_grippers(tick_seconds(), colliders_, grippers_);
   finish_tick(grabs_);
   finish_pins();
-  put_to_sleep();
-  report_.rested = false;
+}
+
+template <class Real>
+void World<Real>::end_tick() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (measures_forces_) take_reactions();
@@ -201,7 +210,7 @@ std::size_t World<Real>::solver_bytes() const {
 }
 
 template <class Real>
-void World<Real>::blow_wind() {
+void World<Real>::sample_surroundings() {
   surroundings_.gravity = environment_.gravity.template cast<Real>();
   surroundings_.drag = environment_.drag;
   surroundings_.air_density = environment_.air_density;

@@ -255,10 +255,13 @@ class World {
   void make_room();
   StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind,
                                  const EnvironmentDef& environment) const;
-  void blow_wind();
+  void sample_surroundings();
   void keep_checkpoint();
   void go_back();
-  void step_in_order();
+  void begin_tick();
+  void plan_targets();
+  void finish_targets();
+  void end_tick();
   void advance_or_recover(int substeps);
   AdvanceResult advance(SolverKind kind, int substeps);
   Collision<Real> collision();
