@@ -36,7 +36,7 @@ struct BuiltScene {
   std::vector<SceneNotice> notices;  ///< of its start
 };
 
-/// All remarks on a world at its start, besides the `repairs` of its objects.
+/// All remarks on a world at its start, including the `repairs` of its objects.
 std::vector<SceneNotice> notices_of(const ServedWorld& world,
                                     const std::vector<std::string>& repairs);
 

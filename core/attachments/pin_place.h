@@ -30,8 +30,8 @@ struct MaterialPoint {
 /// A particle by its index, or a place.
 using PinPlace = std::variant<Index, Corner, EdgeStrip, MaterialPoint>;
 
-/// Fixes a piece of the fabric where it is. A single particle is a point singularity whose strain
-/// grows with resolution; a disc of fixed physical radius is not.
+/// Fixes a piece of the fabric where it is. The strain at a single particle, a point singularity,
+/// grows with resolution; that at a disc of fixed physical radius does not.
 struct PinDef {
   PinPlace place = Index(0);
   double radius = 0;       ///< of the disc in the fabric [m], 0 to 100; 0: one particle; unused by

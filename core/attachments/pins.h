@@ -17,7 +17,7 @@ using PinId = std::uint32_t;
 
 inline constexpr double kLeastPinSpeed = 1e-3, kMostPinSpeed = 20;  ///< [m/s]
 
-/// Farthest that a pin may be sent along an axis [m].
+/// Limit of a pin's target along each axis [m].
 inline constexpr double kFarthestPinTarget = 1e4;
 
 /// Target of a pin. The pin moves in a straight line and lags when blocked: its particles follow as

@@ -154,9 +154,10 @@ struct ClothModel {
 /// Builds one cloth, as a model with one part.
 ///
 /// A grid has structural and shear springs whose continuum limit is the fabric's tensor, and hinges
-/// over both ways to split its cells, half of each, whose bending rigidity is B in every direction.
-/// A mesh as in mesh_cloth.h. Throws DefinitionError if a field is out of range, a spring would
-/// have negative stiffness (shear too large for the cell's shape) or a mesh is degenerate.
+/// over both splittings of its cells, with half the rigidity each, which give the bending rigidity
+/// B in every direction. A mesh is built as described in mesh_cloth.h. Throws DefinitionError if a
+/// field is out of range, a spring would have negative stiffness (shear too large for the cell's
+/// shape) or a mesh is degenerate.
 template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def);
 

@@ -115,9 +115,9 @@ void finish_grid(const ClothDef& def, ClothModel<Real>& model) {
 template void finish_grid(const ClothDef&, ClothModel<float>&);
 template void finish_grid(const ClothDef&, ClothModel<double>&);
 
-// An edge along v bends with curvature along u. The diagonals resist twist alone, so their weight
-// is 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean: so every direction
-// has the rigidity of the fabric (tests/laws/bending_test.cpp).
+// An edge along v bends with curvature along u. The diagonals resist only twist, so their weight is
+// 2 h_u^2 h_v^2 / (h_u^2 + h_v^2)^2 and their rigidity the mean: every direction then has the
+// rigidity of the fabric (tests/laws/bending_test.cpp).
 double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
   assert(du >= 0 && dv >= 0);
   constexpr double kAlongAxis = 1e-9;

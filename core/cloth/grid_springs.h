@@ -9,9 +9,9 @@
 
 namespace weft {
 
-/// Stiffnesses of the springs inside a grid of cells h_u x h_v [m], [N/m]: those whose continuum
-/// limit is the plane-stress tensor C11 = Y_w, C22 = Y_f, C12 = C66 = G. Border springs of
-/// the same direction have half.
+/// Stiffnesses of the inner springs of a grid with cells h_u x h_v [m], [N/m], whose continuum
+/// limit is the plane-stress tensor C11 = Y_w, C22 = Y_f, C12 = C66 = G. Border springs of the same
+/// direction have half.
 struct GridStiffness {
   double warp = 0;   ///< along u: (Y_w - G h_u^2/h_v^2) h_v/h_u
   double weft = 0;   ///< along v: (Y_f - G h_v^2/h_u^2) h_u/h_v

@@ -34,8 +34,8 @@ void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part);
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);
 
-/// Gives every spring of a part of the model the dashpot c = beta k with beta = 2 zeta / omega of
-/// the membrane's highest mode. Without it a shaken cloth keeps its high modes hot for ever
+/// Gives every spring of a part the dashpot c = beta k with beta = 2 zeta / omega of the membrane's
+/// highest mode. Without it a shaken cloth keeps the energy of its high modes forever
 /// (tests/laws/shaking_test.cpp).
 template <class Real>
 void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio);

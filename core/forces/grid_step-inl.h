@@ -76,8 +76,8 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
   compute_factors(g, r, s.rest_shear, kShear, 1, below, to.rising);
 }
 
-/// One component of the forces of springs and quadratic bending that start on a row, each once,
-/// with the factors at hand.
+/// One component of the forces of springs and quadratic bending that start on a row, each computed
+/// once, from the given factors.
 /// @param component  0 to 2
 template <class Real>
 HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int component,

@@ -13,9 +13,9 @@
 
 namespace weft {
 
-/// Springs, dashpots and quadratic bending of one part of the model by gathering: each particle
-/// adds up what pulls it to those that come later, and takes what earlier ones have found. No order
-/// of particles matters, so the part need not be a grid.
+/// Forces of springs, dashpots and quadratic bending of one part of the model, by gathering: each
+/// particle sums the pulls of its later neighbours, and takes those that earlier ones have
+/// computed. No particular order of particles is needed, so the part need not be a grid.
 template <class Real>
 class MeshPass {
  public:

@@ -9,8 +9,8 @@
 
 namespace weft {
 
-/// Keeps divisions by the squared length finite when both ends coincide [m^2]. The elastic force
-/// divides by the root of it alone, the dashpot by it, so it must not be too small for float.
+/// Keeps divisions by the squared length finite when both ends coincide [m^2]. It must not be too
+/// small for float: the elastic force divides by its root, the dashpot by itself.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
 /// Force on end i of a spring from x_i to x_j (the opposite force acts on j) [N]: k d (1 - L/l) + c

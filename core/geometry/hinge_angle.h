@@ -7,9 +7,11 @@
 #include "core/math/angle.h"
 #include "core/types.h"
 
+// Dihedral angle of two triangles that share an edge.
+
 namespace weft {
 
-/// Dihedral angle of a hinge and its derivative by the four corners.
+/// Dihedral angle of a hinge and its gradient by the four corners.
 template <class Real>
 struct HingeAngle {
   Real theta = 0;                           ///< [rad]; 0 when flat
@@ -22,10 +24,10 @@ struct HingeAngle {
 /// @param x0,x1  ends of the shared edge [m]
 /// @param x2,x3  the opposite corners of triangles (x0,x1,x2) and (x1,x0,x3) [m]
 /// @param smallest_normal2  [m^4]; see Hinge::smallest_normal2. While the squared length of a
-/// normal
-///               is below it, the whole gradient is scaled down in proportion: it would grow as one
-///               over the height of the triangle, and a crumpled cloth would meet forces without
-///               bound. One factor for all four corners keeps both momenta.
+///                          normal is below it, the whole gradient is scaled down in proportion:
+///                          otherwise it would grow as one over the height of the triangle, and
+///                          forces in a crumpled cloth would be unbounded. One factor for all four
+///                          corners conserves both momenta.
 /// A hinge with an edge of zero length or a triangle without area has angle 0 and no gradient.
 template <class Real>
 inline HingeAngle<Real> hinge_angle(const Vec3<Real>& x0, const Vec3<Real>& x1,
@@ -43,7 +45,7 @@ inline HingeAngle<Real> hinge_angle(const Vec3<Real>& x0, const Vec3<Real>& x1,
   const Real smaller = n1_2 < n2_2 ? n1_2 : n2_2;
   const Real lever = smaller < smallest_normal2 ? l * (smaller / smallest_normal2) : l;
   const Vec3<Real> p1 = n1 * (lever / n1_2), p2 = n2 * (lever / n2_2);
-  // Where the feet of the two heights stand along the edge, as parts of its length.
+  // Positions of the feet of the two heights along the edge, as fractions of its length.
   const Real s1 = a.dot(e) / l2, s2 = b.dot(e) / l2;
   result.gradient[2] = -p1;
   result.gradient[3] = -p2;

@@ -61,11 +61,11 @@ void sweep_grid(const SweepView<double>& grid, bool down, bool first, bool last)
 void move_grid(const SweepView<float>& grid);
 void move_grid(const SweepView<double>& grid);
 
-/// Compliant relaxation (XPBD) of one part of the model that is a grid with regular springs: the
-/// sweeps of relaxation.h, coloured within each row and in vector code chosen for the processor
-/// when the program runs. Only + - * / and square roots in a fixed order, so the choice does not
-/// change a bit. The variable is the way x' - x: positions of two steps agree in all but their
-/// last bits, and their difference loses float precision at small substeps.
+/// Compliant relaxation (XPBD) of one grid part with regular springs: the sweeps of relaxation.h,
+/// coloured within each row, in vector code selected for the processor at run time. Only + - * /
+/// and square roots in a fixed order, so the selection does not change a bit. The variable is the
+/// displacement x' - x: positions of two steps agree in all but their last bits, and their
+/// difference would lose float precision at small substeps.
 template <class Real>
 class GridRelaxation {
  public:

@@ -106,11 +106,11 @@ struct VerletWorkspace {
   std::size_t bytes() const;
 };
 
-/// Leapfrog over one tick (Verlet 1967), started and ended with half a kick, so that positions and
-/// velocities meet at the tick's end. Velocity is a variable of its own: position-only Verlet
-/// loses float precision at small steps. Drag is split exactly: v <- [v (1 - a dt/2) + dt f/m]/(1 +
-/// a dt/2). Contact corrects the velocities between each kick and drift, the
-/// seed's also positions after it.
+/// Leapfrog over one tick (Verlet 1967), with half a kick at its start and its end, so that
+/// positions and velocities are synchronous at the tick's end. Velocity is a separate variable,
+/// because position-only Verlet loses float precision at small steps. Drag is split exactly: v <-
+/// [v (1 - a dt/2) + dt f/m]/(1 + a dt/2). Contact corrects the velocities between each kick and
+/// drift; the seed's contact also corrects positions after it.
 ///
 /// @param dt        substep [s], stable by stability_bound.h
 /// @param substeps  at least 1

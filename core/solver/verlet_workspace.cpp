@@ -1,6 +1,6 @@
-#include <cassert>
 // Sizes the arrays of verlet.
 
+#include <cassert>
 #include <utility>
 
 #include "core/solver/verlet.h"

@@ -1,4 +1,4 @@
-// Whether the solver relaxation has the substeps to hold a cloth's springs.
+// Estimates whether relaxation has enough substeps to hold a cloth's springs.
 
 #include "core/world/spring_hold.h"
 
@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// Side of the square that a particle of a part stands for [m]: a grid's cell, about a mesh's edge.
+/// Side of the square represented by a particle of a part [m]: a grid's cell, about a mesh's edge.
 template <class Real>
 double spacing_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   assert(part.particles.count > 0 && part.fabric.areal_density > 0);
@@ -19,7 +19,7 @@ double spacing_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   return std::sqrt(mass / part.fabric.areal_density / part.particles.count);
 }
 
-/// Longest side of the box around a part at rest [m].
+/// Longest side of the bounding box of a part at rest [m].
 template <class Real>
 double extent_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   Vec3<Real> low = model.rest_positions[static_cast<std::size_t>(part.particles.first)];

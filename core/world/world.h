@@ -98,9 +98,9 @@ class World {
   /// Throws DefinitionError if the definition cannot be built.
   explicit World(const WorldDef& def, const Runtime& runtime = {});
 
-  /// Advances by one tick of 1 / tick_rate seconds. A stop signal of the calling thread ends it in
-  /// the midst of its work, with the same result as `halt`; so does what is thrown in it, which no
-  /// legal scene does, and which is thrown on.
+  /// Advances by one tick of 1 / tick_rate seconds. A stop signal of the calling thread ends it
+  /// early, with the same result as `halt`. An exception, which no legal scene causes, does the
+  /// same and is rethrown.
   const TickReport& step();
 
   /// Result of a tick that was given up: the state at its start, contact without memory of the

@@ -74,7 +74,7 @@ void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
     PinMove move;
     move.target = pin.path ? pin.path->move.target
                            : state_.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
-    // Pins that are led on and on stop where a command may send them at most.
+    // Pins moved repeatedly stop at the limit of commanded targets.
     move.target =
         (move.target + insult.pinned).cwiseMax(-kFarthestPinTarget).cwiseMin(kFarthestPinTarget);
     move.speed = insult.pin_speed;

@@ -1,4 +1,4 @@
-// The air at each particle, and what follows from it for substeps and sleep.
+// Samples the air at the particles, and bounds its speed for substeps and sleep.
 
 #include "core/forces/air/air.h"
 
@@ -10,13 +10,13 @@
 namespace weft {
 namespace {
 
-/// Without a mean wind the eddies still drift, or a gust would stand still for ever [m/s].
+/// Eddies drift even without a mean wind, because a gust would otherwise stay in place [m/s].
 const Vec3d kDriftOfStillAir(0.31, 0.17, 0.23);
 
-/// Bound of the length of SmoothNoise, whose components reach 1: more than the root of 3.
+/// Bound of the length of SmoothNoise: its components reach 1, so it exceeds the root of 3.
 constexpr double kLongestNoise = 2;
 
-/// The wind that is everywhere.
+/// Mean wind and gusts.
 template <class Real>
 void sample_weather(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
                     Vec3Array<Real>& air) {

@@ -42,9 +42,9 @@ void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const float
 void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const double* free,
                    const double* from, double* to, TransferLines<double>& lines);
 
-/// Each coarse spring is the sum of the parallel fine ones about it, by their bilinear weight
-/// across it and by the squared part of its length that they cover: what is compressed in wrinkles
-/// does not make the coarse cloth soft, as springs made anew from every second position would.
+/// Each coarse spring is the sum of the parallel fine ones around it, by their bilinear weight
+/// across it and the squared fraction of its length that they cover: springs compressed in wrinkles
+/// do not soften the coarse cloth, as springs rebuilt from every second position would.
 void coarsen_springs(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
                      TransferLines<float>& lines);
 void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,

@@ -84,8 +84,8 @@ struct ImplicitWorkspace {
   void forget();
 };
 
-/// One tick of the implicit solver: BDF2 with a few Newton iterations and conjugate gradients,
-/// on grids with multigrid as preconditioner (multigrid.h),
+/// One tick of the implicit solver: BDF2 with a few Newton iterations and conjugate gradients, on
+/// grids preconditioned by multigrid (multigrid.h),
 ///   v' = (3x' - 4x + x_before) / 2h,   M (3v' - 4v + v_before) / 2h = f(x', v') - alpha M v',
 /// or backward Euler where the previous substep does not count: at the start, for particles that
 /// contact or pins stopped or pushed, or that moved between ticks, and after a change of the

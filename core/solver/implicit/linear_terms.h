@@ -29,11 +29,11 @@ Vec3<Real> times(const SymmetricBlock<Real>& a, const Vec3<Real>& u) {
           a[2] * u[0] + a[4] * u[1] + a[5] * u[2]};
 }
 
-/// Force of a spring on its first end, and the matrix by which it changes when the ends move
-/// against each other, without what would make it indefinite: alpha I + (k + c rate - alpha) u u^T
-/// with alpha = k max(0, 1 - L/l). It is exact in tension, but for the turning of the dashpot's
-/// force; in compression the force stays what it is.
-/// @param rate  by which velocities change with positions [1/s]
+/// Force of a spring on its first end, and its derivative by the relative displacement of the ends,
+/// without the indefinite part: alpha I + (k + c rate - alpha) u u^T with alpha = k max(0, 1 -
+/// L/l). It is exact in tension, except for the rotation of the dashpot's force; in compression the
+/// direction of the force is treated as constant.
+/// @param rate  derivative of velocities by positions [1/s]
 template <class Real>
 struct SpringTerm {
   Vec3<Real> force;

@@ -11,8 +11,8 @@ namespace weft {
 
 /// Approximate inverse of a grid's matrix, symmetric and positive definite: one V-cycle over levels
 /// of every second particle, with one damped block Jacobi sweep before and one after. Any number of
-/// rows and columns; how levels go together is told in grid_transfer.h. Bending counts on the
-/// levels on which it is not small against inertia.
+/// rows and columns; grid_transfer.h describes the transfers. Bending is included on the levels
+/// where it is not small against inertia.
 template <class Real>
 class Multigrid {
  public:
