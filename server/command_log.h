@@ -41,8 +41,8 @@ class CommandLog {
     if (entries_.size() > most_entries_) entries_.pop_front();
   }
 
-  /// The last `advance` ended when so many of its ticks were left: it counts as one of those made,
-  /// and not at all if there were none.
+  /// Reduces the last `advance` by the `left` ticks that it did not make; removes it if it made
+  /// none.
   void shorten_advance(std::uint32_t left) {
     const auto last = std::find_if(entries_.rbegin(), entries_.rend(), [](const LogEntry& entry) {
       return std::holds_alternative<proto::Advance>(entry.command);

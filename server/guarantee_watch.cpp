@@ -104,7 +104,7 @@ bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
   const std::uint32_t pause =
       bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
   const bool due = pause != 0 && uncounted_ >= pause && clock_() >= next_count_;
-  // What the scene puts elsewhere goes past contact, which then knows of no start.
+  // Particles moved by the scene bypass contact, which then knows of no start.
   if (!due && !displaced_) return false;
   const std::uint64_t before = crossings_ ? crossings_->count : 0;
   return count(world).count != before;

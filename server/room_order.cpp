@@ -133,7 +133,7 @@ void Room::charge(proto::ViewerId viewer, double cost) {
 /// Announces a tick that was given up, and logs it, so that a replay does the same.
 void Room::note_halt() {
   const std::string cause =
-      !tick_failure_.empty() ? "the server failed at it: " + tick_failure_
+      !tick_failure_.empty() ? "the server failed: " + tick_failure_
       : over_limit_
           ? "it took more than " + proto::number_text(options_.limit->seconds()) + " s of CPU"
           : "a command that replaces the state arrived";

@@ -71,8 +71,8 @@ std::string describe(const SlackSprings& slack) {
   };
   return slack.cloth + ": " + count(slack.substeps, "substep") + " of " +
          count(slack.sweeps, "sweep") +
-         " cannot hold its springs against gravity, and beside contact of cloth with cloth that "
-         "takes much time; it needs " +
+         " cannot hold its springs against gravity, which makes contact of cloth with cloth slow; "
+         "it needs " +
          count(slack.needed, "substep") + " of " + count(slack.needed_sweeps, "sweep") +
          " (relaxation.substeps, relaxation.sweeps)";
 }
