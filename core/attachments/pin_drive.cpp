@@ -77,6 +77,7 @@ double least_seconds(double way, double tick_seconds) {
 
 double speed_within(double way, double seconds, double tick_seconds) {
   assert(way >= 0 && tick_seconds > 0);
+  if (way == 0) return kLeastPinSpeed;
   const double moving = seconds - kTicksAtTarget * tick_seconds;
   // way / v + v / a = moving; the slower of the two solutions.
   const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kAcceleration));

@@ -215,3 +215,11 @@ TEST_CASE("what is wrong in a move is refused by name, and nothing changes") {
   CHECK_THROWS_AS(world.move_pin(id, {Vec3d::Zero(), 2, -1}), DefinitionError);
   CHECK(world.hash() == before);
 }
+
+TEST_CASE("a pin that is sent to where it is has a speed, with the least time and with more") {
+  const double tick = GENERATE(1.0 / 60, 1.0 / 1000), more = GENERATE(1.0, 2.0);
+  const double speed = speed_within(0, more * least_seconds(0, tick), tick);
+  PinMove move;
+  move.speed = speed;
+  CHECK_NOTHROW(validate(move));
+}
