@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/geometry/constants.h"
 
 namespace weft {
 
@@ -21,9 +22,10 @@ void validate(const ClothDef& def) {
   visit_fields_of_fabric(def.fabric, [](const FieldInfo& info, const auto& value) {
     check_field("fabric.", info, value);
   });
-  if (def.u.norm() < 1e-9)
+  if (def.u.norm() < kShortestDirection)
     throw DefinitionError("cloth.u", "0,0,0", "a direction", "give a vector that is not zero");
-  if (def.v.norm() < 1e-9 || std::abs(def.u.normalized().dot(def.v.normalized())) > 1e-6)
+  if (def.v.norm() < kShortestDirection ||
+      std::abs(def.u.normalized().dot(def.v.normalized())) > 1e-6)
     throw DefinitionError(
         "cloth.v",
         number_text(def.v[0]) + "," + number_text(def.v[1]) + "," + number_text(def.v[2]),

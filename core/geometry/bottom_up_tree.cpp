@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/geometry/constants.h"
+
 namespace weft {
 namespace {
-
-/// Beyond this number of primitives around one vertex, each is linked only to the next, because all
-/// pairs of them would cost the square of their number.
-constexpr std::size_t kWidestFan = 16;
 
 template <class Primitive>
 std::vector<Edge> touching(const std::vector<Primitive>& primitives) {

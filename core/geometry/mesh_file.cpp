@@ -17,6 +17,7 @@
 
 #include "core/definition.h"
 #include "core/error.h"
+#include "core/geometry/constants.h"
 
 namespace weft {
 namespace {
@@ -133,7 +134,8 @@ class Welder {
     const std::array<float, 3> key = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
     // Before the search, because NaN has no place in an order.
     for (const float x : key) {
-      if (!(std::abs(x) <= 1e6F)) throw unreadable(name_, "a vertex is not finite or far away");
+      if (!(std::abs(x) <= kFarthestFileVertex))
+        throw unreadable(name_, "a vertex is not finite or far away");
     }
     const auto [there, is_new] =
         places_.insert({key, static_cast<Index>(file_.mesh.positions.size())});

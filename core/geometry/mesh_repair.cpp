@@ -12,13 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/constants.h"
+
 namespace weft {
 namespace {
-
-constexpr double kLeastDoubledArea = 1e-14;  // [m^2]
-// Of (surface area)^1.5: a smaller volume is rounding, such as that of a sheet with two coincident
-// faces.
-constexpr double kLeastVolume = 1e-6;
 
 const Vec3d& at(const TriangleMesh& mesh, Index vertex) {
   assert(static_cast<std::size_t>(vertex) < mesh.positions.size());
@@ -31,8 +28,6 @@ bool has_valid_indices(const TriangleMesh& mesh) {
     return std::all_of(t.begin(), t.end(), [count](Index i) { return i >= 0 && i < count; });
   });
 }
-
-constexpr int kMostPasses = 64;
 
 /// Removes triangles without area, and keeps a closed surface closed where possible.
 class FlatTriangles {
@@ -47,7 +42,7 @@ class FlatTriangles {
   /// @returns how many were removed
   std::size_t take_out() {
     // Collinear consecutive corners leave another flat triangle, with a shorter row of corners.
-    for (int i = 0; i < kMostPasses && !flat_.empty(); ++i) {
+    for (int i = 0; i < kMostRepairPasses && !flat_.empty(); ++i) {
       if (!pass()) break;
     }
     for (const std::size_t t : flat_) remove(t);
@@ -191,7 +186,7 @@ MeshRepair repair(TriangleMesh& mesh) {
     done.dropped = FlatTriangles(mesh).take_out();
     done.opened = closed && !is_closed(mesh);
   }
-  const double least = kLeastVolume * std::pow(surface_area(mesh), 1.5);
+  const double least = kLeastEnclosedVolume * std::pow(surface_area(mesh), 1.5);
   if (!(volume_of(mesh) < -least) || !is_closed(mesh)) return done;
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   done.turned = true;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/constants.h"
+
 namespace weft {
 namespace {
 
@@ -54,11 +56,11 @@ std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, c
 /// Parameter at which the ray enters a box, infinite if it misses. The bounds are widened by some
 /// units in the last place, so that rounding never misses a box.
 double entry(const Vec3d& origin, const Vec3d& direction, const Vec3d& lower, const Vec3d& upper) {
-  constexpr double kWide = 1 + 1e-12;
+  constexpr double kWide = 1 + kRaySlack;
   double from = 0, to = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     const double slack =
-        1e-12 * (std::abs(lower[axis]) + std::abs(upper[axis]) + std::abs(origin[axis]));
+        kRaySlack * (std::abs(lower[axis]) + std::abs(upper[axis]) + std::abs(origin[axis]));
     const double low = lower[axis] - slack - origin[axis],
                  high = upper[axis] + slack - origin[axis];
     if (direction[axis] == 0) {

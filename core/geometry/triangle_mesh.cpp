@@ -8,14 +8,12 @@
 
 #include "core/definition.h"
 #include "core/error.h"
+#include "core/geometry/constants.h"
 #include "core/geometry/triangle_sides.h"
 #include "core/math/angle.h"
 
 namespace weft {
 namespace {
-
-constexpr std::size_t kMostVertices = 1'000'000;
-constexpr std::size_t kMostTriangles = 2'000'000;
 
 const Vec3d& corner(const TriangleMesh& mesh, Index triangle, std::size_t k) {
   assert(static_cast<std::size_t>(triangle) < mesh.triangles.size() && k < 3);
@@ -105,8 +103,8 @@ void validate(const TriangleMesh& mesh, const std::string& path) {
     check_field(path, {name, 1, static_cast<double>(most), "", "size of the mesh"},
                 static_cast<double>(value));
   };
-  count("positions", mesh.positions.size(), kMostVertices);
-  count("triangles", mesh.triangles.size(), kMostTriangles);
+  count("positions", mesh.positions.size(), kMostMeshVertices);
+  count("triangles", mesh.triangles.size(), kMostMeshTriangles);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     check_field(path + "positions[" + std::to_string(i) + "]", {"", -1000, 1000, "m", "a vertex"},
                 mesh.positions[i]);
@@ -115,7 +113,7 @@ void validate(const TriangleMesh& mesh, const std::string& path) {
     for (const Index i : mesh.triangles[t])
       check_field(
           name, {"", 0, static_cast<double>(mesh.positions.size()) - 1, "", "a vertex's index"}, i);
-    if (!(doubled_normal(mesh, static_cast<Index>(t)).norm() > 1e-14))
+    if (!(doubled_normal(mesh, static_cast<Index>(t)).norm() > kLeastDoubledArea))
       throw DefinitionError(name, "without area", "three corners that span an area",
                             "remove degenerate triangles");
   }

@@ -8,6 +8,7 @@
 
 #include "core/cloth/fabric_presets.h"
 #include "core/error.h"
+#include "core/geometry/constants.h"
 
 namespace weft {
 namespace {
@@ -89,7 +90,7 @@ void validate(const EnvironmentDef& def) {
     visit_fields_of_fan(def.fans[k], [&path](const FieldInfo& info, const auto& value) {
       check_field(path, info, value);
     });
-    if (!(def.fans[k].direction.norm() > 1e-9))
+    if (!(def.fans[k].direction.norm() > kShortestDirection))
       throw DefinitionError(path + "direction", "0,0,0", "a direction",
                             "give a vector that is not zero");
   }

@@ -6,6 +6,7 @@
 
 #include "core/definition.h"
 #include "core/error.h"
+#include "core/geometry/constants.h"
 
 namespace weft {
 namespace {
@@ -29,7 +30,7 @@ struct Validator {
   }
   void operator()(const PlaneDef& plane) const {
     check_fields(plane);
-    if (plane.normal.norm() < 1e-9)
+    if (plane.normal.norm() < kShortestDirection)
       throw DefinitionError(path + "normal", "0,0,0", "a direction",
                             "give a vector that is not zero");
   }
