@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/cloth/constants.h"
 #include "core/error.h"
 #include "core/geometry/constants.h"
 
@@ -25,7 +26,7 @@ void validate(const ClothDef& def) {
   if (def.u.norm() < kShortestDirection)
     throw DefinitionError("cloth.u", "0,0,0", "a direction", "give a vector that is not zero");
   if (def.v.norm() < kShortestDirection ||
-      std::abs(def.u.normalized().dot(def.v.normalized())) > 1e-6)
+      std::abs(def.u.normalized().dot(def.v.normalized())) > kMostAxisCosine)
     throw DefinitionError(
         "cloth.v",
         number_text(def.v[0]) + "," + number_text(def.v[1]) + "," + number_text(def.v[2]),

@@ -48,9 +48,6 @@ struct Hinge {
   bool sine_form = false;  ///< moment by sines of half angles; see hinge_moment
 };
 
-/// Below this fraction of its rest area, a crumpled triangle acts on its hinges with less leverage.
-inline constexpr double kCrumpledArea = 0.05;
-
 /// Springs of a grid as one set of numbers per kind; see grid_springs.h. Border springs have half
 /// the stiffness.
 template <class Real>

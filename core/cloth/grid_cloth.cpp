@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/cloth/bending_stencil.h"
+#include "core/cloth/constants.h"
 #include "core/cloth/grid_cells.h"
 #include "core/cloth/grid_springs.h"
 #include "core/cloth/stability_bound.h"
@@ -120,9 +121,8 @@ template void finish_grid(const ClothDef&, ClothModel<double>&);
 // rigidity of the fabric (tests/laws/bending_test.cpp).
 double grid_hinge_rigidity(const FabricDef& fabric, double du, double dv) {
   assert(du >= 0 && dv >= 0);
-  constexpr double kAlongAxis = 1e-9;
-  if (du < kAlongAxis) return fabric.bending_warp;
-  if (dv < kAlongAxis) return fabric.bending_weft;
+  if (du < kAlongThread) return fabric.bending_warp;
+  if (dv < kAlongThread) return fabric.bending_weft;
   const double d2 = du * du + dv * dv;
   return 0.5 * (fabric.bending_warp + fabric.bending_weft) * 2 * du * du * dv * dv / (d2 * d2);
 }

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cloth/constants.h"
 #include "core/geometry/hinge_angle.h"
 #include "core/geometry/triangle_sides.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/cloth/constants.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
 #include "core/cloth/stability_bound.h"
@@ -96,7 +97,6 @@ Uv projected(const TriangleMesh& mesh) {
 
 /// Material coordinates in metres.
 Uv material_of(const ClothMesh& cloth) {
-  constexpr double kSmallestPart = 1e-9;  // fraction of a triangle's share that counts as an area
   const double area = surface_area(cloth.mesh);
   double whole = 0, least = INFINITY;
   if (!cloth.uv.empty()) {
@@ -107,7 +107,7 @@ Uv material_of(const ClothMesh& cloth) {
     }
   }
   const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
-  if (!(whole > 0) || !(least > kSmallestPart * mean)) return projected(cloth.mesh);
+  if (!(whole > 0) || !(least > kLeastUvArea * mean)) return projected(cloth.mesh);
   Uv material = cloth.uv;
   const double scale = std::sqrt(area / whole);
   for (auto& point : material) {
@@ -230,16 +230,15 @@ HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& 
 /// Keeps the hinges or replaces them by the quadratic form.
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
-  constexpr double kFlat = 1e-5;  // smaller rest angles are rounding [rad]
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
     most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));
   const bool wanted = def.bending_model == BendingModel::quadratic;
-  if (wanted && most > kFlat)
+  if (wanted && most > kFlatRestAngle)
     throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
                           "this mesh is not flat at rest");
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
-  if (model.hinges.empty() || !(wanted || (may && most <= kFlat))) return;
+  if (model.hinges.empty() || !(wanted || (may && most <= kFlatRestAngle))) return;
   ClothPart<Real>& part = model.parts.front();
   for (const Hinge<Real>& hinge : model.hinges)
     part.hinge_stencils.push_back(stencil_of(hinge, model));

@@ -11,15 +11,6 @@
 #include "core/geometry/hinge_angle.h"
 
 namespace weft {
-namespace {
-
-/// Margin of the springs' squared frequency over the row sums. Linear theory requires less: the
-/// highest frequency of a net is up to a third below them. But without this margin a crushed cloth
-/// may stay stretched to eight times its size forever, with finite numbers throughout
-/// (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
-constexpr double kShakenMargin = 1.15;
-
-}  // namespace
 
 double largest_stable_substep(const StabilityBound& bound) {
   assert(!(bound.omega2 < 0) && !(bound.damping_rate < 0));

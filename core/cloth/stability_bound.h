@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/cloth/cloth_model.h"
+#include "core/cloth/constants.h"
 
 // The stability bound of the explicit solver.
 
@@ -20,8 +21,6 @@ double largest_stable_substep(const StabilityBound& bound);
 /// Number of stable substeps in a tick of `tick_seconds` [s], at least `fewest`. Above
 /// `kMostSubsteps` if the cloth is too stiff for the explicit solver.
 long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
-
-inline constexpr int kMostSubsteps = 20000;
 
 /// Computes a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
 /// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state

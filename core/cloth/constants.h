@@ -1,0 +1,54 @@
+#pragma once
+
+// The numbers that the cloth model assumes. Fabrics have theirs in fabric_presets.cpp, with the
+// unit of its sources.
+
+namespace weft {
+
+// Stability of the explicit solver.
+
+/// Margin of the springs' squared frequency over its row sums [1]. Linear theory requires less: the
+/// highest frequency of a net is up to a third below them. Larger: more substeps, as its root.
+/// Smaller: a crushed cloth may stay stretched to eight times its size forever, with finite numbers
+/// throughout (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
+inline constexpr double kShakenMargin = 1.15;
+
+/// Most substeps of a tick; what needs more is too stiff for the explicit solver. Also the largest
+/// number in a definition. Larger: stiffer and finer cloth, and ticks that take as much longer.
+/// Smaller: a diverged tick is repeated with twice its substeps in fewer cases.
+inline constexpr int kMostSubsteps = 20000;
+
+/// Least fraction of its stiffness that a softened cloth keeps [1]; below it fabric is a rubber
+/// band. Larger: a room that is too slow saves fewer substeps, as the root. Smaller: softer cloth.
+inline constexpr double kLeastSoftness = 0.01;
+
+// Bending.
+
+/// Below this fraction of its rest area, a crumpled triangle acts on its hinges with less leverage
+/// [1]. Larger: cloth that is merely compressed resists bending less. Smaller: a nearly flattened
+/// triangle, whose lever is 1 / height, gives larger forces.
+inline constexpr double kCrumpledArea = 0.05;
+
+/// Smaller rest angles of a mesh are rounding [rad]: it counts as flat. Larger: slight folds at
+/// rest are lost where `automatic` takes the quadratic form. Smaller: rounding of a file's vertices
+/// makes a flat mesh bend by hinges.
+inline constexpr double kFlatRestAngle = 1e-5;
+
+/// An edge that extends by less than this along a thread direction has the other direction [m].
+/// Larger: the diagonals of very small cells count as threads. Smaller: rounding may make a thread
+/// a diagonal, which has next to no rigidity in that direction.
+inline constexpr double kAlongThread = 1e-9;
+
+// Definitions.
+
+/// Largest cosine between the directions of a cloth's sides [1]: rounding of a file. Larger: a
+/// cloth may start sheared. Smaller: directions in a file need more digits.
+inline constexpr double kMostAxisCosine = 1e-6;
+
+/// Least doubled area of a triangle in a mesh's texture coordinates, as a fraction of the mean area
+/// [1]. With a smaller one the coordinates are ignored, and the mesh is projected along an axis
+/// instead. Larger: unevenly stretched coordinates are ignored too. Smaller: threads of a triangle
+/// may have directions that are rounding.
+inline constexpr double kLeastUvArea = 1e-9;
+
+}  // namespace weft
