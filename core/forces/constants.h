@@ -11,8 +11,8 @@ namespace weft {
 // Springs.
 
 /// Added to a spring's squared length, so that divisions by it stay finite when both ends coincide
-/// [m^2]. Larger: springs shorter than its root pull more weakly. Smaller: the elastic force divides
-/// by the root of it alone, but the dashpot by it, which is then too small for float.
+/// [m^2]. Larger: springs shorter than its root pull more weakly. Smaller: too small for float in
+/// the dashpot, which divides by it; the elastic force divides by its root alone.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
 // Air.
@@ -44,9 +44,9 @@ inline constexpr double kFanStart = 0.25;
 /// wheel leaves nearly all slots of its group unused. Smaller: fewer meshes have the faster pass.
 inline constexpr std::size_t kMostSpringsAtParticle = 64;
 
-/// Relative difference up to which the springs of a mesh have one damping per stiffness [1]. Larger:
-/// dashpots that differ are replaced by a common one. Smaller: rounding in float sends the mesh to
-/// the slower pass.
+/// Relative difference up to which the springs of a mesh have one damping per stiffness [1].
+/// Larger: dashpots that differ are replaced by a common one. Smaller: rounding in float sends the
+/// mesh to the slower pass.
 inline constexpr double kSameDamping = 1e-5;
 
 // Passes over a grid on several threads.

@@ -8,6 +8,7 @@
 #endif
 
 #include "core/forces/air/air_force.h"
+#include "core/forces/constants.h"
 #include "core/forces/grid_layout-inl.h"
 #include "core/math/lanes-inl.h"
 

@@ -7,15 +7,11 @@
 #include <utility>
 
 #include "core/cloth/bending_stencil.h"
+#include "core/forces/constants.h"
 #include "core/forces/grid_kernels.h"
 
 namespace weft {
 namespace {
-
-/// Minimum size of a band of rows: on smaller bands, threads that synchronise at every substep and
-/// the two rows that a band recomputes cost more than they save.
-constexpr std::ptrdiff_t kBandParticles = 2048, kBandRows = 16;
-constexpr std::ptrdiff_t kMostBands = 4;
 
 /// Sum of the powers that a pass has accumulated; clears their line for the next pass. The line
 /// stays zero if nothing is pulled.

@@ -10,13 +10,11 @@
 #include <utility>
 
 #include "core/cloth/bending_stencil.h"
+#include "core/forces/constants.h"
 #include "core/forces/mesh_kernels.h"
 
 namespace weft {
 namespace {
-
-/// At one particle. The hub of a wheel would leave nearly all slots of its group unused.
-constexpr std::size_t kMostSprings = 64;
 
 /// Quads in the ring of pulls, limited by the 16 bits of an offset.
 constexpr std::size_t kLongestRing = 65536 * kPullUnit / 4;
@@ -30,11 +28,11 @@ bool MeshPass<Real>::collect_springs(const ClothModel<Real>& model, const ClothP
   for (Index n = part.springs.first; n < part.springs.end(); ++n) {
     const Spring<Real>& s = model.springs[static_cast<std::size_t>(n)];
     const Real expected = damping_per_stiffness * s.stiffness;
-    if (!(std::abs(s.damping - expected) <= Real(1e-5) * expected)) return false;
+    if (!(std::abs(s.damping - expected) <= Real(kSameDamping) * expected)) return false;
     assert(part.particles.contains(s.i) && part.particles.contains(s.j));
     const auto [earlier, later] = std::minmax(s.i, s.j);
     for (const Index end : {earlier, later}) {
-      if (++springs[static_cast<std::size_t>(end - part.particles.first)] > kMostSprings)
+      if (++springs[static_cast<std::size_t>(end - part.particles.first)] > kMostSpringsAtParticle)
         return false;
     }
     rows[static_cast<std::size_t>(earlier - part.particles.first)].near.push_back(

@@ -3,15 +3,12 @@
 #include <cmath>
 
 #include "core/cloth/cloth_model.h"
+#include "core/forces/constants.h"
 #include "core/types.h"
 
 // Force and energy of a spring.
 
 namespace weft {
-
-/// Keeps divisions by the squared length finite when both ends coincide [m^2]. It must not be too
-/// small for float: the elastic force divides by its root, the dashpot by itself.
-inline constexpr double kSmallestSquaredLength = 1e-14;
 
 /// Force on end i of a spring from x_i to x_j (the opposite force acts on j) [N]: k d (1 - L/l) + c
 /// (d . dv) d / l^2, with d = x_j - x_i and l = |d|.

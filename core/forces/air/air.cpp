@@ -6,15 +6,10 @@
 #include <cassert>
 
 #include "core/forces/air/gust.h"
+#include "core/forces/constants.h"
 
 namespace weft {
 namespace {
-
-/// Eddies drift even without a mean wind, because a gust would otherwise stay in place [m/s].
-const Vec3d kDriftOfStillAir(0.31, 0.17, 0.23);
-
-/// Bound of the length of SmoothNoise: its components reach 1, so it exceeds the root of 3.
-constexpr double kLongestNoise = 2;
 
 /// Mean wind and gusts.
 template <class Real>
@@ -27,7 +22,7 @@ void sample_weather(const EnvironmentDef& environment, double time, const Vec3Ar
   }
   assert(environment.gust_length > 0);
   const auto speed = static_cast<Real>(environment.gust_speed);
-  const Vec3d carried = (environment.wind + kDriftOfStillAir) * time;
+  const Vec3d carried = (environment.wind + Vec3d(kDriftOfStillAir.data())) * time;
   SmoothNoise<Real> noise;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3d eddy = (x[i].template cast<double>() - carried) / environment.gust_length;

@@ -8,9 +8,6 @@
 
 namespace weft {
 
-/// Keeps the division by a normal's length finite for a triangle without area [m^4].
-inline constexpr double kSmallestSquaredNormal = 1e-30;
-
 /// Force of the air on a triangle [N], the drag of a plate and skin friction:
 /// 1/2 rho C_n A |u_n| u_n n + c_t A u_t, with u the wind relative to the triangle.
 ///

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "core/definition.h"
+#include "core/forces/constants.h"
 
 // Fans: local jets of air.
 
@@ -21,11 +22,6 @@ struct FanDef {
 };
 
 inline constexpr std::size_t kMostFans = 4;
-
-/// Fraction of the jet's radius with the speed of the core; from there it fades to the edge.
-inline constexpr double kFanCore = 0.7;
-/// Distance from the disc over which the speed rises from 0, in radii of the disc.
-inline constexpr double kFanStart = 0.25;
 
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
