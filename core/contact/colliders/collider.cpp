@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/contact/colliders/constants.h"
 #include "core/definition.h"
 #include "core/error.h"
 #include "core/geometry/constants.h"
@@ -14,7 +15,7 @@ namespace {
 /// Checks for unit norm, within the rounding of three digits.
 void check_unit(const std::string& field, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
-  if (!(std::abs(norm - 1) < 1e-3))
+  if (!(std::abs(norm - 1) < kUnitQuaternionSlack))
     throw DefinitionError(field, "of norm " + number_text(norm), "a unit quaternion [x, y, z, w]",
                           "its norm must be 1");
 }

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/contact/colliders/constants.h"
 #include "core/definition.h"
 #include "core/error.h"
 
@@ -14,9 +15,6 @@ namespace {
 
 /// The steepest slope of the easing cubic.
 constexpr double kSteepestEase = 1.5;
-
-/// Poses nearer than this are equal: the rounding in a file [m], [rad].
-constexpr double kSamePlace = 1e-6;
 
 struct Difference {
   Vec3d step, turn;
@@ -30,7 +28,7 @@ Difference between(const Keyframe& from, const Keyframe& to) {
 
 void check_unit(const Eigen::Quaterniond& rotation, const std::string& path) {
   const double norm = rotation.norm();
-  if (!(std::abs(norm - 1) < 1e-3))
+  if (!(std::abs(norm - 1) < kUnitQuaternionSlack))
     throw DefinitionError(path + "rotation", "of norm " + number_text(norm),
                           "a unit quaternion [x, y, z, w]", "its norm must be 1");
 }
@@ -78,7 +76,7 @@ void validate(const MotionDef& def, const std::string& path) {
     throw DefinitionError(path + "loop", "true", "false with fewer than two keyframes",
                           "a loop needs a way to go");
   const Difference gap = between(def.keyframes.back(), def.keyframes.front());
-  if (gap.step.norm() > kSamePlace || gap.turn.norm() > kSamePlace)
+  if (gap.step.norm() > kSamePose || gap.turn.norm() > kSamePose)
     throw DefinitionError(path + "loop", "true", "false unless the last pose is the first one",
                           "a collider moves and never jumps: end where it began");
 }

@@ -7,23 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/colliders/constants.h"
 #include "core/geometry/aabb.h"
 
 namespace weft {
 namespace {
-
-/// Fraction of its speed that a collider regains per tick without resistance.
-constexpr double kPaceGain = 0.1;
-
-/// Below this fraction of its speed it stands.
-constexpr double kLeastPace = 0.01;
-
-/// Resistance for a shorter time is an impact, which leaves the force no time to act [s]; and how
-/// many times that impulse is compensated at most.
-constexpr double kImpactSeconds = 1e-3, kMostOverload = 4;
-
-/// A collider that was held back follows its keyframes faster than their top speed by this factor.
-constexpr double kCatchUp = 1.25;
 
 /// Allowed fraction of a displacement.
 double allowed_part(double way, double most) {
@@ -41,7 +29,8 @@ std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderS
   if (state.move) return Wish{state.move->target, state.move->speed, state.move->turn_speed};
   if (def.motion.keyframes.empty()) return std::nullopt;
   const TopSpeeds top = top_speeds(def.motion);
-  return Wish{keyframed_pose(def, time), top.linear * kCatchUp, top.angular * kCatchUp};
+  return Wish{keyframed_pose(def, time), top.linear * kColliderCatchUp,
+              top.angular * kColliderCatchUp};
 }
 
 /// Surface speed of the wanted twist, for the resistance against it [m/s].
@@ -166,7 +155,7 @@ void advance_collider(double seconds, double tick_seconds, ColliderState& state)
   assert(seconds > 0 && tick_seconds > 0);
   if (!state.is_moving()) return;
   state.progress += seconds;
-  const bool arrived = state.progress > tick_seconds * (1 - 1e-6);
+  const bool arrived = state.progress > tick_seconds * (1 - kTickEndSlack);
   state.pose = arrived ? state.goal : moved(state.start, state.twist, state.progress);
 }
 
@@ -186,7 +175,8 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
       state.pace *= most / resistance;
     else
       state.pace += kPaceGain * (1 - std::max(0.0, resistance) / most);
-    state.pace = state.pace < kLeastPace && resistance > most ? 0 : std::min(state.pace, 1.0);
+    state.pace =
+        state.pace < kLeastColliderPace && resistance > most ? 0 : std::min(state.pace, 1.0);
   }
 }
 

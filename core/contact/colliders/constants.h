@@ -1,0 +1,51 @@
+#pragma once
+
+// The numbers that the motion of objects assumes. The limits of a command stand beside its struct
+// in collider_motion.h.
+
+namespace weft {
+
+// Definitions.
+
+/// Deviation from norm 1 of a quaternion in a definition or command: rounding to three digits [1].
+/// Larger: a quaternion with a wrong component may pass. Smaller: written ones need more digits.
+inline constexpr double kUnitQuaternionSlack = 1e-3;
+
+/// Poses nearer than this are equal: rounding in a file [m], [rad]. It decides whether the last
+/// keyframe of a loop is the first pose again. Larger: a loop may jump by as much. Smaller: files
+/// need more digits.
+inline constexpr double kSamePose = 1e-6;
+
+// Ticks.
+
+/// Fraction of a tick that its substeps may lack by rounding [1]: an object then has its planned
+/// pose exactly. Larger, by a substep's fraction: it arrives early. Smaller, below the rounding: it
+/// ends each tick near its pose, and the errors add up.
+inline constexpr double kTickEndSlack = 1e-6;
+
+/// A collider that was held back follows its keyframes faster than their top speed by this factor
+/// [1]. Larger: it is back on its keyframes sooner, and pushes cloth faster. At 1 or below it never
+/// catches up with keyframes of constant speed.
+inline constexpr double kColliderCatchUp = 1.25;
+
+// Resistance of cloth.
+
+/// Fraction of its speed that a collider regains in a tick without resistance [1]. Larger: it
+/// starts sooner, and a collider at its limit varies its speed more. Smaller: it yields for longer
+/// after the resistance has ended.
+inline constexpr double kPaceGain = 0.1;
+
+/// Below this fraction of its speed a collider that is resisted stands [1]. Larger: it stops sooner
+/// before cloth that resists. Smaller: it creeps on.
+inline constexpr double kLeastColliderPace = 0.01;
+
+/// Resistance beyond the force for a shorter time is an impact [s]: its impulse leaves the force no
+/// time to act. Larger: a collider drives deeper into a pile before it is held. Smaller: light
+/// touches hold it.
+inline constexpr double kImpactSeconds = 1e-3;
+
+/// Most that is remembered of an overload, in impulses of an impact [1]. Larger: a collider stays
+/// held for longer after a hard hit. At 1 or below nothing holds it.
+inline constexpr double kMostOverload = 4;
+
+}  // namespace weft
