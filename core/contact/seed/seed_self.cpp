@@ -3,28 +3,19 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/contact/seed/constants.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/geometry/distance.h"
 #include "core/stop_signal.h"
 
 namespace weft {
-namespace {
-
-/// Particles of one cloth within this many thicknesses in the fabric are neighbours; contact
-/// between them would push the cloth apart.
-constexpr double kNeighbourhood = 1.5;
-
-/// Initial capacity for pairs, as a multiple of the particles; it grows on demand.
-constexpr std::size_t kPairsPerParticle = 8;
-
-}  // namespace
 
 template <class Real>
 bool SeedContact<Real>::are_neighbours(Index i, Index j) const {
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
   assert(a < cloth_of_.size() && b < cloth_of_.size());
   if (cloth_of_[a] != cloth_of_[b]) return false;
-  const Real reach = thickness_[static_cast<std::size_t>(cloth_of_[a])] * Real(kNeighbourhood);
+  const Real reach = thickness_[static_cast<std::size_t>(cloth_of_[a])] * Real(kSeedNeighbourhood);
   return i == j || (rest_positions_[a] - rest_positions_[b]).squaredNorm() < reach * reach;
 }
 
@@ -39,7 +30,7 @@ Real SeedContact<Real>::thickness_between(Index i, Index j) const {
 
 template <class Real>
 void SeedContact<Real>::prepare_self_contact() {
-  if (def_.has_self_contact()) pairs_.reserve(kPairsPerParticle * rest_positions_.size());
+  if (def_.has_self_contact()) pairs_.reserve(kSeedPairsPerParticle * rest_positions_.size());
 }
 
 /// Particle pairs, eq. (11).

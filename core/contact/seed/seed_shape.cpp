@@ -5,14 +5,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/contact/seed/constants.h"
 #include "core/contact/seed/seed_equations.h"
 #include "core/geometry/distance.h"
 
 namespace weft {
 namespace {
-
-/// Faces that bend outwards by less than this form no sharp edge [cosine of 20 degrees].
-constexpr double kFlat = 0.94;
 
 template <class Real>
 Vec3<Real> direction(const Vec3<Real>& d, Real length) {
@@ -54,7 +52,7 @@ void add_sharp_edges(const TriangleMesh& mesh, Real reach, SeedShape<Real>& shap
       Vec3d centre = Vec3d::Zero();
       for (const Index v : t) centre += mesh.positions[static_cast<std::size_t>(v)] / 3;
       const bool convex = (centre - middle).dot(first) < 0;
-      if (shape.closed && (!convex || first.dot(second) > kFlat)) continue;
+      if (shape.closed && (!convex || first.dot(second) > kSharpEdgeCosine)) continue;
       normal += second;
     }
     if (!(normal.norm() > 0)) continue;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/contact/colliders/collider.h"
+#include "core/contact/seed/constants.h"
 #include "core/geometry/bottom_up_tree.h"
 #include "core/types.h"
 
@@ -44,8 +45,7 @@ struct SeedShape {
 template <class Real>
 bool is_within_edge(Real s) {
   assert(!(s < 0) && !(s > 1));
-  constexpr double kEnd = 0.01;
-  return s > Real(kEnd) && s < Real(1 - kEnd);
+  return s > Real(kSeedEdgeEnd) && s < Real(1 - kSeedEdgeEnd);
 }
 
 /// Prepares a collider.
