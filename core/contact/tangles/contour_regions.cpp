@@ -5,13 +5,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/contact/tangles/constants.h"
+
 namespace weft {
-namespace {
-
-/// Weight of held particles in the size of a part, in addition to its area [m^2].
-constexpr double kHeldArea = 1e3;
-
-}  // namespace
 
 template <class Real>
 ContourRegions::ContourRegions(const ClothModel<Real>& model)
@@ -105,7 +101,7 @@ ContourRegions::Part ContourRegions::smaller_part(std::vector<EdgeCut>& cuts,
     if (!floods_[1 - small].held) small = 1 - small;
   }
   const Flood& flood = floods_[small];
-  return {small == 1 ? 1 : -1, flood.area + (flood.held ? kHeldArea : 0)};
+  return {small == 1 ? 1 : -1, flood.area + (flood.held ? kHeldPartArea : 0)};
 }
 
 template ContourRegions::ContourRegions(const ClothModel<float>&);

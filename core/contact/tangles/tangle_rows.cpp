@@ -5,20 +5,10 @@
 #include <utility>
 
 #include "core/contact/tangles/cloth_tangles.h"
+#include "core/contact/tangles/constants.h"
 
 namespace weft {
 namespace {
-
-/// Speed at which edge and triangle are pulled past each other, and at which a pucker is pulled
-/// flat, since a higher one makes it wander [m/s]; and the largest acceleration for this, such as
-/// that of a fold pulled through by its rim alone [m/s^2].
-constexpr double kDrawSpeed = 0.5, kUnfoldSpeed = 0.05, kMostAcceleration = 2000;
-
-/// A tangle that lasts longer may be held by pins: it is pulled more and more weakly [s].
-constexpr double kPatience = 4;
-
-/// Sweeps over the rows per step.
-constexpr int kSweeps = 2;
 
 Vec3d unit(const Vec3d& v) {
   const double length = v.norm();
@@ -161,10 +151,10 @@ void ClothTangles<Real>::draw(ClothState<Real>& state, Real dt) {
   if (rows_.empty()) return;
   assert(state.x.size() == is_held_.size() && state.v.size() == is_held_.size());
   drawn_ += static_cast<double>(dt);
-  const double age2 = drawn_ * drawn_ / (kPatience * kPatience);
-  const auto most = static_cast<Real>(kMostAcceleration / (1 + age2 * age2)) * dt;
+  const double age2 = drawn_ * drawn_ / (kDrawPatience * kDrawPatience);
+  const auto most = static_cast<Real>(kMostDrawAcceleration / (1 + age2 * age2)) * dt;
   for (Row& row : rows_) begin_row(row, state, dt);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kDrawSweeps; ++sweep) {
     for (Row& row : rows_) {
       const Real wanted = row.pull + (row.wanted - speed_of(row, state)) * row.inertia;
       const Real pull = std::clamp(wanted, Real(0), row.inertia * most);
