@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/contact/constants.h"
 #include "core/geometry/distance.h"
 #include "core/types.h"
 
@@ -44,9 +45,6 @@ Real gap_along(PairKind kind, const PairPoints<Real>& x, const Vec3<Real>& n) {
   if (kind == PairKind::vertex_triangle) return -std::max(b, std::max(c, d));
   return std::min(Real(0), b) - std::max(c, d);
 }
-
-/// Closer pairs are separated by the best of several axes, computed in double [m].
-inline constexpr double kCloseGap = 3e-4;
 
 /// The largest gap along candidate axes for a pair whose closest points are lost in rounding: the
 /// cross product of the edges or of the triangle, and vectors between the features.

@@ -15,6 +15,8 @@
 #include <array>
 #include <cassert>
 
+#include "core/contact/constants.h"
+
 namespace weft {
 
 HWY_EXPORT(travel_f32);
@@ -35,13 +37,12 @@ bool run_travel(const TravelPass<double>& pass) {
 template <class Real>
 bool run_travel_in_parts(const TravelPass<Real>& pass, Executor* executor) {
   assert(pass.particles == 0 || (pass.x && pass.v && pass.from && pass.reach && pass.travel2));
-  constexpr std::size_t kParts = 4, kFewParticles = 4096;
-  if (!executor || pass.particles < kFewParticles) return run_travel(pass);
-  std::array<bool, kParts> within;
-  run_chunks(executor, static_cast<int>(kParts), [&](int chunk) {
+  if (!executor || pass.particles < kLeastSharedTravel) return run_travel(pass);
+  std::array<bool, kTravelParts> within;
+  run_chunks(executor, static_cast<int>(kTravelParts), [&](int chunk) {
     const auto part = static_cast<std::size_t>(chunk);
-    const std::size_t first = pass.particles * part / kParts,
-                      last = pass.particles * (part + 1) / kParts;
+    const std::size_t first = pass.particles * part / kTravelParts,
+                      last = pass.particles * (part + 1) / kTravelParts;
     TravelPass<Real> own = pass;
     own.particles = last - first;
     own.x += 3 * first;

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+// The numbers that all of contact shares; each of its rooms has its own page.
+
+namespace weft {
+
+/// Closer pairs are separated by the best of several axes, computed in double [m]. Larger: more
+/// pairs take that slower way. Smaller: closest points in float lose their direction to rounding,
+/// and the certified gap of a pair is too small.
+inline constexpr double kCloseGap = 3e-4;
+
+/// Shares of the pass that measures how far particles have come, on several threads; with fewer
+/// particles than this one thread does it. More shares: more threads, and more waiting for each
+/// other. Fewer particles: threads cost more than they save.
+inline constexpr std::size_t kTravelParts = 4, kLeastSharedTravel = 4096;
+
+}  // namespace weft
