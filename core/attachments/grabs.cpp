@@ -12,9 +12,6 @@
 namespace weft {
 namespace {
 
-/// Damping ratio of the hand's spring with the held mass.
-constexpr double kGrabDampingRatio = 0.7;
-
 const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "target of the held point"};
 
 void validate(const GrabDef& def, std::size_t triangles) {

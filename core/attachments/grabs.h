@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/attachments/constants.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 #include "core/cloth/stability_bound.h"
@@ -18,21 +19,6 @@ enum class GrabMode : std::uint8_t {
   live,   ///< pulls it to the target all the time
   sling,  ///< leaves it alone until it is fired (the seed's drag)
 };
-
-/// Duration of a fired sling's push, rounded to ticks, at least one [s]. A single tick would give
-/// its whole impulse to the few grams of the held disc before the surrounding cloth can follow.
-inline constexpr double kSlingSeconds = 0.1;
-
-/// v_max: no live hand moves the held cloth faster than this [m/s], and none leads it by more than
-/// the cloth can follow in a tick at this speed. A target that jumps by metres is approached at
-/// v_max, as if the hand pulled less. Otherwise a strong hand would throw its few grams at
-/// thousands of metres a second, and contact would have to search the whole scene along their
-/// paths. People fling a mouse at some 10 m/s, and robots stay below; the remaining margin lets a
-/// hand of the default stiffness press with the default 50 N.
-inline constexpr double kFastestHeld = 30;
-
-/// Shortest tick that counts for the lead [s]: shorter ticks do not weaken hands.
-inline constexpr double kLeadSeconds = 1.0 / 60;
 
 /// A hand that holds the cloth at a point of a triangle. A live one pulls it towards a target with
 /// a damped spring of bounded force. A sling, when fired, applies the constant force stiffness

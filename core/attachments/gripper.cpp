@@ -6,17 +6,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/attachments/constants.h"
+#include "core/contact/colliders/constants.h"
 #include "core/error.h"
 
 namespace weft {
 namespace {
-
-/// Below this opening, in thicknesses of cloth, jaws close by at most this fraction of the
-/// thickness per tick, so that they stop at the cloth and not inside it.
-constexpr double kNearOpening = 6, kNearStep = 0.25;
-
-/// Remaining distance of a gripper's middle that counts as none [m].
-constexpr double kThere = 1e-9;
 
 Eigen::Quaterniond turned(const Gripper& gripper, const Eigen::Quaterniond& rotation) {
   return rotation * gripper.def.orientation;
@@ -48,7 +43,7 @@ double next_opening(const Gripper& gripper, double seconds, double thickest) {
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
   if (gripper.gripping) return gripper.opening;
-  if (gripper.opening < kNearOpening * thickest) step = std::min(step, kNearStep * thickest);
+  if (gripper.opening < kJawNearOpening * thickest) step = std::min(step, kJawNearStep * thickest);
   double least = gripper.wanted;
   // Two faces that both have cloth in front leave room for that cloth, and for no less.
   least = std::max(least, 2 * gripper.facing);
@@ -56,7 +51,7 @@ double next_opening(const Gripper& gripper, double seconds, double thickest) {
 }
 
 void check_unit(const std::string& field, const Eigen::Quaterniond& q) {
-  if (!(std::abs(q.norm() - 1) < 1e-3))
+  if (!(std::abs(q.norm() - 1) < kUnitQuaternionSlack))
     throw DefinitionError(field, "of norm " + number_text(q.norm()),
                           "a unit quaternion [x, y, z, w]", "its norm must be 1");
 }
@@ -174,12 +169,12 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     // A jaw that was held back holds the other one back by half.
     gripper.pose.position = (left.pose.position + right.pose.position) / 2;
     gripper.pose.rotation = left.pose.rotation;
-    if ((gripper.pose.position - gripper.target.position).norm() < kThere)
+    if ((gripper.pose.position - gripper.target.position).norm() < kNoWayLeft)
       gripper.pose.position = gripper.target.position;
     gripper.opening = std::max(0.0, axis.dot(between) - 2 * gripper.def.half_extents[0]);
     gripper.facing = std::min(left.facing, right.facing);
     if (gripper.wanted >= gripper.opening) continue;
-    const double room = 2 * gripper.facing * (1 + 1e-6);
+    const double room = 2 * gripper.facing * (1 + kJawFacingSlack);
     const double resistance =
         std::min(left.impulse.dot(press_of(gripper, 0)), right.impulse.dot(press_of(gripper, 1))) /
         seconds;

@@ -7,26 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/attachments/constants.h"
+
 namespace weft {
 namespace {
-
-/// At the start and the end of a motion [m/s^2].
-constexpr double kAcceleration = 40;
-
-/// A pin farther than this from its particles restarts from them, and leads them by this much [m].
-constexpr double kSlack = 0.005;
-
-/// Distance that counts as arrived [m, and in units of rounding].
-constexpr double kArrived = 1e-5, kRoundings = 4;
-
-/// A moved pin rests for one tick before it is fixed, and one more tick is lost to rounding.
-constexpr double kTicksAtTarget = 2;
-
-/// Remaining distance that is rounding [m].
-constexpr double kThere = 1e-9;
-
-/// Lagging particles catch up at no more than this multiple of the pin's speed.
-constexpr double kCatchUp = 1.5;
 
 /// Largest distance of a particle from its place.
 template <class Real>
@@ -62,7 +46,7 @@ void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path
   path.offset = sum / static_cast<double>(pin.particles.size());
   const Vec3d rest = rest_of(pin);
   const double way = rest.norm();
-  path.offset += way > kSlack ? (rest * (kSlack / way)).eval() : rest;
+  path.offset += way > kPinSlack ? (rest * (kPinSlack / way)).eval() : rest;
   path.pace = 0;
 }
 
@@ -70,17 +54,17 @@ void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path
 
 double least_seconds(double way, double tick_seconds) {
   assert(way >= 0 && tick_seconds > 0);
-  const double pace = std::min(kMostPinSpeed, std::sqrt(kAcceleration * way));
-  const double moving = pace > 0 ? way / pace + pace / kAcceleration : 0;
-  return moving + kTicksAtTarget * tick_seconds;
+  const double pace = std::min(kMostPinSpeed, std::sqrt(kPinAcceleration * way));
+  const double moving = pace > 0 ? way / pace + pace / kPinAcceleration : 0;
+  return moving + kPinTicksAtTarget * tick_seconds;
 }
 
 double speed_within(double way, double seconds, double tick_seconds) {
   assert(way >= 0 && tick_seconds > 0);
   if (way == 0) return kLeastPinSpeed;
-  const double moving = seconds - kTicksAtTarget * tick_seconds;
+  const double moving = seconds - kPinTicksAtTarget * tick_seconds;
   // way / v + v / a = moving; the slower of the two solutions.
-  const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kAcceleration));
+  const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kPinAcceleration));
   return std::clamp(2 * way / (moving + root), kLeastPinSpeed, kMostPinSpeed);
 }
 
@@ -99,14 +83,14 @@ void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pi
     if (!pin.path) continue;
     PinPath& path = *pin.path;
     path.step.setZero();
-    const bool behind = farthest(pin, state) > kSlack;
+    const bool behind = farthest(pin, state) > kPinSlack;
     path.behind = behind;
     if (behind) lead_from_here(pin, state, path);
     const Vec3d rest = rest_of(pin);
     const double way = rest.norm();
-    if (behind || way < kThere) continue;
-    path.pace = std::min({path.move.speed, path.pace + kAcceleration * tick_seconds,
-                          std::sqrt(2 * kAcceleration * way)});
+    if (behind || way < kNoWayLeft) continue;
+    path.pace = std::min({path.move.speed, path.pace + kPinAcceleration * tick_seconds,
+                          std::sqrt(2 * kPinAcceleration * way)});
     path.step =
         path.pace * tick_seconds < way ? (rest * (path.pace * tick_seconds / way)).eval() : rest;
   }
@@ -156,7 +140,7 @@ template <class Real>
 void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt,
                            double seconds) {
   const Vec3d offset = path.offset + path.step * (elapsed_ / tick_seconds_);
-  const double fastest = path.move.speed * kCatchUp;
+  const double fastest = path.move.speed * kPinCatchUp;
   const auto is_free = [&](std::size_t i) { return state.inverse_mass[i] > 0; };
   const auto change = [&](std::size_t n, std::size_t i) -> Vec3d {
     Vec3d wanted =
@@ -209,10 +193,10 @@ bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& 
     pin.drive = path.impulse / tick_seconds;
     const bool stood = path.step.isZero(0);
     path.offset += path.step;
-    if (!stood || !(rest_of(pin).norm() < kThere)) continue;
-    const double rounding = state.x[static_cast<std::size_t>(pin.centre)].norm() * kRoundings *
+    if (!stood || !(rest_of(pin).norm() < kNoWayLeft)) continue;
+    const double rounding = state.x[static_cast<std::size_t>(pin.centre)].norm() * kPinRoundings *
                             static_cast<double>(std::numeric_limits<Real>::epsilon());
-    if (farthest(pin, state) > std::max(kArrived, rounding)) continue;
+    if (farthest(pin, state) > std::max(kPinArrived, rounding)) continue;
     stop_pin(pin.id, pins, state);
     changed = true;
   }

@@ -7,13 +7,11 @@
 #include <cassert>
 #include <limits>
 
+#include "core/attachments/constants.h"
 #include "core/error.h"
 
 namespace weft {
 namespace {
-
-/// Fraction of the fabric's extent by which rounding may move a particle off its line.
-constexpr double kRounding = 1e-5;
 
 struct MaterialBounds {
   std::array<double, 2> low, high;
@@ -75,7 +73,7 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRan
   const MaterialBounds bounds = bounds_of(model, range);
   const std::size_t axis = strip.side == Side::left || strip.side == Side::right ? 0 : 1;
   const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
-  const double slack = kRounding * (bounds.high[axis] - bounds.low[axis]);
+  const double slack = kStripSlack * (bounds.high[axis] - bounds.low[axis]);
   PinnedParticles held;
   for (Index i = range.first; i < range.end(); ++i) {
     const auto value = static_cast<double>(model.material[static_cast<std::size_t>(i)][axis]);
