@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/spring_grid.h"
 #include "core/stop_signal.h"
 
 // Preconditioned conjugate gradients.
 
 namespace weft {
-
-inline constexpr int kMostLinearIterations = 200;
 
 /// Outcome of a linear system.
 struct LinearSolution {

@@ -6,29 +6,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/implicit_step.h"
 #include "core/stop_signal.h"
 
 namespace weft {
 namespace {
-
-/// Unexplained energy that counts as rounding, as a fraction of kinetic and elastic energy.
-constexpr double kRounding = 1e-4;
-/// Fraction of the lost energy that may return, kept from tick to tick: the scheme loses for a
-/// moment the energy that a wave returns in the next tick.
-constexpr double kKeptCredit = 0.9;
-/// Largest relative displacement of a particle in a substep that the guard can handle, in mean edge
-/// lengths.
-constexpr double kFarWay = 1;
-/// Largest number of pieces of a divided substep.
-constexpr int kMostPieces = 64;
-/// Fraction of kinetic and elastic energy lost in a violent substep.
-constexpr double kViolentLoss = 0.1;
-/// A violently shaken cloth has at least the energy of all its particles at this speed [m/s].
-constexpr double kViolentSpeed = 1;
-/// And the strain of one of its springs. Waves in a stiff cloth that snaps taut may have as much
-/// energy, and may be damped.
-constexpr double kViolentStrain = 0.1;
 
 /// Discards the history of particles that were moved between ticks.
 template <class Real>
@@ -80,7 +63,7 @@ double drag_work(const Step<Real>& step) {
 /// Whether the energy after a substep has a source; if so, updates the credit of lost energy.
 bool explained(const Energies& before, const Energies& after, double work, double& credit) {
   const double excess = after.total() - before.total() - work - credit;
-  const double rounding = kRounding * (mechanical(before) + std::abs(work) + 1e-9);
+  const double rounding = kRoundingEnergy * (mechanical(before) + std::abs(work) + 1e-9);
   if (!(excess <= rounding)) return false;
   credit = std::max(0.0, -excess);
   return true;

@@ -11,6 +11,7 @@
 #include "core/forces/energy_pass.h"
 #include "core/profile.h"
 #include "core/solver/collision.h"
+#include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/element_system.h"
 #include "core/solver/implicit/grid_system.h"
 #include "core/solver/verlet.h"
@@ -25,10 +26,6 @@ struct ImplicitDef {
   int iterations = 2;       ///< of Newton's method per substep; one is 2 to 30 % off on stiff cloth
   double tolerance = 0.02;  ///< of each linear system, relative to its initial residual
 };
-
-/// Least number of substeps per tick if there is anything to meet: contact acts between substeps,
-/// and its constraints are not part of their equations.
-inline constexpr int kFewestInContact = 4;
 
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>

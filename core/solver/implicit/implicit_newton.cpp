@@ -6,15 +6,12 @@
 
 #include "core/forces/air/air_force.h"
 #include "core/solver/implicit/conjugate_gradients.h"
+#include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/implicit_step.h"
 #include "core/stop_signal.h"
 
 namespace weft {
 namespace {
-
-/// Later linear systems of a substep need not be solved better than this fraction of the first
-/// one's tolerance.
-constexpr double kEnough = 0.1;
 
 /// Positions and velocities that result from the present displacements.
 template <class Real>
@@ -179,7 +176,7 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
         const LinearVectors<Real> vectors{work.residual.data(),       work.step.data(),
                                           work.direction.data(),      work.product.data(),
                                           work.preconditioned.data(), system.size()};
-        const double enough = first ? 0 : kEnough * step.solver.tolerance * start;
+        const double enough = first ? 0 : kEnoughOfTolerance * step.solver.tolerance * start;
         const LinearSolution found = solve_linear(
             vectors, step.solver.tolerance, enough,
             [&](const Real* q, Real* y) {

@@ -7,19 +7,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/solver/implicit/constants.h"
+
 namespace weft {
 namespace {
-
-/// Levels with at most this many lines in one direction are not coarsened.
-constexpr int kCoarsest = 5;
-/// Sweeps on the coarsest level.
-constexpr int kCoarsestSweeps = 30;
-/// Damping of the block Jacobi sweeps: 1 / (0.583 lambda) with the bound lambda = 2.
-constexpr double kOmega = 0.857;
-/// Factor by which pinned particles are heavier on the coarse levels.
-constexpr double kPinnedWeight = 1e5;
-/// Bending with a matrix smaller than this fraction of the inertia is left to the finest level.
-constexpr double kSmallBending = 0.1;
 
 /// Positions of the lines that a coarser level keeps: every second one, and the last.
 std::vector<int> every_second(const std::vector<int>& at) {
@@ -48,7 +39,7 @@ void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<R
         *std::max_element(level.grid.bending_bound.begin(), level.grid.bending_bound.end());
     for (GridVector<Real>* vector : {&level.residual, &level.sum, &level.product})
       vector->assign(layout.size(), Real(0));
-    if (layout.rows <= kCoarsest && layout.columns <= kCoarsest) break;
+    if (layout.rows <= kCoarsestLines && layout.columns <= kCoarsestLines) break;
     rows = every_second(rows);
     columns = every_second(columns);
   }
@@ -91,7 +82,7 @@ template <class Real>
 void Multigrid<Real>::cycle(std::size_t number, const Real* r, Real* z) {
   assert(number < levels_.size());
   Level& level = levels_[number];
-  const auto omega = static_cast<Real>(kOmega);
+  const auto omega = static_cast<Real>(kJacobiDamping);
   smooth_from_zero(level.grid, omega, r, z);
   if (number + 1 == levels_.size()) {
     for (int s = 1; s < kCoarsestSweeps; ++s) {

@@ -1,0 +1,78 @@
+#pragma once
+
+// The numbers that the implicit solver assumes.
+
+namespace weft {
+
+// When verlet steps a tick instead.
+
+/// Least number of substeps per tick if there is anything to meet [1]: contact acts between
+/// substeps, and its constraints are not part of their equations. Larger: longer ticks. Smaller:
+/// what touches sinks in and slides.
+inline constexpr int kFewestInContact = 4;
+
+/// Fraction of kinetic and elastic energy lost in a violent substep [1]. Larger: shaken cloth keeps
+/// less of its waves. Smaller: verlet steps more ticks.
+inline constexpr double kViolentLoss = 0.1;
+
+/// A violently shaken cloth has at least the energy of all its particles at this speed [m/s].
+/// Larger: the waves of slow cloth are damped away. Smaller: cloth near rest counts as violent.
+inline constexpr double kViolentSpeed = 1;
+
+/// And one of its springs has this strain [1]. Waves in a stiff cloth that snaps taut may have as
+/// much energy, and may be damped. Larger: less cloth counts as violent. Smaller: stiff cloth does.
+inline constexpr double kViolentStrain = 0.1;
+
+/// Largest displacement of a particle in a substep, relative to its neighbours, that the guard can
+/// handle, in mean edge lengths [1]. Larger: what passes by within a substep is seen late. Smaller:
+/// verlet steps more ticks.
+inline constexpr double kFarWay = 1;
+
+// Energy.
+
+/// Unexplained energy that counts as rounding, as a fraction of kinetic and elastic energy [1].
+/// Larger: a gain is seen late. Smaller: float's rounding is taken for one.
+inline constexpr double kRoundingEnergy = 1e-4;
+
+/// Fraction of the lost energy that may return, kept from tick to tick [1]: the scheme loses for a
+/// moment the energy that a wave returns in the next tick. Larger: an old loss excuses a new gain.
+/// Smaller: waves that return are damped.
+inline constexpr double kKeptCredit = 0.9;
+
+/// Largest number of pieces of a divided substep [1]. Larger: longer ticks where energy appears.
+/// Smaller: more of it stays.
+inline constexpr int kMostPieces = 64;
+
+// Linear systems.
+
+/// Iterations of conjugate gradients after which a system counts as not solved [1]. Larger: longer
+/// ticks where it does not converge. Smaller: hard systems that converge slowly are given up.
+inline constexpr int kMostLinearIterations = 200;
+
+/// Later linear systems of a substep need not be solved better than this fraction of the first
+/// one's tolerance [1]. Larger: less exact Newton iterations. Smaller: more iterations for digits
+/// that the first system does not have.
+inline constexpr double kEnoughOfTolerance = 0.1;
+
+// Multigrid.
+
+/// Levels with at most this many lines in one direction are not coarsened [1]. Larger: more sweeps
+/// on a larger coarsest level. Smaller: levels on which a bend has no room.
+inline constexpr int kCoarsestLines = 5;
+
+/// Sweeps on the coarsest level [1]. Larger: more work there. Smaller: slower convergence.
+inline constexpr int kCoarsestSweeps = 30;
+
+/// Damping of the block Jacobi sweeps [1]: 1 / (0.583 lambda) with the bound lambda = 2. Larger:
+/// high modes are not smoothed. Smaller: all are, slowly.
+inline constexpr double kJacobiDamping = 0.857;
+
+/// Factor by which pinned particles are heavier on the coarse levels [1]. Larger: float loses what
+/// stands beside it. Smaller: coarse levels move what is pinned.
+inline constexpr double kPinnedWeight = 1e5;
+
+/// Bending with a matrix smaller than this fraction of the inertia is left to the finest level [1].
+/// Larger: cloth that hardly bends converges slowly. Smaller: coarse levels do work in vain.
+inline constexpr double kSmallBending = 0.1;
+
+}  // namespace weft
