@@ -7,12 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/diagnostics/constants.h"
+
 namespace weft {
 namespace {
 
 using std::numbers::pi;
-constexpr double kLargestGamma = 1000;
-constexpr int kSteps = 500, kHalvings = 36;
 
 struct Curve {
   double clamp_angle = 0, x = 0, drop = 0;
@@ -21,10 +21,10 @@ struct Curve {
 /// Integrates the elastica from its free tip, where the moment is zero, to the clamp. With the
 /// distance q = 1 - s from the tip, theta'' = -gamma q cos theta; midpoint rule.
 Curve shoot(double gamma, double tip_angle) {
-  const double h = 1.0 / kSteps;
+  const double h = 1.0 / kElasticaSteps;
   double angle = tip_angle, slope = 0;
   Curve curve;
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kElasticaSteps; ++k) {
     const double q = k * h;
     const double middle_angle = angle + 0.5 * h * slope;
     const double middle_slope = slope - 0.5 * h * gamma * q * std::cos(angle);
@@ -43,7 +43,7 @@ Curve shoot(double gamma, double tip_angle) {
 double elastica_chord_angle(double gamma) {
   assert(gamma >= 0 && gamma <= kLargestGamma);
   double low = 0, high = pi / 2;
-  for (int k = 0; k < kHalvings; ++k) {
+  for (int k = 0; k < kElasticaHalvings; ++k) {
     const double middle = 0.5 * (low + high);
     (shoot(gamma, middle).clamp_angle < 0 ? low : high) = middle;
   }
@@ -53,7 +53,7 @@ double elastica_chord_angle(double gamma) {
 
 double elastica_gamma(double angle) {
   double low = 0, high = kLargestGamma;
-  for (int k = 0; k < kHalvings; ++k) {
+  for (int k = 0; k < kElasticaHalvings; ++k) {
     const double middle = 0.5 * (low + high);
     (elastica_chord_angle(middle) < angle ? low : high) = middle;
   }

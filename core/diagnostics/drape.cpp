@@ -12,15 +12,12 @@ namespace weft {
 namespace {
 
 using std::numbers::pi;
-constexpr double kPointDistance = 5e-4;  // spacing of the points that sample the shadow [m]
-constexpr int kDirections = 180;         // around the hem
-constexpr double kCrestHeight = 2e-3;    // least rise of a fold [m]
 
 /// Sample points in a square around the middle, marked if a triangle lies above them.
 class Shadow {
  public:
   explicit Shadow(double reach)
-      : side_(static_cast<int>(std::ceil(2 * reach / kPointDistance)) + 2),
+      : side_(static_cast<int>(std::ceil(2 * reach / kShadowSpacing)) + 2),
         marks_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), false) {}
 
   /// Adds a triangle; corners are relative to the middle, as (x, z).
@@ -35,12 +32,12 @@ class Shadow {
   }
 
   double area() const {
-    return kPointDistance * kPointDistance *
+    return kShadowSpacing * kShadowSpacing *
            static_cast<double>(std::count(marks_.begin(), marks_.end(), true));
   }
 
  private:
-  double at(int k) const { return (k - 0.5 * (side_ - 1)) * kPointDistance; }
+  double at(int k) const { return (k - 0.5 * (side_ - 1)) * kShadowSpacing; }
   std::size_t index(int i, int j) const {
     assert(i >= 0 && i < side_ && j >= 0 && j < side_);
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(side_) +
@@ -50,8 +47,8 @@ class Shadow {
     const double low = std::min({p[0][k], p[1][k], p[2][k]});
     const double high = std::max({p[0][k], p[1][k], p[2][k]});
     const double middle = 0.5 * (side_ - 1);
-    return {std::max(0, static_cast<int>(std::ceil(low / kPointDistance + middle))),
-            std::min(side_ - 1, static_cast<int>(std::floor(high / kPointDistance + middle)))};
+    return {std::max(0, static_cast<int>(std::ceil(low / kShadowSpacing + middle))),
+            std::min(side_ - 1, static_cast<int>(std::floor(high / kShadowSpacing + middle)))};
   }
   static bool covers(const std::array<std::array<double, 2>, 3>& p, double u, double v) {
     int left = 0, right = 0;
@@ -143,7 +140,7 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
 
   // The hem, sampled in even directions. The overhang is rescaled to that of a round specimen, so
   // that the staircase of a cut grid does not count as folds.
-  std::vector<double> sum(kDirections, 0), weight(kDirections, 0);
+  std::vector<double> sum(kHemDirections, 0), weight(kHemDirections, 0);
   const std::vector<Index> hem = hem_particles(model, part);
   const auto material = [&](Index i, std::size_t k) {
     return static_cast<double>(model.material[static_cast<std::size_t>(i)][k]);
@@ -157,26 +154,26 @@ DrapeMeasurement measure_drape(const ClothModel<Real>& model, const ClothPart<Re
     const Vec3d p = from_centre(i);
     result.droop -= p[1] / static_cast<double>(hem.size());
     const double own = std::hypot(material(i, 0) - middle[0], material(i, 1) - middle[1]);
-    if (own < 1.2 * kDrapeSupportRadius) continue;
+    if (own < kLeastHemRadius * kDrapeSupportRadius) continue;
     const double radius_if_round =
         kDrapeSupportRadius + (std::hypot(p[0], p[2]) - kDrapeSupportRadius) *
                                   (kDrapeSpecimenRadius - kDrapeSupportRadius) /
                                   (own - kDrapeSupportRadius);
-    const double place = (std::atan2(p[2], p[0]) / (2 * pi) + 1) * kDirections;
+    const double place = (std::atan2(p[2], p[0]) / (2 * pi) + 1) * kHemDirections;
     constexpr int kReach = 6;
     for (int k = -kReach; k <= kReach; ++k) {
       const double direction = std::round(place) + k, off = (direction - place) / 3;
-      const auto slot = static_cast<std::size_t>(static_cast<long>(direction) % kDirections);
+      const auto slot = static_cast<std::size_t>(static_cast<long>(direction) % kHemDirections);
       const double w = std::exp(-off * off);
       sum[slot] += w * radius_if_round;
       weight[slot] += w;
     }
   }
   std::vector<double> radius;
-  for (std::size_t k = 0; k < kDirections; ++k) {
+  for (std::size_t k = 0; k < kHemDirections; ++k) {
     if (weight[k] > 0) radius.push_back(sum[k] / weight[k]);
   }
-  if (!radius.empty()) result.folds = count_crests(radius, kCrestHeight);
+  if (!radius.empty()) result.folds = count_crests(radius, kLeastCrest);
   return result;
 }
 

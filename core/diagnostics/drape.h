@@ -1,16 +1,13 @@
 #pragma once
 
 #include "core/cloth/cloth_model.h"
+#include "core/diagnostics/constants.h"
 #include "core/types.h"
 
-// The drape test.
+// Cusick's drape test (BS 5058): a round specimen lies centred on a disc, and the overhang falls
+// into folds. The shadow under a lamp above is measured.
 
 namespace weft {
-
-/// Cusick's drape test (BS 5058): a round specimen of 30 cm lies centred on a disc of 18 cm, and
-/// the overhang falls into folds. The shadow under a lamp above is measured.
-inline constexpr double kDrapeSupportRadius = 0.09;   ///< of the disc [m]
-inline constexpr double kDrapeSpecimenRadius = 0.15;  ///< of the specimen [m]
 
 struct DrapeMeasurement {
   double coefficient = 0;  ///< fraction of the overhanging ring that the shadow covers [%]

@@ -1,0 +1,43 @@
+#pragma once
+
+// The numbers of the measurements.
+
+namespace weft {
+
+// The drape test.
+
+/// Cusick's drape test (BS 5058): a round specimen of 30 cm lies centred on a disc of 18 cm, and
+/// the overhang falls into folds. Larger or smaller: no longer the test of the literature, whose
+/// coefficients the fabrics are compared with.
+inline constexpr double kDrapeSupportRadius = 0.09;   ///< of the disc [m]
+inline constexpr double kDrapeSpecimenRadius = 0.15;  ///< of the specimen [m]
+
+/// Spacing of the points that sample the shadow [m]. Larger: a coarser coefficient. Smaller: time
+/// and memory grow with the square.
+inline constexpr double kShadowSpacing = 5e-4;
+
+/// Directions around the hem [1]. More: a hem of few particles leaves gaps between them. Fewer:
+/// narrow folds merge.
+inline constexpr int kHemDirections = 180;
+
+/// Particles of the hem that are nearer to its middle in the fabric, in radii of the disc [1], do
+/// not count. Larger: less of an irregular hem is seen. Smaller: short overhangs, rescaled to a
+/// round specimen, count as folds.
+inline constexpr double kLeastHemRadius = 1.2;
+
+/// Least rise of a fold on both sides [m]. Larger: shallow folds are not counted. Smaller: ripples
+/// of the hem are.
+inline constexpr double kLeastCrest = 2e-3;
+
+// The cantilever test.
+
+/// Largest sigma g L^3 / B of an elastica that is solved [1]. Larger: softer strips, which hang
+/// nearly straight down, where the angle hardly depends on it. Smaller: soft strips count as
+/// stiffer than they are.
+inline constexpr double kLargestGamma = 1000;
+
+/// Steps along an elastica, and halvings of the interval of its tip angle and of gamma [1]. More:
+/// more exact (the angle is solved to 1e-5 rad), and slower: time is steps times halvings squared.
+inline constexpr int kElasticaSteps = 500, kElasticaHalvings = 36;
+
+}  // namespace weft
