@@ -5,19 +5,12 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/solver/constants.h"
 
 // Checks a substep with one maximum over all particles before contact sees them, so that no tree,
 // grid or index computation meets a number that is absurd or not finite.
 
 namespace weft {
-
-/// No scene extends farther from the origin [m]. Objects and cloths start within 100 m of it, and
-/// beyond a kilometre single precision resolves less than the thickness of a fabric.
-inline constexpr double kFarthestFromOrigin = 1000;
-
-/// This speed is always allowed, however small the cloth [m/s]: twice the strongest wind. Above it,
-/// no particle may move farther in a substep than its cloth's diagonal.
-inline constexpr double kPlausibleSpeed = 200;
 
 /// Implausible motion of a particle: the substep that produced it is unstable.
 struct BlowUp {

@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/solver/constants.h"
 #include "core/stop_signal.h"
 
 namespace weft {
 namespace {
-
-/// Positions are saved after this many substeps, to return to if a particle has left its path.
-constexpr int kKeptSteps = 8;
-
-/// New paths are requested at this fraction of the allowed displacement: they cost less than a
-/// return to saved positions.
-constexpr double kNearlyOff = 0.9;
-
-/// Fraction of the slack that remains after rounding.
-constexpr double kSureOf = 0.999;
 
 /// State of a run of steps without contact.
 template <class Real>
@@ -136,10 +127,10 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   const CalmPaths<Real>* paths = guard.calm_paths();
   const Contact<Real>* objects = tick.collision.weft;
   if (!paths || !(paths->time + tick.dt <= paths->horizon)) return 0;
-  const Real room = objects ? objects->calm_room(tick.state) * Real(kSureOf)
+  const Real room = objects ? objects->calm_room(tick.state) * Real(kCalmRoom)
                             : std::numeric_limits<Real>::infinity();
   if (!(room > 3 * paths->reach)) {
-    next.substep = s + kKeptSteps;
+    next.substep = s + kCalmKeptSteps;
     return 0;
   }
   tick.work.load_paths(*paths);
@@ -152,7 +143,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   bool renew = false;
   for (; s < substeps && !renew && time + tick.dt <= paths->horizon; ++s) {
     stop_point();
-    if ((s - first) % kKeptSteps == 0) {
+    if ((s - first) % kCalmKeptSteps == 0) {
       for (GridPass<Real>& grid : tick.work.grids) grid.keep();
       kept = s, kept_time = time, kept_box = box, kept_work = work;
     }
@@ -168,7 +159,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
       s = kept, time = kept_time, box = kept_box, work = kept_work;
       break;
     }
-    renew = off > paths->reach * static_cast<Real>(kNearlyOff);
+    renew = off > paths->reach * static_cast<Real>(kCalmRenewal);
   }
   guard.leave_calm_paths(s - first, time, box.centre(), renew);
   for (std::size_t p = 0; p < tick.parts(); ++p) {

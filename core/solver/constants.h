@@ -1,0 +1,35 @@
+#pragma once
+
+// The numbers that the solvers share; implicit/ has its own. Margins that follow from the widest
+// vector stand with the kernels (grid_relaxation.h).
+
+namespace weft {
+
+// Blow-ups.
+
+/// No scene extends farther from the origin [m]. Objects and cloths start within 100 m of it, and
+/// beyond a kilometre single precision resolves less than the thickness of a fabric. Larger:
+/// contact loses that precision. Smaller: cloth that falls or flies far is stopped as if it
+/// diverged.
+inline constexpr double kFarthestFromOrigin = 1000;
+
+/// This speed is always allowed, however small the cloth [m/s]: twice the strongest wind. Above it,
+/// no particle may move farther in a substep than its cloth's diagonal. Larger: a diverged small
+/// cloth is noticed later. Smaller: cloth in a storm is stopped.
+inline constexpr double kPlausibleSpeed = 200;
+
+// Steps while contact cannot act.
+
+/// Substeps after which positions are saved, to return to if a particle has left its path. Larger:
+/// more steps are repeated then. Smaller: more time goes into saving.
+inline constexpr int kCalmKeptSteps = 8;
+
+/// Fraction of the allowed displacement from a path at which new paths are requested [1]: they cost
+/// less than a return to saved positions. Larger: more returns. Smaller: more new paths.
+inline constexpr double kCalmRenewal = 0.9;
+
+/// Fraction of the way to the nearest object that remains after rounding [1]. At 1 rounding could
+/// let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
+inline constexpr double kCalmRoom = 0.999;
+
+}  // namespace weft
