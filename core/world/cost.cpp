@@ -6,12 +6,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/world/constants.h"
+
 namespace weft {
 namespace {
-
-/// Cost of a Newton step with its linear systems in sweeps: 5 to 10 iterations of conjugate
-/// gradients, each with a cycle over all levels of the grid.
-constexpr double kSweepsOfNewton = 60;
 
 std::size_t triangles_of(const ColliderDef& collider) {
   const auto* mesh = std::get_if<MeshDef>(&collider.shape);
@@ -41,9 +39,9 @@ void check_size(const WorldDef& def) {
     cloth_triangles += cloth.mesh ? cloth.mesh->mesh.triangles.size() : 2 * rows * columns;
   }
   for (const ColliderDef& collider : def.colliders) object_triangles += triangles_of(collider);
-  check_count("cloths", "particles", particles, kMostParticles);
-  check_count("cloths", "triangles", cloth_triangles, kMostTriangles);
-  check_count("colliders", "triangles", object_triangles, kMostTriangles);
+  check_count("cloths", "particles", particles, kMostWorldParticles);
+  check_count("cloths", "triangles", cloth_triangles, kMostWorldTriangles);
+  check_count("colliders", "triangles", object_triangles, kMostWorldTriangles);
 }
 
 double sweeps_of(const WorldDef& def, SolverKind kind) {

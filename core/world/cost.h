@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "core/error.h"
@@ -11,17 +10,6 @@
 // time of a tick instead.
 
 namespace weft {
-
-/// Particles of all cloths together. This admits a cloth of 512 x 512, with frames of 3 MB.
-inline constexpr std::size_t kMostParticles = 300'000;
-/// Triangles of all cloths, and of all objects. A mesh message has 12 bytes per triangle.
-inline constexpr std::size_t kMostTriangles = 1'000'000;
-
-/// Updates of particles by the solver's springs in one tick. An update takes 3 to 5 ns for the
-/// springs of a grid and 10 ns for those of a mesh, so that a tick stays below two seconds of CPU.
-inline constexpr double kMostTickUpdates = 1.5e8;
-/// The same per simulated second: about a minute of CPU.
-inline constexpr double kMostUpdatesPerSecond = 1e10;
 
 /// A definition that exceeds a cost limit.
 struct CostError : DefinitionError {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/geometry/distance.h"
+#include "core/world/constants.h"
 
 namespace weft {
 namespace {
@@ -19,10 +20,6 @@ TriangleMesh mesh_of(const ShapeDef& shape) {
   if (const auto* given = std::get_if<MeshDef>(&shape)) return given->mesh;
   return {};
 }
-
-/// Depth inside a round object that counts, as a fraction of its radius; contact in float keeps no
-/// finer distance.
-constexpr double kInRound = 1e-5;
 
 void note(const Meeting& meeting, std::vector<Meeting>& list) {
   const auto known = std::find_if(list.begin(), list.end(),
@@ -148,7 +145,7 @@ void CrossingCounter<Real>::find_in_rounds(const World<Real>& world,
       return pose.position + pose.rotation * (p - pivot);
     };
     const Vec3d a = placed(ball ? ball->centre : rod->a), b = ball ? a : placed(rod->b);
-    const double radius = (ball ? ball->radius : rod->radius) * (1 - kInRound);
+    const double radius = (ball ? ball->radius : rod->radius) * (1 - kInRoundPart);
     Aabb<double> box;
     for (const Vec3d& end : {a, b}) {
       box.add((end.array() - radius).matrix());

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "core/solver/verlet.h"
+#include "core/world/constants.h"
 
 // Detects energy that has no source.
 
@@ -15,11 +16,11 @@ namespace weft {
 /// work of hands and air. Losses are not deducted at once: unexplained energy decays over about a
 /// second, because close to the stability limit the energy of the highest modes, summed at one
 /// instant, varies by a factor of ten in normal operation.
-/// one instant, swings by a factor of ten while nothing is wrong.
 class EnergyAccount {
  public:
   /// @param total_mass  of the cloth [kg]
-  explicit EnergyAccount(double total_mass) : floor_(total_mass * kFloorSpeed * kFloorSpeed / 2) {
+  explicit EnergyAccount(double total_mass)
+      : floor_(total_mass * kUnsuspiciousSpeed * kUnsuspiciousSpeed / 2) {
     assert(total_mass >= 0);
   }
 
@@ -28,7 +29,7 @@ class EnergyAccount {
 
   /// Whether the result of a tick cannot be explained. NaN counts as unexplained.
   bool is_runaway(const AdvanceResult& tick) const {
-    return !(mechanical(tick.after) <= kSlack * (booked(tick) + floor_));
+    return !(mechanical(tick.after) <= kRunawayFactor * (booked(tick) + floor_));
   }
 
   /// Energy without a source [J], for reports.
@@ -39,14 +40,10 @@ class EnergyAccount {
   /// Accounts for an accepted tick.
   void accept(const AdvanceResult& tick) {
     const double now = mechanical(tick.after), have = booked(tick);
-    credit_ = have > now ? now + (have - now) * kKept : have;
+    credit_ = have > now ? now + (have - now) * kCreditKept : have;
   }
 
  private:
-  static constexpr double kSlack = 20;      // twice the variation of the highest modes
-  static constexpr double kKept = 0.95;     // fraction of the unexplained credit kept per tick
-  static constexpr double kFloorSpeed = 1;  // energy at this speed is never suspicious [m/s]
-
   static double mechanical(const Energies& e) { return e.kinetic + e.stretch + e.bending; }
 
   /// Energy that the cloth may have after the tick. Commands between ticks (a new pin, other

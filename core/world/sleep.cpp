@@ -8,14 +8,9 @@
 #include <utility>
 
 #include "core/contact/objects/cloth_patches.h"
+#include "core/world/constants.h"
 
 namespace weft {
-namespace {
-
-/// Number of ticks for which boxes are extrapolated, so that a cloth wakes before it is touched.
-constexpr int kTicksAhead = 2;
-
-}  // namespace
 
 template <class Real>
 Sleep<Real>::Sleep(const ClothModel<Real>& model, const SleepDef& def, double tick_seconds,
@@ -84,7 +79,7 @@ template <class Real>
 void Sleep<Real>::add_coming(Index particle, const ClothState<Real>& state, Aabb<Real>& box) const {
   const auto k = static_cast<std::size_t>(particle);
   box.add(state.x[k]);
-  box.add(state.x[k] + state.v[k] * (tick_seconds_ * Real(kTicksAhead)));
+  box.add(state.x[k] + state.v[k] * (tick_seconds_ * Real(kSleepTicksAhead)));
 }
 
 template <class Real>
@@ -133,7 +128,7 @@ void Sleep<Real>::disturb_near(const ClothState<Real>& state, const ColliderDef&
   const double radius = radius_of(def.shape);
   if (!std::isfinite(radius)) return disturb_all();
   Aabb<Real> reach;
-  const double ahead = static_cast<double>(tick_seconds_) * kTicksAhead;
+  const double ahead = static_cast<double>(tick_seconds_) * kSleepTicksAhead;
   for (const Vec3d& p : {collider.start.position, collider.goal.position,
                          Vec3d(collider.start.position + collider.wanted.linear * ahead)})
     reach.add(p.cast<Real>());

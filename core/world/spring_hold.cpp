@@ -56,9 +56,9 @@ std::vector<SlackSprings> slack_springs(const World<Real>& world) {
     slack.strain =
         strain_of_hanging(extent_of(world.model(), part) / h, h, def.environment.gravity.norm(),
                           world.tick_seconds() / substeps, slack.needed_sweeps);
-    if (slack.strain <= kMostSlack && !one_sided) continue;
+    if (slack.strain <= kMostHangingStrain && !one_sided) continue;
     slack.cloth = cloth_name(def, static_cast<Index>(k));
-    const double factor = std::max(1.0, std::sqrt(slack.strain / kMostSlack));
+    const double factor = std::max(1.0, std::sqrt(slack.strain / kMostHangingStrain));
     slack.needed = static_cast<int>(std::min<double>(kMostSubsteps, std::ceil(substeps * factor)));
     found.push_back(slack);
   }

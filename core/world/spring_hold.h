@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/world/constants.h"
 #include "core/world/world.h"
 
 // Cloths that relaxation cannot hold with the substeps that it has.
@@ -16,17 +17,14 @@ struct SlackSprings {
   double strain = 0;      ///< by gravity alone in a hanging cloth
   int substeps = 0;       ///< per tick
   int sweeps = 0;         ///< per substep
-  int needed = 0;         ///< substeps that limit the strain to kMostSlack
+  int needed = 0;         ///< substeps that limit the strain to kMostHangingStrain
   int needed_sweeps = 0;  ///< in each of those
 };
-
-/// Strain beyond which springs count as not held.
-inline constexpr double kMostSlack = 0.15;
 
 /// Strain of a hanging net of `rows` springs of length `h` [m] under relaxation, in excess of that
 /// of its fabric. Each substep adds g dt^2 to every particle, and a sweep passes on about a third
 /// of the difference between neighbours: the top keeps 3 rows g dt^2 / (h sweeps), within a factor
-/// of 2 up to kMostSlack (measured with 25 to 97 rows). Beyond it the net also begins to bounce,
+/// of 2 up to kMostHangingStrain (measured with 25 to 97 rows). Beyond it the net also begins to bounce,
 /// ever higher.
 /// @param dt  substep [s]
 double strain_of_hanging(double rows, double h, double gravity, double dt, int sweeps);

@@ -7,12 +7,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/world/constants.h"
 
 namespace weft {
 namespace {
-
-/// Tolerated errors, as fractions of the energy in play and of the extent.
-constexpr double kMostExcess = 0.01, kBack = 0.01;
 
 /// Largest change of a cloth's mean height between two states [m].
 template <class Real>
@@ -120,18 +118,18 @@ std::vector<std::string> Verdict<Real>::failures(const VerdictDef& def) const {
   if (lost_motion > def.lost_motion)
     list.push_back("lost motion of " + number_text(lost_motion) + ", more than " +
                    number_text(def.lost_motion));
-  if (energy_excess > kMostExcess)
+  if (energy_excess > kMostEnergyExcess)
     list.push_back(number_text(energy_excess) + " more energy than it was given, more than " +
-                   number_text(kMostExcess));
+                   number_text(kMostEnergyExcess));
   if (def.heights > 0 && height_error > def.heights)
     list.push_back("a cloth's mean height off by " + number_text(height_error) + " m, more than " +
                    number_text(def.heights));
   if (def.hands_lag > 0 && hands_lag > def.hands_lag)
     list.push_back("a hand " + number_text(hands_lag) + " m from its target, more than " +
                    number_text(def.hands_lag));
-  if (def.heights == 0 && rest_error > kBack)
+  if (def.heights == 0 && rest_error > kMostRestError)
     list.push_back("off its rest by " + number_text(rest_error) + ", more than " +
-                   number_text(kBack));
+                   number_text(kMostRestError));
   return list;
 }
 

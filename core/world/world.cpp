@@ -11,16 +11,10 @@
 #include "core/forces/air/air.h"
 #include "core/geometry/ray_cast.h"
 #include "core/stop_signal.h"
+#include "core/world/constants.h"
 
 namespace weft {
 namespace {
-
-/// Number of retries of a diverged tick, each with twice the substeps.
-constexpr int kMostRetries = 2;
-
-/// With the implicit solver, verlet steps the ticks that are violent or in which anything touches
-/// or could touch (see advance_implicit), if its substeps are at least this long [s].
-constexpr double kShortestForVerlet = 1.0 / 120000;
 
 template <class Real>
 double total_mass(const ClothModel<Real>& model) {
@@ -264,7 +258,7 @@ void World<Real>::advance_or_recover(int substeps) {
     }
     report_.divergence = divergence;
     restore_last_good();
-    if (attempt == kMostRetries || substeps > kMostSubsteps / 2) {
+    if (attempt == kMostTickRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
       accept_state();

@@ -8,6 +8,7 @@
 #include "core/cloth/softening.h"
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
+#include "core/world/constants.h"
 #include "core/world/state_hash.h"
 #include "core/world/world.h"
 
@@ -148,7 +149,7 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
   check_field("pick.", {"origin", -1e6, 1e6, "m", "start of the ray"}, origin);
   check_field("pick.", {"direction", -1e6, 1e6, "", "direction of the ray"}, direction);
   const double length = direction.norm();
-  if (!(length > 1e-12))
+  if (!(length > kShortestRay))
     throw DefinitionError("pick.direction", "0,0,0", "a direction",
                           "give a vector that is not zero");
   std::vector<Aabb<Real>> boxes;

@@ -5,15 +5,10 @@
 #include <cmath>
 
 #include "core/forces/air/air.h"
+#include "core/world/constants.h"
 #include "core/world/world.h"
 
 namespace weft {
-namespace {
-
-/// Limits of the substeps for hands: a multiple of those for the cloth, or a number per tick.
-constexpr long kMostForHands = 2, kEnoughForHands = 40;
-
-}  // namespace
 
 template <class Real>
 int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environment) const {
@@ -40,7 +35,7 @@ template <class Real>
 long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& environment,
                                      long cloth_alone, int fewest) const {
   assert(cloth_alone >= 1 && fewest >= 1);
-  const long most = std::max(cloth_alone * kMostForHands, kEnoughForHands);
+  const long most = std::max(cloth_alone * kHandSubstepFactor, kEnoughHandSubsteps);
   long count = 0;
   for (const ClothPart<Real>& part : model_.parts) {
     StabilityBound hands;
@@ -54,8 +49,8 @@ long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& envi
     StabilityBound together = stability_bound(part, kind, environment);
     together.omega2 += hands.omega2;
     together.damping_rate += hands.damping_rate;
-    count =
-        std::max(count, std::min(kEnoughForHands, substeps_for(together, tick_seconds(), fewest)));
+    count = std::max(count,
+                     std::min(kEnoughHandSubsteps, substeps_for(together, tick_seconds(), fewest)));
   }
   return count;
 }

@@ -66,7 +66,7 @@ TEST_CASE("springs that are told to be slack are drawn out by half, and held as 
   const WorldDef enough =
       hanging_sheet({c.rows, told[0].needed, told[0].needed_sweeps, c.compliance});
   CHECK(slack_springs(World<float>(enough)).empty());
-  CHECK(strain_after(enough, 2) < 2 * kMostSlack);
+  CHECK(strain_after(enough, 2) < 2 * kMostHangingStrain);
 }
 
 TEST_CASE(

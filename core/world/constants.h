@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+
+// The numbers that a world and its ticks assume. The greatest numbers of things in a scene stand
+// beside their structs, in world_def.h and script.h.
+
+namespace weft {
+
+// Cost of a scene. The limits are sizes that one machine serves.
+
+/// Particles of all cloths together. This admits a cloth of 512 x 512, with frames of 3 MB. Larger:
+/// longer ticks and larger frames. Smaller: fine cloths are refused.
+inline constexpr std::size_t kMostWorldParticles = 300'000;
+
+/// Triangles of all cloths, and of all objects. A mesh message has 12 bytes per triangle. Larger:
+/// larger messages. Smaller: fine meshes are refused.
+inline constexpr std::size_t kMostWorldTriangles = 1'000'000;
+
+/// Updates of particles by the solver's springs in one tick. An update takes 3 to 5 ns for the
+/// springs of a grid and 10 ns for those of a mesh, so that a tick stays below two seconds of CPU.
+/// Larger: longer ticks. Smaller: stiff or fine cloths are refused.
+inline constexpr double kMostTickUpdates = 1.5e8;
+
+/// The same per simulated second [1/s]: about a minute of CPU.
+inline constexpr double kMostUpdatesPerSecond = 1e10;
+
+/// Cost of a Newton step with its linear systems in sweeps: 5 to 10 iterations of conjugate
+/// gradients, each with a cycle over all levels of the grid. Larger: implicit scenes are refused
+/// that could be served. Smaller: some are accepted that cannot.
+inline constexpr double kSweepsOfNewton = 60;
+
+// Substeps.
+
+/// Most substeps that a hand alone may ask for, as a multiple of those for the cloth [1] or as a
+/// number per tick, whichever is more. Larger: cloth that a hand presses against something loses
+/// less of its motion, in longer ticks. Smaller: it loses more.
+inline constexpr long kHandSubstepFactor = 2, kEnoughHandSubsteps = 40;
+
+/// With the implicit solver, verlet steps the ticks that are violent or in which anything touches
+/// or could touch (see advance_implicit), if its substeps are at least this long [s]. Larger: more
+/// such ticks stay with implicit, which loses waves in them. Smaller: longer ticks.
+inline constexpr double kShortestForVerlet = 1.0 / 120000;
+
+// Recovery.
+
+/// Retries of a diverged tick, each with twice the substeps of the one before. More: fewer cloths
+/// are stopped, and a tick that cannot be saved takes longer, twice as long with each.
+inline constexpr int kMostTickRetries = 2;
+
+/// Factor by which the energy of a tick may exceed what has a source [1]: twice the variation of
+/// the highest modes. Larger: a runaway is noticed later. Smaller: normal operation near the
+/// stability limit counts as one.
+inline constexpr double kRunawayFactor = 20;
+
+/// Fraction of the unexplained credit kept per tick [1]. Larger: energy that was lost long ago
+/// excuses a runaway. Smaller: energy that is only hidden by the instant of a sum is forgotten.
+inline constexpr double kCreditKept = 0.95;
+
+/// Energy at this speed is never suspicious [m/s]. Larger: slow runaways are missed. Smaller: a
+/// resting cloth that begins to move may count as one.
+inline constexpr double kUnsuspiciousSpeed = 1;
+
+// Sleep.
+
+/// Ticks for which boxes are extrapolated, so that a cloth wakes before it is touched. Larger:
+/// cloth wakes for what only passes by. Smaller: it may be touched while it sleeps.
+inline constexpr int kSleepTicksAhead = 2;
+
+// Warnings and verdicts.
+
+/// Strain of hanging above which springs count as not held [1]; strain_of_hanging is measured up to
+/// it. Larger: scenes that sag out pass without a warning. Smaller: warnings for what holds.
+inline constexpr double kMostHangingStrain = 0.15;
+
+/// Energy without a source that a hard case may gain, as a fraction of the energy in play [1].
+/// Larger: a solver that heats cloth passes. Smaller: rounding fails a case.
+inline constexpr double kMostEnergyExcess = 0.01;
+
+/// Distance from its rest shape of a cloth that must have returned, as a fraction of its extent
+/// [1]. Larger: cloth that stays tangled passes. Smaller: cloth that still swings fails.
+inline constexpr double kMostRestError = 0.01;
+
+/// Depth inside a round object that counts as a crossing, as a fraction of its radius [1]; contact
+/// in float keeps no finer distance. Larger: shallow crossings are not counted. Smaller: rounding
+/// is.
+inline constexpr double kInRoundPart = 1e-5;
+
+// Picking.
+
+/// Shortest direction of a ray [1]; it comes from a viewer's pixels and may be of any scale.
+/// Larger: rays in small units are refused. Smaller: their direction is rounding.
+inline constexpr double kShortestRay = 1e-12;
+
+}  // namespace weft
