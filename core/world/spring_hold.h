@@ -24,8 +24,8 @@ struct SlackSprings {
 /// Strain of a hanging net of `rows` springs of length `h` [m] under relaxation, in excess of that
 /// of its fabric. Each substep adds g dt^2 to every particle, and a sweep passes on about a third
 /// of the difference between neighbours: the top keeps 3 rows g dt^2 / (h sweeps), within a factor
-/// of 2 up to kMostHangingStrain (measured with 25 to 97 rows). Beyond it the net also begins to bounce,
-/// ever higher.
+/// of 2 up to kMostHangingStrain (measured with 25 to 97 rows). Beyond it the net also begins to
+/// bounce, ever higher.
 /// @param dt  substep [s]
 double strain_of_hanging(double rows, double h, double gravity, double dt, int sweeps);
 
