@@ -45,6 +45,25 @@ WorldDef validated(WorldDef def) {
   return def;
 }
 
+/// Gives hands what they did last before the tick that failed, whose forces may not be finite; a
+/// hand that took hold in it did nothing yet.
+template <class Real>
+void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) {
+    const auto known = std::find_if(before.list.begin(), before.list.end(),
+                                    [&](const Grab<Real>& other) { return other.id == grab.id; });
+    if (known != before.list.end()) {
+      grab.impulse = known->impulse;
+      grab.velocity = known->velocity;
+      grab.force = known->force;
+    } else {
+      for (Vec3Array<Real>* array : {&grab.impulse, &grab.velocity})
+        std::fill(array->begin(), array->end(), Vec3<Real>::Zero());
+      grab.force.setZero();
+    }
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -258,6 +277,7 @@ void World<Real>::advance_or_recover(int substeps) {
     }
     report_.divergence = divergence;
     restore_last_good();
+    take_back_hands(checkpoint_.grabs, grabs_);
     if (attempt == kMostTickRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
