@@ -40,6 +40,8 @@ ROOMS = {
 # Folders of core, the lowest first; files beside the folders are below all of them.
 FLOORS = ("math", "geometry", "cloth", "forces", "contact", "attachments", "diagnostics", "solver", "world",
           "scenes")
+# Folders of the page, the lowest first; files beside the folders join them and are above all.
+PAGE_FLOORS = ("wire", "view", "hold", "panel")
 CLOCK_USE = re.compile(r"std::chrono|\b(clock_gettime|gettimeofday|random_device)\b")
 
 IMPORT = re.compile(
@@ -112,6 +114,14 @@ def script_problems(name, text):
         path = normpath((name.parent / target).as_posix()) if target.startswith(".") else target
         if not path.startswith(own) and not packages.match(path):
             yield f"{room} must not import {path}"
+        if path.startswith("web/src/") and page_floor_of(path) > page_floor_of(name):
+            yield f"{path} is on a floor above this file"
+
+
+def page_floor_of(name):
+    """The height of a file of the page; above all folders beside them."""
+    folder = PurePosixPath(name).parts[2]
+    return PAGE_FLOORS.index(folder) if folder in PAGE_FLOORS else len(PAGE_FLOORS)
 
 
 def text_problems(name, text):

@@ -50,6 +50,8 @@ VIOLATIONS = [
     ("web/src/a.ts", 'export * from "../../server/x.js";\n', "must not import server/x.js"),
     ("web/src/a.ts", 'import "../../tests/x.js";\n', "must not import tests/x.js"),
     ("web/src/a.ts", 'const x = await import("lodash");\n', "must not import lodash"),
+    ("web/src/view/a.ts", 'import { x } from "../panel/x.js";\n', "on a floor above"),
+    ("web/src/hold/a.ts", 'import { x } from "../page.js";\n', "on a floor above"),
     ("proto/js/a.js", 'import { x } from "../../web/src/x.js";\n', "must not import web/src/x.js"),
     ("proto/js/a.js", 'import * as three from "three";\n', "must not import three"),
     ("web/src/a.ts", "// TO" "DO later\n", "unfinished"),

@@ -6,7 +6,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 // What the page says of the promise that nothing passes through, in lines that stay.
 
-const { crossings_text, guarantee_text } = await import_page_module('guarantee');
+const { crossings_text, guarantee_text } = await import_page_module('panel/guarantee');
 
 const says = async (page) => ({
   guarantee: await page.locator('#guarantee-text').textContent(),

@@ -18,7 +18,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 // Hands by mouse and touch, on the cloth and beside it.
 
-const { LONG_PRESS } = await import_page_module('input');
+const { LONG_PRESS } = await import_page_module('hold/input');
 
 test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () =>
   with_page({}, async (page, script) => {

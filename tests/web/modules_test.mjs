@@ -2,10 +2,10 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { import_page_module } from './support/page_module.mjs';
 
-const { Fans } = await import_page_module('fans');
-const { Playback } = await import_page_module('playback');
-const { cast_ray, point_on_triangle } = await import_page_module('ray');
-const { smooth_normals } = await import_page_module('normals');
+const { Fans } = await import_page_module('view/fans');
+const { Playback } = await import_page_module('wire/playback');
+const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
+const { smooth_normals } = await import_page_module('view/normals');
 
 const PERIOD = 1 / 60;
 

@@ -7,7 +7,7 @@ import { brightness_at, cloth_on_canvas, compare, projected_cloth } from './supp
 
 // What the page draws.
 
-const { inner_offset } = await import_page_module('normals');
+const { inner_offset } = await import_page_module('view/normals');
 
 /** The cloth of the page's picture and of the server's positions, from where the page looks. */
 async function silhouettes(page, script) {

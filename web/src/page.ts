@@ -1,27 +1,20 @@
-import type { Vector2 } from 'three';
 import type { WeftClient } from '../../proto/js/index.js';
-import type { Frame, Grab, State, Viewer } from '../../proto/js/messages.js';
-import { BoxView } from './box_view.js';
-import { OrbitCamera } from './camera.js';
-import { connect_client, explain_refusals, tell_refusal } from './connection.js';
-import { FanHold } from './fan_hold.js';
-import { fan_of_view, Fans } from './fans.js';
-import type { FanHit } from './fans.js';
-import { Hands, NO_COLOR, owner_of } from './hands.js';
-import type { Hand } from './hands.js';
-import { Hold } from './hold.js';
-import { ObjectHold } from './object_hold.js';
-import { Input } from './input.js';
-import { listen_to_keys } from './keys.js';
-import { element, Panels } from './panels.js';
-import type { Phase } from './panels.js';
-import { Pins } from './pins.js';
-import { point_on_triangle } from './ray.js';
-import type { ClothHit } from './ray.js';
-import { Reticle } from './reticle.js';
-import { Stage } from './stage.js';
-import { Toolbar } from './toolbar.js';
-import { WorldView } from './world_view.js';
+import type { Frame, State, Viewer } from '../../proto/js/messages.js';
+import { BoxView } from './panel/box_view.js';
+import { OrbitCamera } from './view/camera.js';
+import { connect_client, explain_refusals } from './wire/connection.js';
+import { fan_of_view, Fans } from './view/fans.js';
+import { Hands } from './view/hands.js';
+import { Holding } from './hold/holding.js';
+import { Input } from './hold/input.js';
+import { listen_to_keys } from './hold/keys.js';
+import { element, Panels } from './panel/panels.js';
+import type { Phase } from './panel/panels.js';
+import { Pins } from './view/pins.js';
+import { Reticle } from './view/reticle.js';
+import { Stage } from './view/stage.js';
+import { Toolbar } from './panel/toolbar.js';
+import { WorldView } from './view/world_view.js';
 
 const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
 // The measurements show the first two, and the hand reports the third itself.
@@ -41,19 +34,15 @@ export class Page {
   readonly client: WeftClient;
   readonly box_view: BoxView;
   readonly input: Input;
+  readonly holding: Holding;
   world: WorldView | null = null;
   state: State | null = null;
   phase: Phase = 'connecting';
-  hovered: ClothHit | null = null;
   pictures = 0;
   private stage = new Stage(this.canvas);
   private panels = new Panels();
   private toolbar: Toolbar;
   private reticle = new Reticle();
-  private hold: Hold | null = null;
-  private fan_hold: FanHold | null = null;
-  private object_hold: ObjectHold | null = null;
-  private grabs: Grab[] = [];
   private viewers: Viewer[] = [];
   private last_time = performance.now() / 1000;
   private camera_told_at = 0;
@@ -75,20 +64,33 @@ export class Page {
     const tell = (text: string) => this.panels.tell(text);
     this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
     this.stage.scene.add(this.box_view.boxes.lines);
+    this.holding = new Holding({
+      client: this.client,
+      orbit: this.orbit,
+      fans: this.fans,
+      pins: this.pins,
+      world: () => this.world,
+      viewer: (id) => this.viewer(id),
+      hand_mode: () => this.toolbar.hand_mode,
+      size: () => this.size(),
+      show_fans: () => this.show_fans(),
+      tell,
+      lost: (reason) => this.lost(reason),
+    });
     this.input = new Input(this.canvas, {
-      take: (point) => this.take(point),
-      take_object: (point) => this.take_object(point),
-      follow: (point) => (this.fan_hold ?? this.object_hold ?? this.hold)?.follow(point),
-      push: (factor) => (this.fan_hold ?? this.object_hold ?? this.hold)?.push(factor),
+      take: (point) => this.holding.take(point),
+      take_object: (point) => this.holding.take_object(point),
+      follow: (point) => this.holding.follow(point),
+      push: (factor) => this.holding.push(factor),
       let_go: (meant) => this.let_go(meant),
-      toggle_pin: (point) => this.toggle_pin(point),
+      toggle_pin: (point) => this.holding.toggle_pin(point),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       pan: (dx, dy) => this.orbit.pan(dx, dy),
       zoom: (factor) => this.orbit.zoom(factor),
       changed: () => (this.dirty = true),
     });
     listen_to_keys({
-      toggle_pin: () => this.toggle_pin(this.input.point),
+      toggle_pin: () => this.holding.toggle_pin(this.input.point),
       toggle_pause: () => this.toolbar.toggle_pause(),
       step: () => this.toolbar.one_step(),
       reset: () => this.toolbar.reset(),
@@ -117,7 +119,7 @@ export class Page {
       this.world?.dispose();
       this.world = new WorldView(announcement, data, this.stage);
       this.pins.fit(this.world.cloth_extent);
-      this.grabs = [];
+      this.holding.grabs = [];
       this.box_view.renew();
       if (!same) {
         this.frame(true);
@@ -142,7 +144,7 @@ export class Page {
       this.show_pins();
     });
     client.on('grabs', ({ grabs }) => {
-      this.grabs = grabs;
+      this.holding.grabs = grabs;
       this.dirty = true;
     });
     client.on('notice', ({ level, code, message }) => {
@@ -160,7 +162,7 @@ export class Page {
     this.camera_moved = true;
     if (phase === 'open') return;
     this.input.cancel();
-    this.grabs = [];
+    this.holding.grabs = [];
     this.world?.playback.forget();
   }
 
@@ -169,11 +171,11 @@ export class Page {
     this.world?.push(frame, now);
     this.panels.tick(frame.tick, frame.serverTime);
     const { latency } = this.client;
-    if (this.hold) this.pending_latency = { came_at: now, latency };
+    if (this.holding.holds_cloth) this.pending_latency = { came_at: now, latency };
   }
 
   private show_fans(): void {
-    if (this.state && !this.fan_hold && this.fans.receive(this.state.fans)) this.dirty = true;
+    if (this.state && !this.holding.holds_fan && this.fans.receive(this.state.fans)) this.dirty = true;
   }
 
   private show_pins(): void {
@@ -186,92 +188,14 @@ export class Page {
     return this.viewers.find((viewer) => viewer.id === id);
   }
 
-  // ---- hands --------------------------------------------------------------------------------
-
-  private pick(point: Vector2 | null): ClothHit | null {
-    if (!point || !this.client.connected) return null;
-    return this.world?.hit(this.orbit.ray(point)) ?? null;
-  }
-
-  private take(point: Vector2): boolean {
-    const hit = this.pick(point);
-    if (this.take_fan(point, hit)) return true;
-    if (!hit) return false;
-    const { hand_mode } = this.toolbar;
-    this.hold = new Hold(this.client, hit, this.orbit, hand_mode, (reason) => this.lost(reason));
-    return true;
-  }
-
-  /** Takes the handle of a fan, unless cloth is in front of it. */
-  private take_fan(point: Vector2, cloth: ClothHit | null): boolean {
-    const hit = this.fan_at(point, cloth);
-    if (!hit) return false;
-    this.fan_hold = new FanHold(hit, point, this.fans, this.orbit, (fans) => {
-      const answer = this.client.set({ fans });
-      this.fans.told(answer);
-      answer.catch(() => this.show_fans()); // if refused, they stay where they were
-      tell_refusal(answer, (text) => this.panels.tell(text));
-    });
-    return true;
-  }
-
-  private take_object(point: Vector2): boolean {
-    if (!this.client.connected) return false;
-    const hit = this.world?.hit_object(this.orbit.ray(point));
-    if (!hit) return false;
-    this.object_hold = new ObjectHold(hit, point, this.orbit, (move) =>
-      tell_refusal(this.client.move(hit.name, move), (text) => this.panels.tell(text)),
-    );
-    return true;
-  }
-
-  private fan_at(point: Vector2 | null, cloth: ClothHit | null): FanHit | null {
-    if (!point || !this.client.connected) return null;
-    const { width, height } = this.size();
-    const hit = this.fans.at(point, this.orbit, width, height);
-    if (!hit || !cloth) return hit;
-    return this.orbit.depth(hit.position) < this.orbit.depth(cloth.position) ? hit : null;
-  }
-
   private let_go(meant: boolean): void {
-    this.fan_hold?.end();
-    this.fan_hold = null;
-    this.object_hold?.end();
-    this.object_hold = null;
-    this.hold?.end(meant);
-    this.hold = null;
+    this.holding.let_go(meant);
     this.pending_latency = null;
   }
 
   private lost(reason: string): void {
     if (this.phase === 'open') this.panels.tell(`The cloth slipped out of your hand: ${reason}`);
     this.input.cancel();
-  }
-
-  /** Pins the held or indicated point, or releases it if it is pinned. */
-  private toggle_pin(point: Vector2 | null): void {
-    if (!this.client.connected || !this.world) return;
-    const held = this.hold;
-    const hit = held ? null : this.pick(point);
-    // A fan cannot be pinned, and hides what is behind it.
-    if (this.fan_hold || (!held && this.fan_at(point, hit))) return;
-    const at = held ?? hit;
-    const particle = at && this.nearest_corner(at);
-    const { width, height } = this.size();
-    const meant = held ? null : point;
-    const pins = this.pins.at(meant, particle, this.orbit.camera, width, height);
-    const answers = pins.length
-      ? pins.map(({ id }) => this.client.release({ pin: id }))
-      : at
-        ? [this.client.pin({ triangle: at.triangle, barycentric: at.barycentric })]
-        : [];
-    for (const answer of answers) tell_refusal(answer, (text) => this.panels.tell(text));
-  }
-
-  /** The particle that the server pins for a point of a triangle. */
-  private nearest_corner({ triangle, barycentric }: Pick<ClothHit, 'triangle' | 'barycentric'>) {
-    const corner = barycentric.indexOf(Math.max(...barycentric));
-    return this.world?.triangles[triangle * 3 + corner] ?? null;
   }
 
   private frame(at_once = false): void {
@@ -289,7 +213,7 @@ export class Page {
 
   /** Whether the picture on the screen is up to date and as fine as it gets. */
   get fine(): boolean {
-    return this.stage.at_rest && !this.dirty;
+    return this.stage.quality.still && !this.dirty;
   }
 
   private size(): { width: number; height: number } {
@@ -309,7 +233,7 @@ export class Page {
     const elapsed = Math.min(0.1, now - this.last_time);
     this.last_time = now;
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
-    if (this.world?.show(now, this.hold !== null)) {
+    if (this.world?.show(now, this.holding.holds_cloth)) {
       this.dirty = true;
       this.pins.follow(this.world.playback.positions);
       // A viewer that joins late finds the cloth moved from its start.
@@ -321,62 +245,27 @@ export class Page {
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;
     if (this.dirty) this.changed_at = now;
-    const resized = this.stage.set_still(now - this.changed_at > STILL_TIME);
-    const coarser = this.dirty && again && this.stage.judge(elapsed);
-    if (resized || coarser) this.resize();
+    const still = now - this.changed_at > STILL_TIME;
+    if (this.stage.refine(still, this.dirty && again ? elapsed : null)) this.resize();
     if (!this.dirty) return;
     this.dirty = false;
     this.point_at_cloth();
     this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
-    this.hands.update(this.hands_to_show(), this.orbit.camera, width, height);
+    this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
     this.stage.renderer.render(this.stage.scene, this.orbit.camera);
     this.pictures += 1;
     this.measure_latency();
   }
 
   private point_at_cloth(): void {
-    const idle = this.input.state === 'idle';
-    this.hovered = idle ? this.pick(this.input.point) : null;
-    const fan = idle ? this.fan_at(this.input.point, this.hovered) : null;
-    if (fan) this.hovered = null;
-    if (this.input.point) (this.fan_hold ?? this.object_hold ?? this.hold)?.follow(this.input.point);
-    this.reticle.update(this.hovered, this.world, this.orbit.camera, this.size().height);
-    const holding = this.input.state === 'holding';
-    this.canvas.dataset.cursor = holding
-      ? 'grabbing'
-      : this.hovered || fan
-        ? 'grab'
-        : this.input.state === 'camera'
-          ? 'move'
-          : '';
-  }
-
-  /** The own hand at the pointer, others as in the shown frame. */
-  private hands_to_show(): Hand[] {
-    const { world, hold, client } = this;
-    if (!world) return [];
-    const place = ({ triangle, barycentric }: Pick<ClothHit, 'triangle' | 'barycentric'>) =>
-      point_on_triangle(triangle, barycentric, world.playback.positions, world.triangles);
-    const hands = this.grabs
-      .filter(({ id, viewer }) => viewer !== client.viewer && id !== hold?.grab)
-      .map((grab): Hand => {
-        const sample = world.playback.grabs.find(({ id }) => id === grab.id);
-        const target = (sample?.target ?? grab.target) as Hand['target'];
-        return { ...owner_of(grab, this.viewer(grab.viewer)), held: place(grab), target };
-      });
-    if (hold) {
-      const own = this.viewer(client.viewer);
-      hands.push({
-        id: hold.grab ?? 0,
-        name: own?.name ?? '',
-        color: own?.color ?? NO_COLOR,
-        held: place(hold),
-        target: hold.target,
-        own: true,
-      });
-    }
-    return hands;
+    const { state, point } = this.input;
+    const taken = this.holding.hover(state === 'idle' ? point : null);
+    if (point) this.holding.follow(point);
+    const { hovered } = this.holding;
+    this.reticle.update(hovered, this.world, this.orbit.camera, this.size().height);
+    const cursors = { idle: taken ? 'grab' : '', camera: 'move', holding: 'grabbing' };
+    this.canvas.dataset.cursor = cursors[state];
   }
 
   private measure_latency(): void {

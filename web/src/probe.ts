@@ -22,7 +22,7 @@ export function expose_probe(page: Page): void {
       return page.input.state;
     },
     get hovering() {
-      return page.hovered !== null;
+      return page.holding.hovered !== null;
     },
     get positions() {
       return page.world ? [...page.world.playback.positions] : [];

@@ -1,4 +1,4 @@
-import type { Vec3 } from '../../proto/js/messages.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
 
 export interface ClothHit {
   triangle: number;

@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh } from 'three';
-import type { Cloth, MeshData } from '../../proto/js/messages.js';
+import type { Cloth, MeshData } from '../../../proto/js/messages.js';
 import { fabric_material } from './fabric.js';
 import { smooth_normals } from './normals.js';
 

@@ -3,7 +3,7 @@ import type { PerspectiveCamera } from 'three';
 import { Line2 } from 'three/examples/jsm/lines/Line2.js';
 import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
-import type { Grab, Vec3, Viewer } from '../../proto/js/messages.js';
+import type { Grab, Vec3, Viewer } from '../../../proto/js/messages.js';
 
 export const NO_COLOR = '#5c6068'; // of an unknown viewer
 const LINE_WIDTH = 2.5; // [pixels]

@@ -1,9 +1,9 @@
 import type { Vector2 } from 'three';
-import type { Drag, WeftClient } from '../../proto/js/index.js';
-import type { Vec3 } from '../../proto/js/messages.js';
-import type { OrbitCamera } from './camera.js';
+import type { Drag, WeftClient } from '../../../proto/js/index.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
+import type { OrbitCamera } from '../view/camera.js';
 import { PointerDepth } from './pointer_depth.js';
-import type { ClothHit } from './ray.js';
+import type { ClothHit } from '../view/ray.js';
 
 const RADIUS = 0.03; // of the held fabric [m]
 

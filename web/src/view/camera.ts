@@ -1,6 +1,6 @@
 import { PerspectiveCamera, Vector2, Vector3 } from 'three';
 import type { Box3 } from 'three';
-import type { Vec3 } from '../../proto/js/messages.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
 
 const FIELD_OF_VIEW = 32; // vertical [degrees]
 const SMOOTHING_TIME = 0.07; // in which the rest of a movement decays to 1/e [s]

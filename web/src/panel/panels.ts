@@ -1,5 +1,5 @@
-import type { Roster, State } from '../../proto/js/messages.js';
-import type { Refusal } from './connection.js';
+import type { Roster, State } from '../../../proto/js/messages.js';
+import type { Refusal } from '../wire/connection.js';
 import { crossings_text, guarantee_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]

@@ -1,8 +1,8 @@
 import type { Vector2 } from 'three';
-import type { Vec3 } from '../../proto/js/messages.js';
-import type { OrbitCamera } from './camera.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
+import type { OrbitCamera } from '../view/camera.js';
 import { HandleHold } from './handle_hold.js';
-import type { ObjectHit } from './objects.js';
+import type { ObjectHit } from '../view/objects.js';
 
 const SPEED = 2; // at which it follows the hand [m/s]
 

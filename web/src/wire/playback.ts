@@ -1,4 +1,4 @@
-import type { Frame, GrabSample, PoseSample } from '../../proto/js/messages.js';
+import type { Frame, GrabSample, PoseSample } from '../../../proto/js/messages.js';
 
 const LONGEST_DELAY = 0.25; // [s]
 const KEPT_FRAMES = 24;

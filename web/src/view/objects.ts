@@ -12,7 +12,7 @@ import {
   Vector3,
 } from 'three';
 import { inner_offset } from './normals.js';
-import type { Collider, MeshData, PoseSample, Vec3 } from '../../proto/js/messages.js';
+import type { Collider, MeshData, PoseSample, Vec3 } from '../../../proto/js/messages.js';
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
 

@@ -1,9 +1,9 @@
 import { Box3, Vector3 } from 'three';
-import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../proto/js/messages.js';
+import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../../proto/js/messages.js';
 import { ClothMesh } from './cloth_mesh.js';
 import { Objects } from './objects.js';
 import type { ObjectHit } from './objects.js';
-import { Playback } from './playback.js';
+import { Playback } from '../wire/playback.js';
 import { cast_ray } from './ray.js';
 import type { ClothHit } from './ray.js';
 import type { Stage } from './stage.js';

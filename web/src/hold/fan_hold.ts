@@ -1,8 +1,8 @@
 import type { Vector2 } from 'three';
-import type { Fan, Vec3 } from '../../proto/js/messages.js';
-import type { OrbitCamera } from './camera.js';
-import { with_handle } from './fans.js';
-import type { FanHit, Fans } from './fans.js';
+import type { Fan, Vec3 } from '../../../proto/js/messages.js';
+import type { OrbitCamera } from '../view/camera.js';
+import { with_handle } from '../view/fans.js';
+import type { FanHit, Fans } from '../view/fans.js';
 import { HandleHold } from './handle_hold.js';
 
 /** The own hand on a fan. The own picture moves at once; other viewers see it some ticks later. */

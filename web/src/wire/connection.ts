@@ -1,4 +1,4 @@
-import { CommandError, WeftClient } from '../../proto/js/index.js';
+import { CommandError, WeftClient } from '../../../proto/js/index.js';
 
 const LONGEST_NAME = 32; // of a viewer, by the wire
 const EVERY_TICK = 240; // frames per second; more than any display shows

@@ -1,6 +1,6 @@
 import type { Vector2 } from 'three';
-import type { Vec3 } from '../../proto/js/messages.js';
-import type { OrbitCamera } from './camera.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
+import type { OrbitCamera } from '../view/camera.js';
 
 const NEAREST = 0.1; // distance of a hand from the eye [m]
 const FARTHEST = 20; // [m]

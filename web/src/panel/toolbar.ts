@@ -1,7 +1,7 @@
-import type { WeftClient } from '../../proto/js/index.js';
-import type { Fan, State, Vec3 } from '../../proto/js/messages.js';
-import { tell_refusal } from './connection.js';
-import type { HandMode } from './hold.js';
+import type { WeftClient } from '../../../proto/js/index.js';
+import type { Fan, State, Vec3 } from '../../../proto/js/messages.js';
+import { tell_refusal } from '../wire/connection.js';
+import type { HandMode } from '../hold/hold.js';
 import { element } from './panels.js';
 import { SceneList } from './scene_list.js';
 import { Slider } from './slider.js';

@@ -1,6 +1,6 @@
 import type { Vector2 } from 'three';
-import type { Vec3 } from '../../proto/js/messages.js';
-import type { OrbitCamera } from './camera.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
+import type { OrbitCamera } from '../view/camera.js';
 import { PointerDepth } from './pointer_depth.js';
 
 const SEND_INTERVAL = 40; // between positions of a moving handle [ms]

@@ -1,6 +1,6 @@
 import { Group, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from 'three';
 import type { PerspectiveCamera, Vector2 } from 'three';
-import type { Pin } from '../../proto/js/messages.js';
+import type { Pin } from '../../../proto/js/messages.js';
 
 const PIN_RADIUS = 0.009; // of a head [m]
 const SMALL_CLOTH = 1; // smaller cloths get smaller heads [m]

@@ -14,7 +14,7 @@ import {
   Vector3,
 } from 'three';
 import type { BufferGeometry, Vector2 } from 'three';
-import type { Fan, Vec3 } from '../../proto/js/messages.js';
+import type { Fan, Vec3 } from '../../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
 
 const FORWARD = new Vector3(0, 0, 1);

@@ -1,4 +1,4 @@
-import type { Crossings, Guarantee } from '../../proto/js/messages.js';
+import type { Crossings, Guarantee } from '../../../proto/js/messages.js';
 
 /** The server's present promise that nothing passes through. */
 export function guarantee_text({ state, covers, pairs, reasons }: Guarantee): string {
