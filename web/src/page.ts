@@ -8,8 +8,11 @@ import { Hands } from './view/hands.js';
 import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
 import { listen_to_keys } from './hold/keys.js';
+import { loss_text, notice_text } from './panel/events.js';
 import { element, Panels } from './panel/panels.js';
 import type { Phase } from './panel/panels.js';
+import { frame_focus } from './panel/focus_frame.js';
+import { title_of } from './panel/scene_list.js';
 import { Pins } from './view/pins.js';
 import { Reticle } from './view/reticle.js';
 import { Stage } from './view/stage.js';
@@ -17,8 +20,6 @@ import { Toolbar } from './panel/toolbar.js';
 import { WorldView } from './view/world_view.js';
 
 const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
-// The measurements show the first two, and the hand reports the third itself.
-const SHOWN_ELSEWHERE = new Set(['frames_dropped', 'slow_motion', 'lease_expired']);
 const STILL_TIME = 0.4; // without change, before the finest picture is drawn [s]
 const PANEL_MARGIN = 12; // between panels and a framed box [pixels]
 
@@ -103,6 +104,7 @@ export class Page {
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       zoom: (factor) => this.orbit.zoom(factor),
     });
+    frame_focus(this.canvas);
     this.listen();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     this.resize();
@@ -147,8 +149,13 @@ export class Page {
       this.holding.grabs = grabs;
       this.dirty = true;
     });
-    client.on('notice', ({ level, code, message }) => {
-      if (level !== 'info' && !SHOWN_ELSEWHERE.has(code)) panels.tell(message);
+    client.on('notice', (notice) => {
+      const text = notice_text(notice, {
+        own: client.viewer,
+        scene: title_of(this.world?.announcement.scene ?? ''),
+        name: (id) => this.viewer(id)?.name,
+      });
+      if (text) panels.tell(text);
     });
     client.on('refused', ({ code, message }) => code !== 'unknown_drag' && panels.tell(message));
     client.on('fault', ({ message }) => panels.tell(message));
@@ -194,7 +201,8 @@ export class Page {
   }
 
   private lost(reason: string): void {
-    if (this.phase === 'open') this.panels.tell(`The cloth slipped out of your hand: ${reason}`);
+    const text = loss_text(reason);
+    if (text && this.phase === 'open') this.panels.tell(text);
     this.input.cancel();
   }
 
