@@ -4,6 +4,8 @@ const SUBPROTOCOL = 'weft.v1';
 const FIRST_PAUSE = 250; // before the first new attempt [ms]
 const LONGEST_PAUSE = 8000; // [ms]
 const OPENING_LIMIT = 10000; // for the handshake [ms]
+/** In which events that waited behind a long task of this thread arrive, before time is up [ms]. */
+export const SECOND_LOOK = 50;
 const NORMAL_CLOSE = 1000;
 // Close codes after which a new attempt would fail alike.
 const FINAL_CODES = new Set([1002, 1003, 1007, 1008, 1009, 4003]);
@@ -75,7 +77,12 @@ export class Connection extends Emitter {
       this.#lost(code, reason);
     socket.onerror = () => {}; // the close event that follows has the code
     this.#socket = socket;
-    this.#timer = this.#timers.setTimeout(() => this.drop(4002, 'no handshake'), OPENING_LIMIT);
+    this.#timer = this.#timers.setTimeout(() => this.#lookAgain(), OPENING_LIMIT);
+  }
+
+  /** The time is up; but if this thread was busy, the socket may be open and its event be waiting. */
+  #lookAgain() {
+    this.#timer = this.#timers.setTimeout(() => this.drop(4002, 'no handshake'), SECOND_LOOK);
   }
 
   /** Call when the server has proved healthy; the next loss is then retried soon. */

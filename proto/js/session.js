@@ -1,5 +1,5 @@
 import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
-import { Connection, systemTimers } from './connection.js';
+import { Connection, SECOND_LOOK, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
 import { CallTimeout, CommandError, ConnectionLost } from './errors.js';
 import { fetchMesh, matchMesh } from './mesh.js';
@@ -256,9 +256,12 @@ export class Session extends Emitter {
     this.#keepAlive();
   }
 
-  #keepAlive() {
+  /** @param {boolean} [again]  whether this is the second look at a silence */
+  #keepAlive(again = false) {
     if (this.timers.now() - this.#heardAt > SILENCE_LIMIT) {
-      this.#connection.drop(4002, 'the server is silent');
+      if (again) return this.#connection.drop(4002, 'the server is silent');
+      // If this thread was busy, messages may be waiting.
+      this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(true), SECOND_LOOK);
       return;
     }
     if (this.connected) {

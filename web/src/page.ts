@@ -14,13 +14,13 @@ import type { Phase } from './panel/panels.js';
 import { frame_focus } from './panel/focus_frame.js';
 import { title_of } from './panel/scene_list.js';
 import { Pins } from './view/pins.js';
+import { Rest } from './view/rest.js';
 import { Reticle } from './view/reticle.js';
 import { Stage } from './view/stage.js';
 import { Toolbar } from './panel/toolbar.js';
 import { WorldView } from './view/world_view.js';
 
 const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
-const STILL_TIME = 0.4; // without change, before the finest picture is drawn [s]
 const PANEL_MARGIN = 12; // between panels and a framed box [pixels]
 
 /**
@@ -40,8 +40,11 @@ export class Page {
   state: State | null = null;
   phase: Phase = 'connecting';
   pictures = 0;
-  private stage = new Stage(this.canvas);
   private panels = new Panels();
+  private stage = new Stage(this.canvas, (away) => {
+    this.panels.picture_lost(away);
+    this.dirty = true;
+  });
   private toolbar: Toolbar;
   private reticle = new Reticle();
   private viewers: Viewer[] = [];
@@ -51,7 +54,7 @@ export class Page {
   private dirty = true;
   private unframed = false; // no frame of this scene has been shown
   private drawn_last_time = false;
-  private changed_at = 0;
+  private rest = new Rest();
   /** Latency of a received frame that is not drawn yet. */
   private pending_latency: { came_at: number; latency: number } | null = null;
 
@@ -241,7 +244,8 @@ export class Page {
     const elapsed = Math.min(0.1, now - this.last_time);
     this.last_time = now;
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
-    if (this.world?.show(now, this.holding.holds_cloth)) {
+    const moved = this.world?.show(now, this.holding.holds_cloth) ?? false;
+    if (moved && this.world) {
       this.dirty = true;
       this.pins.follow(this.world.playback.positions);
       // A viewer that joins late finds the cloth moved from its start.
@@ -252,8 +256,7 @@ export class Page {
     this.box_view.follow(this.world?.playback.tick ?? -1);
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;
-    if (this.dirty) this.changed_at = now;
-    const still = now - this.changed_at > STILL_TIME;
+    const still = this.rest.update(now, this.dirty, moved && !this.state?.paused);
     if (this.stage.refine(still, this.dirty && again ? elapsed : null)) this.resize();
     if (!this.dirty) return;
     this.dirty = false;

@@ -421,6 +421,26 @@ test('a handshake that does not end is given up', async () => {
   client.close();
 });
 
+test('an open event and messages that wait behind a long task are seen before time is up', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const timers = new FakeTimers();
+  const client = new WeftClient('ws://host:1/ws', { WebSocket: FakeSocket, timers });
+  client.connect().catch(() => {});
+  timers.time += 15_000; // a task of this length; the timer is the first event after it
+  await timers.pass(0);
+  sockets[0].open();
+  sockets[0].say(welcome);
+  await timers.pass(100);
+  assert.equal(client.connected, true);
+  timers.time += 15_000;
+  await timers.pass(0);
+  sockets[0].say(example('state'));
+  await timers.pass(100);
+  assert.equal(client.connected, true);
+  assert.equal(sockets.length, 1);
+  client.close();
+});
+
 test('a drag starts at the hit, moves, repeats its target and ends', async () => {
   const { client, socket, timers } = await join();
   const drag = client.drag(HIT, { radius: 0.05, target: [0, 1, 0] });

@@ -39,6 +39,14 @@ export async function cloth_on_canvas(page) {
   });
 }
 
+/** Mean red, green and blue of the page's picture, 0 to 255. */
+export async function mean_color(page) {
+  const { data } = await picture_of(page);
+  const sums = [0, 0, 0];
+  data.forEach((value, i) => i % 4 < 3 && (sums[i % 4] += value));
+  return sums.map((sum) => (sum * 4) / data.length);
+}
+
 /** Mean of the colour's parts, 0 to 255, around a pixel. */
 export async function brightness_at(page, { x, y }, reach = 4) {
   const { data, width } = await picture_of(page);

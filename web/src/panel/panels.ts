@@ -41,6 +41,11 @@ export class Panels {
     this.show_phase();
   }
 
+  /** Says that the picture is away, as while a phone or a driver has taken the graphics back. */
+  picture_lost(away: boolean): void {
+    element('picture-lost').hidden = !away;
+  }
+
   private show_phase(): void {
     const words: Record<Phase, string> = {
       connecting: 'Connecting',

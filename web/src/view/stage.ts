@@ -20,15 +20,22 @@ export class Stage {
   readonly quality: Quality;
   private sun = new DirectionalLight('#fff4e6', 2.4);
 
-  constructor(canvas: HTMLCanvasElement) {
+  /** @param lost tells whether the graphics context is away; it comes back by itself, or never */
+  constructor(canvas: HTMLCanvasElement, lost: (away: boolean) => void) {
     const software = draws_in_software();
-    this.quality = new Quality(software);
+    this.quality = new Quality(software, () => window.devicePixelRatio);
     // Multisampling is too expensive for software renderers, and leaves cracks there.
     this.renderer = new WebGLRenderer({ canvas, antialias: !software });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.environment = soft_boxes(this.renderer);
+    canvas.addEventListener('webglcontextlost', () => lost(true));
+    // The renderer listens too, and first; what it loads from arrays it loads anew by itself.
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.scene.environment = soft_boxes(this.renderer);
+      lost(false);
+    });
     this.scene.environmentIntensity = 0.7;
     this.scene.add(dome(), this.sun, this.sun.target);
     this.scene.add(new HemisphereLight('#ffffff', '#cfc4b4', 0.45));

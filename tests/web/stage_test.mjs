@@ -1,0 +1,56 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { camera_at_rest, read, until } from './support/browser.mjs';
+import { bounded, with_page, with_server } from './support/default_page.mjs';
+import { mean_color } from './support/silhouette.mjs';
+
+// The picture's canvas: what becomes of it when the graphics fail, and how often it is made anew.
+
+const fine = (page) => until(() => read(page, 'fine'), 'the picture is a fine one');
+
+/** Takes the graphics away from the page, or gives them back. */
+const graphics = (page, act) =>
+  page.evaluate((call) => {
+    window.losing ??= document.getElementById('view').getContext('webgl2').getExtension('WEBGL_lose_context');
+    window.losing[call]();
+  }, act);
+
+test('lost graphics are told, and come back with the same picture while nothing moves', bounded, () =>
+  with_page({}, async (page, script) => {
+    await script.pause();
+    await until(() => read(page, 'paused'));
+    await camera_at_rest(page);
+    await fine(page);
+    const before = await mean_color(page);
+    const words = page.getByRole('alert').filter({ hasText: 'graphics' });
+    assert.equal(await words.isVisible(), false);
+    await graphics(page, 'loseContext');
+    await until(() => words.isVisible(), 'the page says it');
+    const pictures = await read(page, 'pictures');
+    await graphics(page, 'restoreContext');
+    await until(async () => !(await words.isVisible()), 'the words go');
+    await until(async () => (await read(page, 'pictures')) > pictures, 'a picture is drawn');
+    await fine(page);
+    const after = await mean_color(page);
+    before.forEach((part, i) => assert.ok(Math.abs(after[i] / part - 1) < 0.01, `${before} ${after}`));
+  }),
+);
+
+test('a room of one tick a second does not change the size of the canvas at each of them', bounded, () =>
+  with_server(['--scene', 'hard-step-second'], async (page) => {
+    await page.evaluate(() => {
+      window.sizes = 0;
+      const canvas = document.getElementById('view');
+      const own = Object.getOwnPropertyDescriptor(HTMLCanvasElement.prototype, 'width');
+      const set = (value) => {
+        window.sizes += 1;
+        own.set.call(canvas, value);
+      };
+      Object.defineProperty(canvas, 'width', { get: () => own.get.call(canvas), set });
+    });
+    const tick = await read(page, 'tick');
+    await until(async () => (await read(page, 'tick')) >= tick + 8);
+    const sizes = await page.evaluate(() => window.sizes);
+    assert.ok(sizes <= 4, `${sizes} sizes in eight ticks`);
+  }),
+);
