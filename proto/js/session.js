@@ -256,20 +256,17 @@ export class Session extends Emitter {
     this.#keepAlive();
   }
 
-  /** @param {boolean} [again]  whether this is the second look at a silence */
+  /** @param {boolean} [again]  a second look at a silence: messages may wait behind a long task */
   #keepAlive(again = false) {
-    if (this.timers.now() - this.#heardAt > SILENCE_LIMIT) {
-      if (again) return this.#connection.drop(4002, 'the server is silent');
-      // If this thread was busy, messages may be waiting.
-      this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(true), SECOND_LOOK);
-      return;
-    }
+    const silent = this.timers.now() - this.#heardAt > SILENCE_LIMIT;
+    if (silent && again) return this.#connection.drop(4002, 'the server is silent');
     if (this.connected) {
       this.#pings += 1;
       this.ping().catch(() => {}); // the status reports a lost connection
     }
     const wait = this.#pings < FIRST_PINGS ? FIRST_PING_INTERVAL : PING_INTERVAL;
-    this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(), wait);
+    const next = silent ? SECOND_LOOK : wait;
+    this.#pingTimer = this.timers.setTimeout(() => this.#keepAlive(silent), next);
   }
 
   /** @param {import('./connection.js').Status} status */
