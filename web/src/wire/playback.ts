@@ -1,13 +1,15 @@
 import type { Frame, GrabSample, PoseSample } from '../../../proto/js/messages.js';
+import { HoldingPace } from './holding_pace.js';
 
 const LONGEST_DELAY = 0.25; // [s]
+const LONGEST_WAY = 1; // that a holder's picture goes instead of jumping [s]
 const KEPT_FRAMES = 24;
 const OFFSET_LEAK = 0.0005; // an early packet is forgotten within minutes, not seconds
 
 /**
- * Decides which moment is shown. With a hand in the cloth the newest frame is shown at once. A
- * viewer that only watches sees the recent past, interpolated between two frames, so that uneven
- * arrival does not show. It never extrapolates and never goes back: when ticks stop, nothing moves.
+ * Decides which moment is shown: one of the recent past, interpolated between two frames, so that
+ * uneven arrival does not show. With a hand in the cloth that is as near to the newest frame as
+ * even motion allows. It never extrapolates and never goes back: when ticks stop, nothing moves.
  */
 export class Playback {
   /** Three values a vertex [m]. */
@@ -22,6 +24,7 @@ export class Playback {
   private offset = Infinity; // client's clock minus the server's at arrival, without delays [s]
   private interval = 1 / 60; // between frames [s]
   private jitter = 0; // by which frames arrive late [s]
+  private pace = new HoldingPace();
 
   constructor(vertices: number) {
     this.positions = new Float32Array(vertices * 3);
@@ -42,21 +45,32 @@ export class Playback {
     this.frames = [];
     this.shown_time = -Infinity;
     this.offset = Infinity;
+    this.pace.restart();
+  }
+
+  /** The moment that is shown, on the server's clock [s]. */
+  get time(): number {
+    return this.shown_time;
   }
 
   /**
    * Updates positions and grabs to the moment to show; tells whether they changed.
-   * @param now  client's clock [s]
-   * @param live whether the newest frame is wanted at once
+   * @param now   client's clock [s]
+   * @param holds whether this viewer has a hand in the cloth
    */
-  sample(now: number, live: boolean): boolean {
+  sample(now: number, holds: boolean): boolean {
     const newest = this.frames.at(-1);
     if (!newest) return false;
     const elapsed = Math.min(0.1, Math.max(0, now - this.last_sample));
     this.last_sample = now;
     const before = this.shown_time;
-    const time = live || newest.paused ? newest.serverTime : this.follow(now, elapsed, newest);
-    this.shown_time = Math.max(before, time);
+    const behind = newest.serverTime - before;
+    if (Number.isFinite(behind)) this.pace.look(elapsed, now - this.offset - newest.serverTime, behind);
+    const follow = () =>
+      holds && behind < LONGEST_WAY
+        ? before + this.pace.step(elapsed, behind)
+        : this.follow(now, elapsed, newest);
+    this.shown_time = Math.max(before, newest.paused ? newest.serverTime : follow());
     if (this.shown_time === before) return false;
     this.show();
     return true;
@@ -64,7 +78,10 @@ export class Playback {
 
   private measure(frame: Frame, last: Frame, now: number): void {
     const interval = frame.serverTime - last.serverTime;
-    if (interval < 0.5) this.interval += (interval - this.interval) * 0.05;
+    if (interval < 0.5) {
+      this.interval += (interval - this.interval) * 0.05;
+      this.pace.arrived(now - last.serverTime - this.offset, interval);
+    }
     const late = now - frame.serverTime - this.offset;
     this.jitter = Math.max(late, this.jitter * 0.99);
     this.offset += late * OFFSET_LEAK;
