@@ -50,6 +50,26 @@ test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () 
   }),
 );
 
+test('the latency is told only while a hand holds in a running room', bounded, () =>
+  with_page({}, async (page, script) => {
+    const told = async () => {
+      const value = page.locator('#latency');
+      return (await value.isVisible()) ? Number(await value.textContent()) : null;
+    };
+    await script.pause();
+    await until(() => read(page, 'paused'));
+    await drag_cloth(page, 0, -20);
+    await until(() => script.last.grabs.length === 1);
+    const { tick } = await script.advance(10);
+    await until(async () => (await read(page, 'tick')) === tick);
+    assert.equal(await told(), null, 'nothing is told of a pause');
+    await script.resume();
+    await until(async () => (await told()) !== null, 'it is told while the room runs');
+    await page.mouse.up();
+    await until(async () => (await told()) === null, 'it is forgotten when the hand lets go');
+  }),
+);
+
 test('the wheel moves a hand along the view, and only without one the camera', bounded, () =>
   with_page({}, async (page, script) => {
     await drag_cloth(page, 0, -20);

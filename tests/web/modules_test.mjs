@@ -4,6 +4,7 @@ import { numbers } from './support/made_up.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 const { Fans } = await import_page_module('view/fans');
+const { HandLatency } = await import_page_module('hold/hand_latency');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
 const { smooth_normals } = await import_page_module('view/normals');
 
@@ -26,6 +27,25 @@ test('a fan stays where the own hand put it until the server has answered', asyn
   await null;
   assert.equal(fans.receive([fan(1)]), true, 'what it says after that counts');
   assert.deepEqual(fans.list, [fan(1)]);
+});
+
+test('the latency is that of movements while a hand holds in a running room, once each', () => {
+  const meter = new HandLatency();
+  meter.received(100, 0.02, 5);
+  assert.equal(meter.shown(100, 5.01), null, 'nobody holds');
+  meter.watch(true, 6);
+  meter.received(101, 2.6, 6.1);
+  assert.equal(meter.shown(101, 6.2), null, 'the movement was before the room went on');
+  meter.received(101.1, 0.05, 6.3);
+  meter.received(101.2, 0.05, 6.32);
+  assert.equal(meter.shown(101, 6.31), null, 'its frame is not on the screen yet');
+  const latency = meter.shown(101.1, 6.36);
+  assert.ok(Math.abs(latency - 0.11) < 1e-9, `${latency}`);
+  assert.equal(meter.shown(101.2, 6.4), null, 'the second frame shows no new movement');
+  meter.received(101.3, 0.04, 6.5);
+  meter.watch(false, 6.6);
+  meter.watch(true, 6.7);
+  assert.equal(meter.shown(101.3, 6.8), null, 'the hand let go meanwhile');
 });
 
 test('a ray through a point of a triangle meets it there, from both sides', () => {

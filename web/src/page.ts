@@ -5,6 +5,7 @@ import { OrbitCamera } from './view/camera.js';
 import { connect_client, explain_refusals } from './wire/connection.js';
 import { fan_of_view, Fans } from './view/fans.js';
 import { Hands } from './view/hands.js';
+import { HandLatency } from './hold/hand_latency.js';
 import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
 import { listen_to_keys } from './hold/keys.js';
@@ -55,8 +56,7 @@ export class Page {
   private unframed = false; // no frame of this scene has been shown
   private drawn_last_time = false;
   private rest = new Rest();
-  /** Latency of a received frame that is not drawn yet. */
-  private pending_latency: { came_at: number; latency: number } | null = null;
+  private latency = new HandLatency();
 
   constructor() {
     this.stage.scene.add(this.hands.group, this.pins.group, this.fans.group, this.reticle.group);
@@ -86,7 +86,7 @@ export class Page {
       take_object: (point) => this.holding.take_object(point),
       follow: (point) => this.holding.follow(point),
       push: (factor) => this.holding.push(factor),
-      let_go: (meant) => this.let_go(meant),
+      let_go: (meant) => this.holding.let_go(meant),
       toggle_pin: (point) => this.holding.toggle_pin(point),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       pan: (dx, dy) => this.orbit.pan(dx, dy),
@@ -180,8 +180,7 @@ export class Page {
     const now = performance.now() / 1000;
     this.world?.push(frame, now);
     this.panels.tick(frame.tick, frame.serverTime);
-    const { latency } = this.client;
-    if (this.holding.holds_cloth) this.pending_latency = { came_at: now, latency };
+    this.latency.received(frame.serverTime, this.client.latency, now);
   }
 
   private show_fans(): void {
@@ -196,11 +195,6 @@ export class Page {
 
   private viewer(id: number): Viewer | undefined {
     return this.viewers.find((viewer) => viewer.id === id);
-  }
-
-  private let_go(meant: boolean): void {
-    this.holding.let_go(meant);
-    this.pending_latency = null;
   }
 
   private lost(reason: string): void {
@@ -244,6 +238,7 @@ export class Page {
     const elapsed = Math.min(0.1, now - this.last_time);
     this.last_time = now;
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
+    this.watch_latency(now);
     const moved = this.world?.show(now, this.holding.holds_cloth) ?? false;
     if (moved && this.world) {
       this.dirty = true;
@@ -266,7 +261,8 @@ export class Page {
     this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
     this.stage.renderer.render(this.stage.scene, this.orbit.camera);
     this.pictures += 1;
-    this.measure_latency();
+    const latency = this.latency.shown(this.world?.playback.time ?? 0, performance.now() / 1000);
+    if (latency !== null) this.panels.latency(latency);
   }
 
   private point_at_cloth(): void {
@@ -279,11 +275,9 @@ export class Page {
     this.canvas.dataset.cursor = cursors[state];
   }
 
-  private measure_latency(): void {
-    if (!this.pending_latency) return;
-    const { came_at, latency } = this.pending_latency;
-    this.panels.latency(latency + performance.now() / 1000 - came_at);
-    this.pending_latency = null;
+  private watch_latency(now: number): void {
+    const measurable = this.holding.holds_cloth && this.state?.paused === false;
+    if (this.latency.watch(measurable, now)) this.panels.latency(null);
   }
 
   private tell_camera(now: number): void {

@@ -100,9 +100,10 @@ export class Panels {
     if (passed > 0.5) set_text('tick-rate', ((tick - first.tick) / passed).toFixed(0));
   }
 
-  /** @param seconds from a hand's movement to the picture; NaN if unknown */
-  latency(seconds: number): void {
-    set_text('latency', Number.isFinite(seconds) ? (seconds * 1000).toFixed(0) : '–');
+  /** @param seconds from a hand's movement to the picture; null while there is none to measure */
+  latency(seconds: number | null): void {
+    element('latency').closest('div')!.hidden = seconds === null;
+    set_text('latency', seconds === null ? '–' : (seconds * 1000).toFixed(0));
   }
 
   roster({ viewers }: Roster, own: number): void {
