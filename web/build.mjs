@@ -1,4 +1,5 @@
-// Bundles src/main.ts with all it imports and copies the files of static/ beside it.
+// Bundles src/main.ts and styles/styles.css with all they import, and copies the files of static/
+// beside them.
 // usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
 import { cp, mkdir, readdir, rm, writeFile } from "node:fs/promises";
@@ -16,7 +17,8 @@ await cp(static_files, output, { recursive: true });
 
 const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: ["src/main.ts"],
+  entryPoints: ["src/main.ts", "styles/styles.css"],
+  entryNames: "[name]",
   outdir: output,
   bundle: true,
   minify: true,

@@ -30,7 +30,7 @@ test('a hidden page asks for no frames, and goes on when it is seen again', boun
 test('what sleeps is told, and a hand wakes it', bounded, () =>
   with_server([...CALM, '--set', 'environment.drag=20', '--set', 'sleep.after=0.5'], async (page, script) => {
     await until(() => page.locator('#asleep').isVisible(), 'the cloth sleeps');
-    assert.equal(await page.locator('#asleep').textContent(), '1');
+    assert.equal(await page.locator('#asleep').textContent(), 'At rest');
     const { tick: then, sleeping } = await script.query('state');
     assert.deepEqual(sleeping, { islands: 1, cloths: ['cloth'] });
     // Who has just joined gets a frame, which the page may still have to show.

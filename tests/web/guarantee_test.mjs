@@ -6,25 +6,29 @@ import { import_page_module } from './support/page_module.mjs';
 
 // What the page says of the promise that nothing passes through, in lines that stay.
 
-const { crossings_text, guarantee_text } = await import_page_module('panel/guarantee');
+const { crossings_text, guarantee_text, reasons_text } = await import_page_module('panel/guarantee');
 
 const says = async (page) => ({
   guarantee: await page.locator('#guarantee-text').textContent(),
+  reasons: await page.locator('#reasons').textContent(),
   state: await page.locator('#guarantee').getAttribute('data-state'),
   crossings: await page.locator('#crossings').textContent(),
 });
 
 test('each state of the guarantee and each count has its words', () => {
   const guarantee = { state: 'held', covers: ['objects', 'cloth'], pairs: 0, reasons: [] };
-  assert.equal(guarantee_text(guarantee), 'Nothing passes through');
+  assert.equal(guarantee_text(guarantee), 'Cloth passes through nothing');
+  assert.equal(reasons_text(guarantee), '');
   const objects = { ...guarantee, covers: ['objects'] };
-  assert.equal(guarantee_text(objects), 'Nothing passes through objects');
+  assert.equal(guarantee_text(objects), 'Cloth passes through no object');
   const bad = { ...guarantee, state: 'bad_start', pairs: 12, reasons: ['a started inside b'] };
-  assert.equal(guarantee_text(bad), 'Not promised for 12 pairs: a started inside b');
-  const broken = { ...guarantee, state: 'void', reasons: ['b was forced through the cloth'] };
-  assert.equal(guarantee_text(broken), 'No longer promised: b was forced through the cloth');
+  assert.equal(guarantee_text(bad), 'It began tangled, and comes free');
+  assert.equal(reasons_text(bad), 'Not promised for 12 pairs: a started inside b');
+  const broken = { ...guarantee, state: 'void', reasons: ['b was forced through'] };
+  assert.equal(guarantee_text(broken), 'Something was forced through the cloth');
+  assert.equal(reasons_text(broken), 'Not promised: b was forced through');
   const none = { ...guarantee, state: 'none', covers: [] };
-  assert.equal(guarantee_text(none), 'This contact promises nothing');
+  assert.equal(guarantee_text(none), 'Nothing keeps this cloth from passing through');
   const count = (count, smallest_gap) => crossings_text({ count, tick: 60, smallest_gap });
   assert.equal(count(0, 0.00312), '0 crossings, smallest gap 3.1 mm');
   assert.equal(count(0, 0.000512), '0 crossings, smallest gap 0.51 mm');
@@ -38,7 +42,7 @@ test('the page shows that nothing passes through, and the smallest gap in millim
     await script.advance(120);
     await until(async () => /smallest gap \d+\.\d+ mm/.test((await says(page)).crossings));
     const { guarantee, state, crossings } = await says(page);
-    assert.deepEqual([guarantee, state], ['Nothing passes through', 'held']);
+    assert.deepEqual([guarantee, state], ['Cloth passes through nothing', 'held']);
     assert.match(crossings, /^0 crossings, /);
     assert.ok(await page.locator('#guarantee').isVisible());
     assert.ok(await page.locator('#crossings').isVisible());
@@ -48,7 +52,7 @@ test('the page shows that nothing passes through, and the smallest gap in millim
 test('a bad start is on the page of who comes late, until it is out; a voided promise until reset', bounded, () =>
   with_server(['--scene', 'hard-start-inside', '--paused'], async (page, script) => {
     const bad = async (shown) =>
-      /^Not promised for \d+ pairs: cloth started inside ball$/.test((await says(shown)).guarantee);
+      /^Not promised for \d+ pairs: cloth started inside ball$/.test((await says(shown)).reasons);
     await until(() => bad(page), 'before the first tick');
     assert.match((await says(page)).crossings, /^\d+ crossings?, /);
     await script.advance(5);
@@ -57,12 +61,12 @@ test('a bad start is on the page of who comes late, until it is out; a voided pr
     await late.context().close();
     await script.advance(240);
     await until(async () => (await says(page)).state === 'held', 'it is out');
-    assert.equal((await says(page)).guarantee, 'Nothing passes through');
+    assert.equal((await says(page)).guarantee, 'Cloth passes through nothing');
     await script.pin({ particle: 544, radius: 2 });
     await script.move('ball', { position: [0, 2, 0], speed: 20, force: true });
     await script.advance(60);
     await until(async () => (await says(page)).state === 'void');
-    assert.match((await says(page)).guarantee, /^No longer promised: ball was forced/);
+    assert.match((await says(page)).reasons, /: ball was forced/);
     await script.reset();
     await until(() => bad(page));
   }),

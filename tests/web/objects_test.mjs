@@ -8,6 +8,7 @@ import {
   particle_pixel,
   position,
   server,
+  show_controls,
   with_page,
   with_server,
 } from './support/default_page.mjs';
@@ -79,6 +80,7 @@ test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by h
     await script.release({ pin: pinned.id });
     await script.resume();
 
+    await show_controls(page);
     await page.getByRole('slider', { name: 'Fan' }).fill('12');
     await fan_of(({ speed }) => speed === 12);
     await page.keyboard.press('w');

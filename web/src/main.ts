@@ -1,5 +1,5 @@
 import { Page } from './page.js';
-import { element } from './panel/panels.js';
+import { element } from './panel/element.js';
 import { expose_probe } from './probe.js';
 
 try {

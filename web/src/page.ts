@@ -10,7 +10,8 @@ import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
 import { listen_to_keys } from './hold/keys.js';
 import { loss_text, notice_text } from './panel/events.js';
-import { element, Panels } from './panel/panels.js';
+import { element } from './panel/element.js';
+import { Panels } from './panel/panels.js';
 import type { Phase } from './panel/panels.js';
 import { frame_focus } from './panel/focus_frame.js';
 import { title_of } from './panel/scene_list.js';
@@ -18,6 +19,7 @@ import { Pins } from './view/pins.js';
 import { Rest } from './view/rest.js';
 import { Reticle } from './view/reticle.js';
 import { Stage } from './view/stage.js';
+import { ThemeSwitch } from './panel/theme.js';
 import { Toolbar } from './panel/toolbar.js';
 import { WorldView } from './view/world_view.js';
 
@@ -104,9 +106,11 @@ export class Page {
       frame: () => this.frame(),
       scenes: () => this.toolbar.show_scenes(),
       help: () => this.toolbar.show_help(),
+      figures: () => this.panels.toggle_figures(),
       orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
       zoom: (factor) => this.orbit.zoom(factor),
     });
+    new ThemeSwitch(() => (this.dirty = true));
     frame_focus(this.canvas);
     this.listen();
     new ResizeObserver(() => this.resize()).observe(this.canvas);

@@ -29,13 +29,14 @@ export function launch_browser() {
  * Opens the page and waits until it shows the cloth. What it complains of is kept in `complaints`.
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
- * @param {{width?: number, height?: number, touch?: boolean, name?: string}} [options]
+ * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean}} [options]
  */
 export async function open_page(browser, url, options = {}) {
-  const { width = 560, height = 420, touch = false, name = '' } = options;
+  const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
+    colorScheme: dark ? 'dark' : 'light',
     ignoreHTTPSErrors: true, // of a certificate that a test has made
   });
   const page = await context.newPage();

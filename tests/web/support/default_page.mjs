@@ -89,3 +89,10 @@ export async function drag_cloth(page, dx, dy) {
   await page.mouse.move(x + dx, y + dy, { steps: 4 });
   return particle;
 }
+
+/** Opens the controls that a small screen puts away. */
+export async function show_controls(page) {
+  const more = page.getByRole('button', { name: 'Controls' });
+  if (!(await more.isVisible())) return;
+  if ((await more.getAttribute('aria-expanded')) === 'false') await more.click();
+}

@@ -12,6 +12,7 @@ export interface KeyActions {
   frame(): void;
   scenes(): void;
   help(): void;
+  figures(): void;
   orbit(azimuth: number, elevation: number): void;
   zoom(factor: number): void;
 }
@@ -27,6 +28,7 @@ export function listen_to_keys(actions: KeyActions): void {
     s: () => actions.toggle_sling(),
     f: () => actions.frame(),
     l: () => actions.scenes(),
+    i: () => actions.figures(),
     '?': () => actions.help(),
   };
   const outside_controls: Record<string, () => void> = {

@@ -2,7 +2,7 @@ import { CommandError } from '../../../proto/js/index.js';
 import type { WeftClient } from '../../../proto/js/index.js';
 import type { Data, Tree } from '../../../proto/js/messages.js';
 import { Boxes } from '../view/boxes.js';
-import { element } from './panels.js';
+import { element } from './element.js';
 
 const ASK_INTERVAL = 60; // between requests for boxes that move [ms]
 const OPENING_LEVEL = 4;

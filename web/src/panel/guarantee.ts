@@ -1,18 +1,26 @@
 import type { Crossings, Guarantee } from '../../../proto/js/messages.js';
 
-/** The server's present promise that nothing passes through. */
-export function guarantee_text({ state, covers, pairs, reasons }: Guarantee): string {
-  const why = reasons.join('; ');
+/** The server's present promise that nothing passes through, in plain words. */
+export function guarantee_text({ state, covers }: Guarantee): string {
   switch (state) {
     case 'held':
-      return covers.includes('cloth') ? 'Nothing passes through' : 'Nothing passes through objects';
+      return covers.includes('cloth')
+        ? 'Cloth passes through nothing'
+        : 'Cloth passes through no object';
     case 'bad_start':
-      return `Not promised for ${pairs} ${pairs === 1 ? 'pair' : 'pairs'}: ${why}`;
+      return 'It began tangled, and comes free';
     case 'void':
-      return `No longer promised: ${why}`;
+      return 'Something was forced through the cloth';
     case 'none':
-      return 'This contact promises nothing';
+      return 'Nothing keeps this cloth from passing through';
   }
+}
+
+/** Why the promise does not hold, exactly; empty if it does. */
+export function reasons_text({ pairs, reasons }: Guarantee): string {
+  if (reasons.length === 0) return '';
+  const what = pairs > 0 ? ` for ${pairs} ${pairs === 1 ? 'pair' : 'pairs'}` : '';
+  return `Not promised${what}: ${reasons.join('; ')}`;
 }
 
 /** The last count, with the smallest gap in millimetres. */

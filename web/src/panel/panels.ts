@@ -1,18 +1,15 @@
 import type { Roster, State } from '../../../proto/js/messages.js';
 import type { Refusal } from '../wire/connection.js';
-import { crossings_text, guarantee_text } from './guarantee.js';
+import { Disclosure } from './disclosure.js';
+import { element } from './element.js';
+import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
+const WIDE = '(width > 900px) and (height > 560px)'; // where figures do not cover the cloth
 const RATE_WINDOW = 2; // window of the tick rate [s]
 
 export type Phase = 'closed' | 'connecting' | 'open' | 'waiting';
-
-export function element<Type extends HTMLElement>(id: string): Type {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no element ${id}`);
-  return found as Type;
-}
 
 /** Connection, measurements, viewers and notices. */
 export class Panels {
@@ -20,6 +17,11 @@ export class Panels {
   private phase: Phase = 'connecting';
   private refusal: Refusal | null = null;
   private ticks: { tick: number; time: number }[] = [];
+  private figures = new Disclosure('figures', window.matchMedia(WIDE).matches);
+
+  toggle_figures(): void {
+    this.figures.toggle();
+  }
 
   connection(phase: Phase): void {
     this.phase = phase;
@@ -27,7 +29,7 @@ export class Panels {
     if (phase === 'open') return;
     this.ticks = [];
     for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
-    for (const id of ['guarantee', 'crossings']) element(id).hidden = true;
+    for (const id of ['guarantee', 'reasons', 'crossings', 'asleep']) element(id).hidden = true;
     element('viewers').replaceChildren();
   }
 
@@ -63,8 +65,8 @@ export class Panels {
     this.reduced('pace', state.pace);
     this.reduced('softness', state.softness);
     const asleep = state.sleeping.cloths.length;
-    element('asleep').closest('div')!.hidden = asleep === 0;
-    set_text('asleep', String(asleep));
+    element('asleep').hidden = asleep === 0;
+    set_text('asleep', asleep === 1 ? 'At rest' : `${asleep} cloths at rest`);
     this.guarantee(state);
     if (!state.paused) return;
     this.ticks = [];
@@ -76,6 +78,9 @@ export class Panels {
     line.hidden = false;
     line.dataset.state = guarantee.state;
     set_text('guarantee-text', guarantee_text(guarantee));
+    const reasons = reasons_text(guarantee);
+    element('reasons').hidden = reasons === '';
+    set_text('reasons', reasons);
     const counted = element('crossings');
     counted.hidden = crossings === null;
     if (!crossings) return;
@@ -107,9 +112,11 @@ export class Panels {
   }
 
   roster({ viewers }: Roster, own: number): void {
-    const items = viewers.slice(0, MOST_NAMES).map(({ id, name, color }) => {
+    const own_first = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
+    const items = own_first.slice(0, MOST_NAMES).map(({ id, name, color }) => {
       const item = document.createElement('li');
-      item.textContent = id === own ? `${name} (you)` : name;
+      item.append(span('swatch', ''), span('who', name));
+      if (id === own) item.append(span('', '(you)'));
       item.style.setProperty('--color', color);
       return item;
     });
@@ -128,6 +135,13 @@ export class Panels {
     window.clearTimeout(this.toast_timer);
     this.toast_timer = window.setTimeout(() => (toast.hidden = true), TOAST_TIME);
   }
+}
+
+function span(name: string, text: string): HTMLElement {
+  const made = document.createElement('span');
+  made.className = name;
+  made.textContent = text;
+  return made;
 }
 
 function set_text(id: string, text: string): void {

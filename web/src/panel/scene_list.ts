@@ -1,4 +1,4 @@
-import { element } from './panels.js';
+import { element } from './element.js';
 
 interface Scene {
   name: string;
@@ -47,9 +47,9 @@ export class SceneList {
   }
 
   private write(): void {
-    this.button.firstElementChild!.textContent = title_of(this.shown);
+    element('scene-title').textContent = title_of(this.shown);
     const described = this.scenes.find(({ name }) => name === this.shown);
-    this.button.title = described?.description ?? '';
+    if (described) this.button.title = described.description;
     this.list.replaceChildren(...this.scenes.map((scene) => this.entry(scene)));
   }
 

@@ -1,4 +1,4 @@
-import { element } from './panels.js';
+import { element } from './element.js';
 
 const SEND_INTERVAL = 60; // between values of a moving slider [ms]
 const QUIET_TIME = 600; // in which the state does not set a slider just moved [ms]

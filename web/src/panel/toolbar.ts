@@ -2,7 +2,7 @@ import type { WeftClient } from '../../../proto/js/index.js';
 import type { Fan, State, Vec3 } from '../../../proto/js/messages.js';
 import { tell_refusal } from '../wire/connection.js';
 import type { HandMode } from '../hold/hold.js';
-import { element } from './panels.js';
+import { element } from './element.js';
 import { SceneList } from './scene_list.js';
 import { Slider } from './slider.js';
 
@@ -56,7 +56,15 @@ export class Toolbar {
     element('help-button').addEventListener('click', () => this.show_help());
     this.help.addEventListener('click', (event) => event.target === this.help && this.help.close());
     this.scenes = new SceneList((scene) => this.run(client.load(scene)));
+    element('more').addEventListener('click', () => this.open_controls());
+    element('view').addEventListener('pointerdown', () => this.open_controls(false));
     this.enable(false);
+  }
+
+  /** Opens or closes the controls that have no place in the toolbar of a small screen. */
+  private open_controls(open = !('open' in element('toolbar').dataset)): void {
+    element('toolbar').toggleAttribute('data-open', open);
+    element('more').setAttribute('aria-expanded', String(open));
   }
 
   /** Disables the controls without a connection. */
