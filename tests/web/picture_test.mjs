@@ -52,20 +52,20 @@ test('the cloth on the canvas is the projection of the positions of the server',
 // between two ways of drawing. Seen almost edge-on a cloth is little more than its outline, and its
 // overlap falls to 0.95 though nothing is out of place. What is tested there is that
 // pixels differ on the outline alone, and no more of them than anywhere else.
-test('a cloth seen edge-on differs from its projection on the outline alone', bounded, () =>
-  with_page({ width: 720, height: 540 }, async (page, script) => {
-    await script.pause();
-    const seen = [];
-    for (const turn of [-380, -20]) {
-      await turn_view(page, turn);
+test('a cloth seen edge-on differs from its projection on the outline alone', bounded, async () => {
+  const seen = [];
+  for (const azimuth of [1.4, 1.5]) {
+    const view = [0, 1, 0, Math.sin(azimuth), 0.2, Math.cos(azimuth), 1];
+    await with_page({ width: 720, height: 540, view }, async (page, script) => {
+      await script.pause();
       const { outline, differing, inside, area } = await silhouettes(page, script);
-      assert.equal(inside, 0, `turned by ${turn} pixels`);
+      assert.equal(inside, 0, `from an azimuth of ${azimuth}`);
       assert.ok(differing < 0.35 * outline, `${differing} of ${outline} pixels of the outline`);
       seen.push(area / outline);
-    }
-    assert.ok(Math.min(...seen) < 10, `it is seen almost edge-on: ${seen}`);
-  }),
-);
+    });
+  }
+  assert.ok(Math.min(...seen) < 10, `it is seen almost edge-on: ${seen}`);
+});
 
 test('no vertex moves while ticks stand still; a step moves them by one tick', bounded, () =>
   with_page({}, async (page, script) => {

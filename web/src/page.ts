@@ -2,12 +2,14 @@ import type { WeftClient } from '../../proto/js/index.js';
 import type { Frame, State, Viewer } from '../../proto/js/messages.js';
 import { BoxView } from './panel/box_view.js';
 import { OrbitCamera } from './view/camera.js';
+import { Director, view_of_address } from './view/director.js';
 import { connect_client, explain_refusals } from './wire/connection.js';
 import { fan_of_view, Fans } from './view/fans.js';
 import { Hands } from './view/hands.js';
 import { HandLatency } from './hold/hand_latency.js';
 import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
+import type { View, Window } from './view/framing.js';
 import { listen_to_keys } from './hold/keys.js';
 import { loss_text, notice_text } from './panel/events.js';
 import { element } from './panel/element.js';
@@ -32,6 +34,7 @@ const PANEL_MARGIN = 12; // between panels and a framed box [pixels]
 export class Page {
   readonly canvas = element<HTMLCanvasElement>('view');
   readonly orbit = new OrbitCamera();
+  private director = new Director(this.orbit, () => this.window());
   readonly hands = new Hands(element('labels'));
   readonly pins = new Pins();
   readonly fans = new Fans();
@@ -90,9 +93,11 @@ export class Page {
       push: (factor) => this.holding.push(factor),
       let_go: (meant) => this.holding.let_go(meant),
       toggle_pin: (point) => this.holding.toggle_pin(point),
-      orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
-      pan: (dx, dy) => this.orbit.pan(dx, dy),
-      zoom: (factor) => this.orbit.zoom(factor),
+      ...this.camera_actions(),
+      pan: (dx, dy) => {
+        this.director.leave();
+        this.orbit.pan(dx, dy);
+      },
       changed: () => (this.dirty = true),
     });
     listen_to_keys({
@@ -107,8 +112,7 @@ export class Page {
       scenes: () => this.toolbar.show_scenes(),
       help: () => this.toolbar.show_help(),
       figures: () => this.panels.toggle_figures(),
-      orbit: (azimuth, elevation) => this.orbit.orbit(azimuth, elevation),
-      zoom: (factor) => this.orbit.zoom(factor),
+      ...this.camera_actions(),
     });
     new ThemeSwitch(() => (this.dirty = true));
     frame_focus(this.canvas);
@@ -207,15 +211,36 @@ export class Page {
     this.input.cancel();
   }
 
+  /** Turns and approaches by the viewer's hand, who keeps the camera from then on. */
+  private camera_actions() {
+    return {
+      orbit: (azimuth: number, elevation: number) => {
+        this.director.leave();
+        this.orbit.orbit(azimuth, elevation);
+      },
+      zoom: (factor: number) => {
+        this.director.leave();
+        this.orbit.zoom(factor);
+      },
+    };
+  }
+
   private frame(at_once = false): void {
     if (!this.world) return;
+    const asked = view_of_address(window.location.search);
+    const { view = null } = this.world.announcement as { view?: View };
+    this.director.begin(this.world.subject(), asked ?? view, at_once);
+  }
+
+  /** The part of the picture that no panel covers. */
+  private window(): Window {
     const toolbar = element('toolbar').getBoundingClientRect();
     const corners = [...document.querySelectorAll('.corner')];
     const { height } = this.size();
     const lowest = Math.max(...corners.map((corner) => corner.getBoundingClientRect().bottom));
     const above = Math.min(0.25, (lowest + PANEL_MARGIN) / height);
     const below = Math.min(0.4, (height - toolbar.top) / height);
-    this.orbit.frame(this.world.bounds(), { above, below }, at_once);
+    return this.orbit.window({ above, below });
   }
 
   // ---- the picture --------------------------------------------------------------------------
@@ -249,6 +274,7 @@ export class Page {
       this.pins.follow(this.world.playback.positions);
       // A viewer that joins late finds the cloth moved from its start.
       if (this.unframed) this.frame(true);
+      else this.director.follow(this.world.playback.positions, now);
       this.unframed = false;
     }
     this.tell_camera(now);

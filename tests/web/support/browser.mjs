@@ -29,10 +29,12 @@ export function launch_browser() {
  * Opens the page and waits until it shows the cloth. What it complains of is kept in `complaints`.
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
- * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean}} [options]
+ * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
+ *   view?: number[]}} [options]
+ *     view: target, direction and radius of the first view
  */
 export async function open_page(browser, url, options = {}) {
-  const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
+  const { width = 560, height = 420, touch = false, name = '', dark = false, view } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
@@ -52,7 +54,8 @@ export async function open_page(browser, url, options = {}) {
   page.on('response', (response) => {
     if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
   });
-  await page.goto(name ? `${url}?name=${name}` : url);
+  const asked = [name && `name=${name}`, view && `view=${view}`].filter(Boolean).join('&');
+  await page.goto(asked ? `${url}?${asked}` : url);
   const opened = Object.assign(page, { complaints });
   await until(() => page.evaluate(() => window.weft.phase === 'open' && window.weft.tick >= 0));
   return opened;

@@ -89,6 +89,11 @@ export class Objects {
     return new Box3().setFromObject(this.group);
   }
 
+  /** Around each object [m]. */
+  boxes(): Box3[] {
+    return this.group.children.map((child) => new Box3().setFromObject(child));
+  }
+
   /** Distance to the first object along a ray [m]; Infinity if it meets none. */
   distance(origin: Vec3, direction: Vec3): number {
     return this.hit(origin, direction)?.distance ?? Infinity;

@@ -1,6 +1,7 @@
 import { Box3, Vector3 } from 'three';
 import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../../proto/js/messages.js';
 import { ClothMesh } from './cloth_mesh.js';
+import type { Subject } from './director.js';
 import { Objects } from './objects.js';
 import type { ObjectHit } from './objects.js';
 import { Playback } from '../wire/playback.js';
@@ -75,6 +76,13 @@ export class WorldView {
   get cloth_extent(): number {
     const size = new Box3().setFromArray(this.playback.positions).getSize(new Vector3());
     return Math.max(size.x, size.y, size.z);
+  }
+
+  /** What a camera has to show. */
+  subject(): Subject {
+    const cloth = this.playback.positions;
+    const { objects, triangles } = this;
+    return { cloth, triangles, boxes: objects.boxes(), ground: objects.ground };
   }
 
   /** Bounds of the cloth and of the objects, with the ground below [m]. */
