@@ -58,7 +58,12 @@ export interface Cloth {
   rows?: number;
   columns?: number;
   thickness: number;
+  look?: Look;
 }
+
+/** How a cloth is to look; colours of front and back as `#rrggbb`. */
+export type Look = { fabric?: FabricName; color?: string; back?: string };
+export type FabricName = 'plain' | 'cotton' | 'silk' | 'denim' | 'wool' | 'leather' | 'nylon';
 
 /** `pivot` is the reference point of a pose [m]. */
 export type Collider = { name: string; pivot: Vec3 } & (

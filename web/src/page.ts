@@ -47,7 +47,7 @@ export class Page {
   phase: Phase = 'connecting';
   pictures = 0;
   private panels = new Panels();
-  private stage = new Stage(this.canvas, (away) => {
+  readonly stage = new Stage(this.canvas, (away) => {
     this.panels.picture_lost(away);
     this.dirty = true;
   });
@@ -250,6 +250,11 @@ export class Page {
     return this.stage.quality.still && !this.dirty;
   }
 
+  /** Draws again, as something has changed that is not part of the world. */
+  redraw(): void {
+    this.dirty = true;
+  }
+
   private size(): { width: number; height: number } {
     return { width: this.canvas.clientWidth, height: this.canvas.clientHeight };
   }
@@ -289,6 +294,7 @@ export class Page {
     this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
     this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
+    this.world?.look_from(this.orbit.camera);
     this.stage.renderer.render(this.stage.scene, this.orbit.camera);
     this.pictures += 1;
     const latency = this.latency.shown(this.world?.playback.time ?? 0, performance.now() / 1000);

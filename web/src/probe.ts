@@ -1,4 +1,7 @@
 import type { Page } from './page.js';
+import { pattern } from './view/fabric.js';
+import type { Look } from '../../proto/js/messages.js';
+import { cloth_mask } from './view/mask.js';
 
 /** The page's state as tests may read it; all values are copies. */
 export function expose_probe(page: Page): void {
@@ -71,6 +74,30 @@ export function expose_probe(page: Page): void {
     get fine() {
       return page.fine;
     },
+    /** The number of the cloth in each pixel, 0 for none, as bytes in base64; row by row from the top. */
+    cloth_mask(): string {
+      const { world, stage, orbit } = page;
+      if (!world) return '';
+      return base64(cloth_mask(stage.renderer, stage.scene, orbit.camera, world.parts, probe.size));
+    },
+    /** Draws the cloths with other looks than the server's. */
+    dress(looks: Look[]): void {
+      page.world?.cloth.dress(looks);
+      page.redraw();
+    },
+    /** Draws weaves and hems, or cloth of one colour. */
+    show_pattern(shown: boolean): void {
+      pattern.value = shown ? 1 : 0;
+      page.redraw();
+    },
   };
   Object.defineProperty(window, 'weft', { value: Object.freeze(probe) });
+}
+
+function base64(bytes: Uint8Array): string {
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 0x8000) {
+    text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
+  }
+  return btoa(text);
 }

@@ -1,7 +1,7 @@
 import { project } from './browser.mjs';
 
 /** The page's picture, without panels: its size and four bytes a pixel. */
-async function picture_of(page) {
+export async function picture_of(page) {
   const show_panels = (visibility) =>
     page.evaluate((value) => {
       for (const panel of document.querySelectorAll('body > :not(main), #labels')) {
@@ -29,14 +29,14 @@ async function picture_of(page) {
   return { ...picture, data: Buffer.from(picture.text, 'base64') };
 }
 
-/** Pixels of the page's picture that show the cloth: the one thing in the studio of a strong colour. */
-export async function cloth_on_canvas(page) {
-  const { data } = await picture_of(page);
-  return Uint8Array.from({ length: data.length / 4 }, (_, pixel) => {
-    const color = data.subarray(pixel * 4, pixel * 4 + 3);
-    const most = Math.max(...color);
-    return (most - Math.min(...color)) / most > 0.45 ? 1 : 0;
-  });
+/** The number of the cloth that the page draws in each pixel, from 1 on; 0 where there is none. */
+export async function cloths_in_pixels(page) {
+  return Buffer.from(await page.evaluate(() => weft.cloth_mask()), 'base64');
+}
+
+/** Pixels where the page draws cloth, whatever its colour: 1, and 0 elsewhere. */
+export async function drawn_cloth(page) {
+  return (await cloths_in_pixels(page)).map((number) => Math.min(1, number));
 }
 
 /** Mean red, green and blue of the page's picture, 0 to 255. */

@@ -1,73 +1,168 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh } from 'three';
-import type { Cloth, MeshData } from '../../../proto/js/messages.js';
+import type { Camera, MeshPhysicalMaterial } from 'three';
+import type { Cloth, Look, MeshData } from '../../../proto/js/messages.js';
+import { both_diagonals, cells_of } from './cells.js';
+import { DepthOrder } from './depth_order.js';
 import { fabric_material } from './fabric.js';
+import { Hem } from './hem.js';
+import { colors_of, finish_of } from './looks.js';
 import { smooth_normals } from './normals.js';
+import { fabric_extent } from './rest_shape.js';
+import { Subdivision } from './subdivision.js';
+import { weave_of } from './weave.js';
+import type { Weave } from './weave.js';
 
-/** The drawn cloths; all share one buffer of positions and one of normals. */
+const MOST_TRIANGLES = 40_000; // drawn by subdivision; larger meshes are fine enough by themselves
+const MOST_LEVELS = 2;
+/** How far the drawn surface may leave the simulated one, of the distance that contact keeps. */
+const REACH = 0.45;
+
+/** A cloth's part of the common buffers. */
+interface Piece {
+  mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>;
+  triangles: Uint32Array;
+  order: DepthOrder;
+  index: BufferAttribute;
+  hem: Hem;
+  /** In its plane if it is a rectangle [m]. */
+  size: [number, number] | null;
+}
+
+/**
+ * The drawn cloths: finer than the simulated ones, through the same particles, with thick edges.
+ * All share one buffer of positions and one of normals.
+ */
 export class ClothMesh {
   readonly group = new Group();
+  /** Of the simulated cloths. */
   readonly triangles: Uint32Array;
+  /** Those that normals are the means of. */
+  private shaded: Uint32Array;
   private positions: BufferAttribute;
   private normals: BufferAttribute;
+  private fine: Subdivision;
+  private pieces: Piece[];
+  private weaves = new Map<string, Weave>();
+  private reach: Float32Array;
+  private edges: Float32Array;
 
-  constructor(cloths: Cloth[], data: MeshData) {
+  constructor(private cloths: Cloth[], data: MeshData) {
     this.triangles = data.triangles;
-    this.positions = new BufferAttribute(data.restPositions.slice(), 3).setUsage(DynamicDrawUsage);
-    this.normals = new BufferAttribute(new Float32Array(data.restPositions.length), 3);
-    this.normals.setUsage(DynamicDrawUsage);
-    const uv = new BufferAttribute(data.uv, 2);
-    const index = new BufferAttribute(data.triangles, 1);
-    for (const cloth of cloths) {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute('position', this.positions);
-      geometry.setAttribute('normal', this.normals);
-      geometry.setAttribute('uv', uv);
-      geometry.setIndex(index);
-      geometry.setDrawRange(cloth.first_triangle * 3, cloth.triangles * 3);
-      const mesh = new Mesh(geometry, fabric_material(...extent(cloth, data)));
-      mesh.castShadow = mesh.receiveShadow = true;
-      mesh.frustumCulled = false; // bounds would have to follow each frame
-      this.group.add(mesh);
-    }
+    const coarse = data.restPositions.length / 3;
+    const cells = cells_of(data.triangles, data.uv);
+    this.shaded = both_diagonals(data.triangles, cells);
+    this.fine = new Subdivision(coarse, data.triangles, cells, levels_of(data.triangles.length / 3));
+    const hems = this.hems();
+    const vertices = hems.reduce((first, hem) => first + hem.vertices, this.fine.vertices);
+    const vector = () => new BufferAttribute(new Float32Array(vertices * 3), 3);
+    this.positions = vector().setUsage(DynamicDrawUsage);
+    this.normals = vector().setUsage(DynamicDrawUsage);
+    this.reach = new Float32Array(this.fine.vertices);
+    this.edges = new Float32Array(this.fine.vertices);
+    const uv = new BufferAttribute(new Float32Array(vertices * 2), 2);
+    this.pieces = cloths.map((cloth, k) => this.piece(cloth, data, hems[k], uv));
+    this.fine.interpolate(this.reach, 1);
+    this.fine.interpolate(uv.array as Float32Array, 2);
+    for (const hem of hems) hem.copy(uv.array as Float32Array, 2);
+    this.dress(cloths.map(({ look }) => look));
     this.update(data.restPositions);
   }
 
-  /** @param positions three values per vertex [m] */
-  update(positions: Float32Array): void {
-    this.positions.array.set(positions);
-    smooth_normals(positions, this.triangles, this.normals.array as Float32Array);
+  /** Gives each cloth another look. */
+  dress(looks: (Look | undefined)[]): void {
+    this.undress();
+    const colors = colors_of(looks);
+    for (const [k, piece] of this.pieces.entries()) {
+      const look = looks[k];
+      const { weave, edge } = finish_of(look);
+      if (!this.weaves.has(weave)) this.weaves.set(weave, weave_of(weave));
+      piece.mesh.material = fabric_material(look, colors[k], this.weaves.get(weave)!, piece.size);
+      (piece.index.array as Uint32Array).set(piece.triangles);
+      piece.index.needsUpdate = true;
+      const { first_vertex, vertices, thickness } = this.cloths[k];
+      const half = Math.min(edge, (REACH / 2) * thickness);
+      this.edges.fill(half, first_vertex, first_vertex + vertices);
+    }
+    this.fine.interpolate(this.edges, 1);
+  }
+
+  /** @param particles three values per vertex of the simulated cloths [m] */
+  update(particles: Float32Array): void {
+    const positions = this.positions.array as Float32Array;
+    const normals = this.normals.array as Float32Array;
+    positions.set(particles);
+    smooth_normals(positions, this.shaded, normals.subarray(0, particles.length));
+    this.fine.refine(positions, normals, this.reach);
+    for (const { hem } of this.pieces) hem.place(positions, normals, this.edges);
     this.positions.needsUpdate = this.normals.needsUpdate = true;
+  }
+
+  /** Puts the triangles of cloths that one sees through in order, far ones first. */
+  sort(camera: Camera): void {
+    for (const { mesh, index, order } of this.pieces) {
+      if (!mesh.material.transparent) continue;
+      order.sort(camera, this.positions.array as Float32Array, index.array as Uint32Array);
+      index.needsUpdate = true;
+    }
   }
 
   dispose(): void {
     this.group.removeFromParent();
-    for (const child of this.group.children as Mesh[]) {
-      child.geometry.dispose();
-      const material = child.material as ReturnType<typeof fabric_material>;
-      material.normalMap?.dispose();
-      material.dispose();
+    this.undress();
+    for (const { mesh } of this.pieces) mesh.geometry.dispose();
+  }
+
+  private undress(): void {
+    for (const { mesh } of this.pieces) mesh.material?.dispose();
+    for (const { texture } of this.weaves.values()) texture.dispose();
+    this.weaves.clear();
+  }
+
+  private hems(): Hem[] {
+    let first = this.fine.vertices;
+    return this.cloths.map((cloth) => {
+      const hem = new Hem(this.triangles_of(cloth), first);
+      first += hem.vertices;
+      return hem;
+    });
+  }
+
+  /** A cloth's part of the fine triangles. */
+  private triangles_of(cloth: Cloth): Uint32Array {
+    const finer = this.fine.triangles.length / this.triangles.length;
+    const first = cloth.first_triangle * 3 * finer;
+    return this.fine.triangles.subarray(first, first + cloth.triangles * 3 * finer);
+  }
+
+  private piece(cloth: Cloth, data: MeshData, hem: Hem, uv: BufferAttribute): Piece {
+    const [width, height] = fabric_extent(cloth, data);
+    const end = cloth.first_vertex + cloth.vertices;
+    for (let i = cloth.first_vertex; i < end; i++) {
+      uv.setXY(i, data.uv[i * 2] * width, data.uv[i * 2 + 1] * height);
     }
+    this.reach.fill(REACH * cloth.thickness, cloth.first_vertex, end);
+    const own = this.triangles_of(cloth);
+    const triangles = new Uint32Array(own.length + hem.triangles.length);
+    triangles.set(own);
+    triangles.set(hem.triangles, own.length);
+    const index = new BufferAttribute(triangles.slice(), 1).setUsage(DynamicDrawUsage);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', this.positions);
+    geometry.setAttribute('normal', this.normals);
+    geometry.setAttribute('uv', uv);
+    geometry.setIndex(index);
+    const mesh = new Mesh<BufferGeometry, MeshPhysicalMaterial>(geometry);
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.frustumCulled = false; // bounds would have to follow each frame
+    this.group.add(mesh);
+    const size: [number, number] | null = cloth.rows && cloth.columns ? [width, height] : null;
+    return { mesh, triangles, order: new DepthOrder(triangles), index, hem, size };
   }
 }
 
-/** Width and height of a cloth in its plane [m]: rest distances of its points per uv. */
-function extent(cloth: Cloth, { restPositions, triangles, uv }: MeshData): [number, number] {
-  const sums = [0, 0];
-  const weights = [0, 0];
-  const end = (cloth.first_triangle + cloth.triangles) * 3;
-  for (let t = cloth.first_triangle * 3; t < end; t++) {
-    const a = triangles[t];
-    const b = triangles[t % 3 === 2 ? t - 2 : t + 1];
-    const length = Math.hypot(
-      ...[0, 1, 2].map((axis) => restPositions[a * 3 + axis] - restPositions[b * 3 + axis]),
-    );
-    const du = Math.abs(uv[a * 2] - uv[b * 2]);
-    const dv = Math.abs(uv[a * 2 + 1] - uv[b * 2 + 1]);
-    // Only edges along an axis measure that axis.
-    const axis = dv < 1e-3 * du ? 0 : du < 1e-3 * dv ? 1 : -1;
-    if (axis < 0) continue;
-    sums[axis] += length;
-    weights[axis] += axis === 0 ? du : dv;
-  }
-  return [sums[0] / weights[0] || 1, sums[1] / weights[1] || 1];
+/** How often a mesh of so many triangles is subdivided. */
+function levels_of(triangles: number): number {
+  let levels = 0;
+  while (levels < MOST_LEVELS && triangles * 4 ** (levels + 1) <= MOST_TRIANGLES) levels += 1;
+  return levels;
 }

@@ -1,107 +1,182 @@
-import {
-  Color,
-  DataTexture,
-  DoubleSide,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  MeshPhysicalMaterial,
-  RepeatWrapping,
-  Vector2,
-} from 'three';
+import { Color, DoubleSide, MeshPhysicalMaterial, SRGBColorSpace, Vector2, Vector3 } from 'three';
+import type { Look } from '../../../proto/js/messages.js';
+import { back_of, finish_of } from './looks.js';
+import type { Finish } from './looks.js';
+import type { Weave } from './weave.js';
 
-const TWILL_SIZE = 128; // pixels of a tile
-const THREADS = 8; // of a tile, in both directions
-const THREADS_PER_METRE = 900;
 const HEM = 0.014; // [m]
+const LARGEST_HEM = 0.06; // of the cloth's shorter side
+const STITCH = 0.005; // [m]
 
-/** A woven cloth with the sheen of fine wool. @param width, height of the cloth in its plane [m] */
-export function fabric_material(width: number, height: number): MeshPhysicalMaterial {
-  const relief = twill_normals();
-  relief.repeat.set(
-    (width * THREADS_PER_METRE) / THREADS,
-    (height * THREADS_PER_METRE) / THREADS,
-  );
+/** Whether weaves and hems are drawn; tests switch them off to measure the shading alone. */
+export const pattern = { value: 1 };
+
+/**
+ * A cloth seen from both sides.
+ * @param color of the front
+ * @param size  of the cloth in its plane if it is a rectangle, else null [m]
+ */
+export function fabric_material(
+  look: Look | undefined,
+  color: Color,
+  weave: Weave,
+  size: [number, number] | null,
+): MeshPhysicalMaterial {
+  const finish = finish_of(look);
+  const tile = finish.period * weave.periods;
+  weave.texture.repeat.set(1 / tile, 1 / tile);
   const material = new MeshPhysicalMaterial({
-    color: new Color('#cb5238'),
-    roughness: 0.82,
-    sheen: 0.6,
-    sheenRoughness: 0.45,
-    sheenColor: new Color('#ffab92'),
-    normalMap: relief,
-    normalScale: new Vector2(0.55, 0.55),
+    color,
+    roughness: finish.roughness,
+    specularIntensity: finish.specular,
+    anisotropy: finish.anisotropy,
+    sheen: finish.sheen,
+    sheenRoughness: finish.sheen_roughness,
+    sheenColor: sheen_of(color),
+    normalMap: weave.texture,
+    normalScale: new Vector2(finish.relief, finish.relief),
+    transparent: finish.clear > 0,
+    forceSinglePass: true, // its triangles are sorted
     side: DoubleSide,
     shadowSide: DoubleSide,
     dithering: true,
   });
+  const uniforms = uniforms_of(finish, back_of(look, color), color, weave, size);
   material.onBeforeCompile = (shader) => {
-    shader.uniforms.hem = { value: new Vector2(HEM / width, HEM / height) };
+    Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
       .replace('void main() {', 'varying vec2 fabric_place;\nvoid main() {\nfabric_place = uv;')
-      .replace('#include <shadowmap_vertex>', SHADOW_OF_BOTH_SIDES);
-    shader.fragmentShader = shader.fragmentShader
-      .replace('void main() {', 'uniform vec2 hem;\nvarying vec2 fabric_place;\nvoid main() {')
-      .replace('#include <color_fragment>', HEM_SHADE);
+      .replace('#include <shadowmap_vertex>', SHADOW_TOWARDS_LIGHT);
+    shader.fragmentShader = [...FRAGMENT].reduce(
+      (text, [chunk, code]) => text.replace(chunk, code),
+      shader.fragmentShader,
+    );
   };
   return material;
 }
 
+/** A pale tint of the cloth itself; any other colour looks like dust at grazing angles. */
+function sheen_of(color: Color): Color {
+  const { h, s, l } = color.getHSL({ h: 0, s: 0, l: 0 }, SRGBColorSpace);
+  return new Color().setHSL(h, s, Math.min(0.9, l * 0.75 + 0.25), SRGBColorSpace);
+}
+
+function uniforms_of(
+  finish: Finish,
+  back: Color,
+  color: Color,
+  weave: Weave,
+  size: [number, number] | null,
+) {
+  const [width, height] = size ?? [1, 1];
+  const hem = size ? Math.min(HEM, LARGEST_HEM * Math.min(width, height)) : 0;
+  const seam = finish.seam ? new Color(finish.seam) : color.clone().multiplyScalar(0.45);
+  return {
+    pattern_shown: pattern,
+    back_color: { value: back },
+    back_roughness: { value: finish.back_roughness },
+    weave_periods: { value: weave.periods },
+    weave_weft: { value: weave.weft },
+    grooves: { value: finish.grooves },
+    white_weft: { value: finish.white_weft },
+    clear: { value: finish.clear },
+    translucency: { value: finish.translucency },
+    cloth_size: { value: new Vector3(width, height, hem) },
+    seam_color: { value: seam },
+    stitched: { value: finish.seam ? 1 : 0 },
+  };
+}
+
 /**
- * The shadow is looked up slightly in front of the surface, on the visible side, which may be the
- * left side of the cloth; behind it, the cloth would lie in its own shadow.
+ * The shadow is looked up slightly on the side of the cloth that the light falls on. On the other
+ * side the cloth would lie in its own shadow, and no light would pass through it.
  */
-const SHADOW_OF_BOTH_SIDES = `
-  transformedNormal = faceforward(transformedNormal, mvPosition.xyz, transformedNormal);
+const SHADOW_TOWARDS_LIGHT = `
+  #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
+    mat4 to_shadow = directionalShadowMatrix[0];
+    vec3 light_way = vec3(to_shadow[0].z, to_shadow[1].z, to_shadow[2].z);
+    transformedNormal = faceforward(transformedNormal, mat3(viewMatrix) * light_way, transformedNormal);
+  #endif
   #include <shadowmap_vertex>
 `;
 
-/** A hem slightly darker than the cloth, with the line of its seam; the left side is paler. */
-const HEM_SHADE = `
-  #include <color_fragment>
-  vec2 from_edge = min(fabric_place, 1.0 - fabric_place) / hem;
-  float edge = min(from_edge.x, from_edge.y);
-  float blur = max(fwidth(edge), 0.02);
-  diffuseColor.rgb *= 1.0 - 0.07 * (1.0 - smoothstep(1.0 - blur, 1.0 + blur, edge));
-  diffuseColor.rgb *= 1.0 - 0.16 * (1.0 - smoothstep(0.0, 0.10 + blur, abs(edge - 1.0)));
-  if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.86, 0.82, 0.84);
+const DECLARATIONS = `
+  uniform float pattern_shown, back_roughness, weave_periods, weave_weft, grooves, white_weft;
+  uniform float clear, stitched;
+  uniform vec3 back_color, cloth_size, seam_color;
+  varying vec2 fabric_place;
+  void main() {
 `;
 
 /**
- * Normals of a 2/2 twill: each thread passes over two and under two, shifted by one in each row.
+ * Colour of the threads. A weave too fine for the picture is faded out, because what would be left
+ * of it are stripes that the cloth does not have.
  */
-function twill_normals(): DataTexture {
-  const size = TWILL_SIZE;
-  const height = new Float32Array(size * size);
-  for (let y = 0; y < size; y++) {
-    for (let x = 0; x < size; x++) height[y * size + x] = twill_height(x / size, y / size);
-  }
-  const pixels = new Uint8Array(size * size * 4);
-  const at = (x: number, y: number) => height[((y + size) % size) * size + ((x + size) % size)];
-  for (let y = 0; y < size; y++) {
-    for (let x = 0; x < size; x++) {
-      const slope_x = (at(x + 1, y) - at(x - 1, y)) * 3;
-      const slope_y = (at(x, y + 1) - at(x, y - 1)) * 3;
-      const length = Math.hypot(slope_x, slope_y, 1);
-      const normal = [-slope_x / length, -slope_y / length, 1 / length];
-      const offset = (y * size + x) * 4;
-      for (let i = 0; i < 3; i++) pixels[offset + i] = Math.round((normal[i] * 0.5 + 0.5) * 255);
-      pixels[offset + 3] = 255;
-    }
-  }
-  const texture = new DataTexture(pixels, size, size);
-  texture.wrapS = texture.wrapT = RepeatWrapping;
-  texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
-  texture.generateMipmaps = true;
-  texture.anisotropy = 8;
-  texture.needsUpdate = true;
-  return texture;
-}
+const DYE = `
+  #include <color_fragment>
+  vec4 weave = texture2D(normalMap, vNormalMapUv);
+  vec2 periods_per_pixel = fwidth(vNormalMapUv) * weave_periods;
+  float weave_seen = pattern_shown *
+    (1.0 - smoothstep(0.12, 0.3, max(periods_per_pixel.x, periods_per_pixel.y)));
+  float weft = mix(weave_weft, weave.b, weave_seen);
+  vec3 front = mix(diffuseColor.rgb, vec3(0.8), white_weft * weft);
+  vec3 back = mix(back_color, diffuseColor.rgb, white_weft * weft);
+  diffuseColor.rgb = gl_FrontFacing ? back : front;
+  diffuseColor.rgb *= 1.0 + grooves * weave_seen * (2.0 * weave.a - 1.0);
 
-function twill_height(u: number, v: number): number {
-  const warp = u * THREADS;
-  const weft = v * THREADS;
-  const phase = (((Math.floor(warp) - Math.floor(weft)) % 4) + 4) % 4;
-  const across = phase < 2 ? warp % 1 : weft % 1;
-  const along = phase < 2 ? weft % 1 : warp % 1;
-  return Math.sin(Math.PI * across) * (0.75 + 0.25 * Math.sin(Math.PI * along));
-}
+  vec2 from_edge = min(fabric_place, cloth_size.xy - fabric_place);
+  float edge = min(from_edge.x, from_edge.y) / max(cloth_size.z, 1e-6);
+  float blur = max(fwidth(edge), 0.02);
+  float along = (from_edge.x < from_edge.y ? fabric_place.y : fabric_place.x) / ${STITCH};
+  float dash = abs(fract(along) - 0.5) * 2.0;
+  float gap = mix(0.35, smoothstep(0.62, 0.8, dash), 1.0 - smoothstep(0.1, 0.4, fwidth(along)));
+  float seam = 1.0 - smoothstep(0.05, 0.09 + blur, abs(edge - 1.0));
+  seam *= mix(0.3, 0.9 * (1.0 - gap), stitched) / (1.0 + 4.0 * blur);
+  seam *= step(1e-5, cloth_size.z) * pattern_shown;
+  diffuseColor.rgb = mix(diffuseColor.rgb, seam_color, seam);
+`;
+
+const RELIEF = `
+  vec2 slope = (weave.rg * 2.0 - 1.0) * normalScale * weave_seen;
+  normal = normalize(tbn * vec3(slope, sqrt(max(0.1, 1.0 - dot(slope, slope)))));
+`;
+
+/** Light that falls on the far side and leaves, scattered, on the visible one. */
+const LIGHT_THROUGH = `
+  #include <lights_physical_pars_fragment>
+  uniform float translucency;
+  void RE_Direct_Fabric(const in IncidentLight light, const in vec3 position, const in vec3 normal,
+      const in vec3 view, const in vec3 coat, const in PhysicalMaterial material,
+      inout ReflectedLight reflected) {
+    RE_Direct_Physical(light, position, normal, view, coat, material, reflected);
+    float behind = saturate(-dot(normal, light.direction));
+    reflected.directDiffuse += translucency * behind * light.color * BRDF_Lambert(material.diffuseColor);
+  }
+  #undef RE_Direct
+  #define RE_Direct RE_Direct_Fabric
+`;
+
+const SURROUNDINGS_THROUGH = `
+  #include <lights_fragment_maps>
+  #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
+    if (translucency > 0.0) iblIrradiance += translucency * getIBLIrradiance(-geometryNormal);
+  #endif
+`;
+
+const OPACITY = `
+  // Seen at a slant, a ray meets more of the threads.
+  float facing = abs(dot(nonPerturbedNormal, normalize(vViewPosition)));
+  diffuseColor.a = 1.0 - pow(clear, 1.0 / max(facing, 0.2));
+  #include <opaque_fragment>
+`;
+
+const FRAGMENT = new Map([
+  ['void main() {', DECLARATIONS],
+  ['#include <color_fragment>', DYE],
+  ['#include <roughnessmap_fragment>',
+    'float roughnessFactor = gl_FrontFacing ? back_roughness : roughness;'],
+  ['#include <normal_fragment_maps>', RELIEF],
+  ['#include <lights_physical_pars_fragment>', LIGHT_THROUGH],
+  ['#include <lights_fragment_maps>', SURROUNDINGS_THROUGH],
+  ['#include <opaque_fragment>', OPACITY],
+]);

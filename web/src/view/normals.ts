@@ -1,6 +1,6 @@
 /**
  * Vertex normals: means of the triangles' normals, weighted by area.
- * @param normals out; three values per vertex, of unit length
+ * @param normals out; three values per vertex, of unit length; may be longer than the positions
  */
 export function smooth_normals(
   positions: Float32Array,
@@ -12,26 +12,37 @@ export function smooth_normals(
     const a = triangles[t] * 3;
     const b = triangles[t + 1] * 3;
     const c = triangles[t + 2] * 3;
-    const e1x = positions[b] - positions[a];
-    const e1y = positions[b + 1] - positions[a + 1];
-    const e1z = positions[b + 2] - positions[a + 2];
-    const e2x = positions[c] - positions[a];
-    const e2y = positions[c + 1] - positions[a + 1];
-    const e2z = positions[c + 2] - positions[a + 2];
+    const ax = positions[a];
+    const ay = positions[a + 1];
+    const az = positions[a + 2];
+    const e1x = positions[b] - ax;
+    const e1y = positions[b + 1] - ay;
+    const e1z = positions[b + 2] - az;
+    const e2x = positions[c] - ax;
+    const e2y = positions[c + 1] - ay;
+    const e2z = positions[c + 2] - az;
     const nx = e1y * e2z - e1z * e2y;
     const ny = e1z * e2x - e1x * e2z;
     const nz = e1x * e2y - e1y * e2x;
-    for (const vertex of [a, b, c]) {
-      normals[vertex] += nx;
-      normals[vertex + 1] += ny;
-      normals[vertex + 2] += nz;
-    }
+    normals[a] += nx;
+    normals[a + 1] += ny;
+    normals[a + 2] += nz;
+    normals[b] += nx;
+    normals[b + 1] += ny;
+    normals[b + 2] += nz;
+    normals[c] += nx;
+    normals[c + 1] += ny;
+    normals[c + 2] += nz;
   }
+  // The root of a sum of squares: Math.hypot guards against overflow and takes four times as long.
   for (let i = 0; i < normals.length; i += 3) {
-    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
-    normals[i] /= length;
-    normals[i + 1] /= length;
-    normals[i + 2] /= length;
+    const x = normals[i];
+    const y = normals[i + 1];
+    const z = normals[i + 2];
+    const inverse = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
+    normals[i] = x * inverse;
+    normals[i + 1] = y * inverse;
+    normals[i + 2] = z * inverse;
   }
 }
 

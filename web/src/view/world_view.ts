@@ -1,4 +1,5 @@
 import { Box3, Vector3 } from 'three';
+import type { Camera, Group } from 'three';
 import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../../proto/js/messages.js';
 import { ClothMesh } from './cloth_mesh.js';
 import type { Subject } from './director.js';
@@ -50,6 +51,16 @@ export class WorldView {
       if (ground !== null) this.stage.raise_floor(ground);
     }
     return changed;
+  }
+
+  /** Prepares what depends on where one looks from. */
+  look_from(camera: Camera): void {
+    this.cloth.sort(camera);
+  }
+
+  /** What is drawn of the world. */
+  get parts(): { cloth: Group; objects: Group } {
+    return { cloth: this.cloth.group, objects: this.objects.group };
   }
 
   /** The point where a ray meets the cloth, unless an object hides it. */

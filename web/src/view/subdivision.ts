@@ -1,0 +1,176 @@
+/** New vertices of one subdivision: each halves an edge of the one before. */
+interface Level {
+  /** Two vertices per edge. */
+  edges: Uint32Array;
+  /** Of edges that are diagonals of cells, the ends of the other diagonal; elsewhere their own. */
+  others: Uint32Array;
+  /** Index of the first new vertex. */
+  first: number;
+}
+
+const FIRST_SHARE = 0.8; // of the reach, for the first level; a second one takes the rest
+
+/**
+ * A finer mesh that goes through the vertices of a coarse one, for display. Each edge is bent to a
+ * cubic that is perpendicular to the normals at its ends (curved PN triangles, Vlachos et al. 2001),
+ * and halved; in the middle of a cell the curves of both diagonals are averaged. New vertices stay within `reach` of the coarse triangles, less than half of the
+ * distance that contact keeps, so that surfaces that do not touch are not drawn through each other.
+ */
+export class Subdivision {
+  /** Of the finest level; triangle t of the coarse mesh is 4^levels of these, beginning there. */
+  readonly triangles: Uint32Array;
+  readonly vertices: number;
+  private levels: Level[] = [];
+
+  /**
+   * @param cells  as of `cells_of`
+   * @param levels how often each triangle is divided in four
+   */
+  constructor(vertices: number, triangles: Uint32Array, cells: Uint32Array, levels: number) {
+    this.vertices = vertices;
+    this.triangles = triangles;
+    for (let level = 0; level < levels; level++) {
+      const divided = divide(this.triangles, cells, this.vertices);
+      this.levels.push({ ...divided, first: this.vertices });
+      ({ triangles: this.triangles, cells } = divided);
+      this.vertices += divided.edges.length / 2;
+    }
+  }
+
+  /** Fills in values of the new vertices, halfway between those of their edges. */
+  interpolate(values: Float32Array, components: number): void {
+    for (const { edges, first } of this.levels) {
+      for (let e = 0; e < edges.length; e += 2) {
+        const to = (first + e / 2) * components;
+        for (let k = 0; k < components; k++) {
+          const sum = values[edges[e] * components + k] + values[edges[e + 1] * components + k];
+          values[to + k] = sum / 2;
+        }
+      }
+    }
+  }
+
+  /**
+   * Fills in positions and normals of the new vertices.
+   * @param positions three values per vertex [m]; those of the coarse mesh are given
+   * @param normals   likewise, of unit length
+   * @param reach     of each vertex: how far the surface may leave the coarse triangles [m]
+   */
+  refine(positions: Float32Array, normals: Float32Array, reach: Float32Array): void {
+    for (const [k, level] of this.levels.entries()) {
+      const share = k > 0 ? (1 - FIRST_SHARE) / (this.levels.length - 1)
+        : this.levels.length > 1 ? FIRST_SHARE : 1;
+      halve_edges(level, positions, normals, reach, share);
+    }
+  }
+}
+
+function halve_edges(
+  { edges, others, first }: Level,
+  positions: Float32Array,
+  normals: Float32Array,
+  reach: Float32Array,
+  share: number,
+): void {
+  let to = first * 3;
+  for (let e = 0; e < edges.length; e += 2, to += 3) {
+    const a = edges[e];
+    const b = edges[e + 1];
+    halve(positions, normals, a, b, middle);
+    if (others[e] !== a) {
+      halve(positions, normals, others[e], others[e + 1], other_middle);
+      for (let k = 0; k < 6; k++) middle[k] = (middle[k] + other_middle[k]) / 2;
+    }
+    const mx = (positions[a * 3] + positions[b * 3]) / 2;
+    const my = (positions[a * 3 + 1] + positions[b * 3 + 1]) / 2;
+    const mz = (positions[a * 3 + 2] + positions[b * 3 + 2]) / 2;
+    let ox = middle[0] - mx;
+    let oy = middle[1] - my;
+    let oz = middle[2] - mz;
+    const most = reach[a] * share;
+    const offset = ox * ox + oy * oy + oz * oz;
+    if (offset > most * most) {
+      const shorter = most / Math.sqrt(offset);
+      ox *= shorter;
+      oy *= shorter;
+      oz *= shorter;
+    }
+    positions[to] = mx + ox;
+    positions[to + 1] = my + oy;
+    positions[to + 2] = mz + oz;
+    const nx = middle[3];
+    const ny = middle[4];
+    const nz = middle[5];
+    const norm = Math.sqrt(nx * nx + ny * ny + nz * nz);
+    const inverse = norm > 1e-6 ? 1 / norm : 0;
+    normals[to] = inverse ? nx * inverse : normals[a * 3];
+    normals[to + 1] = inverse ? ny * inverse : normals[a * 3 + 1];
+    normals[to + 2] = inverse ? nz * inverse : normals[a * 3 + 2];
+  }
+}
+
+const middle = new Float64Array(6);
+const other_middle = new Float64Array(6);
+
+/** Middle of the curve between two vertices, and a normal there of any length. */
+function halve(
+  positions: Float32Array,
+  normals: Float32Array,
+  from: number,
+  to: number,
+  out: Float64Array,
+): void {
+  const a = from * 3;
+  const b = to * 3;
+  const dx = positions[b] - positions[a];
+  const dy = positions[b + 1] - positions[a + 1];
+  const dz = positions[b + 2] - positions[a + 2];
+  const ax = normals[a];
+  const ay = normals[a + 1];
+  const az = normals[a + 2];
+  const bx = normals[b];
+  const by = normals[b + 1];
+  const bz = normals[b + 2];
+  const along_a = (dx * ax + dy * ay + dz * az) / 8;
+  const along_b = (dx * bx + dy * by + dz * bz) / 8;
+  out[0] = positions[a] + dx / 2 + along_b * bx - along_a * ax;
+  out[1] = positions[a + 1] + dy / 2 + along_b * by - along_a * ay;
+  out[2] = positions[a + 2] + dz / 2 + along_b * bz - along_a * az;
+  // The mean normal, mirrored in the plane across the edge: that of a quadratic in between.
+  const length = dx * dx + dy * dy + dz * dz;
+  const slant = length > 0 ? (16 * (along_a + along_b)) / length : 0;
+  out[3] = ax + bx - slant * dx;
+  out[4] = ay + by - slant * dy;
+  out[5] = az + bz - slant * dz;
+}
+
+/** Divides each triangle in four; the k-th edge gets the vertex `vertices` + k. */
+function divide(triangles: Uint32Array, cells: Uint32Array, vertices: number) {
+  const numbers = new Map<number, number>();
+  const edges: number[] = [];
+  const middle = (a: number, b: number) => {
+    const key = a < b ? a * vertices + b : b * vertices + a;
+    let number = numbers.get(key);
+    if (number === undefined) {
+      number = vertices + edges.length / 2;
+      numbers.set(key, number);
+      edges.push(a, b);
+    }
+    return number;
+  };
+  const divided = new Uint32Array(triangles.length * 4);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = triangles.subarray(t, t + 3);
+    const [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+    divided.set([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], t * 4);
+  }
+  const others = Uint32Array.from(edges);
+  const smaller = new Uint32Array(cells.length * 4);
+  for (let k = 0; k < cells.length; k += 4) {
+    const [a, b, c, d] = cells.subarray(k, k + 4);
+    const [ac, cb, bd, da, ab] = [middle(a, c), middle(c, b), middle(b, d), middle(d, a), middle(a, b)];
+    others.set([c, d], (ab - vertices) * 2);
+    smaller.set([a, ab, ac, da, b, ab, bd, cb, ac, cb, c, ab, bd, da, d, ab], k * 4);
+  }
+  return { edges: Uint32Array.from(edges), others, triangles: divided, cells: smaller };
+}
