@@ -10,7 +10,7 @@ const { weave_of } = await import_page_module('view/weave');
 const { Subdivision } = await import_page_module('view/subdivision');
 const { both_diagonals, cells_of } = await import_page_module('view/cells');
 const { Hem } = await import_page_module('view/hem');
-const { smooth_normals } = await import_page_module('view/normals');
+const { even_normals, smooth_normals } = await import_page_module('view/normals');
 const { fabric_extent } = await import_page_module('view/rest_shape');
 const { DepthOrder } = await import_page_module('view/depth_order');
 
@@ -205,6 +205,29 @@ test('which diagonal divides a cell changes neither shape nor shading', () => {
     const apart = (each) => Math.max(...each.map((value, k) => Math.abs(value - vertex[k])));
     assert.ok(Math.min(...again.map(apart)) < 1e-5, `${vertex}`);
   }
+});
+
+test('normals of a zigzag are evened out to two thirds of its slope, those of a bow are kept', () => {
+  const slant = (place) => {
+    const mesh = grid(17, place);
+    const both = both_diagonals(mesh.triangles, cells_of(mesh.triangles, mesh.uv));
+    const normals = new Float32Array(mesh.positions.length);
+    smooth_normals(mesh.positions, both, normals);
+    const before = normals.slice();
+    even_normals(both, normals);
+    return { before, normals };
+  };
+  const inside = (act) => {
+    for (let row = 3; row < 14; row++) for (let column = 3; column < 14; column++) act((row * 17 + column) * 3);
+  };
+  const dents = slant((u, v) => [u, v, Math.round(u * 16) % 4 < 2 ? 0.02 : 0]);
+  inside((i) => {
+    assert.ok(Math.abs(dents.normals[i]) < 0.67 * Math.abs(dents.before[i]), `${i}`);
+  });
+  const bow = slant((u, v) => [u, v, 0.3 * u * u]);
+  inside((i) => {
+    for (let k = 0; k < 3; k++) assert.ok(Math.abs(bow.normals[i + k] - bow.before[i + k]) < 0.01);
+  });
 });
 
 test('the size of a cloth follows from its start, also where it starts bent', () => {

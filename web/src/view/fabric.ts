@@ -7,6 +7,7 @@ import type { Weave } from './weave.js';
 const HEM = 0.014; // [m]
 const LARGEST_HEM = 0.06; // of the cloth's shorter side
 const STITCH = 0.005; // [m]
+const STRIPES = 0.07; // from one to the next [m]
 
 /** Whether weaves and hems are drawn; tests switch them off to measure the shading alone. */
 export const pattern = { value: 1 };
@@ -30,6 +31,7 @@ export function fabric_material(
     roughness: finish.roughness,
     specularIntensity: finish.specular,
     anisotropy: finish.anisotropy,
+    anisotropyRotation: Math.PI / 2, // highlights spread across the threads that float, the warp
     sheen: finish.sheen,
     sheenRoughness: finish.sheen_roughness,
     sheenColor: sheen_of(color),
@@ -61,6 +63,11 @@ function sheen_of(color: Color): Color {
   return new Color().setHSL(h, s, Math.min(0.9, l * 0.75 + 0.25), SRGBColorSpace);
 }
 
+/** The fabric's stripes, or another shade of a cloth that is not of the fabric's colour. */
+function stripe_of({ color, stripe }: Finish, front: Color): Color {
+  return front.equals(new Color(color)) ? new Color(stripe) : front.clone().multiplyScalar(0.4);
+}
+
 function uniforms_of(
   finish: Finish,
   back: Color,
@@ -83,6 +90,8 @@ function uniforms_of(
     translucency: { value: finish.translucency },
     cloth_size: { value: new Vector3(width, height, hem) },
     seam_color: { value: seam },
+    stripe_color: { value: finish.stripe ? stripe_of(finish, color) : color },
+    striped: { value: finish.stripe ? 1 : 0 },
     stitched: { value: finish.seam ? 1 : 0 },
   };
 }
@@ -102,9 +111,14 @@ const SHADOW_TOWARDS_LIGHT = `
 
 const DECLARATIONS = `
   uniform float pattern_shown, back_roughness, weave_periods, weave_weft, grooves, white_weft;
-  uniform float clear, stitched;
-  uniform vec3 back_color, cloth_size, seam_color;
+  uniform float clear, stitched, striped;
+  uniform vec3 back_color, cloth_size, seam_color, stripe_color;
   varying vec2 fabric_place;
+  /** How much of a pixel a stripe covers, from distances in its period. */
+  float stripe(float from_middle, float half_width, float pixel) {
+    float reach = max(pixel, 1e-4);
+    return clamp((half_width - abs(from_middle)) / reach + 0.5, 0.0, 1.0) * min(1.0, half_width / (0.5 * reach));
+  }
   void main() {
 `;
 
@@ -119,8 +133,14 @@ const DYE = `
   float weave_seen = pattern_shown *
     (1.0 - smoothstep(0.12, 0.3, max(periods_per_pixel.x, periods_per_pixel.y)));
   float weft = mix(weave_weft, weave.b, weave_seen);
+  float across = fabric_place.y / ${STRIPES};
+  float pixel = fwidth(across);
+  float from_middle = abs(fract(across) - 0.5);
+  float stripes = stripe(from_middle, 0.05, pixel) + stripe(from_middle - 0.11, 0.013, pixel);
+  diffuseColor.rgb = mix(diffuseColor.rgb, stripe_color, 0.8 * striped * pattern_shown * min(1.0, stripes));
   vec3 front = mix(diffuseColor.rgb, vec3(0.8), white_weft * weft);
-  vec3 back = mix(back_color, diffuseColor.rgb, white_weft * weft);
+  vec3 behind = mix(back_color, stripe_color, 0.6 * striped * pattern_shown * min(1.0, stripes));
+  vec3 back = mix(behind, diffuseColor.rgb, white_weft * weft);
   diffuseColor.rgb = gl_FrontFacing ? back : front;
   diffuseColor.rgb *= 1.0 + grooves * weave_seen * (2.0 * weave.a - 1.0);
 

@@ -30,12 +30,14 @@ export interface Finish {
   translucency: number;
   /** Half of the thickness of the edge [m]. */
   edge: number;
+  /** Colour of stripes along the warp, if the fabric has any. */
+  stripe?: string;
   /** Colour of the hem's seam; absent: darker than the cloth. */
   seam?: string;
 }
 
 const WOVEN: Finish = {
-  color: '#c4492f',
+  color: '#b04a36',
   weave: 'plain',
   period: 0.004,
   relief: 0.8,
@@ -56,7 +58,8 @@ export const FINISHES: Record<FabricName, Finish> = {
   plain: WOVEN,
   cotton: {
     ...WOVEN,
-    color: '#e8dfcc',
+    color: '#e4dccb',
+    stripe: '#3f5f8f',
     weave: 'cotton',
     period: 0.003,
     relief: 0.6,
@@ -100,7 +103,7 @@ export const FINISHES: Record<FabricName, Finish> = {
   },
   wool: {
     ...WOVEN,
-    color: '#b8862f',
+    color: '#b08a3c',
     weave: 'wool',
     period: 0.007,
     relief: 0.7,
@@ -149,7 +152,7 @@ export const FINISHES: Record<FabricName, Finish> = {
 
 /** Told apart from each other at a glance, also under uneven light. */
 export const PALETTE = [
-  '#c4492f',
+  '#b04a36',
   '#2c5d9e',
   '#e8b93a',
   '#2f7d4f',

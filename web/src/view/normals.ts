@@ -34,6 +34,10 @@ export function smooth_normals(
     normals[c + 1] += ny;
     normals[c + 2] += nz;
   }
+  normalise(normals);
+}
+
+function normalise(normals: Float32Array): void {
   // The root of a sum of squares: Math.hypot guards against overflow and takes four times as long.
   for (let i = 0; i < normals.length; i += 3) {
     const x = normals[i];
@@ -44,6 +48,29 @@ export function smooth_normals(
     normals[i + 1] = y * inverse;
     normals[i + 2] = z * inverse;
   }
+}
+
+/**
+ * Evens out normals with those of neighbours. Folds narrower than two particles are zigzags, which
+ * light would show as rows of dents.
+ * @param triangles of the vertices, each cell by both of its diagonals
+ * @param normals   in and out; of unit length
+ */
+export function even_normals(triangles: Uint32Array, normals: Float32Array): void {
+  const sums = new Float32Array(normals.length);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const a = triangles[t] * 3;
+    const b = triangles[t + 1] * 3;
+    const c = triangles[t + 2] * 3;
+    for (let axis = 0; axis < 3; axis++) {
+      const sum = normals[a + axis] + normals[b + axis] + normals[c + axis];
+      sums[a + axis] += sum;
+      sums[b + axis] += sum;
+      sums[c + axis] += sum;
+    }
+  }
+  normals.set(sums);
+  normalise(normals);
 }
 
 /** Positions moved inwards along the smooth normals by a distance [m]. */

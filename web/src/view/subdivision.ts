@@ -20,7 +20,7 @@ export class Subdivision {
   /** Of the finest level; triangle t of the coarse mesh is 4^levels of these, beginning there. */
   readonly triangles: Uint32Array;
   readonly vertices: number;
-  private levels: Level[] = [];
+  private divisions: Level[] = [];
 
   /**
    * @param cells  as of `cells_of`
@@ -31,15 +31,20 @@ export class Subdivision {
     this.triangles = triangles;
     for (let level = 0; level < levels; level++) {
       const divided = divide(this.triangles, cells, this.vertices);
-      this.levels.push({ ...divided, first: this.vertices });
+      this.divisions.push({ ...divided, first: this.vertices });
       ({ triangles: this.triangles, cells } = divided);
       this.vertices += divided.edges.length / 2;
     }
   }
 
+  /** How often the triangles are divided. */
+  get levels(): number {
+    return this.divisions.length;
+  }
+
   /** Fills in values of the new vertices, halfway between those of their edges. */
   interpolate(values: Float32Array, components: number): void {
-    for (const { edges, first } of this.levels) {
+    for (const { edges, first } of this.divisions) {
       for (let e = 0; e < edges.length; e += 2) {
         const to = (first + e / 2) * components;
         for (let k = 0; k < components; k++) {
@@ -57,9 +62,9 @@ export class Subdivision {
    * @param reach     of each vertex: how far the surface may leave the coarse triangles [m]
    */
   refine(positions: Float32Array, normals: Float32Array, reach: Float32Array): void {
-    for (const [k, level] of this.levels.entries()) {
-      const share = k > 0 ? (1 - FIRST_SHARE) / (this.levels.length - 1)
-        : this.levels.length > 1 ? FIRST_SHARE : 1;
+    for (const [k, level] of this.divisions.entries()) {
+      const share = k > 0 ? (1 - FIRST_SHARE) / (this.levels - 1)
+        : this.levels > 1 ? FIRST_SHARE : 1;
       halve_edges(level, positions, normals, reach, share);
     }
   }
@@ -136,12 +141,9 @@ function halve(
   out[0] = positions[a] + dx / 2 + along_b * bx - along_a * ax;
   out[1] = positions[a + 1] + dy / 2 + along_b * by - along_a * ay;
   out[2] = positions[a + 2] + dz / 2 + along_b * bz - along_a * az;
-  // The mean normal, mirrored in the plane across the edge: that of a quadratic in between.
-  const length = dx * dx + dy * dy + dz * dz;
-  const slant = length > 0 ? (16 * (along_a + along_b)) / length : 0;
-  out[3] = ax + bx - slant * dx;
-  out[4] = ay + by - slant * dy;
-  out[5] = az + bz - slant * dz;
+  out[3] = ax + bx;
+  out[4] = ay + by;
+  out[5] = az + bz;
 }
 
 /** Divides each triangle in four; the k-th edge gets the vertex `vertices` + k. */

@@ -121,7 +121,7 @@ function threads(
     return Math.sin((Math.PI * (at - first)) / (last - first));
   };
   return (u, v) => {
-    const [x, y] = [u * count, v * count];
+    const [x, y] = [v * count, u * count]; // the warp runs along u
     const [i, j] = [Math.floor(x), Math.floor(y)];
     const warp = warp_on_top(wrap(i), wrap(j));
     const across = warp ? x - i : y - j;
@@ -154,9 +154,8 @@ function fuzzy(below: Relief, periods: number): Relief {
 /** Satin: long floats of fine warp, so that only lines along it are seen. */
 function satin(periods: number): Relief {
   return (u, v) => {
-    const i = Math.floor(u);
-    const across = Math.sin(Math.PI * (u - i));
-    const fine = noise(u * 2, v / 2, periods / 2, 6);
+    const across = Math.sin(Math.PI * (v - Math.floor(v)));
+    const fine = noise(u / 2, v * 2, periods / 2, 6);
     return { height: across * 0.7 + fine * 0.3, weft: 0 };
   };
 }
