@@ -8,6 +8,7 @@ const { back_of, colors_of, FINISHES, PALETTE } = await import_page_module('view
 const { difference, lab_of } = await import_page_module('view/color');
 const { weave_of } = await import_page_module('view/weave');
 const { Subdivision } = await import_page_module('view/subdivision');
+const { corners_of } = await import_page_module('view/border');
 const { both_diagonals, cells_of } = await import_page_module('view/cells');
 const { Hem } = await import_page_module('view/hem');
 const { even_normals, smooth_normals } = await import_page_module('view/normals');
@@ -35,7 +36,7 @@ function grid(n, place) {
 /** Refines a grid as the page does. */
 function refined({ positions, triangles, uv }, levels, reach) {
   const cells = cells_of(triangles, uv);
-  const fine = new Subdivision(positions.length / 3, triangles, cells, levels);
+  const fine = new Subdivision(positions.length / 3, triangles, cells, corners_of(triangles, uv), levels);
   const points = new Float32Array(fine.vertices * 3);
   points.set(positions);
   const normals = new Float32Array(points.length);
@@ -137,6 +138,21 @@ test('of a cloth bent to a cylinder the finer mesh is 20 times rounder than the 
     const facing = normals[i] * Math.sin(turn) + normals[i + 2] * Math.cos(turn);
     assert.ok(Math.abs(facing) > Math.cos(0.01), `${facing}`);
   }
+});
+
+test('the border of a bent cloth is a smooth curve with the corners of the cloth', () => {
+  // A ring of 90 degrees: borders are arcs of radius 1 and 2, and straight lines.
+  const ring = grid(7, (u, v) => [(1 + v) * Math.cos(1.57 * u), (1 + v) * Math.sin(1.57 * u), 0]);
+  assert.deepEqual([...corners_of(ring.triangles, ring.uv)].sort((a, b) => a - b), [0, 6, 42, 48]);
+  const { fine, points } = refined(ring, 2, 1);
+  const flatness = 1 - Math.cos(1.57 / 12);
+  const radius = (k) => Math.hypot(points[k * 3], points[k * 3 + 1]);
+  const radii = Array.from({ length: fine.vertices }, (_, k) => radius(k));
+  assert.ok(Math.max(...radii) < 2 * (1 + flatness / 8), 'nothing bulges out');
+  const turn = (k) => Math.atan2(points[k * 3 + 1], points[k * 3]);
+  const outer = radii.filter((value, k) => value > 1.96 && turn(k) > 0.3 && turn(k) < 1.27);
+  assert.ok(outer.length > 10);
+  for (const value of outer) assert.ok(value > 2 * (1 - flatness / 8), `${value}`);
 });
 
 test('the finer mesh stays within its reach of the triangles, however crumpled they are', () => {

@@ -1,6 +1,7 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh } from 'three';
 import type { Camera, MeshPhysicalMaterial } from 'three';
 import type { Cloth, Look, MeshData } from '../../../proto/js/messages.js';
+import { corners_of } from './border.js';
 import { both_diagonals, cells_of } from './cells.js';
 import { DepthOrder } from './depth_order.js';
 import { fabric_material } from './fabric.js';
@@ -51,7 +52,9 @@ export class ClothMesh {
     const coarse = data.restPositions.length / 3;
     const cells = cells_of(data.triangles, data.uv);
     this.shaded = both_diagonals(data.triangles, cells);
-    this.fine = new Subdivision(coarse, data.triangles, cells, levels_of(data.triangles.length / 3));
+    const corners = corners_of(data.triangles, data.uv);
+    const levels = levels_of(data.triangles.length / 3);
+    this.fine = new Subdivision(coarse, data.triangles, cells, corners, levels);
     const hems = this.hems();
     const vertices = hems.reduce((first, hem) => first + hem.vertices, this.fine.vertices);
     const vector = () => new BufferAttribute(new Float32Array(vertices * 3), 3);

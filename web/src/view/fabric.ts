@@ -117,7 +117,8 @@ const DECLARATIONS = `
   /** How much of a pixel a stripe covers, from distances in its period. */
   float stripe(float from_middle, float half_width, float pixel) {
     float reach = max(pixel, 1e-4);
-    return clamp((half_width - abs(from_middle)) / reach + 0.5, 0.0, 1.0) * min(1.0, half_width / (0.5 * reach));
+    float inside = clamp((half_width - abs(from_middle)) / reach + 0.5, 0.0, 1.0);
+    return inside * min(1.0, 2.0 * half_width / reach);
   }
   void main() {
 `;

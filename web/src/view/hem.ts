@@ -1,3 +1,5 @@
+import { border_of, reversed } from './border.js';
+
 const CORNERS = 8; // of the section of an edge
 const WIDTH = 1.25; // of a section, beside its thickness
 
@@ -18,7 +20,7 @@ export class Hem {
    */
   constructor(triangles: Uint32Array, readonly first: number) {
     const next = border_of(triangles);
-    const before = new Map([...next].map(([a, b]) => [b, a]));
+    const before = reversed(next);
     const inside = [...next].filter(([a]) => before.has(a));
     this.borders = Uint32Array.from(inside.flatMap(([a, b]) => [a, before.get(a)!, b]));
     const place = new Map(inside.map(([a], k) => [a, k]));
@@ -102,16 +104,3 @@ export class Hem {
 const ANGLES = Array.from({ length: CORNERS }, (_, k) => (k / CORNERS) * 2 * Math.PI);
 const UP = Float64Array.from(ANGLES, Math.sin);
 const OUT = Float64Array.from(ANGLES, Math.cos);
-
-/** The vertex that follows each one on a border, in the direction of its triangle. */
-function border_of(triangles: Uint32Array): Map<number, number> {
-  let most = 0;
-  for (const vertex of triangles) most = Math.max(most, vertex + 1);
-  const open = new Map<number, [number, number]>();
-  for (let t = 0; t < triangles.length; t++) {
-    const a = triangles[t];
-    const b = triangles[t % 3 === 2 ? t - 2 : t + 1];
-    if (!open.delete(b * most + a)) open.set(a * most + b, [a, b]);
-  }
-  return new Map(open.values());
-}

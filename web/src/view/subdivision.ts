@@ -1,9 +1,14 @@
+import { border_of, reversed } from './border.js';
+
 /** New vertices of one subdivision: each halves an edge of the one before. */
 interface Level {
   /** Two vertices per edge. */
   edges: Uint32Array;
   /** Of edges that are diagonals of cells, the ends of the other diagonal; elsewhere their own. */
   others: Uint32Array;
+  /** Three numbers for an edge at a border: its place, and the border's vertices before and after
+   *  it, or its own ends where the border ends or has a corner. */
+  borders: Uint32Array;
   /** Index of the first new vertex. */
   first: number;
 }
@@ -13,8 +18,10 @@ const FIRST_SHARE = 0.8; // of the reach, for the first level; a second one take
 /**
  * A finer mesh that goes through the vertices of a coarse one, for display. Each edge is bent to a
  * cubic that is perpendicular to the normals at its ends (curved PN triangles, Vlachos et al. 2001),
- * and halved; in the middle of a cell the curves of both diagonals are averaged. New vertices stay within `reach` of the coarse triangles, less than half of the
- * distance that contact keeps, so that surfaces that do not touch are not drawn through each other.
+ * and halved; in the middle of a cell the curves of both diagonals are averaged, and borders are
+ * cubics through four of their vertices (the four-point scheme, Dubuc 1986). New vertices stay
+ * within `reach` of the coarse triangles, less than half of the distance that contact keeps, so that
+ * surfaces that do not touch are not drawn through each other.
  */
 export class Subdivision {
   /** Of the finest level; triangle t of the coarse mesh is 4^levels of these, beginning there. */
@@ -23,15 +30,23 @@ export class Subdivision {
   private divisions: Level[] = [];
 
   /**
-   * @param cells  as of `cells_of`
+   * @param cells   as of `cells_of`
+   * @param corners of borders
    * @param levels how often each triangle is divided in four
    */
-  constructor(vertices: number, triangles: Uint32Array, cells: Uint32Array, levels: number) {
+  constructor(
+    vertices: number,
+    triangles: Uint32Array,
+    cells: Uint32Array,
+    corners: Set<number>,
+    levels: number,
+  ) {
     this.vertices = vertices;
     this.triangles = triangles;
     for (let level = 0; level < levels; level++) {
       const divided = divide(this.triangles, cells, this.vertices);
-      this.divisions.push({ ...divided, first: this.vertices });
+      const borders = borders_of(this.triangles, corners, divided.number, this.vertices);
+      this.divisions.push({ ...divided, borders, first: this.vertices });
       ({ triangles: this.triangles, cells } = divided);
       this.vertices += divided.edges.length / 2;
     }
@@ -66,6 +81,7 @@ export class Subdivision {
       const share = k > 0 ? (1 - FIRST_SHARE) / (this.levels - 1)
         : this.levels > 1 ? FIRST_SHARE : 1;
       halve_edges(level, positions, normals, reach, share);
+      round_borders(level, positions, reach, share);
     }
   }
 }
@@ -93,9 +109,9 @@ function halve_edges(
     let oy = middle[1] - my;
     let oz = middle[2] - mz;
     const most = reach[a] * share;
-    const offset = ox * ox + oy * oy + oz * oz;
-    if (offset > most * most) {
-      const shorter = most / Math.sqrt(offset);
+    const length = ox * ox + oy * oy + oz * oz;
+    if (length > most * most) {
+      const shorter = most / Math.sqrt(length);
       ox *= shorter;
       oy *= shorter;
       oz *= shorter;
@@ -114,6 +130,36 @@ function halve_edges(
   }
 }
 
+/** Moves the new vertices of borders onto smooth curves, in the plane of the cloth too. */
+function round_borders(
+  { edges, borders, first }: Level,
+  positions: Float32Array,
+  reach: Float32Array,
+  share: number,
+): void {
+  for (let k = 0; k < borders.length; k += 3) {
+    const from = edges[borders[k] * 2];
+    const to = edges[borders[k] * 2 + 1];
+    let length = 0;
+    for (let axis = 0; axis < 3; axis++) {
+      const a = positions[from * 3 + axis];
+      const b = positions[to * 3 + axis];
+      const before = borders[k + 1] === from ? 2 * a - b : positions[borders[k + 1] * 3 + axis];
+      const after = borders[k + 2] === to ? 2 * b - a : positions[borders[k + 2] * 3 + axis];
+      offset[axis] = (a + b - before - after) / 16;
+      length += offset[axis] * offset[axis];
+    }
+    const most = reach[from] * share;
+    const part = length > most * most ? most / Math.sqrt(length) : 1;
+    const at = (first + borders[k]) * 3;
+    for (let axis = 0; axis < 3; axis++) {
+      const half = (positions[from * 3 + axis] + positions[to * 3 + axis]) / 2;
+      positions[at + axis] = half + part * offset[axis];
+    }
+  }
+}
+
+const offset = new Float64Array(3);
 const middle = new Float64Array(6);
 const other_middle = new Float64Array(6);
 
@@ -174,5 +220,21 @@ function divide(triangles: Uint32Array, cells: Uint32Array, vertices: number) {
     others.set([c, d], (ab - vertices) * 2);
     smaller.set([a, ab, ac, da, b, ab, bd, cb, ac, cb, c, ab, bd, da, d, ab], k * 4);
   }
-  return { edges: Uint32Array.from(edges), others, triangles: divided, cells: smaller };
+  return { edges: Uint32Array.from(edges), others, triangles: divided, cells: smaller, number: middle };
+}
+
+/** The borders of a level. @param number tells the new vertex of an edge */
+function borders_of(
+  triangles: Uint32Array,
+  corners: Set<number>,
+  number: (a: number, b: number) => number,
+  vertices: number,
+): Uint32Array {
+  const next = border_of(triangles);
+  const before = reversed(next);
+  const around = (from: number, way: Map<number, number>) =>
+    corners.has(from) ? from : (way.get(from) ?? from);
+  return Uint32Array.from(
+    [...next].flatMap(([a, b]) => [number(a, b) - vertices, around(a, before), around(b, next)]),
+  );
 }
