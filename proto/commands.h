@@ -134,7 +134,7 @@ struct Fan {
 
 /// Sends a collider to a pose; omitted values stay as they are.
 struct Move {
-  std::string collider;          ///< its name, 1 to 64 bytes
+  ColliderRef collider;
   std::optional<Vec3> position;  ///< target of its pivot [m]
   std::optional<Quat> rotation;  ///< relative to the mesh message
   double speed = 0.5;            ///< at most [m/s]
@@ -145,7 +145,7 @@ struct Move {
 
 /// Returns a collider to its keyframes; one without keyframes stays where it is.
 struct MoveEnd {
-  std::string collider;
+  ColliderRef collider;
   bool operator==(const MoveEnd&) const = default;
 };
 

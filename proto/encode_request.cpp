@@ -22,6 +22,10 @@ void put_hold(Json& out, const Hold& hold) {
   }
 }
 
+void put_collider(Json& out, const ColliderRef& ref) {
+  std::visit([&out](const auto& collider) { out["collider"] = collider; }, ref);
+}
+
 // Writes the fields of each command; the last overload takes commands without fields.
 struct FieldWriter {
   Json& out;
@@ -66,7 +70,7 @@ struct FieldWriter {
   void operator()(const Step& c) { out["n"] = c.n; }
   void operator()(const Speed& c) { out["speed"] = c.speed; }
   void operator()(const Move& c) {
-    out["collider"] = c.collider;
+    put_collider(out, c.collider);
     put_if(out, "position", c.position);
     put_if(out, "rotation", c.rotation);
     out["speed"] = c.speed;
@@ -83,7 +87,7 @@ struct FieldWriter {
     put_if(out, "turn_speed", c.turn_speed);
   }
   void operator()(const MoveEnd& c) {
-    out["collider"] = c.collider;
+    put_collider(out, c.collider);
     out["release"] = true;
   }
   void operator()(const MovePin& c) {

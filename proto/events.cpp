@@ -37,6 +37,11 @@ Json json_of_cloth(const ClothInfo& cloth) {
     out["columns"] = cloth.columns;
   }
   out["thickness"] = cloth.thickness;
+  Json look = Json::object();
+  if (!cloth.look.fabric.empty()) look["fabric"] = cloth.look.fabric;
+  if (!cloth.look.color.empty()) look["color"] = cloth.look.color;
+  if (!cloth.look.back.empty()) look["back"] = cloth.look.back;
+  if (!look.empty()) out["look"] = std::move(look);
   return out;
 }
 
@@ -214,6 +219,10 @@ std::string encode_mesh(const MeshAnnouncement& mesh) {
               {"triangles", mesh.triangles},
               {"cloths", Json::array()},
               {"colliders", Json::array()}};
+  if (mesh.view)
+    out["view"] = {{"target", mesh.view->target},
+                   {"direction", mesh.view->direction},
+                   {"radius", mesh.view->radius}};
   for (const ClothInfo& cloth : mesh.cloths) out["cloths"].push_back(json_of_cloth(cloth));
   for (const ColliderInfo& c : mesh.colliders) out["colliders"].push_back(json_of_collider(c));
   return text_of(out);

@@ -39,12 +39,26 @@ struct Welcome {
   std::vector<std::string> capabilities;
 };
 
+/// How a cloth is meant to look; each is empty if the scene does not tell it.
+struct LookInfo {
+  std::string fabric;       ///< such as "silk"
+  std::string color, back;  ///< "#rrggbb", of the side that the normals point to and the other
+};
+
 struct ClothInfo {
   std::string name;
   std::uint32_t first_vertex = 0, vertices = 0;
   std::uint32_t first_triangle = 0, triangles = 0;
   std::uint32_t rows = 0, columns = 0;  ///< of a grid; 0 for other cloths
   double thickness = 0;                 ///< [m]
+  LookInfo look;
+};
+
+/// Where a scene is best looked at from.
+struct ViewInfo {
+  Vec3 target{};      ///< [m]
+  Vec3 direction{};   ///< from the target towards the eye, unit length
+  double radius = 0;  ///< of the sphere about the target that fills the picture [m]
 };
 
 struct PlaneInfo {
@@ -81,6 +95,7 @@ struct MeshAnnouncement {
   std::uint32_t vertices = 0, triangles = 0;
   std::vector<ClothInfo> cloths;
   std::vector<ColliderInfo> colliders;
+  std::optional<ViewInfo> view;
 };
 
 struct Strain {

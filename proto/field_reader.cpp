@@ -97,6 +97,23 @@ void FieldReader::read(const char* key, std::uint32_t& value, Range range) {
   value = static_cast<std::uint32_t>(number);
 }
 
+void FieldReader::read(const char* key, ColliderRef& value) {
+  const json* node = require(key);
+  if (node == nullptr) return;
+  if (node->is_number()) {
+    std::uint32_t index = 0;
+    read(key, index, kIndexRange);
+    if (ok()) value = index;
+    return;
+  }
+  if (!node->is_string()) return fail_type(key, *node, "a name or an index");
+  std::string name = node->get<std::string>();
+  if (name.empty() || name.size() > kMostSceneBytes)
+    return fail(ErrorCode::wrong_length, key, std::string(key) + " must have 1 to 64 bytes",
+                "an object without a name is told by its index in the list of mesh");
+  value = std::move(name);
+}
+
 template <std::size_t N>
 void FieldReader::read_numbers(const char* key, std::array<double, N>& value, Range range) {
   const json* node = require(key);

@@ -36,6 +36,8 @@ class FieldReader {
   void read(const char* key, Vec3& value, Range range);
   void read(const char* key, Quat& value, Range range);
   void read(const char* key, std::string& value);
+  /// A string of 1 to kMostSceneBytes bytes, or an index.
+  void read(const char* key, ColliderRef& value);
 
   /// The JSON text of an object field; false, with `text` untouched, if the field is not an object.
   bool read_object_text(const char* key, std::string& text);

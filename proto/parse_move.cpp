@@ -52,8 +52,6 @@ Command read_move(FieldReader& in) {
   if (in.has("pin")) return read_move_pin(in);
   Move move;
   in.read("collider", move.collider);
-  if (in.ok() && (move.collider.empty() || move.collider.size() > kMostSceneBytes))
-    in.fail(ErrorCode::wrong_length, "collider", "collider must have 1 to 64 bytes");
   refuse_beside(in, "collider", {"seconds", "max_force", "stop"});
   bool release = false;
   in.read_if_there("release", release);

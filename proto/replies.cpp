@@ -157,7 +157,7 @@ struct ReplyWriter {
   }
   void operator()(const MoveReply& r) {
     start("move", r.tick);
-    out["collider"] = r.collider;
+    std::visit([this](const auto& collider) { out["collider"] = collider; }, r.collider);
   }
   void operator()(const MovePinReply& r) {
     start("move", r.tick);

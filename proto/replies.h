@@ -74,7 +74,7 @@ struct SpeedReply {
 
 struct MoveReply {
   std::uint64_t tick = 0;
-  std::string collider;
+  ColliderRef collider;  ///< as in the command
 };
 
 struct MovePinReply {

@@ -19,4 +19,7 @@ using Id = std::variant<std::int64_t, std::string>;
 /// Identifies a viewer while the server lives; 0 is the scene itself.
 using ViewerId = std::uint32_t;
 
+/// A collider: its name, 1 to 64 bytes, the first of that name; or its place in the list of `mesh`.
+using ColliderRef = std::variant<std::string, std::uint32_t>;
+
 }  // namespace weft::proto

@@ -77,10 +77,13 @@ HttpResponse file_response(const ServiceContext& context, const HttpRequest& req
     return error_response(request, http::status::not_found, error);
   }
   if (!file) return not_found(request, path);
-  const bool known = view_of(request[http::field::if_none_match]) == file->etag;
+  const FileContent& content = file->content_for(view_of(request[http::field::accept_encoding]));
+  const bool known = view_of(request[http::field::if_none_match]) == content.etag;
   HttpResponse out = response(request, known ? http::status::not_modified : http::status::ok,
-                              file->content_type.c_str(), known ? std::string() : file->bytes);
-  out.set(http::field::etag, file->etag);
+                              file->content_type.c_str(), known ? std::string() : content.bytes);
+  out.set(http::field::etag, content.etag);
+  out.set(http::field::vary, "Accept-Encoding");
+  if (!content.encoding.empty()) out.set(http::field::content_encoding, content.encoding);
   out.set(http::field::cache_control, "no-cache");
   return out;
 }

@@ -33,6 +33,7 @@ struct TextInfo {
   bool plain;               ///< only letters, digits, `.`, `_`, `-`, not beginning with a dot
   bool required;
   const char* meaning;
+  bool color = false;  ///< a colour as "#rrggbb"
 };
 
 struct ListInfo {
@@ -91,9 +92,19 @@ void describe_fabric(Io& io, FabricDef& fabric) {
 }
 
 template <class Io>
+void describe_look(Io& io, LookDef& look) {
+  io.fields([&](auto&& visit) { visit_fields_of_look(look, visit); });
+  io.text({"color", 7, 7, false, false, "of the side that the normals point to, #rrggbb", true},
+          look.color);
+  io.text({"back", 7, 7, false, false, "of the other side, #rrggbb", true}, look.back);
+}
+
+template <class Io>
 void describe_cloth(Io& io, ClothDef& cloth) {
   io.text({"name", 1, 64, true, false, "pins name their cloth by it"}, cloth.name);
   io.object("fabric", "material", [&](Io& in) { describe_fabric(in, cloth.fabric); });
+  io.optional("look", "how viewers draw it", cloth.look,
+              [](Io& in, LookDef& look) { describe_look(in, look); });
   io.fields([&](auto&& visit) { visit_fields_of_any_cloth(cloth, visit); });
   io.tagged({choice("form", "grid|mesh", "a rectangle, or the vertices of a mesh"), false},
             cloth.mesh ? 1 : 0, [&](Io& in, int form) {
@@ -237,6 +248,9 @@ void describe_scene(Io& io, WorldDef& def) {
   io.text({"name", 1, 64, true, false, "plain name of the scene"}, def.name);
   io.text({"description", 0, 500, false, false, "one sentence on what to look at"},
           def.description);
+  io.optional("view", "where it is best looked at from", def.view, [](Io& in, ViewDef& view) {
+    in.fields([&](auto&& visit) { visit_fields_of_view(view, visit); });
+  });
   std::vector<std::string> groups;
   visit_fields_of_world(def, [&](const std::string& path, const FieldInfo&, auto&) {
     if (groups.empty() || groups.back() != path) groups.push_back(path);

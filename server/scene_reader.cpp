@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -35,6 +36,13 @@ bool is_plain(const std::string& text) {
   });
 }
 
+/// Whether a text is "#rrggbb".
+bool is_color(const std::string& text) {
+  return text.size() == 7 && text[0] == '#' &&
+         std::all_of(text.begin() + 1, text.end(),
+                     [](unsigned char x) { return std::isxdigit(x) != 0; });
+}
+
 /// Number of UTF-8 characters, as the schema counts them.
 std::size_t length_of(const std::string& text) {
   return static_cast<std::size_t>(
@@ -61,11 +69,13 @@ class Reader {
     if (!node) return;
     const std::string allowed =
         std::to_string(info.least) + " to " + std::to_string(info.most) + " characters" +
-        (info.plain ? " of a-z A-Z 0-9 . _ -, not beginning with a dot" : "");
+        (info.plain ? " of a-z A-Z 0-9 . _ -, not beginning with a dot" : "") +
+        (info.color ? ", # and six of 0-9 a-f A-F" : "");
     if (!node->is_string()) throw wrong(at(info.name), *node, allowed, info.meaning);
     const std::string given = node->get<std::string>();
     const std::size_t length = length_of(given);
-    if (length < info.least || length > info.most || (info.plain && !is_plain(given)))
+    if (length < info.least || length > info.most || (info.plain && !is_plain(given)) ||
+        (info.color && !is_color(given)))
       throw wrong(at(info.name), *node, allowed, info.meaning);
     value = given;
   }

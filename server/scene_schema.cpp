@@ -56,6 +56,7 @@ class Schema {
              {"minLength", info.least},
              {"maxLength", info.most}};
     if (info.plain) entry["pattern"] = "^[A-Za-z0-9_-][A-Za-z0-9._-]*$";
+    if (info.color) entry["pattern"] = "^#[0-9a-fA-F]{6}$";
     if (!value.empty() && !info.required) entry["default"] = value;
     if (info.required) required_.push_back(info.name);
   }

@@ -34,7 +34,8 @@ class Writer {
       out_["preset"] = name;
       return true;
     }
-    return false;
+    if (!fabric.preset.empty()) out_["preset"] = fabric.preset;
+    return false;  // all values are written too, and override the preset's
   }
   void bending_lengths(const FabricDef&) {}  // the rigidities are written
   template <class Describe>

@@ -1,5 +1,6 @@
 #include "server/static_files.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #define XXH_INLINE_ALL
+#include <boost/beast/http/rfc7230.hpp>
 #include <xxhash.h>
 
 #include "proto/events.h"
@@ -41,7 +43,36 @@ std::string content_type_of(const fs::path& path) {
   return "application/octet-stream";
 }
 
+struct Compression {
+  const char* extension;
+  const char* encoding;
+};
+constexpr std::array<Compression, 2> kCompressions = {{{".br", "br"}, {".gz", "gzip"}}};
+
+FileContent content(std::string encoding, std::string bytes) {
+  std::string etag = "\"" + proto::hash_text(XXH64(bytes.data(), bytes.size(), 0)) + "\"";
+  return {std::move(encoding), std::move(bytes), std::move(etag)};
+}
+
+/// Whether a list such as "gzip, br;q=0.5, *;q=0" allows a coding by its name.
+bool accepts(std::string_view list, std::string_view coding) {
+  for (const auto& item : boost::beast::http::ext_list({list.data(), list.size()})) {
+    if (!boost::beast::iequals(item.first, {coding.data(), coding.size()})) continue;
+    for (const auto& [name, value] : item.second)
+      if (boost::beast::iequals(name, "q"))
+        return value.find_first_not_of("0.") != boost::beast::string_view::npos;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+const FileContent& StaticFile::content_for(std::string_view accepted) const {
+  return *std::find_if(contents.begin(), contents.end(), [&](const FileContent& form) {
+    return form.encoding.empty() || accepts(accepted, form.encoding);
+  });
+}
 
 StaticFiles::StaticFiles(const std::string& directory) {
   std::error_code error;
@@ -54,16 +85,36 @@ StaticFiles::StaticFiles(const std::string& directory) {
     if (entry->is_symlink(error) || !entry->is_regular_file(error)) continue;
     if (entry->file_size(error) > kLargestFile) continue;
     std::ifstream in(entry->path(), std::ios::binary);
-    StaticFile file;
-    file.bytes.assign(std::istreambuf_iterator<char>(in), {});
-    file.content_type = content_type_of(entry->path());
-    file.etag = proto::hash_text(XXH64(file.bytes.data(), file.bytes.size(), 0));
-    file.etag.insert(file.etag.begin(), '"');
-    file.etag.push_back('"');
+    std::string bytes(std::istreambuf_iterator<char>(in), {});
+    StaticFile file{content_type_of(entry->path()), {}};
+    file.contents.push_back(content("", std::move(bytes)));
     std::string name = entry->path().lexically_relative(directory).generic_string();
     name.insert(name.begin(), '/');
     files_[name] = std::move(file);
   }
+  add_compressed_forms();
+}
+
+void StaticFiles::add_compressed_forms() {
+  for (const auto& [extension, encoding] : kCompressions) {
+    for (auto file = files_.begin(); file != files_.end();) {
+      const std::string& name = file->first;
+      const auto whole =
+          name.ends_with(extension) ? files_.find(name.substr(0, name.size() - 3)) : files_.end();
+      if (whole == files_.end()) {
+        ++file;
+        continue;
+      }
+      whole->second.contents.push_back(content(encoding, file->second.contents.front().bytes));
+      file = files_.erase(file);
+    }
+  }
+  for (auto& [name, file] : files_)
+    std::stable_sort(file.contents.begin(), file.contents.end(),
+                     [](const FileContent& a, const FileContent& b) {
+                       if (a.encoding.empty() || b.encoding.empty()) return !a.encoding.empty();
+                       return a.bytes.size() < b.bytes.size();
+                     });
 }
 
 const StaticFile* StaticFiles::find(const std::string& path) const {

@@ -2,14 +2,26 @@
 
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace weft::server {
 
+/// One form of a file's content.
+struct FileContent {
+  std::string encoding;  ///< of HTTP: "br", "gzip", or empty for the file as it is
+  std::string bytes;
+  std::string etag;  ///< quoted; another for each form
+};
+
 /// A file of the page.
 struct StaticFile {
-  std::string bytes;
   std::string content_type;
-  std::string etag;  ///< quoted
+  std::vector<FileContent> contents;  ///< the smallest first; the file as it is comes last
+
+  /// The smallest form that a client takes.
+  /// @param accepted  the request's Accept-Encoding (RFC 9110 section 12.5.3); may be empty
+  const FileContent& content_for(std::string_view accepted) const;
 };
 
 /// The page's files, read once at the start: a request selects one by name and never reaches the
@@ -19,7 +31,8 @@ class StaticFiles {
   StaticFiles() = default;
 
   /// Reads the directory and its subdirectories. Links, hidden files and files above 32 MiB are
-  /// left out. An unreadable directory gives no files.
+  /// left out. `NAME.br` and `NAME.gz` are compressed forms of the file `NAME` beside them, and no
+  /// files by themselves. An unreadable directory gives no files.
   explicit StaticFiles(const std::string& directory);
 
   /// @param path  of the request's target without query, e.g. "/" or "/main.js"
@@ -29,6 +42,8 @@ class StaticFiles {
   std::size_t size() const { return files_.size(); }
 
  private:
+  void add_compressed_forms();
+
   std::map<std::string, StaticFile> files_;
 };
 

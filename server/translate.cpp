@@ -284,8 +284,20 @@ std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world) {
   return poses;
 }
 
-proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::string& name) {
+proto::Result<std::size_t> find_collider(const ServedWorld& world,
+                                         const proto::ColliderRef& wanted) {
   const std::vector<ColliderDef>& colliders = world.def().colliders;
+  if (const auto* index = std::get_if<std::uint32_t>(&wanted)) {
+    if (*index < colliders.size()) return *index;
+    proto::Error error =
+        proto::make_error(proto::ErrorCode::unknown_collider, "the scene has no such collider",
+                          "see the list of mesh");
+    error.field = "collider";
+    error.value = std::to_string(*index);
+    error.limit = proto::Limit{0, static_cast<double>(colliders.size()) - 1, {}, {}};
+    return error;
+  }
+  const auto& name = std::get<std::string>(wanted);
   std::vector<std::string> names;
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     if (colliders[k].name == name) return k;
@@ -323,6 +335,15 @@ proto::SceneMesh scene_mesh(const ServedWorld& world) {
   return mesh;
 }
 
+proto::LookInfo look_of(const ClothDef& cloth) {
+  proto::LookInfo look{look_name(cloth), {}, {}};
+  if (cloth.look) {
+    look.color = cloth.look->color;
+    look.back = cloth.look->back;
+  }
+  return look;
+}
+
 proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
   proto::MeshAnnouncement announcement;
   const ClothModel<float>& model = world.model();
@@ -330,11 +351,16 @@ proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
   announcement.vertices = static_cast<std::uint32_t>(model.mass.size());
   announcement.triangles = static_cast<std::uint32_t>(model.triangles.size());
   const auto count = [](Index value) { return static_cast<std::uint32_t>(value); };
-  for (const ClothPart<float>& part : model.parts)
-    announcement.cloths.push_back({part.name, count(part.particles.first),
-                                   count(part.particles.count), count(part.triangles.first),
-                                   count(part.triangles.count), count(part.rows),
-                                   count(part.columns), part.fabric.thickness});
+  for (std::size_t k = 0; k < model.parts.size(); ++k) {
+    const ClothPart<float>& part = model.parts[k];
+    announcement.cloths.push_back(
+        {part.name, count(part.particles.first), count(part.particles.count),
+         count(part.triangles.first), count(part.triangles.count), count(part.rows),
+         count(part.columns), part.fabric.thickness, look_of(world.def().cloths[k])});
+  }
+  if (const std::optional<ViewDef>& view = world.def().view)
+    announcement.view = {to_wire(view->target), to_wire(view->direction.normalized()),
+                         view->radius};
   for (const ColliderDef& collider : world.def().colliders)
     announcement.colliders.push_back({collider.name, std::visit(ShapeWriter{}, collider.shape),
                                       to_wire(pivot_of(collider.shape))});

@@ -61,7 +61,8 @@ void pose_samples(const ServedWorld& world, std::vector<proto::PoseSample>& samp
 std::vector<proto::ColliderPose> collider_poses(const ServedWorld& world);
 
 /// The first collider of this name.
-proto::Result<std::size_t> find_collider(const ServedWorld& world, const std::string& name);
+proto::Result<std::size_t> find_collider(const ServedWorld& world,
+                                         const proto::ColliderRef& wanted);
 
 /// The command in full: omitted values stay as they are.
 MoveDef move_def(const ServedWorld& world, std::size_t collider, const proto::Move& move);

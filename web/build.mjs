@@ -2,9 +2,11 @@
 // beside them.
 // usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
-import { cp, mkdir, readdir, rm, writeFile } from "node:fs/promises";
+import { cp, mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
+import { brotliCompress, gzip } from "node:zlib";
 
 const [output, dependency_file] = process.argv.slice(2).map((path) => resolve(path));
 const here = dirname(fileURLToPath(import.meta.url));
@@ -28,6 +30,14 @@ const { metafile } = await build({
   metafile: true,
   logLevel: "warning",
 });
+
+// The server sends these forms to browsers that take them; beside each text its .gz and .br.
+for (const name of await readdir(output, { recursive: true })) {
+  if (!/\.(html|js|css|svg)$/.test(name)) continue;
+  const bytes = await readFile(join(output, name));
+  await writeFile(join(output, `${name}.gz`), await promisify(gzip)(bytes, { level: 9 }));
+  await writeFile(join(output, `${name}.br`), await promisify(brotliCompress)(bytes));
+}
 
 // Make's form, in which a space of a path is escaped. The folder of the static files stands for a
 // file that comes or goes.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/cloth/fabric.h"
+#include "core/cloth/look.h"
 #include "core/definition.h"
 #include "core/geometry/triangle_mesh.h"
 
@@ -70,6 +71,7 @@ struct ClothDef {
   std::optional<DirectSprings> direct_springs;
   FabricDef fabric;
   std::optional<ClothMesh> mesh;  ///< replaces the rectangle and its parameters
+  std::optional<LookDef> look;    ///< absent: as its fabric's preset looks
 };
 
 /// Passes each field of a grid to `visit(info, value)`.

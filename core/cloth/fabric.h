@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/definition.h"
 
 // Material parameters of fabric.
@@ -27,6 +29,7 @@ struct FabricDef {
   double restitution = 0;        ///< k_diss of the seed's eq. (10), 0 <= k < 1
   double air_normal = 1.28;      ///< C_n, drag coefficient of a plate across the wind
   double air_tangential = 0.01;  ///< c_t, skin friction per area and speed [kg/(m^2 s)]
+  std::string preset;  ///< name of the preset that its values began as; no physics reads it
 };
 
 /// Passes each field to `visit(info, value)`; see definition.h.

@@ -101,13 +101,17 @@ bool same(const FabricDef& a, const FabricDef& b) {
 }  // namespace
 
 const std::vector<FabricPreset>& fabric_presets() {
-  static const std::vector<FabricPreset> presets = {
-      {"cotton", "plain cotton: crisp, falls in few folds", cotton(), {60, 76}},
-      {"silk", "light silk: soft, many fine folds", silk(), {20, 40}},
-      {"wool", "wool suiting: soft to pull, round folds", wool(), {40, 70}},
-      {"denim", "denim: heavy and stiff", denim(), {70, 90}},
-      {"leather", "garment leather: heavy, stiff in every direction", leather(), {47, 70}},
-      {"nylon", "flag nylon: very light and hard to stretch", nylon(), {}}};
+  static const std::vector<FabricPreset> presets = [] {
+    std::vector<FabricPreset> list = {
+        {"cotton", "plain cotton: crisp, falls in few folds", cotton(), {60, 76}},
+        {"silk", "light silk: soft, many fine folds", silk(), {20, 40}},
+        {"wool", "wool suiting: soft to pull, round folds", wool(), {40, 70}},
+        {"denim", "denim: heavy and stiff", denim(), {70, 90}},
+        {"leather", "garment leather: heavy, stiff in every direction", leather(), {47, 70}},
+        {"nylon", "flag nylon: very light and hard to stretch", nylon(), {}}};
+    for (FabricPreset& preset : list) preset.fabric.preset = preset.name;
+    return list;
+  }();
   return presets;
 }
 

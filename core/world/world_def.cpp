@@ -56,6 +56,16 @@ ContactModel contact_of(const WorldDef& def) {
   return def.model == Model::seed ? ContactModel::seed : ContactModel::weft;
 }
 
+std::string look_name(const ClothDef& cloth) {
+  const LookOf look = cloth.look ? cloth.look->fabric : LookOf::automatic;
+  if (look == LookOf::automatic) return cloth.fabric.preset;
+  std::string word;
+  visit_fields_of_look(*cloth.look, [&word, look](const FieldInfo& info, LookOf) {
+    word = choice_word(info, static_cast<int>(look));
+  });
+  return word;
+}
+
 std::string cloth_name(const WorldDef& def, Index cloth) {
   assert(cloth >= 0 && static_cast<std::size_t>(cloth) < def.cloths.size());
   const std::string& name = def.cloths[static_cast<std::size_t>(cloth)].name;
@@ -167,6 +177,9 @@ void validate(const WorldDef& def) {
   if (def.sleep.after > 0 && def.test != TextileTest::none)
     throw DefinitionError("sleep.after", number_text(def.sleep.after), "0 in a textile test",
                           "what is measured must come to rest by itself");
+  if (def.view && def.view->direction.isZero())
+    throw DefinitionError("view.direction", text_of(def.view->direction), "a vector that is not 0",
+                          "it points from the target towards the eye");
   validate(def.environment);
   validate_grippers(def);
   validate_script(def);

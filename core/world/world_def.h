@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "core/world/budget.h"
 #include "core/world/script.h"
 #include "core/world/sleep.h"
+#include "core/world/view_def.h"
 
 // Definition of a world: a scene.
 
@@ -45,7 +47,8 @@ struct CollisionDef {
 /// A scene: everything needed to start a world. Built-in scenes come from core/scenes.
 struct WorldDef {
   std::string name = "unnamed";
-  std::string description;  ///< one sentence on what to look at
+  std::string description;      ///< one sentence on what to look at
+  std::optional<ViewDef> view;  ///< where it is best looked at from; absent: the viewer chooses
   Model model = Model::weft;
   double tick_rate = 60;                 ///< ticks per simulated second [1/s]
   TextileTest test = TextileTest::none;  ///< textile test performed on the first cloth
@@ -107,6 +110,10 @@ SolverKind solver_of(const WorldDef& def);
 
 /// The contact chosen by the definition: weft or seed.
 ContactModel contact_of(const WorldDef& def);
+
+/// Name of the fabric that viewers draw a cloth as; empty if neither its look nor the preset of its
+/// fabric tells one.
+std::string look_name(const ClothDef& cloth);
 
 /// Name of a cloth for messages; its number if it has none.
 std::string cloth_name(const WorldDef& def, Index cloth);

@@ -143,14 +143,16 @@ export class WeftClient extends Session {
   /**
    * Sends a collider to a pose at bounded speed, or returns it to its keyframes; or sends a pin to
    * a place, at bounded speed or within some seconds, or stops it.
-   * @param {string | number} what  the collider's name, or the pin's id
+   * @param {string | number | {collider: number}} what  the collider's name, the pin's id, or the
+   *   place of a collider in the list of `mesh`
    * @param {{position?: Vec3, rotation?: number[], speed?: number, turn_speed?: number,
    *   force?: boolean} | {release: true} |
    *   {position: Vec3, speed?: number, seconds?: number, max_force?: number} | {stop: true}} where
    * @param {Call} [call]
    */
   move(what, where, call) {
-    const named = typeof what === 'number' ? { pin: what } : { collider: what };
+    const names = { number: { pin: what }, string: { collider: what }, object: what };
+    const named = names[typeof what];
     return this.request('move', { ...named, ...where }, call);
   }
 

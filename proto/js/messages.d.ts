@@ -61,6 +61,14 @@ export interface Cloth {
   look?: Look;
 }
 
+/** A sphere that should fill the first picture, and the side that it is seen from. */
+export interface View {
+  target: Vec3;
+  /** From the target towards the eye, of unit length. */
+  direction: Vec3;
+  radius: number;
+}
+
 /** How a cloth is to look; colours of front and back as `#rrggbb`. */
 export type Look = { fabric?: FabricName; color?: string; back?: string };
 export type FabricName = 'plain' | 'cotton' | 'silk' | 'denim' | 'wool' | 'leather' | 'nylon';
@@ -90,6 +98,7 @@ export interface MeshAnnouncement {
   triangles: number;
   cloths: Cloth[];
   colliders: Collider[];
+  view?: View;
 }
 
 export interface Energy {

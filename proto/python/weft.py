@@ -710,13 +710,15 @@ class Client:
         return await self.request("speed", timeout=timeout, speed=speed)
 
     async def move(
-        self, what: str | int, position=None, rotation=None, *, speed=None, turn_speed=None,
+        self, what: str | int | dict, position=None, rotation=None, *, speed=None, turn_speed=None,
         force=None, release=None, seconds=None, max_force=None, stop=None, timeout=_CLIENTS,
     ) -> dict:  # fmt: skip
-        """Sends a collider, by its name, to a pose at bounded speed, or back to its keyframes (release=True);
+        """Sends a collider, by its name or as {"collider": its place in the list of the mesh message}, to a
+        pose at bounded speed, or back to its keyframes (release=True);
         or a pin, by its id, to a position, at bounded speed or within some seconds, or fixes it where it is
         on its way (stop=True)."""
-        fields = {"pin" if _is_number(what) else "collider": what}
+        named = isinstance(what, dict)
+        fields = dict(what) if named else {"pin" if _is_number(what) else "collider": what}
         fields["position"] = None if position is None else list(position)
         fields["rotation"] = None if rotation is None else list(rotation)
         fields |= {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}

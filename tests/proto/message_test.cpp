@@ -63,7 +63,8 @@ MeshAnnouncement mesh() {
   m.bytes = mesh_bytes();
   m.vertices = 600;
   m.triangles = 1102;
-  m.cloths = {{"cloth", 0, 600, 0, 1102, 20, 30, 0.004}};
+  m.cloths = {{"cloth", 0, 600, 0, 1102, 20, 30, 0.004, {"silk", "#2a6f97", ""}}};
+  m.view = {{0, 1, 0}, {0, 0.6, 0.8}, 0.9};
   m.colliders = {{"ground", PlaneInfo{{0, 0, 0}, {0, 1, 0}}, {0, 0, 0}},
                  {"ball", SphereInfo{{0, 0.5, 0}, 0.3}, {0, 0.5, 0}},
                  {"post", CapsuleInfo{{0, 0, 0}, {0, 1, 0}, 0.05}, {0, 0.5, 0}},

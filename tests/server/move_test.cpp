@@ -130,6 +130,42 @@ json pins_of(TestRoom& t) {
   return pins;
 }
 
+TEST_CASE("a collider is moved by its place in the mesh message, whatever its name") {
+  const auto two_balls = [](const std::string&) {
+    WorldDef def = small_scene("small");
+    for (ColliderDef& collider : def.colliders) collider.name = "";
+    def.colliders.push_back({"", SphereDef{Vec3d(0, -1.5, 0), 0.1}});
+    return def;
+  };
+  TestRoom t;
+  RoomOptions options;
+  options.paused = true;
+  t.room = std::make_unique<Room>(options, two_balls, t.output, t.clock.clock(), t.metrics);
+  t.join(1);
+  const json ask = {{"op", "query"}, {"id", 9}, {"what", "colliders"}};
+  const json before = t.say(1, ask.dump())["data"];
+  const json moved =
+      t.say(1, R"({"op":"move","id":1,"collider":2,"position":[0.5,-1.5,0],"speed":1})");
+  CHECK(moved["collider"] == 2);
+  t.say(1, R"({"op":"advance","n":60})");
+  const json after = t.say(1, ask.dump())["data"];
+  CHECK(after[0]["position"] == before[0]["position"]);
+  CHECK(after[1]["position"] == before[1]["position"]);
+  CHECK(after[2]["position"][0].get<double>() == Approx(0.5));
+
+  const std::string hash = hash_of(*t.room);
+  for (const char* wrong : {"3", "4294967295", "-1", "0.5", "true", "\"\"", "[2]"}) {
+    const json told = t.say(
+        1, std::string(R"({"op":"move","id":2,"position":[0,0,0],"collider":)") + wrong + "}");
+    CHECK(told["op"] == "error");
+    CHECK(told["field"] == "collider");
+  }
+  const json beyond = t.say(1, R"({"op":"move","id":3,"collider":3,"release":true})");
+  CHECK(beyond["code"] == "unknown_collider");
+  CHECK(beyond["limit"]["maximum"] == 2);
+  CHECK(hash_of(*t.room) == hash);
+}
+
 TEST_CASE("a pin is moved by its id within its time, is told when it goes and when it is there") {
   TestRoom t;
   t.join(1);

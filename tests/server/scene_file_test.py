@@ -226,6 +226,28 @@ class SceneFiles(unittest.TestCase):
                 self.assertIn("allowed is", result.stderr)
         self.assertGreaterEqual(len(seen), 12)
 
+    def test_how_a_cloth_looks_is_told_and_changes_no_tick(self):
+        cloth = {"rows": 5, "columns": 5, "fabric": {"preset": "silk"}}
+        dressed = {**cloth, "look": {"fabric": "denim", "color": "#2A6f97", "back": "#c0ffee"}}
+        view = {"target": [0, 1, 0], "direction": [0, 3, 4], "radius": 0.5}
+        hashes = []
+        for document in ({"cloths": [cloth]}, {"cloths": [dressed], "view": view}):
+            self.assertEqual(list(self.judge.iter_errors(document)), [])
+            path = Path(self.folder.name) / "look.json"
+            path.write_text(json.dumps(document))
+            again = json.loads(run("scenes", "--json", path).stdout)
+            self.assertEqual(again["cloths"][0].get("look"), document["cloths"][0].get("look"))
+            self.assertEqual(again.get("view"), document.get("view"))
+            hashes.append(json.loads(run("simulate", "--scene", path, "--ticks", "5", "--json").stdout)["hash"])
+        self.assertEqual(hashes[0], hashes[1])
+        for wrong in ("#12345", "#1234567", "123456#", "#12345g", "red", "", 3, None):
+            with self.subTest(color=wrong):
+                document = {"cloths": [{**cloth, "look": {"color": wrong}}]}
+                result = self.simulate(document)
+                self.assertEqual(result.returncode, 2, result)
+                self.assertIn(": cloths[0].look.color = ", result.stderr)
+                self.assertNotEqual(list(self.judge.iter_errors(document)), [])
+
     def test_what_no_schema_can_tell_is_refused_with_its_path(self):
         cloth = {"rows": 5, "columns": 5}
 
@@ -243,6 +265,7 @@ class SceneFiles(unittest.TestCase):
              "contact.lift"),
             ({"cloths": [cloth, cloth]}, "cloths[1].name"),
             ({"cloths": [cloth, {**cloth, "name": "b", "v": [1, 0, 0]}]}, "cloths[1].v"),
+            ({"cloths": [cloth], "view": {"direction": [0, 0, 0]}}, "view.direction"),
             ({"cloths": [cloth], "pins": [{"place": "particle", "particle": 25}]}, "pins[0].particle"),
             ({"cloths": [cloth], "pins": [{"place": "corner", "cloth": "sail"}]}, "pins[0].cloth"),
             ({"cloths": [cloth], "colliders": [{"shape": "plane", "normal": [0, 0, 0]}]},

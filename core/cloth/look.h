@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "core/definition.h"
+
+// How a cloth is meant to look. Nothing of the physics reads it; viewers are told.
+
+namespace weft {
+
+/// The woven or grown surface that a viewer draws.
+enum class LookOf {
+  automatic,  ///< that of the preset that the fabric began as, else plain
+  plain,
+  cotton,
+  silk,
+  denim,
+  wool,
+  leather,
+  nylon,
+};
+
+/// The look of one cloth.
+struct LookDef {
+  LookOf fabric = LookOf::automatic;
+  std::string color;  ///< of the side that its normals point to, "#rrggbb"; empty: the viewer's
+  std::string back;   ///< of the other side, "#rrggbb"; empty: follows from `color`
+};
+
+/// Passes each field that is no text to `visit(info, value)`.
+template <class Def, class Visitor>
+void visit_fields_of_look(Def& d, Visitor&& visit) {
+  visit(choice("fabric", "automatic|plain|cotton|silk|denim|wool|leather|nylon",
+               "surface that is drawn; automatic: that of the fabric's preset"),
+        d.fabric);
+}
+
+}  // namespace weft
