@@ -38,7 +38,9 @@ class CommandLog {
   void add(std::uint64_t tick, proto::ViewerId viewer, CommandOrigin origin,
            proto::Command command) {
     entries_.push_back({tick, next_index_++, viewer, origin, std::move(command)});
-    if (entries_.size() > most_entries_) entries_.pop_front();
+    if (entries_.size() <= most_entries_) return;
+    entries_.pop_front();
+    complete_ = false;
   }
 
   /// Reduces the last `advance` by the `left` ticks that it did not make; removes it if it made
@@ -55,14 +57,17 @@ class CommandLog {
       entries_.erase(std::next(last).base());
   }
 
-  /// Oldest first. The history is complete if the first has index 0.
+  /// Oldest first.
   const std::deque<LogEntry>& entries() const { return entries_; }
+  /// Whether no entry had to make room for newer ones, so that the log tells the whole history.
+  bool complete() const { return complete_; }
   std::uint64_t next_index() const { return next_index_; }
 
  private:
   std::size_t most_entries_;
   std::deque<LogEntry> entries_;
   std::uint64_t next_index_ = 0;
+  bool complete_ = true;
 };
 
 }  // namespace weft::server

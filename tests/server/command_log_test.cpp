@@ -22,6 +22,17 @@ TEST_CASE("the log keeps its newest entries and says by the index that older one
   CHECK(log.entries().back().index == 24);
 }
 
+TEST_CASE("a log that lost only an advance without ticks still tells the whole history") {
+  CommandLog log(2);
+  log.add(0, 1, CommandOrigin::viewer, proto::Advance{5, std::nullopt});
+  log.shorten_advance(5);
+  log.add(0, 1, CommandOrigin::viewer, proto::Command(proto::Pause{}));
+  log.add(0, 1, CommandOrigin::viewer, proto::Command(proto::Resume{}));
+  CHECK(log.complete());
+  log.add(1, 1, CommandOrigin::viewer, proto::Command(proto::Pause{}));
+  CHECK_FALSE(log.complete());
+}
+
 TEST_CASE("an advance that ends early counts in the log as the ticks that it made") {
   const std::uint32_t left = GENERATE(0u, 1u, 7u, 10u);
   CommandLog log;
