@@ -11,6 +11,7 @@
 #include "core/scenes/scene_parts.h"
 #include "core/scenes/seed_scenes.h"
 #include "core/scenes/textile_scenes.h"
+#include "core/scenes/views.h"
 
 namespace weft {
 namespace {
@@ -324,6 +325,7 @@ WorldDef make_scene(const std::string& name, const std::string& mesh_directory) 
     WorldDef def;
     def.name = entry.info.name;
     def.description = entry.info.description;
+    def.view = view_of_scene(name);
     entry.build(def, mesh_directory);
     return def;
   }

@@ -77,6 +77,22 @@ TEST_CASE("every scene has a name, one sentence and unique names") {
   CHECK_THROWS_AS(make_scene("nothing"), DefinitionError);
 }
 
+TEST_CASE("the first view of every scene looks at the place of its cloth") {
+  for (const SceneInfo& scene : scenes()) {
+    INFO(scene.name);
+    if (!is_installed(scene)) continue;
+    const WorldDef def = make_scene(scene.name, mesh_directory());
+    REQUIRE(def.view);
+    CHECK(def.view->direction.norm() == Approx(1).margin(0.01));
+    const World<float> world(def);
+    double nearest = 1e9;
+    for (const Vec3f& x : world.state().x)
+      nearest = std::min(nearest, (x.cast<double>() - def.view->target).norm());
+    // A cloth that falls or is led away reaches its view later.
+    CHECK(nearest < def.view->radius + 0.6);
+  }
+}
+
 TEST_CASE("the model of the seed can be chosen for every scene that has no gripper") {
   int built = 0;
   for (const SceneInfo& scene : scenes()) {
