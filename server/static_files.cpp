@@ -50,7 +50,9 @@ struct Compression {
 constexpr std::array<Compression, 2> kCompressions = {{{".br", "br"}, {".gz", "gzip"}}};
 
 FileContent content(std::string encoding, std::string bytes) {
-  std::string etag = "\"" + proto::hash_text(XXH64(bytes.data(), bytes.size(), 0)) + "\"";
+  std::string etag = proto::hash_text(XXH64(bytes.data(), bytes.size(), 0));
+  etag.insert(etag.begin(), '"');
+  etag.push_back('"');
   return {std::move(encoding), std::move(bytes), std::move(etag)};
 }
 
