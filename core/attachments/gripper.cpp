@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "core/attachments/constants.h"
-#include "core/contact/colliders/constants.h"
 #include "core/error.h"
 
 namespace weft {
@@ -48,12 +46,6 @@ double next_opening(const Gripper& gripper, double seconds, double thickest) {
   // Two faces that both have cloth in front leave room for that cloth, and for no less.
   least = std::max(least, 2 * gripper.facing);
   return std::max(std::min(least, gripper.opening), gripper.opening - step);
-}
-
-void check_unit(const std::string& field, const Eigen::Quaterniond& q) {
-  if (!(std::abs(q.norm() - 1) < kUnitQuaternionSlack))
-    throw DefinitionError(field, "of norm " + number_text(q.norm()),
-                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
 }
 
 }  // namespace

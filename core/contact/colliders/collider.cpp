@@ -2,23 +2,12 @@
 
 #include "core/contact/colliders/collider.h"
 
-#include <cmath>
-
-#include "core/contact/colliders/constants.h"
 #include "core/definition.h"
 #include "core/error.h"
 #include "core/geometry/constants.h"
 
 namespace weft {
 namespace {
-
-/// Checks for unit norm, within the rounding of three digits.
-void check_unit(const std::string& field, const Eigen::Quaterniond& orientation) {
-  const double norm = orientation.norm();
-  if (!(std::abs(norm - 1) < kUnitQuaternionSlack))
-    throw DefinitionError(field, "of norm " + number_text(norm), "a unit quaternion [x, y, z, w]",
-                          "its norm must be 1");
-}
 
 struct Validator {
   const std::string& path;

@@ -26,13 +26,6 @@ Difference between(const Keyframe& from, const Keyframe& to) {
           rotation_vector(to.rotation.normalized() * from.rotation.normalized().conjugate())};
 }
 
-void check_unit(const Eigen::Quaterniond& rotation, const std::string& path) {
-  const double norm = rotation.norm();
-  if (!(std::abs(norm - 1) < kUnitQuaternionSlack))
-    throw DefinitionError(path + "rotation", "of norm " + number_text(norm),
-                          "a unit quaternion [x, y, z, w]", "its norm must be 1");
-}
-
 double fastest(const MotionDef& def) {
   return def.interpolation == Interpolation::smooth ? kSteepestEase : 1;
 }
@@ -68,7 +61,7 @@ void validate(const MotionDef& def, const std::string& path) {
     visit_fields_of_keyframe(def.keyframes[k], [&at](const FieldInfo& info, const auto& value) {
       check_field(at, info, value);
     });
-    check_unit(def.keyframes[k].rotation, at);
+    check_unit(at + "rotation", def.keyframes[k].rotation);
     if (k > 0) check_stretch(def, k, at);
   }
   if (!def.loop) return;
@@ -83,7 +76,7 @@ void validate(const MotionDef& def, const std::string& path) {
 
 void validate(const MoveDef& def, const std::string& path) {
   check_field(path, {"position", -1000, 1000, "m", "target of the pivot"}, def.target.position);
-  check_unit(def.target.rotation, path);
+  check_unit(path + "rotation", def.target.rotation);
   check_field(path, {"speed", 1e-3, kMostColliderSpeed, "m/s", "of the pivot"}, def.speed);
   check_field(path, {"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "of the turn"},
               def.turn_speed);

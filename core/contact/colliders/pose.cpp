@@ -5,6 +5,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/contact/colliders/constants.h"
+#include "core/definition.h"
+#include "core/error.h"
 #include "core/math/angle.h"
 #include "core/math/sine.h"
 
@@ -12,6 +15,13 @@ namespace weft {
 
 bool operator==(const Pose& a, const Pose& b) {
   return a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+void check_unit(const std::string& field, const Eigen::Quaterniond& q) {
+  const double norm = q.norm();
+  if (!(std::abs(norm - 1) < kUnitQuaternionSlack))
+    throw DefinitionError(field, "of norm " + number_text(norm), "a unit quaternion [x, y, z, w]",
+                          "its norm must be 1");
 }
 
 Eigen::Quaterniond rotation_by(const Vec3d& v) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/types.h"
 
 // Poses and twists of rigid objects.
@@ -14,6 +16,10 @@ struct Pose {
 };
 
 bool operator==(const Pose& a, const Pose& b);
+
+/// Throws DefinitionError if a quaternion is not of unit norm, within the rounding of three digits.
+/// @param field  its name with the path
+void check_unit(const std::string& field, const Eigen::Quaterniond& q);
 
 /// Rigid motion at constant velocities.
 struct Twist {
