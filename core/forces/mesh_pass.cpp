@@ -65,6 +65,14 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
   });
 }
 
+/// A number of slots as a group stores it. A mesh with a larger one does not fit.
+template <class Real>
+std::uint8_t MeshPass<Real>::stored_slots(std::size_t slots) {
+  const auto stored = static_cast<std::uint8_t>(slots);
+  in_reach_ = in_reach_ && stored == slots;
+  return stored;
+}
+
 /// Lists of one group, by slot. Lanes without a particle repeat the last one.
 template <class Real>
 void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t block) {
@@ -101,7 +109,7 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
       for (const Link& link : lanes)
         numbers_.push_back(static_cast<Real>(springs ? link.bending_weight : -link.bending_weight));
     }
-    return static_cast<std::uint8_t>(slots);
+    return stored_slots(slots);
   };
   for (std::size_t k = 0; k < kMeshGroup; ++k) lead_to(own(k));
   group.near = add_slots(&Row::near, true);
@@ -155,8 +163,7 @@ void MeshPass<Real>::list_pulls(const Rows& rows, const std::vector<Members>& gr
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::size_t slots = 0;
     for (const std::size_t i : groups[g]) slots = std::max(slots, rows[i].earlier.size());
-    groups_[g].earlier = static_cast<std::uint8_t>(slots);
-    in_reach_ = in_reach_ && groups_[g].earlier == slots;
+    groups_[g].earlier = stored_slots(slots);
     for (std::size_t s = 0; s < slots; ++s) {
       for (std::size_t k = 0; k < kMeshGroup; ++k) {
         const Row& row = rows[groups[g][std::min(k, groups[g].size() - 1)]];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -57,6 +58,7 @@ class MeshPass {
                               Real damping_per_stiffness, Rows& rows);
   static void collect_bending(const ClothPart<Real>& part, Rows& rows);
   static void sort_block(const Rows& rows, Members& block);
+  std::uint8_t stored_slots(std::size_t slots);
   void add_group(Rows& rows, const Members& members, std::size_t block);
   std::vector<Members> lay_out(Rows& rows);
   void list_pulls(const Rows& rows, const std::vector<Members>& groups);
@@ -68,7 +70,7 @@ class MeshPass {
   AlignedVector<Real> numbers_, ring_;
   std::vector<std::uint16_t> pulls_;
   std::size_t pull_count_ = 0;  // lanes of slots laid out so far
-  bool in_reach_ = true;        // every neighbour is within a MeshWay
+  bool in_reach_ = true;        // every neighbour is within a MeshWay, every count in its 8 bits
 };
 
 }  // namespace weft
