@@ -54,7 +54,7 @@ void Room::start_world(BuiltScene&& scene) {
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
-  pins_on_way_.clear();
+  moving_pins_.clear();
   scene_grabs_.clear();
   tick_times_.clear();
   next_tick_time_ = 0;

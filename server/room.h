@@ -311,7 +311,7 @@ class Room {
   std::vector<proto::AppliedCommand> applied_;
   bool measures_forces_ = false;     // whether the world measures them
   std::vector<char> asleep_;         // of each cloth, as last announced
-  std::vector<PinId> pins_on_way_;   // as last announced
+  std::vector<PinId> moving_pins_;   // as last announced
   std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as last announced
   GuaranteeWatch guarantee_;
   std::vector<SceneNotice> scene_notices_;

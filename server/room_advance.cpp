@@ -7,8 +7,8 @@
 namespace weft::server {
 namespace {
 
-constexpr long kFramesOnWay = 4;  // frames in flight that the viewer has not taken
-constexpr double kStalled = 2;    // time without a taken frame that counts as not reading [s]
+constexpr long kMostFramesInFlight = 4;  // frames in flight that the viewer has not taken
+constexpr double kStalled = 2;  // time without a taken frame that counts as not reading [s]
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void Room::advance_until(double deadline) {
 
 /// Whether the most frames of its own `advance` are in flight to a viewer.
 bool Room::frames_wait(const Viewer& viewer) const {
-  return viewer.ticket.use_count() > kFramesOnWay;
+  return viewer.ticket.use_count() > kMostFramesInFlight;
 }
 
 /// Whether the viewer of the advance asked for the frame of the coming tick.

@@ -276,7 +276,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   world_->reset();
   hands_.clear();
   pin_owners_.clear();
-  pins_on_way_.clear();
+  moving_pins_.clear();
   scene_grabs_.clear();
   steps_left_ = 0;
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;

@@ -157,11 +157,11 @@ void Room::tell_guarantee() {
 
 /// Announces the pins again when one has set out, by the scene itself, or has arrived.
 void Room::tell_pins() {
-  std::vector<PinId> on_way;
+  std::vector<PinId> moving;
   for (const Pin& pin : world_->pins().list)
-    if (pin.path) on_way.push_back(pin.id);
-  if (on_way == pins_on_way_) return;
-  pins_on_way_ = std::move(on_way);
+    if (pin.path) moving.push_back(pin.id);
+  if (moving == moving_pins_) return;
+  moving_pins_ = std::move(moving);
   pins_changed_ = true;
 }
 

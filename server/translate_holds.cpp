@@ -31,15 +31,15 @@ proto::Result<PinMove> pin_move(const ServedWorld& world, const Pin& pin,
                                 const proto::MovePin& command) {
   PinMove move{from_wire(command.position), command.speed, command.max_force};
   if (!command.seconds) return move;
-  const double way = way_left(pin, world.state(), move.target);
-  const double least = least_seconds(way, world.tick_seconds());
+  const double distance = remaining_distance(pin, world.state(), move.target);
+  const double least = least_seconds(distance, world.tick_seconds());
   if (*command.seconds < least) {
     proto::Error error =
         proto::range_error("seconds", *command.seconds, {least, proto::kMoveSecondsRange.maximum});
-    error.hint = "it has " + proto::number_text(way) + " m to go";
+    error.hint = "it has " + proto::number_text(distance) + " m to go";
     return error;
   }
-  move.speed = speed_within(way, *command.seconds, world.tick_seconds());
+  move.speed = speed_within(distance, *command.seconds, world.tick_seconds());
   return move;
 }
 

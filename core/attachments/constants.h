@@ -8,7 +8,7 @@ namespace weft {
 /// Remaining distance of a pin or of a gripper's middle that is rounding [m]: it has arrived.
 /// Larger: it stops that far from its target. Smaller, below rounding at the size of its
 /// coordinates: it may never arrive.
-inline constexpr double kNoWayLeft = 1e-9;
+inline constexpr double kArrivalDistance = 1e-9;
 
 // Hands and slings.
 

@@ -105,10 +105,10 @@ Vec3<Real> bounded(const Vec3<Real>& force, double limit) {
 template <class Real>
 Vec3<Real> within_reach(const Vec3<Real>& from, const Vec3<Real>& to, double reach) {
   assert(reach > 0);
-  const Vec3d way = (to - from).template cast<double>();
-  const double length = way.norm();
+  const Vec3d offset = (to - from).template cast<double>();
+  const double length = offset.norm();
   if (length <= reach) return to;
-  return from + Vec3<Real>((way * (reach / length)).template cast<Real>());
+  return from + Vec3<Real>((offset * (reach / length)).template cast<Real>());
 }
 
 /// Force of the sling if it were fired now [N].

@@ -25,14 +25,14 @@ Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
 /// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
 Pose next_pose(const Gripper& gripper, double seconds) {
   assert(seconds > 0 && gripper.speed > 0 && gripper.turn_speed > 0);
-  const Vec3d way = gripper.target.position - gripper.pose.position;
+  const Vec3d offset = gripper.target.position - gripper.pose.position;
   const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
-  double part = 1;
-  if (way.norm() > gripper.speed * seconds) part = gripper.speed * seconds / way.norm();
-  if (turn.norm() * part > gripper.turn_speed * seconds)
-    part = gripper.turn_speed * seconds / turn.norm();
-  if (part == 1) return gripper.target;
-  return moved(gripper.pose, {way * part, turn * part}, 1);
+  double fraction = 1;
+  if (offset.norm() > gripper.speed * seconds) fraction = gripper.speed * seconds / offset.norm();
+  if (turn.norm() * fraction > gripper.turn_speed * seconds)
+    fraction = gripper.turn_speed * seconds / turn.norm();
+  if (fraction == 1) return gripper.target;
+  return moved(gripper.pose, {offset * fraction, turn * fraction}, 1);
 }
 
 /// Opening of the jaws at the end of the tick [m].
@@ -161,7 +161,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     // A jaw that was held back holds the other one back by half.
     gripper.pose.position = (left.pose.position + right.pose.position) / 2;
     gripper.pose.rotation = left.pose.rotation;
-    if ((gripper.pose.position - gripper.target.position).norm() < kNoWayLeft)
+    if ((gripper.pose.position - gripper.target.position).norm() < kArrivalDistance)
       gripper.pose.position = gripper.target.position;
     gripper.opening = std::max(0.0, axis.dot(between) - 2 * gripper.def.half_extents[0]);
     gripper.facing = std::min(left.facing, right.facing);

@@ -45,35 +45,35 @@ void lead_from_here(const Pin& pin, const ClothState<Real>& state, PinPath& path
         state.x[static_cast<std::size_t>(pin.particles[n])].template cast<double>() - path.start[n];
   path.offset = sum / static_cast<double>(pin.particles.size());
   const Vec3d rest = rest_of(pin);
-  const double way = rest.norm();
-  path.offset += way > kPinSlack ? (rest * (kPinSlack / way)).eval() : rest;
+  const double distance = rest.norm();
+  path.offset += distance > kPinSlack ? (rest * (kPinSlack / distance)).eval() : rest;
   path.pace = 0;
 }
 
 }  // namespace
 
-double least_seconds(double way, double tick_seconds) {
-  assert(way >= 0 && tick_seconds > 0);
-  const double pace = std::min(kMostPinSpeed, std::sqrt(kPinAcceleration * way));
-  const double moving = pace > 0 ? way / pace + pace / kPinAcceleration : 0;
+double least_seconds(double distance, double tick_seconds) {
+  assert(distance >= 0 && tick_seconds > 0);
+  const double pace = std::min(kMostPinSpeed, std::sqrt(kPinAcceleration * distance));
+  const double moving = pace > 0 ? distance / pace + pace / kPinAcceleration : 0;
   return moving + kPinTicksAtTarget * tick_seconds;
 }
 
-double speed_within(double way, double seconds, double tick_seconds) {
-  assert(way >= 0 && tick_seconds > 0);
-  if (way == 0) return kLeastPinSpeed;
+double speed_within(double distance, double seconds, double tick_seconds) {
+  assert(distance >= 0 && tick_seconds > 0);
+  if (distance == 0) return kLeastPinSpeed;
   const double moving = seconds - kPinTicksAtTarget * tick_seconds;
-  // way / v + v / a = moving; the slower of the two solutions.
-  const double root = std::sqrt(std::max(0.0, moving * moving - 4 * way / kPinAcceleration));
-  return std::clamp(2 * way / (moving + root), kLeastPinSpeed, kMostPinSpeed);
+  // distance / v + v / a = moving; the slower of the two solutions.
+  const double root = std::sqrt(std::max(0.0, moving * moving - 4 * distance / kPinAcceleration));
+  return std::clamp(2 * distance / (moving + root), kLeastPinSpeed, kMostPinSpeed);
 }
 
 template <class Real>
-double way_left(const Pin& pin, const ClothState<Real>& state, const Vec3d& target) {
+double remaining_distance(const Pin& pin, const ClothState<Real>& state, const Vec3d& target) {
   const Vec3d here = state.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
-  const double way = (target - here).norm();
-  if (!pin.path) return way;
-  return std::max(way, (rest_of(pin) + target - pin.path->move.target).norm());
+  const double distance = (target - here).norm();
+  if (!pin.path) return distance;
+  return std::max(distance, (rest_of(pin) + target - pin.path->move.target).norm());
 }
 
 template <class Real>
@@ -87,12 +87,13 @@ void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pi
     path.behind = behind;
     if (behind) lead_from_here(pin, state, path);
     const Vec3d rest = rest_of(pin);
-    const double way = rest.norm();
-    if (behind || way < kNoWayLeft) continue;
+    const double distance = rest.norm();
+    if (behind || distance < kArrivalDistance) continue;
     path.pace = std::min({path.move.speed, path.pace + kPinAcceleration * tick_seconds,
-                          std::sqrt(2 * kPinAcceleration * way)});
-    path.step =
-        path.pace * tick_seconds < way ? (rest * (path.pace * tick_seconds / way)).eval() : rest;
+                          std::sqrt(2 * kPinAcceleration * distance)});
+    path.step = path.pace * tick_seconds < distance
+                    ? (rest * (path.pace * tick_seconds / distance)).eval()
+                    : rest;
   }
 }
 
@@ -193,7 +194,7 @@ bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& 
     pin.drive = path.impulse / tick_seconds;
     const bool stood = path.step.isZero(0);
     path.offset += path.step;
-    if (!stood || !(rest_of(pin).norm() < kNoWayLeft)) continue;
+    if (!stood || !(rest_of(pin).norm() < kArrivalDistance)) continue;
     const double rounding = state.x[static_cast<std::size_t>(pin.centre)].norm() * kPinRoundings *
                             static_cast<double>(std::numeric_limits<Real>::epsilon());
     if (farthest(pin, state) > std::max(kPinArrived, rounding)) continue;
@@ -205,7 +206,7 @@ bool PinDrive<Real>::finish(double tick_seconds, ClothState<Real>& state, Pins& 
 
 template class PinDrive<float>;
 template class PinDrive<double>;
-template double way_left(const Pin&, const ClothState<float>&, const Vec3d&);
-template double way_left(const Pin&, const ClothState<double>&, const Vec3d&);
+template double remaining_distance(const Pin&, const ClothState<float>&, const Vec3d&);
+template double remaining_distance(const Pin&, const ClothState<double>&, const Vec3d&);
 
 }  // namespace weft

@@ -10,15 +10,15 @@ namespace weft {
 
 /// Remaining distance of a pin to a target, the largest over its particles [m].
 template <class Real>
-double way_left(const Pin& pin, const ClothState<Real>& state, const Vec3d& target);
+double remaining_distance(const Pin& pin, const ClothState<Real>& state, const Vec3d& target);
 
 /// Least time in which a resting, unobstructed pin moves by a distance and is fixed again [s].
-/// @param way  distance [m], not negative
-double least_seconds(double way, double tick_seconds);
+/// @param distance  [m], not negative
+double least_seconds(double distance, double tick_seconds);
 
 /// Speed that moves it by that distance within a time [m/s], clamped to the range of speeds.
 /// @param seconds  at least least_seconds
-double speed_within(double way, double seconds, double tick_seconds);
+double speed_within(double distance, double seconds, double tick_seconds);
 
 /// Moves pins with bounded speed and force. Between kick and drift their particles get the impulse
 /// that brings each to its place at the end of the substep, but together no more than the pin's

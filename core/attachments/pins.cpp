@@ -18,7 +18,7 @@ bool is_fixed(const Pins& pins, Index particle) {
   });
 }
 
-bool Pins::any_on_way() const {
+bool Pins::any_moving() const {
   return std::any_of(list.begin(), list.end(), [](const Pin& pin) { return pin.path.has_value(); });
 }
 

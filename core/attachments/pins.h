@@ -58,7 +58,7 @@ struct Pins {
   PinId next_id = 1;
 
   /// Whether any pin is moving.
-  bool any_on_way() const;
+  bool any_moving() const;
 };
 
 /// Whether a resting pin holds a particle.

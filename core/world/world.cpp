@@ -292,7 +292,7 @@ void World<Real>::advance_or_recover(int substeps) {
 /// The chosen contact; none if there is nothing to meet.
 template <class Real>
 Collision<Real> World<Real>::collision() {
-  PinDrive<Real>* pins = pins_.any_on_way() ? &pin_drive_ : nullptr;
+  PinDrive<Real>* pins = pins_.any_moving() ? &pin_drive_ : nullptr;
   if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins};
   const bool weft = contact_of(def_) == ContactModel::weft && !def_.colliders.empty();
   return {weft ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins};

@@ -50,7 +50,7 @@ TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and not
   CHECK(largest_strain < 0.5);
   CHECK((centre_of(world, 0) - left - way).norm() < 1e-5);
   CHECK((centre_of(world, 1) - right - way).norm() < 1e-5);
-  CHECK_FALSE(world.pins().any_on_way());
+  CHECK_FALSE(world.pins().any_moving());
   for (const Pin& pin : world.pins().list) {
     for (const Index i : pin.particles)
       CHECK(world.state().inverse_mass[static_cast<std::size_t>(i)] == 0);
@@ -77,7 +77,7 @@ TEST_CASE("pins keep the shape of what they hold while they carry it, to 1e-6 m"
   const Vec3Array<double> before = world.state().x;
   send_all(world, Vec3d(0, 0.5, 1));
   for (int k = 0; k < 20; ++k) world.step();
-  REQUIRE(world.pins().any_on_way());
+  REQUIRE(world.pins().any_moving());
   const auto centre = static_cast<std::size_t>(pin.centre);
   for (const Index n : pin.particles) {
     const auto i = static_cast<std::size_t>(n);
@@ -97,7 +97,7 @@ TEST_CASE("the force of a pin on its way never exceeds its bound, and the cloth 
   double largest = 0;
   for (int k = 0; k < 300; ++k) {
     world.step();
-    if (!world.pins().any_on_way()) break;
+    if (!world.pins().any_moving()) break;
     REQUIRE(world.reactions());
     for (std::size_t p = 0; p < 2; ++p) {
       if (world.pins().list[p].path)
@@ -106,7 +106,7 @@ TEST_CASE("the force of a pin on its way never exceeds its bound, and the cloth 
   }
   CHECK(largest <= bound * (1 + 1e-6));
   CHECK(largest > bound * 0.8);
-  CHECK_FALSE(world.pins().any_on_way());
+  CHECK_FALSE(world.pins().any_moving());
 }
 
 TEST_CASE("pins pulled through a plate stop at it and press with no more than their force") {
@@ -132,7 +132,7 @@ TEST_CASE("pins pulled through a plate stop at it and press with no more than th
   CHECK(crossed == 0);
   CHECK(world.deepest_penetration() == 0);
   CHECK(largest <= 50 * (1 + 1e-6));
-  CHECK(world.pins().any_on_way());
+  CHECK(world.pins().any_moving());
   for (std::size_t p = 0; p < 2; ++p) {
     CHECK(centre_of(world, p)[2] < 0.29);
     CHECK(centre_of(world, p)[2] > 0.27);
@@ -140,7 +140,7 @@ TEST_CASE("pins pulled through a plate stop at it and press with no more than th
   // Told to come back, they come.
   send_all(world, Vec3d(0, 0, -0.2));
   for (int k = 0; k < 60; ++k) world.step();
-  CHECK_FALSE(world.pins().any_on_way());
+  CHECK_FALSE(world.pins().any_moving());
 }
 
 TEST_CASE("a particle that another pin holds too stays where it is") {
@@ -154,7 +154,7 @@ TEST_CASE("a particle that another pin holds too stays where it is") {
   world.unpin(second);
   for (int k = 0; k < 120; ++k) world.step();
   CHECK((centre_of(world, 0) - before - Vec3d(0, 0, 0.1)).norm() < 1e-5);
-  CHECK_FALSE(world.pins().any_on_way());
+  CHECK_FALSE(world.pins().any_moving());
 }
 
 TEST_CASE("a pin that is given a time is fixed at its target within it, and not in half of it") {
@@ -165,7 +165,7 @@ TEST_CASE("a pin that is given a time is fixed at its target within it, and not 
       const Pin& pin = world.pins().list[0];
       const Vec3d step = Vec3d(0, 0.3, 1).normalized() * way, target = centre_of(world, 0) + step;
       const double tick = world.tick_seconds(), seconds = more * least_seconds(way, tick);
-      const double left = way_left(pin, world.state(), target);
+      const double left = remaining_distance(pin, world.state(), target);
       send_all(world, step, speed_within(left, seconds, tick));
       int ticks = 0;
       for (; pin.path && ticks < 1000; ++ticks) world.step();
