@@ -7,7 +7,7 @@
 namespace weft {
 
 /// Closer pairs are separated by the best of several axes, computed in double [m]. Larger: more
-/// pairs take that slower way. Smaller: closest points in float lose their direction to rounding,
+/// pairs take that slower path. Smaller: closest points in float lose their direction to rounding,
 /// and the certified gap of a pair is too small.
 inline constexpr double kCloseGap = 3e-4;
 

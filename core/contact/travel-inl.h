@@ -26,8 +26,8 @@ HWY_INLINE bool travel_of(D d, const TravelPass<Real>& p, std::size_t n) {
   const auto dt = hn::Set(d, p.dt);
   auto now2 = hn::Zero(d), end2 = hn::Zero(d);
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto way = hn::Sub(x[k], from[k]), end = hn::Add(way, hn::Mul(v[k], dt));
-    now2 = hn::Add(now2, hn::Mul(way, way));
+    const auto now = hn::Sub(x[k], from[k]), end = hn::Add(now, hn::Mul(v[k], dt));
+    now2 = hn::Add(now2, hn::Mul(now, now));
     end2 = hn::Add(end2, hn::Mul(end, end));
   }
   hn::StoreU(hn::Max(now2, end2), d, p.travel2 + n);
@@ -54,9 +54,9 @@ HWY_INLINE Real deviation(const PathPass<Real>& p) {
   const std::size_t count = 3 * p.particles;
   const auto at = [&](auto d, std::size_t k) HWY_ATTR {
     const auto path = hn::Mul(hn::LoadU(d, p.velocity + k), hn::Set(d, p.time));
-    const auto way = hn::Mul(hn::LoadU(d, p.v + k), hn::Set(d, p.dt));
+    const auto step = hn::Mul(hn::LoadU(d, p.v + k), hn::Set(d, p.dt));
     const auto off = hn::Sub(hn::LoadU(d, p.x + k), hn::LoadU(d, p.base + k));
-    return hn::Abs(hn::Add(off, hn::Sub(way, path)));
+    return hn::Abs(hn::Add(off, hn::Sub(step, path)));
   };
   auto most = hn::Zero(wide);
   auto rest = hn::Zero(single);

@@ -26,14 +26,14 @@ void ColliderFrame<Real>::plan(const ColliderState& state, double dt, double tic
   if (!moves) return stand();
   const Eigen::Matrix3d turned =
       (next.pose.rotation * state.pose.rotation.conjugate()).toRotationMatrix();
-  const Vec3d gone = next.pose.position - state.pose.position;
+  const Vec3d displacement = next.pose.position - state.pose.position;
   centre = state.pose.position.template cast<Real>();
-  step = gone.template cast<Real>();
+  step = displacement.template cast<Real>();
   turn = turned.template cast<Real>();
-  velocity = (gone / dt).template cast<Real>();
+  velocity = (displacement / dt).template cast<Real>();
   spin = ((turned - Eigen::Matrix3d::Identity()) / dt).template cast<Real>();
   const double angle = state.twist.angular.norm() * dt;
-  way = static_cast<Real>(gone.norm() + (angle > 0 ? angle * radius : 0));
+  travel = static_cast<Real>(displacement.norm() + (angle > 0 ? angle * radius : 0));
 }
 
 template <class Real>
@@ -43,7 +43,7 @@ void ColliderFrame<Real>::stand() {
   turn.setIdentity();
   velocity.setZero();
   spin.setZero();
-  way = 0;
+  travel = 0;
 }
 
 template struct ColliderFrame<float>;

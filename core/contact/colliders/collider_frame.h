@@ -29,13 +29,14 @@ struct ColliderFrame {
   Mat3 turn = Mat3::Identity();
   Vec3<Real> velocity = Vec3<Real>::Zero();  ///< mean velocity of the centre [m/s]
   Mat3 spin = Mat3::Zero();                  ///< (turn - 1) / dt
-  Real way = 0;                              ///< bound of any surface point's displacement [m]
+  Real travel = 0;                           ///< bound of any surface point's displacement [m]
 
   /// Number of substeps in which no particle follows too closely for the object to stand still.
   int wary = 0;
   int rest = 0;  ///< number of substeps for which it stands, because cloth has stopped it
 
-  Real way_collected = 0, way_rows = 0;  ///< `way` since the pairs, since the rows were made
+  Real travel_since_pairs = 0;  ///< sum of `travel` since the pairs were made [m]
+  Real travel_since_rows = 0;   ///< and since the rows were made [m]
 
   Vec3<Real> own(const Vec3<Real>& p) const {
     return displaced ? (rotation.transpose() * (p - shift)).eval() : p;

@@ -38,15 +38,15 @@ void check_stretch(const MotionDef& def, std::size_t k, const std::string& path)
     throw DefinitionError(path + "time", number_text(to.time),
                           "later than " + number_text(from.time) + " s",
                           "keyframes stand in the order of their times");
-  const Difference way = between(from, to);
+  const Difference difference = between(from, to);
   const auto check_speed = [&](const char* field, double speed, double most, const char* unit) {
     if (!(speed <= most))
       throw DefinitionError(path + field, "reached at " + number_text(speed) + " " + unit,
                             "at most " + number_text(most) + " " + unit,
                             "a collider moves and never jumps: give it more time");
   };
-  check_speed("offset", way.step.norm() / seconds * fastest(def), kMostColliderSpeed, "m/s");
-  check_speed("rotation", way.turn.norm() / seconds * fastest(def), kMostColliderTurnSpeed,
+  check_speed("offset", difference.step.norm() / seconds * fastest(def), kMostColliderSpeed, "m/s");
+  check_speed("rotation", difference.turn.norm() / seconds * fastest(def), kMostColliderTurnSpeed,
               "rad/s");
 }
 
@@ -99,10 +99,11 @@ Pose offset_at(const MotionDef& def, double time) {
       std::upper_bound(def.keyframes.begin(), def.keyframes.end(), time,
                        [](double t, const Keyframe& frame) { return t < frame.time; });
   const Keyframe &from = *(next - 1), &to = *next;
-  double part = (time - from.time) / (to.time - from.time);
-  if (def.interpolation == Interpolation::smooth) part = part * part * (3 - 2 * part);
-  const Difference way = between(from, to);
-  return moved(pose_of(from), {way.step, way.turn}, part);
+  double fraction = (time - from.time) / (to.time - from.time);
+  if (def.interpolation == Interpolation::smooth)
+    fraction = fraction * fraction * (3 - 2 * fraction);
+  const Difference difference = between(from, to);
+  return moved(pose_of(from), {difference.step, difference.turn}, fraction);
 }
 
 TopSpeeds top_speeds(const MotionDef& def) {
@@ -111,9 +112,9 @@ TopSpeeds top_speeds(const MotionDef& def) {
     const Keyframe &from = def.keyframes[k - 1], &to = def.keyframes[k];
     assert(to.time > from.time);
     const double rate = fastest(def) / (to.time - from.time);
-    const Difference way = between(from, to);
-    top.linear = std::max(top.linear, way.step.norm() * rate);
-    top.angular = std::max(top.angular, way.turn.norm() * rate);
+    const Difference difference = between(from, to);
+    top.linear = std::max(top.linear, difference.step.norm() * rate);
+    top.angular = std::max(top.angular, difference.turn.norm() * rate);
   }
   return top;
 }

@@ -14,9 +14,9 @@ namespace weft {
 namespace {
 
 /// Allowed fraction of a displacement.
-double allowed_part(double way, double most) {
-  assert(!(way < 0) && most >= 0);
-  return way > most ? most / way : 1;
+double allowed_fraction(double displacement, double most) {
+  assert(!(displacement < 0) && most >= 0);
+  return displacement > most ? most / displacement : 1;
 }
 
 struct Wish {
@@ -113,13 +113,13 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
     // Translation and rotation of a command take the same time, so that the path does not depend on
     // the tick.
-    double part = allowed_part(step.norm(), wish->speed * seconds);
-    part = std::min(part, allowed_part(turn.norm(), wish->turn_speed * seconds));
-    state.wanted = {step * (part / seconds), turn * (part / seconds)};
+    double fraction = allowed_fraction(step.norm(), wish->speed * seconds);
+    fraction = std::min(fraction, allowed_fraction(turn.norm(), wish->turn_speed * seconds));
+    state.wanted = {step * (fraction / seconds), turn * (fraction / seconds)};
     if (state.wanted.is_zero() || state.forced) state.pace = 1;
-    part *= state.pace;
-    state.twist = {step * (part / seconds), turn * (part / seconds)};
-    if (part == 1)
+    fraction *= state.pace;
+    state.twist = {step * (fraction / seconds), turn * (fraction / seconds)};
+    if (fraction == 1)
       state.goal = wish->goal;
     else
       state.goal = moved(state.pose, state.twist, seconds);

@@ -101,7 +101,7 @@ void Contact<Real>::collect(const ClothState<Real>& state, Real dt, Profile& pro
   extend_skins();
   mark_paired();
   x_collected_ = state.x;
-  for (ColliderFrame<Real>& frame : frames_) frame.way_collected = 0;
+  for (ColliderFrame<Real>& frame : frames_) frame.travel_since_pairs = 0;
   gone_ = 0;
   collected_ = true;
 }

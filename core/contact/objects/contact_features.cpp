@@ -49,7 +49,7 @@ std::optional<typename Contact<Real>::Look> Contact<Real>::look_at(
     return largest;
   };
   const Real reach = most(row_reach_);
-  const Real bound = pair.distance - most(moved_) - frames_[collider].way_collected;
+  const Real bound = pair.distance - most(moved_) - frames_[collider].travel_since_pairs;
   if (bound > thickness_ + reach) return {};
   if (std::any_of(particles.begin(), particles.end(),
                   [&](Index i) { return is_inside(i, collider); }))

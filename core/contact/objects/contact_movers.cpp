@@ -82,9 +82,9 @@ void Contact<Real>::plan_colliders(Real dt) {
       frame.stand();
     if (frame.blocked) (*colliders_)[k].blocked = true;
     frame.rest = frame.blocked ? frame.rest - 1 : 0;
-    way_step_ = std::max(way_step_, frame.way);
-    way_rows_ = std::max(way_rows_, frame.way_rows + frame.way);
-    gone_ = std::max(gone_, frame.way_collected);
+    way_step_ = std::max(way_step_, frame.travel);
+    way_rows_ = std::max(way_rows_, frame.travel_since_rows + frame.travel);
+    gone_ = std::max(gone_, frame.travel_since_pairs);
   }
 }
 
@@ -98,8 +98,8 @@ void Contact<Real>::move_colliders(Real dt) {
     if (!frame.tracked || frame.blocked) continue;
     advance_collider(static_cast<double>(dt), static_cast<double>(tick_seconds_), state);
     place_collider(k, state.pose);
-    frame.way_collected += frame.way;
-    frame.way_rows += frame.way;
+    frame.travel_since_pairs += frame.travel;
+    frame.travel_since_rows += frame.travel;
   }
   for (const MovingRow<Real>& moving : moving_rows_) {
     const ColliderFrame<Real>& frame = frames_[moving.collider];
@@ -332,7 +332,7 @@ void Contact<Real>::block(std::size_t collider) {
   if (mate != kNone) stop(static_cast<std::size_t>(mate));
   way_rows_ = 0;
   for (const ColliderFrame<Real>& frame : frames_)
-    way_rows_ = std::max(way_rows_, frame.way_rows + frame.way);
+    way_rows_ = std::max(way_rows_, frame.travel_since_rows + frame.travel);
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                    \

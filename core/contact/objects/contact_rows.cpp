@@ -85,7 +85,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   }
   const StageTimer timer(profile, Stage::narrow_phase, 0);
   x_rows_ = state.x;
-  for (ColliderFrame<Real>& frame : frames_) frame.way_rows = 0;
+  for (ColliderFrame<Real>& frame : frames_) frame.travel_since_rows = 0;
   way_rows_ = way_step_;
   take_to_own(state.x);
   rows_.clear();
@@ -154,7 +154,7 @@ std::uint64_t Contact<Real>::add_mesh_rows(const ClothState<Real>& state, std::s
   const ColliderFrame<Real>& frame = frames_[collider];
   const Vec3<Real>& x = in_frame_of(m, state.x)[p];
   const Real reach = thickness_ + row_reach_[p];
-  const Real moved = moved_[p] + frame.way_collected;
+  const Real moved = moved_[p] + frame.travel_since_pairs;
   // Whoever is inside looks for the way out, however far it is.
   const bool outside = clearance_[p] >= 0;
   const auto& pairs = particle_pairs_[m];  // in the order of the active particles

@@ -83,7 +83,8 @@ class ClothTangles {
   Vec3d normal_of(Index triangle, const QuadArray<Real>& x) const;
   Vec3d normal_at(Index edge, const QuadArray<Real>& x) const;
   Vec3d point_of(const TangleCrossing& crossing, const QuadArray<Real>& x) const;
-  Vec3d way_along(const TangleContour& contour, std::size_t place, const QuadArray<Real>& x) const;
+  Vec3d direction_along(const TangleContour& contour, std::size_t place,
+                        const QuadArray<Real>& x) const;
   void free_around(const TangleContour& contour);
   void place(Row& row, const QuadArray<Real>& x) const;
   Real speed_of(const Row& row, const ClothState<Real>& state) const;

@@ -121,7 +121,7 @@ void TangleContours::decide(const std::vector<TangleCrossing>& crossings,
   if (is_fold(first) && is_fold(last)) {
     const ContourRegions::Part part = cut(crossings, is_held, contour, true, true);
     if (part.side != 0) {
-      contour.way = TangleWay::unfold;
+      contour.motion = TangleMotion::unfold;
       contour.wrong = part.side;
       return set_free(crossings, contour);
     }
@@ -129,7 +129,7 @@ void TangleContours::decide(const std::vector<TangleCrossing>& crossings,
   const ContourRegions::Part parts[2] = {cut(crossings, is_held, contour, true, false),
                                          cut(crossings, is_held, contour, false, true)};
   if (parts[0].side != 0 || parts[1].side != 0) {
-    contour.way = TangleWay::back;
+    contour.motion = TangleMotion::back;
     const bool take_first =
         parts[1].side == 0 || (parts[0].side != 0 && parts[0].area <= parts[1].area);
     contour.sheet = take_first ? 0 : 1;
@@ -149,10 +149,10 @@ void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
                               TangleContour& contour) {
   contour.free_begin = free_.size();
   const auto add = [&](std::uint8_t sheet, const auto& particles) {
-    const bool goes = contour.way == TangleWay::back && sheet == contour.sheet;
+    const bool moves_back = contour.motion == TangleMotion::back && sheet == contour.sheet;
     const auto is_wrong = [&](Index i) { return regions_.is_on(i, contour.wrong); };
     // An edge that crosses twice has no end there.
-    const bool some = goes && std::any_of(particles.begin(), particles.end(), is_wrong);
+    const bool some = moves_back && std::any_of(particles.begin(), particles.end(), is_wrong);
     for (const Index i : particles) {
       if (!some || is_wrong(i)) free_.push_back({sheet, i});
     }

@@ -25,8 +25,8 @@ struct TangleCrossing {
   std::array<Index, 2> link = {kNone, kNone};  ///< previous and next crossing
 };
 
-/// How a tangle is undone along a contour.
-enum class TangleWay : std::uint8_t {
+/// Motion that undoes a tangle along a contour.
+enum class TangleMotion : std::uint8_t {
   slide,   ///< a sheet slides along the contour, from its first crossing to its last
   back,    ///< a sheet moves back through the other one
   unfold,  ///< a pucker is pulled flat: both sheets move out of each other
@@ -37,7 +37,7 @@ enum class TangleWay : std::uint8_t {
 struct TangleContour {
   std::size_t begin = 0, end = 0;            ///< of its list of crossings
   std::size_t free_begin = 0, free_end = 0;  ///< of its free particles
-  TangleWay way = TangleWay::slide;
+  TangleMotion motion = TangleMotion::slide;
   std::uint8_t sheet = 0;  ///< the one that moves back or slides
   /// Side of the other sheet, by its triangles' normals, from which this sheet moves back: 1 above,
   /// -1 below.

@@ -41,8 +41,8 @@ Vec3d ClothTangles<Real>::point_of(const TangleCrossing& crossing, const QuadArr
 
 /// Direction of a contour at one of its crossings.
 template <class Real>
-Vec3d ClothTangles<Real>::way_along(const TangleContour& contour, std::size_t place,
-                                    const QuadArray<Real>& x) const {
+Vec3d ClothTangles<Real>::direction_along(const TangleContour& contour, std::size_t place,
+                                          const QuadArray<Real>& x) const {
   assert(place >= contour.begin && place < contour.end);
   const auto crossing = [&](std::size_t k) -> const TangleCrossing& {
     return crossings_[static_cast<std::size_t>(contours_.order()[k])];
@@ -72,18 +72,18 @@ void ClothTangles<Real>::add_rows(const TangleContour& contour, const QuadArray<
   for (std::size_t k = contour.begin; k < contour.end; ++k) {
     const TangleCrossing& c = crossings_[static_cast<std::size_t>(contours_.order()[k])];
     // The direction in which the edge has to move past the triangle.
-    Vec3d way = Vec3d::Zero();
-    const bool edge_goes = c.side == contour.sheet;
-    switch (contour.way) {
-      case TangleWay::slide:
-        way = way_along(contour, k, x) * (edge_goes ? 1 : -1);
+    Vec3d direction = Vec3d::Zero();
+    const bool edge_moves = c.side == contour.sheet;
+    switch (contour.motion) {
+      case TangleMotion::slide:
+        direction = direction_along(contour, k, x) * (edge_moves ? 1 : -1);
         break;
-      case TangleWay::back:
-        way = edge_goes ? Vec3d(normal_of(c.triangle, x) * -contour.wrong)
-                        : Vec3d(normal_at(c.edge, x) * contour.wrong);
+      case TangleMotion::back:
+        direction = edge_moves ? Vec3d(normal_of(c.triangle, x) * -contour.wrong)
+                               : Vec3d(normal_at(c.edge, x) * contour.wrong);
         break;
-      case TangleWay::unfold:
-        way = unit(normal_at(c.edge, x) - normal_of(c.triangle, x)) * contour.wrong;
+      case TangleMotion::unfold:
+        direction = unit(normal_at(c.edge, x) - normal_of(c.triangle, x)) * contour.wrong;
         break;
     }
     Row row;
@@ -92,8 +92,9 @@ void ClothTangles<Real>::add_rows(const TangleContour& contour, const QuadArray<
     row.particle = {e[0], e[1], t[0], t[1], t[2]};
     row.weight = {static_cast<Real>(1 - c.along), static_cast<Real>(c.along)};
     for (std::size_t m = 0; m < 3; ++m) row.weight[2 + m] = -static_cast<Real>(c.barycentric[m]);
-    row.direction = way.template cast<Real>();
-    row.wanted = static_cast<Real>(contour.way == TangleWay::unfold ? kUnfoldSpeed : kDrawSpeed);
+    row.direction = direction.template cast<Real>();
+    row.wanted =
+        static_cast<Real>(contour.motion == TangleMotion::unfold ? kUnfoldSpeed : kDrawSpeed);
     place(row, x);
     rows_.push_back(row);
   }
@@ -176,8 +177,8 @@ void ClothTangles<Real>::draw(ClothState<Real>& state, Real dt) {
   template Vec3d ClothTangles<Real>::normal_at(Index, const QuadArray<Real>&) const;         \
   template Vec3d ClothTangles<Real>::point_of(const TangleCrossing&, const QuadArray<Real>&) \
       const;                                                                                 \
-  template Vec3d ClothTangles<Real>::way_along(const TangleContour&, std::size_t,            \
-                                               const QuadArray<Real>&) const;                \
+  template Vec3d ClothTangles<Real>::direction_along(const TangleContour&, std::size_t,      \
+                                                     const QuadArray<Real>&) const;          \
   template void ClothTangles<Real>::place(Row&, const QuadArray<Real>&) const;               \
   template Real ClothTangles<Real>::speed_of(const Row&, const ClothState<Real>&) const;     \
   template void ClothTangles<Real>::begin_row(Row&, const ClothState<Real>&, Real) const;    \
