@@ -13,7 +13,7 @@ namespace weft {
    * @param pitch  from row to row, in numbers */                                                  \
   void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                     \
                        std::ptrdiff_t pitch);                                                      \
-  /** The way back. */                                                                             \
+  /** Puts them together again. */                                                                 \
   void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,       \
                          Real* to);                                                                \
   /** Forces of springs, dashpots and bending into `external`. */                                  \
@@ -33,7 +33,7 @@ namespace weft {
   /** Forces of the air into `external`. @param pressure  1/2 rho C_n [kg/m^3]                     \
    * @param skin  c_t [kg/(m^2 s)] */                                                              \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin);                      \
-  /** The box around the ways of all particles off straight paths [m]. @param paths  six lines     \
+  /** The box around all displacements from straight paths [m]. @param paths  six lines            \
    * a row: where they are at time 0 [m], and velocities [m/s] @param box  receives its corners */ \
   void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box);
 WEFT_GRID_KERNELS(float)

@@ -33,9 +33,9 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
   const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
   const Real* const k = g.row[r].coefficients + stiffness * g.line;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const auto way = load(d, x + to + c, g.line) - load(d, x + from + c, g.line);
+    const auto delta = load(d, x + to + c, g.line) - load(d, x + from + c, g.line);
     const auto speed = load(d, v + to + c, g.line) - load(d, v + from + c, g.line);
-    hn::StoreU(spring(d, law, hn::LoadU(d, k + c), way, speed), d, factor + c);
+    hn::StoreU(spring(d, law, hn::LoadU(d, k + c), delta, speed), d, factor + c);
   }
 }
 

@@ -24,33 +24,33 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// @param from   numbers of the block's first particle
 /// @param spare  whether this may be the last one
 template <class D4>
-HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t way, std::ptrdiff_t last,
-                                 bool spare) {
-  if (spare && way == last) {
-    HWY_ALIGN float numbers[4] = {from[way], from[way + 1], from[way + 2], 0};
+HWY_INLINE hn::Vec<D4> load_quad(D4 d, const float* from, std::ptrdiff_t offset,
+                                 std::ptrdiff_t last, bool spare) {
+  if (spare && offset == last) {
+    HWY_ALIGN float numbers[4] = {from[offset], from[offset + 1], from[offset + 2], 0};
     return hn::Load(d, numbers);
   }
-  return hn::LoadU(d, from + way);
+  return hn::LoadU(d, from + offset);
 }
 
 #if HWY_TARGET != HWY_SCALAR
 /// Every fourth lane's particle, as consecutive quads.
-/// @param ways  of the first of them
+/// @param offsets  of the first of them
 template <bool MeetsLast, class D>
-HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshWay* ways,
+HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshOffset* offsets,
                                    std::ptrdiff_t last) {
   const hn::CappedTag<float, 4> four;
-  const auto p0 = load_quad(four, from, ways[0], last, MeetsLast);
+  const auto p0 = load_quad(four, from, offsets[0], last, MeetsLast);
   if constexpr (hn::MaxLanes(d) == 4) {
     return p0;
   } else {
-    const auto p1 = load_quad(four, from, ways[4], last, MeetsLast);
+    const auto p1 = load_quad(four, from, offsets[4], last, MeetsLast);
     if constexpr (hn::MaxLanes(d) == 8) {
       return hn::Combine(d, p1, p0);
     } else {
       const hn::Half<D> half;
-      const auto p2 = load_quad(four, from, ways[8], last, MeetsLast);
-      const auto p3 = load_quad(four, from, ways[12], last, MeetsLast);
+      const auto p2 = load_quad(four, from, offsets[8], last, MeetsLast);
+      const auto p3 = load_quad(four, from, offsets[12], last, MeetsLast);
       return hn::Combine(d, hn::Combine(half, p3, p2), hn::Combine(half, p1, p0));
     }
   }
@@ -60,26 +60,27 @@ HWY_INLINE hn::Vec<D> every_fourth(D d, const float* from, const MeshWay* ways,
 /// Gathers the vectors of one particle per lane.
 /// @tparam MeetsLast  whether the model's last particle may be among them
 template <bool MeetsLast, class D>
-HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshWay* ways,
+HWY_INLINE Triple<hn::Vec<D>> gather(D d, const float* from, const MeshOffset* offsets,
                                      std::ptrdiff_t last) {
 #if HWY_TARGET != HWY_SCALAR
   // Whole particles, transposed: gathers of single numbers take several times as long.
-  return transposed(d, every_fourth<MeetsLast>(d, from, ways, last),
-                    every_fourth<MeetsLast>(d, from, ways + 1, last),
-                    every_fourth<MeetsLast>(d, from, ways + 2, last),
-                    every_fourth<MeetsLast>(d, from, ways + 3, last));
+  return transposed(d, every_fourth<MeetsLast>(d, from, offsets, last),
+                    every_fourth<MeetsLast>(d, from, offsets + 1, last),
+                    every_fourth<MeetsLast>(d, from, offsets + 2, last),
+                    every_fourth<MeetsLast>(d, from, offsets + 3, last));
 #else
   (void)last;
-  const float* const p = from + std::ptrdiff_t{ways[0]};
+  const float* const p = from + std::ptrdiff_t{offsets[0]};
   return {hn::Set(d, p[0]), hn::Set(d, p[1]), hn::Set(d, p[2])};
 #endif
 }
 template <bool MeetsLast, class D>
-HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshWay* ways, std::ptrdiff_t) {
+HWY_INLINE Triple<hn::Vec<D>> gather(D d, const double* from, const MeshOffset* offsets,
+                                     std::ptrdiff_t) {
   HWY_ALIGN double numbers[3][hn::MaxLanes(D())];
   for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
     for (std::size_t c = 0; c < 3; ++c)
-      numbers[c][k] = from[std::ptrdiff_t{ways[k]} + static_cast<std::ptrdiff_t>(c)];
+      numbers[c][k] = from[std::ptrdiff_t{offsets[k]} + static_cast<std::ptrdiff_t>(c)];
   }
   return {hn::Load(d, numbers[0]), hn::Load(d, numbers[1]), hn::Load(d, numbers[2])};
 }
@@ -134,9 +135,9 @@ struct RingPlace {
 /// @param x,v  of the block's first particle
 /// @param sum  forces as quads
 template <bool MeetsLast, class Real>
-HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, const MeshWay* way,
-                           const Real* number, std::ptrdiff_t last, const Real* x, const Real* v,
-                           RingPlace<Real>& ring, Real* sum) {
+HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group,
+                           const MeshOffset* offset, const Real* number, std::ptrdiff_t last,
+                           const Real* x, const Real* v, RingPlace<Real>& ring, Real* sum) {
   using D = hn::CappedTag<Real, kMeshGroup>;
   const D d;
   using V = hn::Vec<D>;
@@ -144,25 +145,26 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, c
           smallest = hn::Set(d, Real(kSmallestSquaredLength));
   const RingPlace<Real> start = ring;
   for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
-    const MeshWay* ways = way + k;
+    const MeshOffset* offsets = offset + k;
     const Real* numbers = number + k;
     ring = start;
-    const auto x0 = gather<MeetsLast>(d, x, ways, last), v0 = gather<MeetsLast>(d, v, ways, last);
-    ways += kMeshGroup;
+    const auto x0 = gather<MeetsLast>(d, x, offsets, last),
+               v0 = gather<MeetsLast>(d, v, offsets, last);
+    offsets += kMeshGroup;
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     const auto add = [&](const Triple<V>& pull) HWY_ATTR {
       f = f + pull;
       store_quads(d, pull, k, ring.next());
     };
-    for (int s = 0; s < group.near; ++s, ways += kMeshGroup, numbers += 3 * kMeshGroup) {
-      const auto away = gather<MeetsLast>(d, x, ways, last) - x0;
-      const auto speed = gather<MeetsLast>(d, v, ways, last) - v0;
+    for (int s = 0; s < group.near; ++s, offsets += kMeshGroup, numbers += 3 * kMeshGroup) {
+      const auto away = gather<MeetsLast>(d, x, offsets, last) - x0;
+      const auto speed = gather<MeetsLast>(d, v, offsets, last) - v0;
       const SpringLaw<D> law{one, hn::LoadU(d, numbers), damping, smallest};
       const V pull = spring(d, law, hn::LoadU(d, numbers + kMeshGroup), away, speed);
       add(away * hn::Sub(pull, hn::LoadU(d, numbers + 2 * kMeshGroup)));
     }
-    for (int s = 0; s < group.far; ++s, ways += kMeshGroup, numbers += kMeshGroup)
-      add((gather<MeetsLast>(d, x, ways, last) - x0) * hn::LoadU(d, numbers));
+    for (int s = 0; s < group.far; ++s, offsets += kMeshGroup, numbers += kMeshGroup)
+      add((gather<MeetsLast>(d, x, offsets, last) - x0) * hn::LoadU(d, numbers));
     store_quads(d, f, k, sum);
   }
 }
@@ -172,13 +174,13 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group, c
 /// @param sum   forces so far as quads
 /// @param to    all forces, by particle of the block
 template <class Real>
-HWY_INLINE void pull_back(const MeshGroup& group, const MeshWay* way, const Real* ring,
+HWY_INLINE void pull_back(const MeshGroup& group, const MeshOffset* offset, const Real* ring,
                           const std::uint16_t* pull, const Real* sum, Real* to) {
   const hn::CappedTag<Real, 4> d;
   const std::uint16_t* const end = pull + kMeshGroup * group.earlier;
   for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
     const Real *const from = sum + part, *const kept = ring + part;
-    const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (way[k] / 3) + part; };
+    const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (offset[k] / 3) + part; };
     // Four at a time: each waits only for its own sums.
     for (std::size_t k = 0; k < kMeshGroup; k += 4) {
       auto f0 = hn::Load(d, from + 4 * quad_of_lane(k)),
@@ -206,7 +208,7 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
                                Take&& take) {
   HWY_ALIGN Real sum[4 * kMeshBlock], force[4 * kMeshBlock];
   const MeshGroup* group = mesh.group;
-  const MeshWay* way = mesh.way;
+  const MeshOffset* offset = mesh.offset;
   const Real* number = mesh.number;
   const std::uint16_t* pull = mesh.pull;
   RingPlace<Real> ring{mesh.ring, 0, mesh.ring_size};
@@ -215,15 +217,15 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kMeshBlock, mesh.count - begin);
     const int groups = static_cast<int>((count + kMeshGroup - 1) / kMeshGroup);
     const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
-    const MeshWay* own[kMeshBlock / kMeshGroup];
+    const MeshOffset* own[kMeshBlock / kMeshGroup];
     for (int g = 0; g < groups; ++g) {
       Real* const to = sum + 4 * kMeshGroup * g;
       if (group[g].meets_last)
-        pull_group<true>(mesh, group[g], way, number, last, x0, v0, ring, to);
+        pull_group<true>(mesh, group[g], offset, number, last, x0, v0, ring, to);
       else
-        pull_group<false>(mesh, group[g], way, number, last, x0, v0, ring, to);
-      own[g] = way;
-      way += (1 + group[g].near + group[g].far) * kMeshGroup;
+        pull_group<false>(mesh, group[g], offset, number, last, x0, v0, ring, to);
+      own[g] = offset;
+      offset += (1 + group[g].near + group[g].far) * kMeshGroup;
       number += (3 * group[g].near + group[g].far) * kMeshGroup;
     }
     for (int g = 0; g < groups; ++g) {

@@ -85,9 +85,9 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
   const auto lead_to = [&](Index particle) {
     const std::ptrdiff_t ahead =
         3 * (particle - (view_.first + static_cast<std::ptrdiff_t>(block)));
-    in_reach_ = in_reach_ && ahead == static_cast<MeshWay>(ahead);
+    in_reach_ = in_reach_ && ahead == static_cast<MeshOffset>(ahead);
     group.meets_last = group.meets_last || particle == view_.last;
-    ways_.push_back(static_cast<MeshWay>(ahead));
+    offsets_.push_back(static_cast<MeshOffset>(ahead));
   };
   const auto add_slots = [&](std::vector<Link> Row::*links, bool springs) {
     std::size_t slots = 0;
@@ -198,7 +198,7 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
     *this = MeshPass();
     return;
   }
-  ways_.shrink_to_fit();
+  offsets_.shrink_to_fit();
   numbers_.shrink_to_fit();
   groups_.shrink_to_fit();
   pulls_.shrink_to_fit();
@@ -209,7 +209,7 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
 template <class Real>
 void MeshPass<Real>::point_view() {
   view_.group = groups_.data();
-  view_.way = ways_.data();
+  view_.offset = offsets_.data();
   view_.number = numbers_.data();
   view_.pull = pulls_.data();
   view_.ring = ring_.data();
@@ -235,7 +235,7 @@ void MeshPass<Real>::kick(const KickLaw<Real>& law, const KickedParticles<Real>&
 
 template <class Real>
 std::size_t MeshPass<Real>::bytes() const {
-  return groups_.capacity() * sizeof(MeshGroup) + ways_.capacity() * sizeof(MeshWay) +
+  return groups_.capacity() * sizeof(MeshGroup) + offsets_.capacity() * sizeof(MeshOffset) +
          (numbers_.capacity() + ring_.capacity()) * sizeof(Real) +
          pulls_.capacity() * sizeof(std::uint16_t);
 }

@@ -66,11 +66,11 @@ class MeshPass {
 
   MeshView<Real> view_;
   std::vector<MeshGroup> groups_;
-  std::vector<MeshWay> ways_;
+  std::vector<MeshOffset> offsets_;
   AlignedVector<Real> numbers_, ring_;
   std::vector<std::uint16_t> pulls_;
   std::size_t pull_count_ = 0;  // lanes of slots laid out so far
-  bool in_reach_ = true;        // every neighbour is within a MeshWay, every count in its 8 bits
+  bool in_reach_ = true;        // every neighbour is within a MeshOffset, every count in its 8 bits
 };
 
 }  // namespace weft

@@ -15,7 +15,7 @@ inline constexpr int kMeshBlock = 128;  ///< particles that are sorted into grou
 /// Offset of a particle in numbers (three per particle) from the block's first particle in the
 /// model. Half the size of an index, because lists are read anew in each substep and do not stay in
 /// the cache.
-using MeshWay = std::int16_t;
+using MeshOffset = std::int16_t;
 
 /// Pulls are addressed by their offset from the ring's start in pairs of numbers: a unit that
 /// processors can address, and 16 bits reach far enough.
@@ -42,8 +42,8 @@ struct MeshGroup {
 /// the overwritten pulls are no longer needed.
 template <class Real>
 struct MeshView {
-  const MeshGroup* group = nullptr;  ///< kMeshBlock / kMeshGroup per block
-  const MeshWay* way = nullptr;      ///< the group's own particles, then by slot, kMeshGroup each
+  const MeshGroup* group = nullptr;    ///< kMeshBlock / kMeshGroup per block
+  const MeshOffset* offset = nullptr;  ///< the group's own particles, then by slot, kMeshGroup each
   /// By near slot rest lengths [m], stiffness [N/m] and entries of the bending matrix [N/m], by far
   /// slot only the negative entries, kMeshGroup each.
   const Real* number = nullptr;

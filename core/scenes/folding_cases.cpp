@@ -20,9 +20,9 @@ struct Hold {
 /// Hands that carry the held points to the other side in a low arch, and let go there.
 /// @param start    when they take hold [s]
 /// @param seconds  duration of the motion [s]
-/// @param way      displacement to the place where they let go [m]
+/// @param displacement  to the place where they let go [m]
 void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, double seconds,
-               const Vec3d& way) {
+               const Vec3d& displacement) {
   assert(!holds.empty() && start >= 0 && seconds > 0);
   constexpr int kKeys = 20;
   constexpr double kHeld = 0.1, kArch = 0.15;  // arch: height per length of the displacement
@@ -33,10 +33,11 @@ void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, doub
     hand.radius = 0.04;
     for (int k = 0; k <= kKeys; ++k) {
       const double part = 0.5 - 0.5 * std::cos(pi * k / kKeys), angle = pi * part;
-      const Vec3d up(0, way.norm() * kArch * std::sin(angle), 0);
-      hand.path.push_back({start + seconds * k / kKeys, way * (0.5 - 0.5 * std::cos(angle)) + up});
+      const Vec3d up(0, displacement.norm() * kArch * std::sin(angle), 0);
+      hand.path.push_back(
+          {start + seconds * k / kKeys, displacement * (0.5 - 0.5 * std::cos(angle)) + up});
     }
-    hand.path.push_back({start + seconds + kHeld, way});
+    hand.path.push_back({start + seconds + kHeld, displacement});
     def.hands.push_back(hand);
   }
 }

@@ -28,8 +28,8 @@ inline constexpr int kCalmKeptSteps = 8;
 /// less than a return to saved positions. Larger: more returns. Smaller: more new paths.
 inline constexpr double kCalmRenewal = 0.9;
 
-/// Fraction of the way to the nearest object that remains after rounding [1]. At 1 rounding could
-/// let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
+/// Fraction of the distance to the nearest object that remains after rounding [1]. At 1 rounding
+/// could let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
 inline constexpr double kCalmRoom = 0.999;
 
 }  // namespace weft

@@ -215,7 +215,7 @@ TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by 
 }
 
 TEST_CASE("a mesh's lists leave few slots free: particles with as many neighbours share them") {
-  // The way to itself, its part of a group's head, and in the mean three springs, two further
+  // The offset to itself, its part of a group's head, and in the mean three springs, two further
   // neighbours and what as many earlier ones have found.
   const double needed = 2 + 0.25 + 3 * (2 + 3 * 4) + 2 * (2 + 4) + (3 + 2) * 2;
   const ClothModel<float> model = build_cloth<float>(union_jack(64));
