@@ -39,9 +39,9 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
 
   const auto size = static_cast<std::size_t>(view_.stride * (view_.rows + 4) + 4 * kSweepMargin);
   for (std::size_t k = 0; k < 3; ++k) {
-    for (Array* array : {&x_[k], &way_[k], &force_[k]}) array->assign(size, Real(0));
+    for (Array* array : {&x_[k], &displacement_[k], &force_[k]}) array->assign(size, Real(0));
     view_.x[k] = at_origin(x_[k]);
-    view_.way[k] = at_origin(way_[k]);
+    view_.displacement[k] = at_origin(displacement_[k]);
     view_.force[k] = at_origin(force_[k]);
   }
   for (std::size_t k = 0; k < 4; ++k) {
@@ -129,7 +129,7 @@ void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>&
       const std::ptrdiff_t here = place(r, c);
       for (int k = 0; k < 3; ++k) {
         view_.x[k][here] = x[i][k];
-        view_.way[k][here] = v[i][k] * dt;
+        view_.displacement[k][here] = v[i][k] * dt;
       }
     }
   }
@@ -157,18 +157,18 @@ void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt
       const std::ptrdiff_t here = place(r, c);
       for (int k = 0; k < 3; ++k) {
         x[i][k] = view_.x[k][here];
-        v[i][k] = view_.way[k][here] / dt;
+        v[i][k] = view_.displacement[k][here] / dt;
       }
     }
   }
 }
 
 template <class Real>
-void GridRelaxation<Real>::store_way(Vec3Array<Real>& way) const {
+void GridRelaxation<Real>::store_displacements(Vec3Array<Real>& displacement) const {
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {
-      for (int k = 0; k < 3; ++k) way[i][k] = view_.way[k][place(r, c)];
+      for (int k = 0; k < 3; ++k) displacement[i][k] = view_.displacement[k][place(r, c)];
     }
   }
 }

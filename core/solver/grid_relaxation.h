@@ -21,7 +21,7 @@ struct SweepView {
   int rows = 0, columns = 0;
   std::ptrdiff_t half = 0, stride = 0;
   Real* x[3] = {};               ///< positions at the start of the substep [m]
-  Real* way[3] = {};             ///< x' - x, displacement of the substep [m]
+  Real* displacement[3] = {};    ///< x' - x, displacement of the substep [m]
   const Real* force[3] = {};     ///< of hands and air [N]; read on request
   const Real* w = nullptr;       ///< inverse masses [1/kg], 0 if pinned
   const Real* free = nullptr;    ///< 1, or 0 if pinned
@@ -40,7 +40,7 @@ struct SweepView {
 
 inline constexpr int kSweepMargin = 16;  ///< not less than the widest vector, in numbers
 
-/// Constants of a prediction: way <- keep way + dt2 (f w + g).
+/// Constants of a prediction: displacement <- keep displacement + dt2 (f w + g).
 template <class Real>
 struct Prediction {
   Real keep = 1, dt2 = 0;
@@ -57,7 +57,7 @@ void predict_grid(const SweepView<double>& grid, const Prediction<double>& step)
 void sweep_grid(const SweepView<float>& grid, bool down, bool first, bool last);
 void sweep_grid(const SweepView<double>& grid, bool down, bool first, bool last);
 
-/// x <- x + way.
+/// x <- x + displacement.
 void move_grid(const SweepView<float>& grid);
 void move_grid(const SweepView<double>& grid);
 
@@ -84,9 +84,9 @@ class GridRelaxation {
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt);
   void load_force(const Vec3Array<Real>& force);
 
-  /// Stores positions and velocities way / dt.
+  /// Stores positions and velocities displacement / dt.
   void store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const;
-  void store_way(Vec3Array<Real>& way) const;
+  void store_displacements(Vec3Array<Real>& displacement) const;
 
  private:
   using Array = AlignedVector<Real>;
@@ -98,7 +98,7 @@ class GridRelaxation {
   SweepView<Real> view_;
   GridSprings<Real> springs_;
   std::size_t first_ = 0;  ///< index in the model of the grid's particle 0
-  std::array<Array, 3> x_, way_, force_;
+  std::array<Array, 3> x_, displacement_, force_;
   std::array<Array, 4> share_, multiplier_;
   Array w_, free_, border_, softer_, bend_, bend_left_, bend_right_, cells_;
 };

@@ -50,8 +50,8 @@ HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table
   const auto softness = hn::Set(d, alpha);
   const Real* share = g.share[table] + k;
   for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
-    const auto way_i = load_at(d, g.way, i + n), way_j = load_at(d, g.way, j + n);
-    const auto delta = (load_at(d, g.x, j + n) - load_at(d, g.x, i + n)) + (way_j - way_i);
+    const auto old_i = load_at(d, g.displacement, i + n), old_j = load_at(d, g.displacement, j + n);
+    const auto delta = (load_at(d, g.x, j + n) - load_at(d, g.x, i + n)) + (old_j - old_i);
     const auto l = hn::Sqrt(hn::Add(dot(delta, delta), smallest));
     auto excess = hn::Sub(l, length);
     if constexpr (Use::kReads) {
@@ -68,15 +68,15 @@ HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table
     }
     const auto ratio = hn::Div(push, l);
     const auto w_i = hn::LoadU(d, g.w + i + n), w_j = hn::LoadU(d, g.w + j + n);
-    auto new_i = way_i + delta * hn::Mul(ratio, w_i), new_j = way_j - delta * hn::Mul(ratio, w_j);
+    auto new_i = old_i + delta * hn::Mul(ratio, w_i), new_j = old_j - delta * hn::Mul(ratio, w_j);
     if (const std::ptrdiff_t left = count - n; left < static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
       // Adding 0 to particles without such a spring could change the sign of a zero.
       const auto ends = hn::FirstN(d, static_cast<std::size_t>(left));
-      new_i = select(ends, new_i, way_i);
-      new_j = select(ends, new_j, way_j);
+      new_i = select(ends, new_i, old_i);
+      new_j = select(ends, new_j, old_j);
     }
-    store_at(d, g.way, i + n, new_i);
-    store_at(d, g.way, j + n, new_j);
+    store_at(d, g.displacement, i + n, new_i);
+    store_at(d, g.displacement, j + n, new_j);
   }
 }
 
@@ -197,7 +197,7 @@ HWY_INLINE void predict_line(D d, const SweepView<Real>& g, const Prediction<Rea
   const Real *x = g.x[component] + p.at, *left = g.x[component] + p.left,
              *right = g.x[component] + p.right, *force = g.force[component] + p.at, *w = g.w + p.at,
              *free = g.free + p.at;
-  Real* way = g.way[component] + p.at;
+  Real* displacement = g.displacement[component] + p.at;
   for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
     const auto mobile = hn::LoadU(d, free + n), inverse_mass = hn::LoadU(d, w + n);
     auto acceleration = hn::Mul(gravity, mobile);
@@ -205,8 +205,8 @@ HWY_INLINE void predict_line(D d, const SweepView<Real>& g, const Prediction<Rea
       acceleration = hn::Sub(acceleration, hn::Mul(bending.pull(x, left, right, n), inverse_mass));
     if (forced)
       acceleration = hn::Add(acceleration, hn::Mul(hn::LoadU(d, force + n), inverse_mass));
-    const auto kept = hn::Mul(hn::LoadU(d, way + n), hn::Mul(keep, mobile));
-    hn::StoreU(hn::Add(kept, hn::Mul(acceleration, dt2)), d, way + n);
+    const auto kept = hn::Mul(hn::LoadU(d, displacement + n), hn::Mul(keep, mobile));
+    hn::StoreU(hn::Add(kept, hn::Mul(acceleration, dt2)), d, displacement + n);
   }
 }
 
@@ -227,7 +227,7 @@ HWY_INLINE void move(const SweepView<Real>& g) {
   const hn::CappedTag<Real, kSweepMargin> d;
   const std::ptrdiff_t count = g.rows * g.stride;
   for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
-    store_at(d, g.x, n, load_at(d, g.x, n) + load_at(d, g.way, n));
+    store_at(d, g.x, n, load_at(d, g.x, n) + load_at(d, g.displacement, n));
 }
 
 HWY_ATTR void predict_f32(const SweepView<float>& g, const Prediction<float>& step) {

@@ -99,12 +99,12 @@ void predict(Tick<Real>& tick) {
     for (auto i = static_cast<std::size_t>(range.first); i < static_cast<std::size_t>(range.end());
          ++i) {
       const Real w = state.inverse_mass[i];
-      Vec3<Real> way = Vec3<Real>::Zero();
+      Vec3<Real> displacement = Vec3<Real>::Zero();
       if (w != 0) {
         const Vec3<Real> acceleration = tick.work.force[i] * w + tick.surroundings.gravity;
-        way = state.v[i] * tick.dt * step.keep + acceleration * step.dt2;
+        displacement = state.v[i] * tick.dt * step.keep + acceleration * step.dt2;
       }
-      tick.work.wanted[i] = tick.compliant() ? way : (state.x[i] + way).eval();
+      tick.work.wanted[i] = tick.compliant() ? displacement : (state.x[i] + displacement).eval();
     }
   }
 }
@@ -128,12 +128,12 @@ void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::pt
   }
 }
 
-/// The same for compliant springs, with ends at x + way.
+/// The same for compliant springs, with ends at x + displacement.
 template <class Real>
 void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
   const Vec3Array<Real>& x = tick.state.x;
-  Vec3Array<Real>& way = tick.work.wanted;
+  Vec3Array<Real>& displacement = tick.work.wanted;
   const std::vector<Real>& w = tick.state.inverse_mass;
   auto n = static_cast<std::ptrdiff_t>(first);
   for (; count > 0; --count, n += step) {
@@ -141,15 +141,15 @@ void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std
     const Spring<Real>& spring = tick.model.springs[k];
     const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
     const Real mobility = w[i] + w[j];
-    const Vec3<Real> delta = (x[j] - x[i]) + (way[j] - way[i]);
+    const Vec3<Real> delta = (x[j] - x[i]) + (displacement[j] - displacement[i]);
     const Real length = delta.norm();
     if (mobility == 0 || spring.stiffness == 0 || !(length > 0)) continue;
     const Real alpha = softness / spring.stiffness;
     Real& lambda = tick.work.multiplier[k];
     const Real push = ((length - spring.rest_length) - alpha * lambda) / (mobility + alpha);
     lambda += push;
-    way[i] += delta * (push / length * w[i]);
-    way[j] -= delta * (push / length * w[j]);
+    displacement[i] += delta * (push / length * w[i]);
+    displacement[j] -= delta * (push / length * w[j]);
   }
 }
 
@@ -198,7 +198,7 @@ void relax(Tick<Real>& tick, int substep) {
     GridRelaxation<Real>& grid = tick.work.grids[p];
     if (in_rows(tick, p)) {
       sweep_rows(grid.view(), tick.solver.sweeps, turn);
-      grid.store_way(tick.work.wanted);
+      grid.store_displacements(tick.work.wanted);
     } else {
       relax_part(tick, tick.model.parts[p].springs, turn);
     }
@@ -211,12 +211,12 @@ template <class Real>
 std::optional<BlowUp> move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
   Vec3Array<Real>& wanted = tick.work.wanted;
-  const bool ways = tick.compliant();
+  const bool compliant = tick.compliant();
   for (std::size_t i = 0; i < state.x.size(); ++i)
-    state.v[i] = (ways ? wanted[i] : (wanted[i] - state.x[i]).eval()) / tick.dt;
+    state.v[i] = (compliant ? wanted[i] : (wanted[i] - state.x[i]).eval()) / tick.dt;
   if (tick.collision.empty()) {
-    if (!ways) std::swap(state.x, wanted);
-    for (std::size_t i = 0; ways && i < state.x.size(); ++i) state.x[i] += wanted[i];
+    if (!compliant) std::swap(state.x, wanted);
+    for (std::size_t i = 0; compliant && i < state.x.size(); ++i) state.x[i] += wanted[i];
     return std::nullopt;
   }
   if (const auto found = find_blow_up(tick.model, state, tick.dt)) return found;

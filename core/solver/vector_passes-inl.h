@@ -39,8 +39,8 @@ HWY_INLINE void kick(const KickPass<Real>& p) {
 template <class Real>
 HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x) {
   for_each_number<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
-    const auto way = hn::Mul(hn::LoadU(d, v + n), hn::Set(d, dt));
-    hn::StoreU(hn::Add(hn::LoadU(d, x + n), way), d, x + n);
+    const auto displacement = hn::Mul(hn::LoadU(d, v + n), hn::Set(d, dt));
+    hn::StoreU(hn::Add(hn::LoadU(d, x + n), displacement), d, x + n);
   });
 }
 

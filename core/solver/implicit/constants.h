@@ -26,7 +26,7 @@ inline constexpr double kViolentStrain = 0.1;
 /// Largest displacement of a particle in a substep, relative to its neighbours, that the guard can
 /// handle, in mean edge lengths [1]. Larger: what passes by within a substep is seen late. Smaller:
 /// verlet steps more ticks.
-inline constexpr double kFarWay = 1;
+inline constexpr double kFarDisplacement = 1;
 
 // Energy.
 

@@ -55,8 +55,8 @@ EnergyReading energies_at(const Step<Real>& step, const Vec3Array<Real>& x,
 template <class Real>
 double drag_work(const Step<Real>& step) {
   double sum = 0;
-  for (std::size_t i = 0; i < step.work.way.size(); ++i)
-    sum += static_cast<double>(step.model.mass[i] * step.work.v[i].dot(step.work.way[i]));
+  for (std::size_t i = 0; i < step.work.displacement.size(); ++i)
+    sum += static_cast<double>(step.model.mass[i] * step.work.v[i].dot(step.work.displacement[i]));
   return step.surroundings.drag * sum;
 }
 
@@ -74,8 +74,8 @@ template <class Real>
 double air_turnover(const Step<Real>& step) {
   if (!step.surroundings.air) return 0;
   double sum = 0;
-  for (std::size_t i = 0; i < step.work.way.size(); ++i)
-    sum += std::abs(static_cast<double>(step.work.air[i].dot(step.work.way[i])));
+  for (std::size_t i = 0; i < step.work.displacement.size(); ++i)
+    sum += std::abs(static_cast<double>(step.work.air[i].dot(step.work.displacement[i])));
   return sum;
 }
 
@@ -92,10 +92,11 @@ bool is_violent(const Step<Real>& step, const EnergyReading& before, const Energ
   return !sound || lost > kViolentLoss * had + air_turnover(step);
 }
 
-/// Divides a substep into pieces of backward Euler; sets `work.way`, `x` and `v` at its end.
+/// Divides a substep into pieces of backward Euler; sets `work.displacement`, `x` and `v` at its
+/// end.
 /// @returns whether all linear systems were solved
 template <class Real>
-bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double& brought) {
+bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double& brought) {
   assert(pieces >= 1 && begin < end);
   ImplicitWorkspace<Real>& work = step.work;
   ClothState<Real>& state = step.state;
@@ -108,12 +109,13 @@ bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, dou
   brought = 0;
   for (int k = 1; k <= pieces; ++k) {
     const Real passed = static_cast<Real>(k) / static_cast<Real>(pieces);
-    solved = find_ways(step, begin + (end - begin) * passed) && solved;
+    solved = solve_displacements(step, begin + (end - begin) * passed) && solved;
     brought += outer_work(step);
     state.x = work.x;
     state.v = work.v;
   }
-  for (std::size_t i = 0; i < state.x.size(); ++i) work.way[i] = work.x[i] - work.start_x[i];
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    work.displacement[i] = work.x[i] - work.start_x[i];
   state.x = work.start_x;
   state.v = work.start_v;
   step.dt = whole;
@@ -125,11 +127,11 @@ bool find_ways_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, dou
 /// @param brought  receives the work of air, shots and hands [J]
 /// @returns        false if there are none, or if the substep is violent and refused
 template <class Real>
-bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading& before,
-                     EnergyReading& after, double& brought) {
+bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& before,
+                   EnergyReading& after, double& brought) {
   ImplicitWorkspace<Real>& work = step.work;
   step.damped = false;
-  bool solved = find_ways(step, end);
+  bool solved = solve_displacements(step, end);
   brought = outer_work(step);
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
@@ -140,23 +142,24 @@ bool find_sound_ways(Step<Real>& step, Real begin, Real end, const EnergyReading
     }
     if (sound) return true;
     if (pieces > kMostPieces) return solved;
-    solved = find_ways_in_pieces(step, begin, end, pieces, brought);
+    solved = solve_in_pieces(step, begin, end, pieces, brought);
   }
 }
 
 /// Whether a particle moves so far relative to the others in a substep that the guard would have to
 /// search half of the cloth for it, and would stop it early.
 template <class Real>
-bool goes_far(const Step<Real>& step, const Collision<Real>& collision) {
+bool moves_far(const Step<Real>& step, const Collision<Real>& collision) {
   if (!collision.guard) return false;
-  const Vec3Array<Real>& ways = step.work.way;
+  const Vec3Array<Real>& displacements = step.work.displacement;
   Vec3<Real> mean = Vec3<Real>::Zero();
-  for (const Vec3<Real>& way : ways) mean += way;
-  mean /= static_cast<Real>(ways.size());
-  const auto far = static_cast<Real>(step.work.far_way);
-  return std::any_of(ways.begin(), ways.end(), [&mean, far](const Vec3<Real>& way) {
-    return (way - mean).squaredNorm() > far * far;
-  });
+  for (const Vec3<Real>& displacement : displacements) mean += displacement;
+  mean /= static_cast<Real>(displacements.size());
+  const auto far = static_cast<Real>(step.work.far_displacement);
+  return std::any_of(displacements.begin(), displacements.end(),
+                     [&mean, far](const Vec3<Real>& displacement) {
+                       return (displacement - mean).squaredNorm() > far * far;
+                     });
 }
 
 /// Moves by the displacements as far as contact allows. An unobstructed particle has the scheme's
@@ -171,21 +174,21 @@ std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
   if (collision.empty()) {
     std::copy(work.v.begin(), work.v.end(), state.v.begin());
     std::copy(work.x.begin(), work.x.end(), state.x.begin());
-    std::copy(work.way.begin(), work.way.end(), work.last_way.begin());
+    std::copy(work.displacement.begin(), work.displacement.end(), work.last_displacement.begin());
     for (std::size_t i = 0; i < state.x.size(); ++i) work.history[i] = !step.damped;
     return std::nullopt;
   }
-  for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.way[i] / step.dt;
+  for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.displacement[i] / step.dt;
   if (const auto found = find_blow_up(step.model, state, step.dt)) return found;
   collision.before_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * step.dt;
   collision.after_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) {
-    const bool free = state.v[i] == (work.way[i] / step.dt).eval();
+    const bool free = state.v[i] == (work.displacement[i] / step.dt).eval();
     work.history[i] = free && !step.damped && step.movable(i);
     if (!free) continue;
     state.v[i] = work.v[i];
-    work.last_way[i] = work.way[i];
+    work.last_displacement[i] = work.displacement[i];
   }
   return std::nullopt;
 }
@@ -204,8 +207,8 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
       systems.push_back(ElementSystem<Real>(model, part));
     longest = std::max(longest, std::visit([](const auto& s) { return s.size(); }, systems.back()));
   }
-  for (Vec3Array<Real>* array :
-       {&way, &x, &v, &force, &air, &last_way, &last_v, &end_x, &end_v, &start_x, &start_v})
+  for (Vec3Array<Real>* array : {&displacement, &x, &v, &force, &air, &last_displacement, &last_v,
+                                 &end_x, &end_v, &start_x, &start_v})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   history.assign(model.mass.size(), 0);
   inertia.assign(model.mass.size(), Real(0));
@@ -223,7 +226,7 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   }
   const double mean_length =
       lengths / static_cast<double>(std::max<std::size_t>(model.edges.size(), 1));
-  far_way = kFarWay * mean_length;
+  far_displacement = kFarDisplacement * mean_length;
   for (const Real m : model.mass) mass += static_cast<double>(m);
   violent_energy = mass * kViolentSpeed * kViolentSpeed / 2;
 }
@@ -260,11 +263,11 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     const EnergyReading before = reading;
     double brought = 0;
     const Real end = static_cast<Real>(s + 1) / count;
-    if (!find_sound_ways(step, begin, end, before, reading, brought)) work.unsolved = true;
+    if (!solve_soundly(step, begin, end, before, reading, brought)) work.unsolved = true;
     if (work.violent) return result;
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
-    work.touching = work.refuses && goes_far(step, collision);
+    work.touching = work.refuses && moves_far(step, collision);
     if (work.touching) return result;
     result.blow_up = move(step, collision);
     if (result.blow_up) return result;

@@ -54,26 +54,26 @@ struct ImplicitWorkspace {
 
   std::vector<System> systems;  ///< of each part
   EnergyPass<Real> energy;
-  Vec3Array<Real> way, x, v;         ///< displacement, final positions and velocities
-  Vec3Array<Real> force, air;        ///< [N]
-  Vec3Array<Real> last_way, last_v;  ///< of the previous substep
-  Vec3Array<Real> end_x, end_v;      ///< at the end of the previous tick
-  Vec3Array<Real> start_x, start_v;  ///< of a divided substep
-  std::vector<char> history;         ///< per particle: whether last_way and last_v count
-  std::vector<Real> inertia;         ///< see NewtonPoint
+  Vec3Array<Real> displacement, x, v;         ///< displacement, final positions and velocities
+  Vec3Array<Real> force, air;                 ///< [N]
+  Vec3Array<Real> last_displacement, last_v;  ///< of the previous substep
+  Vec3Array<Real> end_x, end_v;               ///< at the end of the previous tick
+  Vec3Array<Real> start_x, start_v;           ///< of a divided substep
+  std::vector<char> history;  ///< per particle: whether last_displacement and last_v count
+  std::vector<Real> inertia;  ///< see NewtonPoint
   std::vector<SymmetricBlock<Real>> air_blocks;  ///< see NewtonPoint
   std::vector<HandTerm<Real>> hands;             ///< the first hand_count are valid
   std::size_t hand_count = 0;
   std::vector<double> starts;  ///< of each part's first linear system in a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
-  double last_dt = 0;         ///< [s]; 0: no history
-  double credit = 0;          ///< recently lost energy that may return [J]
-  bool unsolved = false;      ///< a linear system of the last tick was not solved
-  bool refuses = false;       ///< the coming tick ends if it is violent or touches
-  bool violent = false;       ///< the last tick ended for violent motion
-  bool touching = false;      ///< the last tick ended for contact
-  double violent_energy = 0;  ///< least energy of a violent substep [J]
-  double far_way = 0;         ///< see goes_far() [m]
+  double last_dt = 0;           ///< [s]; 0: no history
+  double credit = 0;            ///< recently lost energy that may return [J]
+  bool unsolved = false;        ///< a linear system of the last tick was not solved
+  bool refuses = false;         ///< the coming tick ends if it is violent or touches
+  bool violent = false;         ///< the last tick ended for violent motion
+  bool touching = false;        ///< the last tick ended for contact
+  double violent_energy = 0;    ///< least energy of a violent substep [J]
+  double far_displacement = 0;  ///< see moves_far() [m]
 
   void prepare(const ClothModel<Real>& model);
 

@@ -18,13 +18,13 @@ template <class Real>
 void place(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
   for (std::size_t i = 0; i < work.x.size(); ++i) {
-    work.x[i] = step.state.x[i] + work.way[i];
+    work.x[i] = step.state.x[i] + work.displacement[i];
     if (!step.movable(i)) {
       work.v[i] = Vec3<Real>::Zero();
       continue;
     }
     const Scheme<Real> scheme(step, i);
-    work.v[i] = work.way[i] * scheme.rate - scheme.offset;
+    work.v[i] = work.displacement[i] * scheme.rate - scheme.offset;
   }
 }
 
@@ -101,11 +101,11 @@ void add_hands(Step<Real>& step, Real progress) {
       velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
     // No particle is accelerated beyond kFastestHeld.
     const Vec3<Real> start = held_point(grab, step.state.x);
-    Vec3<Real> way = target - start;
-    const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = way.norm();
-    if (length > longest) way *= longest / length;
+    Vec3<Real> displacement = target - start;
+    const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = displacement.norm();
+    if (length > longest) displacement *= longest / length;
     const Vec3<Real> pull =
-        (start + way - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
+        (start + displacement - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
     const Real size = pull.norm(), most = static_cast<Real>(grab.def.max_force);
     const Real part = size > most ? most / size : Real(1);
     grab.force = pull * part;
@@ -186,7 +186,7 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
             [&](const Real* r, Real* z) { system.precondition(r, z); });
         step.profile[Stage::linear_systems].work += static_cast<std::size_t>(found.iterations);
         if (first) start = found.start;
-        system.add(work.step.data(), work.way);
+        system.add(work.step.data(), work.displacement);
         return found.solved;
       },
       work.systems[p]);
@@ -221,12 +221,13 @@ void take_hands(Step<Real>& step) {
 }
 
 template <class Real>
-bool find_ways(Step<Real>& step, Real progress) {
+bool solve_displacements(Step<Real>& step, Real progress) {
   ImplicitWorkspace<Real>& work = step.work;
   assert(step.dt > 0);
   assert(progress > 0 && progress < Real(1.001));
-  for (std::size_t i = 0; i < work.way.size(); ++i)
-    work.way[i] = step.movable(i) ? (step.state.v[i] * step.dt).eval() : Vec3<Real>::Zero().eval();
+  for (std::size_t i = 0; i < work.displacement.size(); ++i)
+    work.displacement[i] =
+        step.movable(i) ? (step.state.v[i] * step.dt).eval() : Vec3<Real>::Zero().eval();
   bool solved = true;
   for (int k = 0; k < step.solver.iterations; ++k) {
     linearise(step, progress);
@@ -245,13 +246,14 @@ double outer_work(const Step<Real>& step) {
   const ImplicitWorkspace<Real>& work = step.work;
   double sum = 0;
   if (step.surroundings.air) {
-    for (std::size_t i = 0; i < work.way.size(); ++i)
-      sum += static_cast<double>(work.air[i].dot(work.way[i]));
+    for (std::size_t i = 0; i < work.displacement.size(); ++i)
+      sum += static_cast<double>(work.air[i].dot(work.displacement[i]));
   }
   const auto add = [&](const auto& held, const Vec3<Real>& force) {
     for (std::size_t n = 0; n < held.particles.size(); ++n)
-      sum += static_cast<double>(force.dot(work.way[static_cast<std::size_t>(held.particles[n])]) *
-                                 held.weights[n]);
+      sum += static_cast<double>(
+          force.dot(work.displacement[static_cast<std::size_t>(held.particles[n])]) *
+          held.weights[n]);
   };
   for (const Shot<Real>& shot : step.grabs.shots) add(shot, shot.force);
   for (std::size_t h = 0; h < work.hand_count; ++h) {
@@ -261,9 +263,9 @@ double outer_work(const Step<Real>& step) {
   return sum;
 }
 
-#define WEFT_INSTANTIATE(Real)                \
-  template void take_hands(Step<Real>&);      \
-  template bool find_ways(Step<Real>&, Real); \
+#define WEFT_INSTANTIATE(Real)                          \
+  template void take_hands(Step<Real>&);                \
+  template bool solve_displacements(Step<Real>&, Real); \
   template double outer_work(const Step<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -22,8 +22,8 @@ struct Step {
   bool movable(std::size_t i) const { return state.inverse_mass[i] > 0; }
 };
 
-/// How the final velocity and its change follow from a particle's displacement: v' = rate way -
-/// offset, M (rate v' - before) = forces.
+/// How the final velocity and its change follow from a particle's displacement: v' = rate
+/// displacement - offset, M (rate v' - before) = forces.
 template <class Real>
 struct Scheme {
   Real rate;
@@ -35,7 +35,7 @@ struct Scheme {
     if (work.history[i] && !step.damped) {
       const Real half = 1 / (2 * step.dt);
       rate = 3 * half;
-      offset = work.last_way[i] * half;
+      offset = work.last_displacement[i] * half;
       before = (v * 4 - work.last_v[i]) * half;
     } else {
       rate = 1 / step.dt;
@@ -50,11 +50,11 @@ struct Scheme {
 template <class Real>
 void take_hands(Step<Real>& step);
 
-/// Solves for the displacements of a substep: `way`, and the resulting `x` and `v`.
+/// Solves for the displacements of a substep: `displacement`, and the resulting `x` and `v`.
 /// @param progress  fraction of the tick that has passed at its end, 0 to 1
 /// @returns whether all its linear systems were solved
 template <class Real>
-bool find_ways(Step<Real>& step, Real progress);
+bool solve_displacements(Step<Real>& step, Real progress);
 
 /// Work of air, shots and hands over the present displacements [J].
 template <class Real>

@@ -43,25 +43,25 @@ class ForceRow {
 /// One vector of SpringTerm: force on the first ends, and the blocks.
 template <class D, class Real, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> spring_term(D d, const SpringPlanes<Real>& springs, std::size_t kind,
-                                 std::ptrdiff_t at, Real rate, const Triple<V>& way,
+                                 std::ptrdiff_t at, Real rate, const Triple<V>& delta,
                                  const Triple<V>& dv, SpringGrid<Real>& grid) {
   const V k = hn::LoadU(d, springs.stiffness[kind].data() + at);
   const V c = hn::LoadU(d, springs.damping[kind].data() + at);
   const V length = hn::LoadU(d, springs.rest_length[kind].data() + at);
   const V zero = hn::Zero(d), one = hn::Set(d, Real(1));
-  const V inverse = inverse_root(
-      d, hn::Add(fused_dot(d, way, way), hn::Set(d, static_cast<Real>(kSmallestSquaredLength))));
+  const V inverse = inverse_root(d, hn::Add(fused_dot(d, delta, delta),
+                                            hn::Set(d, static_cast<Real>(kSmallestSquaredLength))));
   const V elastic = hn::Mul(k, fused_minus(d, length, inverse, one));
-  const V closing = hn::Mul(hn::Mul(fused_dot(d, way, dv), inverse), inverse);
+  const V closing = hn::Mul(hn::Mul(fused_dot(d, delta, dv), inverse), inverse);
   const V across = hn::Max(zero, elastic);
   const V along = hn::Sub(fused(d, c, hn::Set(d, rate), k), across);
-  const Triple<V> factor = way * hn::Mul(inverse, hn::Sqrt(along));
+  const Triple<V> factor = delta * hn::Mul(inverse, hn::Sqrt(along));
   auto& block = grid.springs[kind];
   hn::StoreU(factor.x, d, block[0].data() + at);
   hn::StoreU(factor.y, d, block[1].data() + at);
   hn::StoreU(factor.z, d, block[2].data() + at);
   hn::StoreU(across, d, block[3].data() + at);
-  return way * fused(d, c, closing, elastic);
+  return delta * fused(d, c, closing, elastic);
 }
 
 /// Blocks of the springs that begin in a row of cells, and their forces for `add_up_row`.

@@ -79,29 +79,31 @@ TEST_CASE("a prediction bends each particle by the force of the stencils, to 1e-
   const Vec3Array<double> push(x.size(), Vec3d(0, 0, 1e-3));
   grid.load_force(push);
   predict_grid(grid.view(), step);
-  Vec3Array<double> way(x.size());
-  grid.store_way(way);
+  Vec3Array<double> displacement(x.size());
+  grid.store_displacements(displacement);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3d expected =
         v[i] * dt * 0.75 +
         ((force[i] + push[i]) * state.inverse_mass[i] + Vec3d(0, -9.81, 0)) * dt * dt;
-    CHECK((way[i] - expected).norm() < 1e-12);
+    CHECK((displacement[i] - expected).norm() < 1e-12);
   }
 }
 
 namespace {
 
-/// Moves the ends of one spring at x + way as XPBD says (Macklin, Mueller, Chentanez 2016).
+/// Moves the ends of one spring at x + displacement as XPBD says (Macklin, Mueller, Chentanez
+/// 2016).
 void relax_literally(const Spring<double>& spring, double softness, const Vec3Array<double>& x,
-                     const std::vector<double>& w, double& lambda, Vec3Array<double>& way) {
+                     const std::vector<double>& w, double& lambda,
+                     Vec3Array<double>& displacement) {
   const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
   if (w[i] + w[j] == 0) return;
-  const Vec3d between = x[j] + way[j] - x[i] - way[i];
+  const Vec3d between = x[j] + displacement[j] - x[i] - displacement[i];
   const double alpha = softness / spring.stiffness, c = between.norm() - spring.rest_length;
   const double change = -(c + alpha * lambda) / (w[i] + w[j] + alpha);
   lambda += change;
-  way[i] -= between.normalized() * w[i] * change;
-  way[j] += between.normalized() * w[j] * change;
+  displacement[i] -= between.normalized() * w[i] * change;
+  displacement[j] += between.normalized() * w[j] * change;
 }
 
 /// Springs of a grid in the order of a sweep down: along each row, even cells first, and then from
@@ -157,7 +159,7 @@ TEST_CASE("sweeps by rows are XPBD spring by spring in their order, to 1e-12 m")
   grid.prepare(model.parts[0]);
   grid.set_masses(state.inverse_mass, softness);
   grid.load(x, v, dt);
-  Vec3Array<double> way(x.size()), expected(x.size());
+  Vec3Array<double> displacement(x.size()), expected(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) expected[i] = v[i] * dt;
   std::vector<double> lambda(model.springs.size(), 0);
   for (int s = 0; s < sweeps; ++s) {
@@ -167,8 +169,9 @@ TEST_CASE("sweeps by rows are XPBD spring by spring in their order, to 1e-12 m")
     for (const std::size_t n : order)
       relax_literally(model.springs[n], softness, x, state.inverse_mass, lambda[n], expected);
   }
-  grid.store_way(way);
-  for (std::size_t i = 0; i < x.size(); ++i) REQUIRE((way[i] - expected[i]).norm() < 1e-12);
+  grid.store_displacements(displacement);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    REQUIRE((displacement[i] - expected[i]).norm() < 1e-12);
 }
 
 TEST_CASE("sweeps by rows keep momentum to 1e-12 and leave pinned particles where they are") {
@@ -207,7 +210,7 @@ TEST_CASE("hands, air and contact find the same way as a tick that stays in its 
   CHECK(apart(rows, particles) < 1e-10);
 }
 
-TEST_CASE("single precision keeps up with double at 1000 substeps, to 1e-4 of the way") {
+TEST_CASE("single precision keeps up with double at 1000 substeps, to 1e-4 of its displacement") {
   // With positions alone as the variable, velocities were quantised to the last bit of a position
   // over a substep, 37 % wrong here.
   ClothDef cloth = flat_cloth(16, 16);
@@ -224,11 +227,12 @@ TEST_CASE("single precision keeps up with double at 1000 substeps, to 1e-4 of th
     single.step();
     twice.step();
   }
-  double way = 0;
+  double displacement = 0;
   for (std::size_t i = 0; i < twice.state().x.size(); ++i)
-    way = std::max(way, (twice.state().x[i] - twice.model().rest_positions[i]).norm());
-  CHECK(way > 0.1);
-  CHECK(apart(single, twice) < 1e-4 * way);
+    displacement =
+        std::max(displacement, (twice.state().x[i] - twice.model().rest_positions[i]).norm());
+  CHECK(displacement > 0.1);
+  CHECK(apart(single, twice) < 1e-4 * displacement);
 }
 
 TEMPLATE_TEST_CASE("every instruction set relaxes a grid to the same bits", "", float, double) {
