@@ -183,8 +183,8 @@ class Cases {
       const GrabId hand = world.grab(grab);
       std::vector<double>& times = (alone ? runs : walls).emplace_back();
       for (int tick = 1; tick <= extent_.hand; ++tick) {
-        const double way = std::fmod(kSpeed * tick / kTicksASecond, 2 * kLeg);
-        const double left = way < kLeg ? way : 2 * kLeg - way;
+        const double distance = std::fmod(kSpeed * tick / kTicksASecond, 2 * kLeg);
+        const double left = distance < kLeg ? distance : 2 * kLeg - distance;
         const Vec3d to = from - Vec3d(left, 0, 0);
         world.move_grab(hand, to);
         times.push_back(alone ? milliseconds_of_tick(world) : wall_milliseconds_of_tick(world));
@@ -273,7 +273,7 @@ class Cases {
   std::vector<CaseFigure> figures;
 
  private:
-  /// Pulls the top of the pile with a hand of 0.1 N for a second. @returns its way [mm]
+  /// Pulls the top of the pile with a hand of 0.1 N for a second. @returns its displacement [mm]
   double touch(World<float>& world, Counter& counter) const {
     const std::size_t top = farthest(world, 1);
     const Vec3f before = world.state().x[top];

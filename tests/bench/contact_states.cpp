@@ -36,7 +36,7 @@ ContactState flat(int n) {
                 [&](int r, int c) { return Vec3d(c * cell, -r * cell, 0); });
 }
 
-/// Waves across the sheet whose slope is a sine of the way along it: nothing is stretched.
+/// Waves across the sheet whose slope is a sine of the distance along it: nothing is stretched.
 ContactState wrinkled(int n) {
   const double cell = 1.0 / (n - 1);
   std::vector<Vec3d> section = {Vec3d::Zero()};

@@ -15,8 +15,8 @@ constexpr double kPi = 3.14159265358979323846, kGravity = 9.81;
 constexpr double kFriction = 0.2, kRadius = 0.1;  ///< of the strip's mid-surface on the bar [m]
 constexpr double kWidth = 0.01;                   ///< of the strip [m]
 
-/// Ways in a second of what sticks and of what slides [m]. In single precision what is within 4 %
-/// of its threshold creeps by 0.03 mm/s: rounding shakes it.
+/// Distances in a second of what sticks and of what slides [m]. In single precision what is within
+/// 4 % of its threshold creeps by 0.03 mm/s: rounding shakes it.
 constexpr double kStuck = 1e-4, kSlid = 0.1;
 
 /// A strip of two lines of particles that leads along +x before the bar, round it and on. The bar
@@ -98,7 +98,8 @@ void pull(World<Real>& world, int column, const Vec3d& direction, double force) 
   world.grab(hand);
 }
 
-/// Way of the particle on top of the bar in a second, after one in which all comes to rest [m].
+/// Displacement of the particle on top of the bar in a second [m], after one in which all comes to
+/// rest.
 template <class Real>
 double slip(World<Real>& world, const Wrapped& path) {
   const int columns = world.model().parts[0].columns;
@@ -126,13 +127,13 @@ TEMPLATE_TEST_CASE("round a bar friction holds exp(mu theta) times the pull, to 
   pull(world, 0, -Vec3d::UnitX(), kPull);
   pull(world, world.model().parts[0].columns - 1, Vec3d(std::cos(angle), -std::sin(angle), 0),
        kPull * ratio * part);
-  const double way = slip(world, path);
-  INFO("solver " << static_cast<int>(solver) << " angle " << angle << " part " << part << " way "
-                 << way);
+  const double distance = slip(world, path);
+  INFO("solver " << static_cast<int>(solver) << " angle " << angle << " part " << part
+                 << " distance " << distance);
   if (part < 1)
-    CHECK(way < kStuck);
+    CHECK(distance < kStuck);
   else
-    CHECK(way > kSlid);
+    CHECK(distance > kSlid);
 }
 
 TEMPLATE_TEST_CASE("a heavy strip hung over a bar slips when one side is 0.673 m long, to 3 %", "",
@@ -146,10 +147,10 @@ TEMPLATE_TEST_CASE("a heavy strip hung over a bar slips when one side is 0.673 m
   const Wrapped path{0.3, kPi, part * kLongest};
   World<TestType> world(strip_and_bar(path, -kGravity * Vec3d::UnitX(), solver));
   lay(path, world);
-  const double way = slip(world, path);
-  INFO("solver " << static_cast<int>(solver) << " part " << part << " way " << way);
+  const double distance = slip(world, path);
+  INFO("solver " << static_cast<int>(solver) << " part " << part << " distance " << distance);
   if (part < 1)
-    CHECK(way < kStuck);
+    CHECK(distance < kStuck);
   else
-    CHECK(way > kSlid);
+    CHECK(distance > kSlid);
 }

@@ -62,17 +62,17 @@ std::vector<std::size_t> pinched(const World<float>& world) {
   return found;
 }
 
-/// Largest way of any of them against the jaws over some seconds [m].
+/// Largest displacement of any of them against the jaws over some seconds [m].
 double creep(World<float>& world, double seconds) {
   const std::vector<std::size_t> held = pinched(world);
   REQUIRE(held.size() > 10);
   const Vec3Array<float> before = world.state().x;
   const Vec3d jaws = world.grippers()[0].pose.position;
   test::advance(world, seconds);
-  const Vec3d way = world.grippers()[0].pose.position - jaws;
+  const Vec3d displacement = world.grippers()[0].pose.position - jaws;
   double most = 0;
   for (const std::size_t i : held)
-    most = std::max(most, ((world.state().x[i] - before[i]).cast<double>() - way).norm());
+    most = std::max(most, ((world.state().x[i] - before[i]).cast<double>() - displacement).norm());
   return most;
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("jaws that come down on folded cloth stop with their force and do not 
   test::advance(world, 0.5);
   go(Vec3d(0, 0.5, 0), 1, 0.02);
   test::advance(world, 0.75);
-  // The space between the lower jaw and the table ends long before the way does.
+  // The space between the lower jaw and the table ends long before the jaw's path does.
   const double speed = GENERATE(0.5, 1.0);
   go(Vec3d(0, 0.25, 0), speed, 0.02);
   const double most = def.grippers[0].max_force;

@@ -28,8 +28,8 @@ double mass_of(const World<double>& world) {
   return sum;
 }
 
-/// Largest error of the way of a free cloth under a wide hand, against that of a mass on a damped
-/// spring that starts at rest, in parts of its first distance.
+/// Largest error of the displacement of a free cloth under a wide hand, against that of a mass on a
+/// damped spring that starts at rest, in fractions of its first distance.
 double worst_error(int substeps) {
   WorldDef def = test::empty_world(test::flat_cloth(9, 9));
   def.solver.min_substeps = substeps;
@@ -56,8 +56,8 @@ double worst_error(int substeps) {
     double expected = 0;
     constexpr int kParts = 200;
     for (int k = 0; k < kParts; ++k) expected += answer(n * tick - (k + 0.5) / kParts * tick);
-    const double way = (test::centre_of_mass(world) - start)[1] / kDistance;
-    worst = std::max(worst, std::abs(way - expected / kParts));
+    const double displacement = (test::centre_of_mass(world) - start)[1] / kDistance;
+    worst = std::max(worst, std::abs(displacement - expected / kParts));
   }
   return worst;
 }

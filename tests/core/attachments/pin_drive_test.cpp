@@ -27,9 +27,10 @@ Vec3d centre_of(const World<Real>& world, std::size_t pin) {
 }
 
 template <class Real>
-void send_all(World<Real>& world, const Vec3d& way, double speed = 2, double max_force = 50) {
+void send_all(World<Real>& world, const Vec3d& offset, double speed = 2, double max_force = 50) {
   for (std::size_t k = 0; k < world.pins().list.size(); ++k)
-    REQUIRE(world.move_pin(world.pins().list[k].id, {centre_of(world, k) + way, speed, max_force}));
+    REQUIRE(
+        world.move_pin(world.pins().list[k].id, {centre_of(world, k) + offset, speed, max_force}));
 }
 
 }  // namespace
@@ -37,8 +38,8 @@ void send_all(World<Real>& world, const Vec3d& way, double speed = 2, double max
 TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and nothing crosses") {
   World<float> world(hung_cloth());
   for (int k = 0; k < 30; ++k) world.step();
-  const Vec3d left = centre_of(world, 0), right = centre_of(world, 1), way(0, 0, 3);
-  send_all(world, way);
+  const Vec3d left = centre_of(world, 0), right = centre_of(world, 1), offset(0, 0, 3);
+  send_all(world, offset);
   double largest_strain = 0;
   std::size_t crossed = 0;
   for (int k = 0; k < 180; ++k) {
@@ -48,8 +49,8 @@ TEST_CASE("a pin pulled 3 m away arrives with its cloth, is fixed again, and not
   }
   CHECK(crossed == 0);
   CHECK(largest_strain < 0.5);
-  CHECK((centre_of(world, 0) - left - way).norm() < 1e-5);
-  CHECK((centre_of(world, 1) - right - way).norm() < 1e-5);
+  CHECK((centre_of(world, 0) - left - offset).norm() < 1e-5);
+  CHECK((centre_of(world, 1) - right - offset).norm() < 1e-5);
   CHECK_FALSE(world.pins().any_moving());
   for (const Pin& pin : world.pins().list) {
     for (const Index i : pin.particles)
@@ -158,18 +159,19 @@ TEST_CASE("a particle that another pin holds too stays where it is") {
 }
 
 TEST_CASE("a pin that is given a time is fixed at its target within it, and not in half of it") {
-  for (const double way : {0.002, 0.1, 0.6}) {
+  for (const double distance : {0.002, 0.1, 0.6}) {
     for (const double more : {1.0, 1.5, 10.0}) {
       World<float> world(hung_cloth());
       for (int k = 0; k < 30; ++k) world.step();
       const Pin& pin = world.pins().list[0];
-      const Vec3d step = Vec3d(0, 0.3, 1).normalized() * way, target = centre_of(world, 0) + step;
-      const double tick = world.tick_seconds(), seconds = more * least_seconds(way, tick);
+      const Vec3d step = Vec3d(0, 0.3, 1).normalized() * distance,
+                  target = centre_of(world, 0) + step;
+      const double tick = world.tick_seconds(), seconds = more * least_seconds(distance, tick);
       const double left = remaining_distance(pin, world.state(), target);
       send_all(world, step, speed_within(left, seconds, tick));
       int ticks = 0;
       for (; pin.path && ticks < 1000; ++ticks) world.step();
-      INFO(way << " m in " << seconds << " s, " << ticks << " ticks");
+      INFO(distance << " m in " << seconds << " s, " << ticks << " ticks");
       CHECK(ticks * tick <= seconds + 1e-9);
       if (more > 1) CHECK(ticks * tick > seconds / 2);
       CHECK((centre_of(world, 0) - target).norm() < 1e-5);

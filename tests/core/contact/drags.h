@@ -14,7 +14,7 @@ namespace weft::test {
 // Hands that take hold of a cloth anywhere, pull it about and let go, and an exact count of what
 // passed through what after each tick.
 
-/// A hand on its way through points at random, each reached at a speed of its own.
+/// A hand that moves through points at random, each reached at a speed of its own.
 class WanderingHand {
  public:
   /// Takes hold of a random point of a random triangle.
@@ -49,16 +49,16 @@ class WanderingHand {
       return false;
     }
     if (tick < first_) return true;
-    double way = speed_ * world.tick_seconds();
-    if ((goal_ - at_).norm() <= way) turn(random);
-    way = std::min(speed_ * world.tick_seconds(), (goal_ - at_).norm());
-    if (way > 0) at_ += (goal_ - at_).normalized() * way;
+    double step = speed_ * world.tick_seconds();
+    if ((goal_ - at_).norm() <= step) turn(random);
+    step = std::min(speed_ * world.tick_seconds(), (goal_ - at_).norm());
+    if (step > 0) at_ += (goal_ - at_).normalized() * step;
     world.move_grab(id_, at_);
     return true;
   }
 
  private:
-  /// The objects are around the middle, the ground is at 0: as often as not the way is barred.
+  /// The objects are around the middle, the ground is at 0: as often as not the path is barred.
   void turn(Random& random) {
     goal_ = Vec3d(random.uniform(-0.7, 0.7), random.uniform(-0.2, 1), random.uniform(-0.7, 0.7));
     speed_ = random.uniform(0.5, 5);

@@ -173,8 +173,8 @@ void check_twist(const char* fabric, double thickness, int rows, bool mesh = fal
   CHECK(failures_of(world, verdict) == "");
 }
 
-/// When the particles' mean has gone so much of its way along `along` [s].
-double time_of(const WorldDef& def, SelfContact self, const Vec3d& along, double way) {
+/// When the particles' mean has moved so far along `along` [s].
+double time_of(const WorldDef& def, SelfContact self, const Vec3d& along, double distance) {
   WorldDef chosen = def;
   chosen.contact.seed.self = self;
   World<float> world(chosen);
@@ -186,18 +186,18 @@ double time_of(const WorldDef& def, SelfContact self, const Vec3d& along, double
   const double start = place();
   for (double before = 0; world.report().time < 5;) {
     world.step();
-    const double gone = place() - start;
-    if (gone >= way)
-      return world.report().time - world.tick_seconds() * (gone - way) / (gone - before);
-    before = gone;
+    const double moved = place() - start;
+    if (moved >= distance)
+      return world.report().time - world.tick_seconds() * (moved - distance) / (moved - before);
+    before = moved;
   }
   FAIL("it gets nowhere");
   return 0;
 }
 
-void check_times(const char* what, const WorldDef& def, const Vec3d& along, double way) {
-  const double with = time_of(def, SelfContact::guard, along, way);
-  const double without = time_of(def, SelfContact::none, along, way);
+void check_times(const char* what, const WorldDef& def, const Vec3d& along, double distance) {
+  const double with = time_of(def, SelfContact::guard, along, distance);
+  const double without = time_of(def, SelfContact::none, along, distance);
   INFO(what << ": " << with << " s, without contact with itself " << without << " s");
   CHECK(with == Approx(without).epsilon(0.02));
 }
