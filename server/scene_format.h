@@ -273,9 +273,9 @@ void describe_scene(Io& io, WorldDef& def) {
           [](Io& in, PinDef& pin) { describe_pin(in, pin); });
   io.list(ListInfo{"hands", 0, kMostSceneHands, "hands that the scene has itself"}, def.hands,
           [](Io& in, HandDef& hand) { describe_hand(in, hand); });
-  io.list(ListInfo{"insults", 0, kMostInsults, "what is done to it at once"}, def.insults,
-          [](Io& in, InsultDef& insult) {
-            in.fields([&](auto&& visit) { visit_fields_of_insult(insult, visit); });
+  io.list(ListInfo{"insults", 0, kMostDisturbances, "what is done to it at once"}, def.disturbances,
+          [](Io& in, DisturbanceDef& disturbance) {
+            in.fields([&](auto&& visit) { visit_fields_of_disturbance(disturbance, visit); });
           });
   io.list(ListInfo{"winds", 0, kMostWinds, "winds that blow one after the other"}, def.winds,
           [](Io& in, WindKey& key) {

@@ -38,7 +38,7 @@ void hang(WorldDef& def) {
 void build_noise(WorldDef& def, const std::string&) {
   hang(def);
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // which leaves a single rest shape
-  def.insults = {{3, 20}, {4, 20}};
+  def.disturbances = {{3, 20}, {4, 20}};
   judge(def, 3);
   def.verdict.rest_at = 3;
   def.verdict.back_by = 9;
@@ -46,7 +46,7 @@ void build_noise(WorldDef& def, const std::string&) {
 
 void build_teleport(WorldDef& def, const std::string&) {
   hang(def);
-  def.insults = {{0, 0.2}, {2.5, 0, Vec3d(0, 0, 3)}, {4.5, 0, Vec3d(0, 0, -3)}};
+  def.disturbances = {{0, 0.2}, {2.5, 0, Vec3d(0, 0, 3)}, {4.5, 0, Vec3d(0, 0, -3)}};
   judge(def, 1);
   def.verdict.rest_at = 2.5;
   def.verdict.back_by = 10;

@@ -83,10 +83,10 @@ void build_point(WorldDef& def, const std::string&) {
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   def.colliders = {ground()};
   def.environment.drag = 5;
-  InsultDef gather;
+  DisturbanceDef gather;
   gather.time = 2;
   gather.gather = 5e-4;
-  def.insults = {gather};
+  def.disturbances = {gather};
   judge(def, 1000);  // the pinned row lies that far from the point
   def.verdict.clear_after = 7;
   def.verdict.rest_at = 2;
@@ -98,13 +98,13 @@ void build_far_teleport(WorldDef& def, const std::string&) {
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // which leaves a single rest shape
   def.colliders = {ground()};
   def.environment.drag = 5;
-  InsultDef away, back;
+  DisturbanceDef away, back;
   away.time = 2.5;
   away.pinned = Vec3d(0, 0, 10);
   back.time = 4;
   back.pinned = -away.pinned;
   away.pin_speed = back.pin_speed = 20;
-  def.insults = {away, back};
+  def.disturbances = {away, back};
   judge(def, 2);
   def.verdict.rest_at = 2.5;
   def.verdict.back_by = 9.5;

@@ -24,8 +24,8 @@ void validate(const HandDef& def, const std::string& path) {
   }
 }
 
-void validate(const InsultDef& def, const std::string& path) {
-  visit_fields_of_insult(
+void validate(const DisturbanceDef& def, const std::string& path) {
+  visit_fields_of_disturbance(
       def, [&path](const FieldInfo& info, const auto& value) { check_field(path, info, value); });
 }
 

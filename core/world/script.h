@@ -27,7 +27,7 @@ struct HandDef {
 };
 
 /// A sudden disturbance of a scene.
-struct InsultDef {
+struct DisturbanceDef {
   double time = 0;               ///< [s], 0 to 3600
   double noise = 0;              ///< most that is added to each component of velocities [m/s]
   Vec3d pinned = Vec3d::Zero();  ///< jump of all pins' targets [m], within 100
@@ -41,7 +41,7 @@ struct WindKey {
   Vec3d wind = Vec3d::Zero();  ///< mean velocity [m/s], components within 100
 };
 
-inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostInsults = 100,
+inline constexpr std::size_t kMostSceneHands = 64, kMostHandKeys = 200, kMostDisturbances = 100,
                              kMostWinds = 1000;
 
 /// Limits that a hard case must keep.
@@ -59,7 +59,7 @@ struct VerdictDef {
 
 /// Throws DefinitionError if a field is out of range; `path` precedes the field's name.
 void validate(const HandDef& def, const std::string& path);
-void validate(const InsultDef& def, const std::string& path);
+void validate(const DisturbanceDef& def, const std::string& path);
 void validate(const std::vector<WindKey>& winds);
 
 /// Displacement of the hand's target from the held point at the start [m].
@@ -85,16 +85,16 @@ void visit_fields_of_hand_key(Def& key, Visitor&& visit) {
         key.offset);
 }
 template <class Def, class Visitor>
-void visit_fields_of_insult(Def& insult, Visitor&& visit) {
-  visit(FieldInfo{"time", 0, 3600, "s", "when it happens"}, insult.time);
+void visit_fields_of_disturbance(Def& disturbance, Visitor&& visit) {
+  visit(FieldInfo{"time", 0, 3600, "s", "when it happens"}, disturbance.time);
   visit(
       FieldInfo{"noise", 0, 1000, "m/s", "most that is added to each component of all velocities"},
-      insult.noise);
-  visit(FieldInfo{"pinned", -100, 100, "m", "jump of all pins' targets"}, insult.pinned);
+      disturbance.noise);
+  visit(FieldInfo{"pinned", -100, 100, "m", "jump of all pins' targets"}, disturbance.pinned);
   visit(FieldInfo{"pin_speed", 1e-3, 20, "m/s", "speed of the pins towards them"},
-        insult.pin_speed);
+        disturbance.pin_speed);
   visit(FieldInfo{"gather", 0, 10, "m", "radius of a ball that all free particles are put into"},
-        insult.gather);
+        disturbance.gather);
 }
 template <class Def, class Visitor>
 void visit_fields_of_wind_key(Def& key, Visitor&& visit) {

@@ -62,7 +62,7 @@ struct TickReport {
   int substeps = 0;
   Energies energies;   ///< at the end [J]; updated when commands change it between ticks
   double work = 0;     ///< by hands, air, and moving objects and pins [J]
-  double brought = 0;  ///< energy added by the scene's insults just before [J]
+  double brought = 0;  ///< energy added by the scene's disturbances just before [J]
   double largest_strain = 0;
   int damped_substeps = 0;  ///< that the implicit solver repeated by backward Euler
   bool violent = false;     ///< stepped by verlet: implicit would have dissipated too much
@@ -233,7 +233,7 @@ class World {
   World(const World&) = default;
   World copy() const;
   void take_reactions();
-  void insult(const InsultDef& insult, std::uint64_t seed);
+  void apply_disturbance(const DisturbanceDef& disturbance, std::uint64_t seed);
   void gather(double radius, std::uint64_t seed);
   void run_script();
   void finish_pins();

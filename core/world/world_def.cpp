@@ -109,8 +109,8 @@ void validate(const EnvironmentDef& def) {
 void validate_script(const WorldDef& def) {
   check_field("", {"hands", 0, kMostSceneHands, "", "number of hands"},
               static_cast<double>(def.hands.size()));
-  check_field("", {"insults", 0, kMostInsults, "", "number of insults"},
-              static_cast<double>(def.insults.size()));
+  check_field("", {"insults", 0, kMostDisturbances, "", "number of disturbances"},
+              static_cast<double>(def.disturbances.size()));
   for (std::size_t k = 0; k < def.hands.size(); ++k) {
     validate(def.hands[k], "hands[" + std::to_string(k) + "].");
     const auto has_name = [&](const ClothDef& cloth) { return cloth.name == def.hands[k].cloth; };
@@ -118,8 +118,8 @@ void validate_script(const WorldDef& def) {
       throw DefinitionError("hands[" + std::to_string(k) + "].cloth", def.hands[k].cloth,
                             "the name of a cloth");
   }
-  for (std::size_t k = 0; k < def.insults.size(); ++k)
-    validate(def.insults[k], "insults[" + std::to_string(k) + "].");
+  for (std::size_t k = 0; k < def.disturbances.size(); ++k)
+    validate(def.disturbances[k], "insults[" + std::to_string(k) + "].");
   validate(def.winds);
 }
 

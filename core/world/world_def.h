@@ -61,12 +61,12 @@ struct WorldDef {
   SleepDef sleep;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
   std::vector<ColliderDef> colliders;
-  std::vector<PinDef> pins;          ///< present at the start
-  std::vector<HandDef> hands;        ///< of the scene itself, at most kMostSceneHands
-  std::vector<InsultDef> insults;    ///< its disturbances, at most kMostInsults
-  std::vector<WindKey> winds;        ///< in succession, at most kMostWinds
-  VerdictDef verdict;                ///< its limits as a hard case
-  std::vector<GripperDef> grippers;  ///< at most kMostGrippers; need contact weft
+  std::vector<PinDef> pins;                  ///< present at the start
+  std::vector<HandDef> hands;                ///< of the scene itself, at most kMostSceneHands
+  std::vector<DisturbanceDef> disturbances;  ///< applied at once, at most kMostDisturbances
+  std::vector<WindKey> winds;                ///< in succession, at most kMostWinds
+  VerdictDef verdict;                        ///< its limits as a hard case
+  std::vector<GripperDef> grippers;          ///< at most kMostGrippers; need contact weft
 };
 
 /// Passes every field that does not belong to a cloth, collider or pin to `visit(path, info,

@@ -56,28 +56,29 @@ void World<Real>::gather(double radius, std::uint64_t seed) {
 }
 
 template <class Real>
-void World<Real>::insult(const InsultDef& insult, std::uint64_t seed) {
+void World<Real>::apply_disturbance(const DisturbanceDef& disturbance, std::uint64_t seed) {
   for (std::size_t i = 0; i < state_.x.size(); ++i) {
     if (pins_.pin_count[i] > 0) continue;
     for (int axis = 0; axis < 3; ++axis)
-      state_.v[i][axis] +=
-          static_cast<Real>(insult.noise * noise_at(seed, i, static_cast<std::uint64_t>(axis)));
+      state_.v[i][axis] += static_cast<Real>(disturbance.noise *
+                                             noise_at(seed, i, static_cast<std::uint64_t>(axis)));
   }
-  if (insult.gather > 0) gather(insult.gather, seed);
-  if (insult.noise > 0 || insult.gather > 0) {
+  if (disturbance.gather > 0) gather(disturbance.gather, seed);
+  if (disturbance.noise > 0 || disturbance.gather > 0) {
     const double before = report_.energies.total();
     accept_state();
     report_.brought += report_.energies.total() - before;
   }
-  if (insult.pinned.isZero(0)) return;
+  if (disturbance.pinned.isZero(0)) return;
   for (const Pin& pin : pins_.list) {
     PinMove move;
     move.target = pin.path ? pin.path->move.target
                            : state_.x[static_cast<std::size_t>(pin.centre)].template cast<double>();
     // Pins moved repeatedly stop at the limit of commanded targets.
-    move.target =
-        (move.target + insult.pinned).cwiseMax(-kFarthestPinTarget).cwiseMin(kFarthestPinTarget);
-    move.speed = insult.pin_speed;
+    move.target = (move.target + disturbance.pinned)
+                      .cwiseMax(-kFarthestPinTarget)
+                      .cwiseMin(kFarthestPinTarget);
+    move.speed = disturbance.pin_speed;
     move_pin(pin.id, move);
   }
 }
@@ -87,8 +88,8 @@ void World<Real>::run_script() {
   const auto tick_of = [this](double time) {
     return static_cast<std::uint64_t>(std::llround(time * def_.tick_rate));
   };
-  for (std::size_t k = 0; k < def_.insults.size(); ++k) {
-    if (tick_of(def_.insults[k].time) == tick_) insult(def_.insults[k], k);
+  for (std::size_t k = 0; k < def_.disturbances.size(); ++k) {
+    if (tick_of(def_.disturbances[k].time) == tick_) apply_disturbance(def_.disturbances[k], k);
   }
   for (const WindKey& key : def_.winds) {
     if (tick_of(key.time) != tick_) continue;
@@ -128,10 +129,10 @@ std::optional<std::size_t> World<Real>::scene_hand(GrabId id) const {
   return std::nullopt;
 }
 
-#define WEFT_INSTANTIATE(Real)                                        \
-  template void World<Real>::gather(double, std::uint64_t);           \
-  template void World<Real>::insult(const InsultDef&, std::uint64_t); \
-  template void World<Real>::run_script();                            \
+#define WEFT_INSTANTIATE(Real)                                                        \
+  template void World<Real>::gather(double, std::uint64_t);                           \
+  template void World<Real>::apply_disturbance(const DisturbanceDef&, std::uint64_t); \
+  template void World<Real>::run_script();                                            \
   template std::optional<std::size_t> World<Real>::scene_hand(GrabId) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -136,10 +136,10 @@ def report_text(data):
             "## Hard shaking", "",
             "Cloths of 1 m × 1 m that hang by one edge, in vacuum and without self-contact: every free particle is "
             "given a velocity of 20 m/s, its size, in a random direction; all free particles are put into a ball of "
-            "1 mm; a pin is moved by 3 m for a tenth of a second and back. With drag 5/s, 5 s after the insult: "
+            "1 mm; a pin is moved by 3 m for a tenth of a second and back. With drag 5/s, 5 s after the disturbance: "
             "rms distance from the solver's own rest, over 1 m; at most 1 % is wanted. Without drag, in 5 s "
-            "after the insult and while the pin is away: what the energy rose above that of the start and the "
-            "work of the insult, over these two less the energy of the rest; at most 1 % is wanted. The worst "
+            "after the disturbance and while the pin is away: what the energy rose above that of the start and the "
+            "work of the disturbance, over these two less the energy of the rest; at most 1 % is wanted. The worst "
             "of all seeds. The rigidity of bending is chosen: B = 1e-5 m² times the stiffness of the structural "
             "springs, for which a flat sheet is the only rest. With a smaller one, as the test cloths of the "
             "other scenes have, a cloth that may pass through itself keeps tucks, which are equilibria too; "

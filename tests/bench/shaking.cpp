@@ -5,7 +5,7 @@
 #include "core/world/world.h"
 #include "tests/bench/cases.h"
 #include "tests/bench/measures.h"
-#include "tests/support/insults.h"
+#include "tests/support/disturbances.h"
 
 namespace weft::bench {
 namespace {
@@ -28,14 +28,15 @@ int run(World<float>& world, int ticks) {
   return rescues;
 }
 
-/// What the energy rose above that of the start and the insult's work, over what was brought.
+/// What the energy rose above that of the start and the disturbance's work, over what was brought.
 /// @param least  energy of the rest [J]
-double gained(World<float>& world, test::Insult kind, unsigned seed, double least, int& rescues) {
+double gained(World<float>& world, test::Disturbance kind, unsigned seed, double least,
+              int& rescues) {
   rescues += run(world, 60);
-  const test::Hurt hurt = test::insult(world, kind, seed);
-  rescues += hurt.rescues;
-  const double brought = hurt.before + hurt.work - least;
-  double highest = std::max(hurt.excess, test::energy_of(world) - least - brought);
+  const test::DisturbanceEffect effect = test::disturb(world, kind, seed);
+  rescues += effect.rescues;
+  const double brought = effect.before + effect.work - least;
+  double highest = std::max(effect.excess, test::energy_of(world) - least - brought);
   for (int k = 0; k < kTicks; ++k) {
     rescues += run(world, 1);
     const double above = test::energy_of(world) - least - brought;
@@ -44,16 +45,16 @@ double gained(World<float>& world, test::Insult kind, unsigned seed, double leas
   return std::max(highest, 0.0) / brought;
 }
 
-/// One solver, cloth and insult, with all its seeds.
-ShakingFigure shake(const WorldDef& def, test::Insult insult, const World<float>& rest) {
+/// One solver, cloth and disturbance, with all its seeds.
+ShakingFigure shake(const WorldDef& def, test::Disturbance disturbance, const World<float>& rest) {
   ShakingFigure figure;
-  figure.insult = name_of(insult);
+  figure.disturbance = name_of(disturbance);
   figure.substeps = rest.report().substeps;
-  figure.seeds = static_cast<int>(test::seeds_of(insult));
+  figure.seeds = static_cast<int>(test::seeds_of(disturbance));
   const double least = test::energy_of(rest);
-  for (unsigned seed = 20; seed < 20 + test::seeds_of(insult); ++seed) {
+  for (unsigned seed = 20; seed < 20 + test::seeds_of(disturbance); ++seed) {
     World<float> damped(def);
-    figure.rescues += run(damped, 60) + test::insult(damped, insult, seed).rescues;
+    figure.rescues += run(damped, 60) + test::disturb(damped, disturbance, seed).rescues;
     figure.rescues += run(damped, kTicks);
     const double off = rms_distance(snapshot(damped.state()), snapshot(rest.state()));
     figure.from_rest = std::max(figure.from_rest, off);
@@ -61,7 +62,7 @@ ShakingFigure shake(const WorldDef& def, test::Insult insult, const World<float>
     WorldDef free = def;
     free.environment.drag = 0;
     World<float> undamped(free);
-    const double more = gained(undamped, insult, seed, least, figure.rescues);
+    const double more = gained(undamped, disturbance, seed, least, figure.rescues);
     figure.gained_energy = std::max(figure.gained_energy, more);
     figure.bounded += more <= kAllowed ? 1 : 0;
   }
@@ -88,8 +89,8 @@ std::vector<ShakingFigure> measure_shaking(bool quick) {
           const WorldDef def = with_setting(hung(n, fabric.fabric, rigidity), setting, 1);
           World<float> rest(def);
           run(rest, kTicks + 60);
-          for (const test::Insult insult : test::kInsults) {
-            ShakingFigure figure = shake(def, insult, rest);
+          for (const test::Disturbance disturbance : test::kDisturbances) {
+            ShakingFigure figure = shake(def, disturbance, rest);
             figure.solver = setting.solver;
             figure.sweeps = setting.sweeps;
             figure.fabric = fabric.name;

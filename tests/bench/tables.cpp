@@ -195,7 +195,7 @@ void Tables::write_shaking(const std::vector<ShakingFigure>& figures) {
       {"solver", "substeps", "sweeps", "fabric", "rigidity_n_m", "n", "insult", "seeds",
        "from_rest", "back", "gained_energy", "bounded", "rescues", "vectors", "load", "commit"});
   for (const ShakingFigure& f : figures)
-    csv.row(f.solver, f.substeps, f.sweeps, f.fabric, f.rigidity, f.n, f.insult, f.seeds,
+    csv.row(f.solver, f.substeps, f.sweeps, f.fabric, f.rigidity, f.n, f.disturbance, f.seeds,
             f.from_rest, f.back, f.gained_energy, f.bounded, f.rescues, std::string(simd_level()),
             load_average(), commit_);
 }

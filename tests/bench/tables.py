@@ -347,7 +347,7 @@ def shaking(rows):
                       percent(row["gained_energy"]), f"{row['bounded']} of {row['seeds']}{missed[1]}",
                       row["rescues"]])
     return taken(rows) + "\n\n" + markdown(
-        ["solver", "fabric", "B [N m]", "N", "insult", "from rest, 5 s later", "seeds within 1 %",
+        ["solver", "fabric", "B [N m]", "N", "disturbance", "from rest, 5 s later", "seeds within 1 %",
          "energy above start and work", "seeds within 1 %", "ticks taken back"], table)
 
 

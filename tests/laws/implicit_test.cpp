@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/insults.h"
+#include "tests/support/disturbances.h"
 #include "tests/support/worlds.h"
 
 // BDF2 with Newton's method and conjugate gradients against closed forms, against verlet, and
@@ -166,7 +166,7 @@ TEST_CASE("implicit leaves violent ticks to verlet, and no others") {
   def.solver.kind = SolverKind::implicit;
   World<float> world(def);
   for (int tick = 0; tick < 60; ++tick) REQUIRE_FALSE(world.step().violent);
-  insult(world, Insult::noise, 20);
+  disturb(world, Disturbance::noise, 20);
   CHECK(world.step().violent);
   int calm = 0;
   for (int tick = 0; tick < 300; ++tick) calm += world.step().violent ? 0 : 1;

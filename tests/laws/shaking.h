@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/insults.h"
+#include "tests/support/disturbances.h"
 #include "tests/support/worlds.h"
 
 namespace weft::test {
@@ -37,9 +37,9 @@ inline constexpr unsigned kMostTucked = 1;
 
 /// The seed's rigid springs know no energy: a pin that jumps by 3 m brings some three times the
 /// work that was done.
-inline bool keeps_energy(const ShakenSolver& solver, Insult kind) {
+inline bool keeps_energy(const ShakenSolver& solver, Disturbance kind) {
   const bool rigid = solver.kind == SolverKind::relaxation && solver.compliance == 0;
-  return !rigid || kind != Insult::teleport;
+  return !rigid || kind != Disturbance::teleport;
 }
 
 /// One square metre in vacuum, without self-contact.
@@ -76,10 +76,10 @@ double distance_from(const Vec3Array<Real>& rest, const World<Real>& world) {
   return std::sqrt(sum / static_cast<double>(rest.size()));
 }
 
-/// Calls `check(kind, seed)` for each insult and each of its seeds.
+/// Calls `check(kind, seed)` for each disturbance and each of its seeds.
 template <class Check>
-void for_each_insult(const ShakenSolver& solver, double stiffness, Check&& check) {
-  for (const Insult kind : kInsults) {
+void for_each_disturbance(const ShakenSolver& solver, double stiffness, Check&& check) {
+  for (const Disturbance kind : kDisturbances) {
     for (unsigned seed = 20; seed < 20 + seeds_of(kind); ++seed) {
       INFO(solver.name << ", " << name_of(kind) << ", seed " << seed << ", " << stiffness
                        << " N/m");
@@ -93,36 +93,36 @@ inline void check_recovery(int n, double stiffness, const ShakenSolver& solver) 
   advance(resting, 6);
   const Vec3Array<float> rest = resting.state().x;
   unsigned tucked = 0;
-  for_each_insult(solver, stiffness, [&](Insult kind, unsigned seed) {
+  for_each_disturbance(solver, stiffness, [&](Disturbance kind, unsigned seed) {
     World<float> world(hanging_square(n, stiffness, 5, solver));
     advance(world, 1);
-    REQUIRE(insult(world, kind, seed).rescues == 0);
+    REQUIRE(disturb(world, kind, seed).rescues == 0);
     CHECK(distance_from(rest, world) < 5);
     for (int tick = 0; tick < 300; ++tick) REQUIRE_FALSE(world.step().divergence);
     CHECK(distance_from(rest, world) < 0.02);
     const bool back = distance_from(rest, world) < 0.01 &&
                       world.report().largest_strain < 2 * resting.report().largest_strain;
     tucked += back ? 0 : 1;
-    if (kind != Insult::noise) CHECK(back);
+    if (kind != Disturbance::noise) CHECK(back);
   });
   CHECK(tucked <= kMostTucked);
 }
 
 /// Energy is counted from that of the rest, which is nearly the least that there is. At each tick
-/// it is at most that of the start and the work that the insult did, also while it is done.
+/// it is at most that of the start and the work that the disturbance did, also while it is done.
 inline void check_bounded_energy(int n, double stiffness, const ShakenSolver& solver) {
   World<float> resting(hanging_square(n, stiffness, 5, solver));
   advance(resting, 6);
   const double least = energy_of(resting);
-  for_each_insult(solver, stiffness, [&](Insult kind, unsigned seed) {
+  for_each_disturbance(solver, stiffness, [&](Disturbance kind, unsigned seed) {
     if (!keeps_energy(solver, kind)) return;
     World<float> world(hanging_square(n, stiffness, 0, solver));
     advance(world, 1);
-    const Hurt hurt = insult(world, kind, seed);
-    REQUIRE(hurt.rescues == 0);
-    const double brought = hurt.before + hurt.work - least;
+    const DisturbanceEffect effect = disturb(world, kind, seed);
+    REQUIRE(effect.rescues == 0);
+    const double brought = effect.before + effect.work - least;
     REQUIRE(brought > 0);
-    CHECK(hurt.excess <= 0.01 * brought);
+    CHECK(effect.excess <= 0.01 * brought);
     double most = energy_of(world) - least;
     for (int tick = 0; tick < 300; ++tick) {
       REQUIRE_FALSE(world.step().divergence);

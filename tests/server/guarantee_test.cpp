@@ -32,10 +32,10 @@ WorldDef scarf() {
 WorldDef bad_scene(const std::string& name) {
   WorldDef def = scarf();
   if (name == "gathered") {
-    InsultDef gather;
+    DisturbanceDef gather;
     gather.time = 0.05;
     gather.gather = 7;
-    def.insults = {gather};
+    def.disturbances = {gather};
     return def;
   }
   if (name == "post" || name == "bead") {

@@ -24,7 +24,7 @@ Each is a scene by name (`weft simulate --scene NAME`, or on the page) that says
 to, under `verdict` in its file. Counted are edges that pass through triangles, of the cloths with themselves
 and each other and with boxes and meshes, and triangles that the axes of rods pass, exactly and at each of
 {ticks} ticks, of 1/60 s where the name tells no other; how deep the cloth is inside an object; the smallest gap of any contact; the largest strain; which part of the wanted
-motion the guard took; how much more energy there was at any time than at the start and by work and insults,
+motion the guard took; how much more energy there was at any time than at the start and by work and disturbances,
 as a part of all energy at play (1 % is allowed); and, where a cloth has one rest to come back to, how far it
 is off 5 s later (1 % of its extent is allowed), or by how much its mean height is. Milliseconds a tick are CPU time on one thread of {machine}, the mean of the run.
 Written by `tests/stability/stability.py --write`.

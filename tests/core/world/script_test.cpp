@@ -47,13 +47,14 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("an insult gathers all that is free in a ball of its radius, and pins go as it says") {
+TEST_CASE(
+    "a disturbance gathers all that is free in a ball of its radius, and pins go as it says") {
   WorldDef def = hanging();
-  InsultDef insult;
-  insult.gather = 1e-3;
-  insult.pinned = Vec3d(0, 0, 10);
-  insult.pin_speed = 15;
-  def.insults = {insult};
+  DisturbanceDef disturbance;
+  disturbance.gather = 1e-3;
+  disturbance.pinned = Vec3d(0, 0, 10);
+  disturbance.pin_speed = 15;
+  def.disturbances = {disturbance};
   def.environment.gravity.setZero();
   def.cloths[0].fabric.stretch_warp = def.cloths[0].fabric.stretch_weft = 1e-3;
   def.cloths[0].fabric.shear = 1e-4;
@@ -70,7 +71,7 @@ TEST_CASE("an insult gathers all that is free in a ball of its radius, and pins 
   CHECK(world.state().x[0][2] > 3);  // at 2 m/s it would be less than 2
 }
 
-TEST_CASE("winds and insults out of range are refused by name, and winds out of order") {
+TEST_CASE("winds and disturbances out of range are refused by name, and winds out of order") {
   WorldDef def = hanging();
   def.winds = {{1, Vec3d(0, 0, 101)}};
   CHECK(refused(def).starts_with("winds[0].wind"));
@@ -79,20 +80,20 @@ TEST_CASE("winds and insults out of range are refused by name, and winds out of 
   def.winds.assign(kMostWinds + 1, {});
   CHECK(refused(def) == "winds");
   def.winds.clear();
-  def.insults.resize(1);
-  def.insults[0].gather = 11;
+  def.disturbances.resize(1);
+  def.disturbances[0].gather = 11;
   CHECK(refused(def) == "insults[0].gather");
-  def.insults[0].gather = 0;
-  def.insults[0].pin_speed = 21;
+  def.disturbances[0].gather = 0;
+  def.disturbances[0].pin_speed = 21;
   CHECK(refused(def) == "insults[0].pin_speed");
 }
 
 TEST_CASE("pins that a scene leads on and on stop where commands may send them") {
   WorldDef def = hanging();
   def.cloths[0].origin = Vec3d(10, 0, 0);
-  InsultDef insult;
-  insult.pinned = Vec3d(100, -100, 100);
-  def.insults.assign(kMostInsults, insult);
+  DisturbanceDef disturbance;
+  disturbance.pinned = Vec3d(100, -100, 100);
+  def.disturbances.assign(kMostDisturbances, disturbance);
   World<float> world(def);
   REQUIRE_NOTHROW(world.step());
   for (const Pin& pin : world.pins().list) {

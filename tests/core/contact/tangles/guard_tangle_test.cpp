@@ -270,9 +270,9 @@ TEST_CASE("a cloth that is a heap is let through itself, unfolds, and has its gu
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   def.environment.drag = 5;
   def.contact.seed.self = SelfContact::guard;
-  InsultDef gather;
+  DisturbanceDef gather;
   gather.gather = 5e-4;
-  def.insults = {gather};
+  def.disturbances = {gather};
   World<float> world(def);
   world.step();
   CHECK(world.guard()->is_heap(0));

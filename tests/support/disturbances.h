@@ -9,30 +9,31 @@
 namespace weft::test {
 
 /// What hard shaking does to a cloth of one square metre that hangs from y = 0.
-enum class Insult {
+enum class Disturbance {
   noise,  ///< every free particle is given 20 m/s, the size of its velocity, in a random direction
   crush,  ///< all free particles are put into a ball of 1 mm
   teleport  ///< the first corner is moved by 3 m for a tenth of a second, then back
 };
 
-inline constexpr Insult kInsults[] = {Insult::noise, Insult::crush, Insult::teleport};
+inline constexpr Disturbance kDisturbances[] = {Disturbance::noise, Disturbance::crush,
+                                                Disturbance::teleport};
 
-/// Of the insults that throw dice, so many are tried.
-inline constexpr unsigned kInsultSeeds = 8;
+/// Of the disturbances drawn at random, so many are tried.
+inline constexpr unsigned kDisturbanceSeeds = 8;
 
-inline const char* name_of(Insult kind) {
-  return kind == Insult::noise   ? "noise of 20 m/s"
-         : kind == Insult::crush ? "all in a ball of 1 mm"
-                                 : "pin 3 m away and back";
+inline const char* name_of(Disturbance kind) {
+  return kind == Disturbance::noise   ? "noise of 20 m/s"
+         : kind == Disturbance::crush ? "all in a ball of 1 mm"
+                                      : "pin 3 m away and back";
 }
 
-/// How many different ways there are to do it.
-inline unsigned seeds_of(Insult kind) {
-  return kind == Insult::teleport ? 1 : kInsultSeeds;
+/// Number of different ones of a kind.
+inline unsigned seeds_of(Disturbance kind) {
+  return kind == Disturbance::teleport ? 1 : kDisturbanceSeeds;
 }
 
-/// What an insult did.
-struct Hurt {
+/// What a disturbance did.
+struct DisturbanceEffect {
   int rescues = 0;    ///< ticks that were taken back meanwhile
   double before = 0;  ///< energy before it [J]
   double work = 0;    ///< done on the cloth by throwing it or moving its particles and its pin [J]
@@ -50,10 +51,10 @@ double energy_of(const World<Real>& world) {
 
 /// Throws the free particles or puts them into the ball.
 template <class Real>
-void hurt_particles(ClothState<Real>& state, Insult kind, Random& random) {
+void disturb_particles(ClothState<Real>& state, Disturbance kind, Random& random) {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     if (state.inverse_mass[i] == 0) continue;
-    if (kind == Insult::noise) {
+    if (kind == Disturbance::noise) {
       Vec3d v = random.vector(1);
       while (v.norm() > 1 || v.norm() < 1e-3) v = random.vector(1);
       state.v[i] = (v.normalized() * 20).template cast<Real>();
@@ -67,28 +68,28 @@ void hurt_particles(ClothState<Real>& state, Insult kind, Random& random) {
 /// of it is done at once where particles are moved or thrown.
 /// @param seed  of the random directions and places
 template <class Real>
-Hurt insult(World<Real>& world, Insult kind, unsigned seed = 20) {
-  Hurt hurt;
-  hurt.before = energy_of(world);
+DisturbanceEffect disturb(World<Real>& world, Disturbance kind, unsigned seed = 20) {
+  DisturbanceEffect effect;
+  effect.before = energy_of(world);
   const auto work_of = [&](auto&& change) {
     const double start = energy_of(world);
     change(world.state());
     world.accept_state();
-    hurt.work += energy_of(world) - start;
+    effect.work += energy_of(world) - start;
   };
-  if (kind != Insult::teleport) {
+  if (kind != Disturbance::teleport) {
     Random random(seed);
-    work_of([&](ClothState<Real>& state) { hurt_particles(state, kind, random); });
-    return hurt;
+    work_of([&](ClothState<Real>& state) { disturb_particles(state, kind, random); });
+    return effect;
   }
   const auto first = world.state().x.front();
   work_of([](ClothState<Real>& state) { state.x.front()[2] += Real(3); });
   for (int tick = 0; tick < 6; ++tick) {
-    hurt.rescues += world.step().divergence ? 1 : 0;
-    hurt.excess = std::max(hurt.excess, energy_of(world) - hurt.before - hurt.work);
+    effect.rescues += world.step().divergence ? 1 : 0;
+    effect.excess = std::max(effect.excess, energy_of(world) - effect.before - effect.work);
   }
   work_of([&](ClothState<Real>& state) { state.x.front() = first; });
-  return hurt;
+  return effect;
 }
 
 }  // namespace weft::test
