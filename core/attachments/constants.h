@@ -29,7 +29,7 @@ inline constexpr double kFastestHeld = 30;
 /// force.
 inline constexpr double kLeadSeconds = 1.0 / 60;
 
-/// Duration of a fired sling's push, rounded to ticks, at least one [s]. Larger: a slower throw of
+/// Duration of a fired sling's force, rounded to ticks, at least one [s]. Larger: a slower throw of
 /// more impulse. Smaller: its impulse goes to the few grams of the held disc before the surrounding
 /// cloth can follow.
 inline constexpr double kSlingSeconds = 0.1;

@@ -262,7 +262,7 @@ std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real
   const auto found = find(id, grabs);
   if (found == grabs.list.end() || found->def.mode != GrabMode::sling) return std::nullopt;
   const Vec3<Real> force = sling_force(*found, state);
-  grabs.shots.push_back({std::move(found->particles), std::move(found->weights), force, ticks});
+  grabs.impulses.push_back({std::move(found->particles), std::move(found->weights), force, ticks});
   grabs.list.erase(found);
   return force;
 }
@@ -282,11 +282,12 @@ void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grab
 template <class Real>
 void finish_tick(Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) grab.path_begin = grab.path_end;
-  for (Shot<Real>& shot : grabs.shots) {
-    assert(shot.ticks_left > 0);
-    --shot.ticks_left;
+  for (SlingImpulse<Real>& impulse : grabs.impulses) {
+    assert(impulse.ticks_left > 0);
+    --impulse.ticks_left;
   }
-  std::erase_if(grabs.shots, [](const Shot<Real>& shot) { return shot.ticks_left <= 0; });
+  std::erase_if(grabs.impulses,
+                [](const SlingImpulse<Real>& impulse) { return impulse.ticks_left <= 0; });
 }
 
 template <class Real>
@@ -334,9 +335,9 @@ void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gr
 }
 
 template <class Real>
-void add_shot_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
-  for (const Shot<Real>& shot : grabs.shots)
-    share_force(shot.particles, shot.weights, shot.force, force);
+void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
+  for (const SlingImpulse<Real>& impulse : grabs.impulses)
+    share_force(impulse.particles, impulse.weights, impulse.force, force);
 }
 
 template <class Real>
@@ -345,7 +346,7 @@ void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
     if (grab.def.mode == GrabMode::live)
       share_force(grab.particles, grab.weights, grab.force, force);
   }
-  add_shot_forces(grabs, force);
+  add_sling_forces(grabs, force);
 }
 
 template <class Real>
@@ -383,7 +384,7 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \
   template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,              \
                                 const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
-  template void add_shot_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
+  template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                      \
   template void add_last_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
   template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
   template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);

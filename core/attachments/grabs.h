@@ -53,9 +53,9 @@ struct Grab {
   Vec3<Real> force = Vec3<Real>::Zero();
 };
 
-/// A fired sling while it still pushes.
+/// A fired sling while its force still acts.
 template <class Real>
-struct Shot {
+struct SlingImpulse {
   std::vector<Index> particles;
   std::vector<Real> weights;  ///< of the particles, sum 1
   Vec3<Real> force;           ///< constant [N]
@@ -64,23 +64,23 @@ struct Shot {
 
 template <class Real>
 struct Grabs {
-  std::vector<Grab<Real>> list;   ///< in order of creation
-  std::vector<Shot<Real>> shots;  ///< in order of firing
+  std::vector<Grab<Real>> list;              ///< in order of creation
+  std::vector<SlingImpulse<Real>> impulses;  ///< in order of firing
   GrabId next_id = 1;
 };
 
-/// True if no hand pulls and no shot pushes.
+/// True if no hand pulls and no sling impulse acts.
 template <class Real>
 bool idle(const Grabs<Real>& grabs) {
-  return grabs.list.empty() && grabs.shots.empty();
+  return grabs.list.empty() && grabs.impulses.empty();
 }
 
-inline constexpr std::size_t kMostGrabs = 256;  ///< hands and shots together
+inline constexpr std::size_t kMostGrabs = 256;  ///< hands and sling impulses together
 
 /// Whether one more hand may take hold.
 template <class Real>
 bool has_room(const Grabs<Real>& grabs) {
-  return grabs.list.size() + grabs.shots.size() < kMostGrabs;
+  return grabs.list.size() + grabs.impulses.size() < kMostGrabs;
 }
 
 /// Takes hold. The target starts at the held point unless `def.target` says otherwise. Throws
@@ -114,7 +114,7 @@ std::optional<Vec3<Real>> fire_sling(GrabId id, int ticks, const ClothState<Real
 template <class Real>
 void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grabs);
 
-/// Call after each tick: hands are at the ends of their paths, shots age.
+/// Call after each tick: hands are at the ends of their paths, sling impulses age.
 template <class Real>
 void finish_tick(Grabs<Real>& grabs);
 
@@ -145,11 +145,11 @@ template <class Real>
 void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gravity,
                      const ClothState<Real>& state, Grabs<Real>& grabs, Vec3Array<Real>& force);
 
-/// Adds the constant forces of shots, shared by weight [N].
+/// Adds the constant forces of sling impulses, shared by weight [N].
 template <class Real>
-void add_shot_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
+void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 
-/// Adds the latest forces of hands and shots [N].
+/// Adds the latest forces of hands and sling impulses [N].
 template <class Real>
 void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 

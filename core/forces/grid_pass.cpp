@@ -14,10 +14,10 @@ namespace weft {
 namespace {
 
 /// Sum of the powers that a pass has accumulated; clears their line for the next pass. The line
-/// stays zero if nothing is pulled.
+/// stays zero without external forces.
 template <class Real>
-double take_power(const GridView<Real>& view, bool pulled) {
-  if (!pulled) return 0;
+double take_power(const GridView<Real>& view, bool has_external) {
+  if (!has_external) return 0;
   Real* const line = view.scratch + kPowerLine * view.scratch_line();
   const double sum = sum_of_columns(view, line);
   std::fill_n(line, view.scratch_line(), Real(0));
@@ -262,24 +262,24 @@ void GridPass<Real>::advance_band(int number, const GridStep<Real>& step) {
     grid_advance(view, step, first, tail);
     view.row += tail;
     view.motion = band.tail.data();
-    if (step.pulled) view.external += 3 * tail * view_.line;
+    if (step.has_external) view.external += 3 * tail * view_.line;
     grid_advance(view, step, 0, 2);
     std::copy_n(view.motion, 2 * view.pitch(), view_.motion + tail * view.pitch());
   }
-  band.power = take_power(view, step.pulled);
+  band.power = take_power(view, step.has_external);
 }
 
 template <class Real>
 double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
   assert(fits());
-  assert(!step.pulled || !external_.empty());
+  assert(!step.has_external || !external_.empty());
   const int bands = band_count();
   double power = 0;
   if (!executor || bands_.empty()) {
     grid_begin_rows(view_, 0);
     for (int band = 0; band < bands; ++band) {
       grid_advance(view_, step, first_row(band), first_row(band + 1));
-      power += take_power(view_, step.pulled);
+      power += take_power(view_, step.has_external);
     }
     return power;
   }
@@ -290,11 +290,12 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
 }
 
 template <class Real>
-double GridPass<Real>::drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x) {
+double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& v,
+                             Vec3Array<Real>& x) {
   assert(x.size() == v.size());
-  assert(!pulled || !external_.empty());
-  grid_drift(view_, dt, pulled, v.data()->data(), x.data()->data());
-  return take_power(view_, pulled);
+  assert(!has_external || !external_.empty());
+  grid_drift(view_, dt, has_external, v.data()->data(), x.data()->data());
+  return take_power(view_, has_external);
 }
 
 template <class Real>

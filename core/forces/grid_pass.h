@@ -78,8 +78,8 @@ class GridPass {
   double advance(const GridStep<Real>& step, Executor* executor = nullptr);
 
   /// Loads the model's velocities, moves its positions by dt and loads them too.
-  /// @returns power of the external forces [W]; 0 if not pulled
-  double drift(Real dt, bool pulled, const Vec3Array<Real>& v, Vec3Array<Real>& x);
+  /// @returns power of the external forces [W]; 0 without them
+  double drift(Real dt, bool has_external, const Vec3Array<Real>& v, Vec3Array<Real>& x);
 
   /// Forces of springs, dashpots and bending on each particle of the part [N]. Overwrites its range
   /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.

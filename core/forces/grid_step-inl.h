@@ -213,7 +213,7 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
     compute_factors(g, r, lines);
     for (int component = 0; component < 3; ++component) {
       add_up_forces(g, r, component, lines);
-      if (step.pulled)
+      if (step.has_external)
         move_row<true>(g, r, component, step, lines, power);
       else
         move_row<false>(g, r, component, step, lines, power);
@@ -224,7 +224,7 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
 /// Moves positions of the model by its velocities and loads both. Accumulates the powers of the
 /// external forces in their line.
 template <class Real>
-HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool pulled, const Real* v, Real* x) {
+HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
@@ -234,7 +234,7 @@ HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool pulled, const Real*
         Real* const motion = g.motion + r * g.pitch() + c;
         store(d, place, motion, g.line);
         store(d, speed, motion + GridView<Real>::kVelocityLine * g.line, g.line);
-        if (!pulled) return;
+        if (!has_external) return;
         const auto external = load(d, g.external + 3 * r * g.line + c, g.line);
         hn::StoreU(fused_dot(d, external, speed, hn::LoadU(d, power + c)), d, power + c);
       });

@@ -70,9 +70,9 @@ double sum_of_columns(const GridView<Real>& grid, const Real* values) {
 template <class Real>
 struct GridStep {
   Real keep = 0, push = 0;
-  Real gravity[3] = {};  ///< [m/s^2]
-  Real dt = 0;           ///< of the drift [s]; 0: none
-  bool pulled = false;   ///< add the external forces
+  Real gravity[3] = {};       ///< [m/s^2]
+  Real dt = 0;                ///< of the drift [s]; 0: none
+  bool has_external = false;  ///< add the external forces
 };
 
 }  // namespace weft

@@ -46,7 +46,7 @@ template <class Real>
 double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
-    if (tick.pulled) {
+    if (tick.has_external_forces) {
       const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
       tick.grid(p).compute_air_forces(tick.surroundings.air_density);
     }
@@ -59,7 +59,7 @@ double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
 template <class Real>
 bool may_be_calm(const Tick<Real>& tick) {
   const Collision<Real>& c = tick.collision;
-  if (!c.guard || c.seed || c.pins || tick.hands || !tick.work.all_grids) return false;
+  if (!c.guard || c.seed || c.pins || tick.has_hands || !tick.work.all_grids) return false;
   if (tick.solver.damping_sweeps > 1) return false;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) return false;
@@ -80,7 +80,7 @@ double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real d
   tick.profile[Stage::integration].work += size_of(part.particles);
   const Vec3<Real>& g = tick.surroundings.gravity;
   const double power = tick.grid(p).advance(
-      {k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.pulled}, tick.work.executor);
+      {k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.has_external_forces}, tick.work.executor);
   return power * static_cast<double>(drift);
 }
 
@@ -97,12 +97,12 @@ void load_grids(Tick<Real>& tick) {
 template <class Real>
 double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, int substeps) {
   assert(tick.by_rows(p) && substeps >= 1);
-  assert(!tick.hands && tick.collision.empty() && "nothing else moves the particles");
+  assert(!tick.has_hands && tick.collision.empty() && "nothing else moves the particles");
   GridPass<Real>& grid = tick.grid(p);
   double work = 0;
   for (int s = 0; s <= substeps; ++s) {
     stop_point();
-    if (tick.pulled) {
+    if (tick.has_external_forces) {
       const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
       grid.compute_air_forces(tick.surroundings.air_density);
     }

@@ -25,7 +25,7 @@ struct Tick {
   RelaxationWorkspace<Real>& work;
   Profile& profile;
 
-  bool pulled() const { return surroundings.air || !idle(grabs); }
+  bool has_external_forces() const { return surroundings.air || !idle(grabs); }
   bool compliant() const { return solver.compliance > 0; }
 };
 
@@ -58,7 +58,7 @@ void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
       add_quadratic_bending_forces(model.parts[p], tick.state.x, work.force);
     }
   }
-  if (!tick.pulled()) return;
+  if (!tick.has_external_forces()) return;
   std::fill(work.external.begin(), work.external.end(), Vec3<Real>::Zero());
   if (tick.surroundings.air) {
     const StageTimer timer(tick.profile, Stage::air, model.triangles.size());
@@ -67,8 +67,8 @@ void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
   }
   if (!idle(tick.grabs)) {
     const StageTimer timer(tick.profile, Stage::attachments,
-                           tick.grabs.list.size() + tick.grabs.shots.size());
-    add_shot_forces(tick.grabs, work.external);
+                           tick.grabs.list.size() + tick.grabs.impulses.size());
+    add_sling_forces(tick.grabs, work.external);
   }
   for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.external[i];
   add_hand_forces(hands, static_cast<Real>(kept(tick)), tick.surroundings.gravity, tick.state,
@@ -78,7 +78,7 @@ void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
 template <class Real>
 Prediction<Real> prediction(const Tick<Real>& tick) {
   return {static_cast<Real>(kept(tick)), tick.dt * tick.dt, tick.surroundings.gravity,
-          tick.pulled()};
+          tick.has_external_forces()};
 }
 
 /// Eq. (5), into `wanted`: displacements for compliant springs, positions for rigid ones.
@@ -229,7 +229,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
 /// Whether the tick needs only the sweeps' own arrays.
 template <class Real>
 bool rows_alone(const Tick<Real>& tick) {
-  if (tick.pulled() || !tick.collision.empty()) return false;
+  if (tick.has_external_forces() || !tick.collision.empty()) return false;
   for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
     if (!in_rows(tick, p)) return false;
   }
@@ -268,7 +268,7 @@ void advance_rows(Tick<Real>& tick, int substeps) {
 /// Work of the external forces over the last move [J].
 template <class Real>
 double external_work(const Tick<Real>& tick) {
-  if (!tick.pulled()) return 0;
+  if (!tick.has_external_forces()) return 0;
   double power = 0;
   for (std::size_t i = 0; i < tick.state.v.size(); ++i)
     power += static_cast<double>(tick.work.external[i].dot(tick.state.v[i]));

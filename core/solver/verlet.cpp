@@ -48,11 +48,11 @@ void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
 }
 
-/// Forces of shots and air. Grids store them as their external forces; the arrays of the whole
-/// model contain them for all other parts, and for grids if `listed`.
+/// Forces of sling impulses and air. Grids store them as their external forces; the arrays of the
+/// whole model contain them for all other parts, and for grids if `listed`.
 template <class Real>
-void push(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
-  if (!tick.pulled) return;
+void evaluate_external_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
+  if (!tick.has_external_forces) return;
   const Surroundings<Real>& around = tick.surroundings;
   Vec3Array<Real>& force = tick.work.external;
   if (listed || !tick.work.all_grids) std::fill(force.begin(), force.end(), Vec3<Real>::Zero());
@@ -70,9 +70,9 @@ void push(Tick<Real>& tick, const Vec3Array<Real>& velocity, bool listed) {
       }
     }
   }
-  if (!tick.shots) return;
-  const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.shots.size());
-  add_shot_forces(tick.grabs, force);
+  if (!tick.has_impulses) return;
+  const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.impulses.size());
+  add_sling_forces(tick.grabs, force);
 }
 
 template <class Real>
@@ -93,7 +93,7 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
   pass.to = numbers(range, to);
   pass.internal = numbers(range, work.internal);
   pass.particles = {tick.state.inverse_mass.data() + range.first,
-                    tick.pulled ? numbers(range, work.external) : nullptr};
+                    tick.has_external_forces ? numbers(range, work.external) : nullptr};
   pass.law = law_of(tick, k);
   run_kick(pass);
 }
@@ -105,7 +105,8 @@ void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k) {
   const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
   tick.profile[Stage::bending].work += quadratic_stencil_count(part);
   tick.profile[Stage::integration].work += size_of(part.particles);
-  const Real* const external = tick.pulled ? tick.work.external.data()->data() : nullptr;
+  const Real* const external =
+      tick.has_external_forces ? tick.work.external.data()->data() : nullptr;
   tick.work.meshes[p].kick(law_of(tick, k), {tick.state.inverse_mass.data(), external},
                            tick.state.x, tick.state.v);
 }
@@ -114,11 +115,11 @@ void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k) {
 template <class Real>
 void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
   Vec3Array<Real>& v = tick.state.v;
-  push(tick, v, tick.shots);
+  evaluate_external_forces(tick, v, tick.has_impulses);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p)) {
-      if (tick.shots) tick.grid(p).load_external(tick.work.external);
+      if (tick.has_impulses) tick.grid(p).load_external(tick.work.external);
       advance_grid(tick, p, k, Real(0));
       tick.grid(p).store_velocities(v);
     } else if (tick.work.kicks_at_once(tick.model, p)) {
@@ -145,7 +146,7 @@ void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
     tick.grid(p).load(tick.state.x, velocity);
     tick.grid(p).compute_internal_forces(tick.work.internal);
   }
-  push(tick, velocity, true);
+  evaluate_external_forces(tick, velocity, true);
 }
 
 /// Kicks all cloths that are awake.
@@ -180,7 +181,7 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
 /// Work of the external forces on a range of particles over the coming drift [J].
 template <class Real>
 double external_work(const Tick<Real>& tick, const IndexRange& range) {
-  if (!tick.pulled) return 0;
+  if (!tick.has_external_forces) return 0;
   // Four sums, so that the compiler can keep them in one vector.
   std::array<double, 4> sums{};
   const Real *force = numbers(range, tick.work.external), *v = numbers(range, tick.state.v);
@@ -205,13 +206,14 @@ double drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
   Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
   const bool along =
-      tick.solver.damping_sweeps == 1 && (tick.pulled || !takes_over(tick.collision));
+      tick.solver.damping_sweeps == 1 && (tick.has_external_forces || !takes_over(tick.collision));
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     const IndexRange& range = tick.part(p).particles;
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p) && along) {
-      work += tick.grid(p).drift(tick.dt, tick.pulled, v, x) * static_cast<double>(tick.dt);
+      work += tick.grid(p).drift(tick.dt, tick.has_external_forces, v, x) *
+              static_cast<double>(tick.dt);
     } else {
       work += external_work(tick, range);
       run_drift(3 * size_of(range), numbers(range, v), tick.dt, numbers(range, x));
@@ -319,10 +321,10 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   assert(state.inverse_mass.size() == model.mass.size());
   assert(work.grids.size() == model.parts.size() && "prepared for this model");
   assert(!surroundings.air || surroundings.wind.size() == model.mass.size());
-  const bool hands = !idle(grabs), shots = !grabs.shots.empty();
-  Tick<Real> tick{model,   surroundings, solver, static_cast<Real>(dt),
-                  grabs,   collision,    state,  work,
-                  profile, hands,        shots,  shots || surroundings.air};
+  const bool has_hands = !idle(grabs), has_impulses = !grabs.impulses.empty();
+  Tick<Real> tick{model,   surroundings, solver,       static_cast<Real>(dt),
+                  grabs,   collision,    state,        work,
+                  profile, has_hands,    has_impulses, has_impulses || surroundings.air};
   const Kicks<Real> kicks(dt, surroundings.drag);
   if (surroundings.air) {
     for (GridPass<Real>& grid : work.grids) {
@@ -335,7 +337,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   }
   load_grids(tick);
   result.before = timed_energies(tick).energies;
-  if (collision.empty() && !hands && work.all_grids && solver.damping_sweeps == 1) {
+  if (collision.empty() && !has_hands && work.all_grids && solver.damping_sweeps == 1) {
     for (std::size_t p = 0; p < tick.parts(); ++p) {
       if (!tick.sleeps(p)) result.work += advance_alone(tick, p, kicks, substeps);
     }

@@ -70,9 +70,9 @@ struct AdvanceResult {
 template <class Real>
 struct VerletWorkspace {
   // These are empty if all parts are kicked in one pass with their forces; `external` is still
-  // needed for shots, and for air on parts that are not grids.
+  // needed for sling impulses, and for air on parts that are not grids.
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
-  Vec3Array<Real> external;              ///< forces of shots and air [N]
+  Vec3Array<Real> external;              ///< forces of sling impulses and air [N]
   Vec3Array<Real> velocity;              ///< estimate of the velocity for the dashpots [m/s]
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< other code moves the cloth
@@ -83,12 +83,12 @@ struct VerletWorkspace {
   std::uint64_t loaded_paths = 0;      ///< number of the CalmPaths loaded into the grids; 0: none
   Executor* executor = nullptr;        ///< runs bands of large grids on its threads
 
-  /// Sizes the arrays for a cloth without air and shots.
+  /// Sizes the arrays for a cloth without air and sling impulses.
   /// @param threads  may be null
   void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* threads);
 
-  /// Sizes the additional arrays for air and shots. Call before a tick that has them.
-  void make_room(const ClothModel<Real>& model, bool air, bool shots);
+  /// Sizes the additional arrays for air and sling impulses. Call before a tick that has them.
+  void make_room(const ClothModel<Real>& model, bool air, bool impulses);
 
   /// Sizes the arrays for steps without contact, in a world with a guard (fused_steps.h).
   void make_room_for_paths();

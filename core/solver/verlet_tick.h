@@ -40,7 +40,9 @@ struct Tick {
   ClothState<Real>& state;
   VerletWorkspace<Real>& work;
   Profile& profile;
-  bool hands, shots, pulled;  // any hand; any shot; shots or air push
+  bool has_hands;            // or impulses
+  bool has_impulses;         // of slings
+  bool has_external_forces;  // impulses or air
 
   const ClothPart<Real>& part(std::size_t p) const { return model.parts[p]; }
   GridPass<Real>& grid(std::size_t p) const { return work.grids[p]; }

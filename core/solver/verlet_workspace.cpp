@@ -31,13 +31,13 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
 }
 
 template <class Real>
-void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool shots) {
-  if (!air && !shots) return;
+void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool impulses) {
+  if (!air && !impulses) return;
   assert(grids.size() == model.parts.size() && "prepared for this model");
   for (GridPass<Real>& grid : grids) {
     if (grid.fits()) grid.make_room(air);
   }
-  if (shots || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
+  if (impulses || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
 }
 
 template <class Real>

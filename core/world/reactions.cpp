@@ -10,12 +10,12 @@ namespace weft {
 
 template <class Real>
 void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& state,
-                       const Surroundings<Real>& surroundings, const Vec3Array<Real>& pulled,
+                       const Surroundings<Real>& surroundings, const Vec3Array<Real>& hand_forces,
                        const Pins& pins, Reactions& reactions) {
   if (pins.list.empty()) return;
-  assert(pulled.empty() || pulled.size() == model.mass.size());
+  assert(hand_forces.empty() || hand_forces.size() == model.mass.size());
   assert(pins.pin_count.size() == model.mass.size());
-  Vec3Array<Real> force = pulled;
+  Vec3Array<Real> force = hand_forces;
   force.resize(model.mass.size(), Vec3<Real>::Zero());
   add_spring_forces(model, state.x, state.v, force);
   add_hinge_forces(model, state.x, state.v, force);

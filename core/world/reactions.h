@@ -35,11 +35,11 @@ struct Reactions {
 };
 
 /// Forces on pinned particles: minus those of springs, bending, gravity, air and hands.
-/// @param pulled    forces of hands on each particle [N]; empty if there are none
+/// @param hand_forces    forces of hands on each particle [N]; empty if there are none
 /// @param reactions receives `pins`; its contacts are taken into account
 template <class Real>
 void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& state,
-                       const Surroundings<Real>& surroundings, const Vec3Array<Real>& pulled,
+                       const Surroundings<Real>& surroundings, const Vec3Array<Real>& hand_forces,
                        const Pins& pins, Reactions& reactions);
 
 }  // namespace weft

@@ -108,11 +108,11 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
     feed(hash, &grab.def.max_force, 1);
     if (grab.def.mode == GrabMode::sling) feed(hash, &grab.def.mode, 1);
   }
-  for (const Shot<Real>& shot : grabs.shots) {
-    feed(hash, shot.particles.data(), shot.particles.size());
-    feed(hash, shot.weights.data(), shot.weights.size());
-    feed(hash, &shot.force, 1);
-    feed(hash, &shot.ticks_left, 1);
+  for (const SlingImpulse<Real>& impulse : grabs.impulses) {
+    feed(hash, impulse.particles.data(), impulse.particles.size());
+    feed(hash, impulse.weights.data(), impulse.weights.size());
+    feed(hash, &impulse.force, 1);
+    feed(hash, &impulse.ticks_left, 1);
   }
   for (std::size_t k = 0; k < colliders.size(); ++k) feed(hash, k, defs[k], colliders[k]);
   for (const Gripper& gripper : grippers) feed(hash, gripper);

@@ -99,7 +99,7 @@ void World<Real>::reset() {
   pins_.next_id = next_pin;
   scene_hands_.assign(def_.hands.size(), {});
   grabs_.list.clear();
-  grabs_.shots.clear();
+  grabs_.impulses.clear();
   assert(def_.colliders.size() >= 2 * def_.grippers.size() && "their jaws are colliders");
   colliders_ = initial_states(def_.colliders);
   grippers_ = initial_grippers(def_.grippers, def_.colliders.size() - 2 * def_.grippers.size());
@@ -204,13 +204,13 @@ void World<Real>::prepare_solver() {
   make_room();
 }
 
-/// Sizes the arrays for air and shots as soon as there are any, so that no tick allocates.
+/// Sizes the arrays for air and sling impulses as soon as there are any, so that no tick allocates.
 template <class Real>
 void World<Real>::make_room() {
   const bool air = !is_calm(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
   if (solver_of(def_) != SolverKind::relaxation)
-    verlet_.make_room(model_, air, !grabs_.shots.empty());
+    verlet_.make_room(model_, air, !grabs_.impulses.empty());
 }
 
 template <class Real>

@@ -41,12 +41,12 @@ void World<Real>::take_reactions() {
       found.contacts.push_back(contact);
   }
   if (solver_of(def_) != SolverKind::relaxation) {
-    Vec3Array<Real> pulled;
+    Vec3Array<Real> hand_forces;
     if (!idle(grabs_)) {
-      pulled.assign(model_.mass.size(), Vec3<Real>::Zero());
-      add_last_forces(grabs_, pulled);
+      hand_forces.assign(model_.mass.size(), Vec3<Real>::Zero());
+      add_last_forces(grabs_, hand_forces);
     }
-    add_pin_reactions(model_, state_, surroundings_, pulled, pins_, found);
+    add_pin_reactions(model_, state_, surroundings_, hand_forces, pins_, found);
   }
   reactions_ = std::move(found);
 }

@@ -60,7 +60,7 @@ void World<Real>::rouse_sleepers() {
   if (!sleep_.wanted()) return;
   const auto disturb = [this](Index particle) { sleep_.disturb(part_of(model_, particle)); };
   for (const Grab<Real>& grab : grabs_.list) disturb(grab.particles.front());
-  for (const Shot<Real>& shot : grabs_.shots) disturb(shot.particles.front());
+  for (const SlingImpulse<Real>& impulse : grabs_.impulses) disturb(impulse.particles.front());
   for (const Pin& pin : pins_.list) {
     if (pin.path) disturb(pin.centre);
   }

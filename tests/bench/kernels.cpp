@@ -81,8 +81,8 @@ WorldDef in_wind(WorldDef def) {
   return def;
 }
 
-/// A sling is shot, which takes room for its push.
-KernelFigure memory_with_shot(const char* name, World<float> world) {
+/// A sling is fired, which allocates arrays for its force.
+KernelFigure memory_with_impulse(const char* name, World<float> world) {
   GrabDef sling;
   sling.mode = GrabMode::sling;
   sling.target = Vec3d(0.5, 1, 0.5);
@@ -147,8 +147,9 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
       memory("memory of verlet on a grid of 128 x 128, a particle", grid.world),
       memory("memory of verlet on a grid of 128 x 128 in wind, a particle",
              World<float>(in_wind(swing(128)))),
-      memory_with_shot("memory of verlet on a grid of 128 x 128 after a sling's shot, a particle",
-                       World<float>(swing(128))),
+      memory_with_impulse(
+          "memory of verlet on a grid of 128 x 128 after a sling's shot, a particle",
+          World<float>(swing(128))),
       memory("memory of verlet on a triangle mesh, a particle", mesh.world)};
   // Each of verlet's ticks costs the same; those of implicit do not, so it swings for a second.
   for (const BenchFabric& fabric : bench_fabrics()) {

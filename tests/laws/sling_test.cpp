@@ -39,7 +39,7 @@ TEST_CASE("a sling that is fired gives the impulse that it states, to 1e-12, and
   REQUIRE(impulse);
   CHECK((*impulse - pull * 5.0 * 0.1).norm() < 1e-12);
   for (int tick = 1; tick <= 6; ++tick) {
-    CHECK(world.grabs().shots.size() == 1);
+    CHECK(world.grabs().impulses.size() == 1);
     world.step();
     CHECK((momentum(world) - *impulse * (tick / 6.0)).norm() < 1e-12);
   }

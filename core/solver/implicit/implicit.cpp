@@ -124,7 +124,7 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
 
 /// Displacements of a substep that adds no energy without a source.
 /// @param after    receives the resulting energies
-/// @param brought  receives the work of air, shots and hands [J]
+/// @param brought  receives the work of air, sling impulses and hands [J]
 /// @returns        false if there are none, or if the substep is violent and refused
 template <class Real>
 bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& before,

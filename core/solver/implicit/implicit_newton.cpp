@@ -143,7 +143,7 @@ void linearise(Step<Real>& step, Real progress) {
   add_air(step);
   if (step.surroundings.air)
     for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.air[i];
-  add_shot_forces(step.grabs, work.force);
+  add_sling_forces(step.grabs, work.force);
   add_hands(step, progress);
   const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.inertia,
                                 step.surroundings.air ? &work.air_blocks : nullptr};
@@ -255,7 +255,7 @@ double outer_work(const Step<Real>& step) {
           force.dot(work.displacement[static_cast<std::size_t>(held.particles[n])]) *
           held.weights[n]);
   };
-  for (const Shot<Real>& shot : step.grabs.shots) add(shot, shot.force);
+  for (const SlingImpulse<Real>& impulse : step.grabs.impulses) add(impulse, impulse.force);
   for (std::size_t h = 0; h < work.hand_count; ++h) {
     const Grab<Real>& grab = step.grabs.list[work.hands[h].grab];
     add(grab, grab.force);

@@ -56,7 +56,7 @@ void take_hands(Step<Real>& step);
 template <class Real>
 bool solve_displacements(Step<Real>& step, Real progress);
 
-/// Work of air, shots and hands over the present displacements [J].
+/// Work of air, impulses and hands over the present displacements [J].
 template <class Real>
 double outer_work(const Step<Real>& step);
 

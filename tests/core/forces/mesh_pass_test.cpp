@@ -197,9 +197,9 @@ TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by 
   for (const float mass : s.model.mass) inverse_mass.push_back(1 / mass);
   inverse_mass[0] = inverse_mass[inverse_mass.size() / 2] = 0;
   const KickLaw<float> law{0.99F, 1e-4F, {1, -9.81F, 2}};
-  for (const bool pulled : {false, true}) {
+  for (const bool has_external : {false, true}) {
     const KickedParticles<float> particles{inverse_mass.data(),
-                                           pulled ? pull.data()->data() : nullptr};
+                                           has_external ? pull.data()->data() : nullptr};
     Vec3Array<float> by_forces = s.v, at_once = s.v;
     run_kick({s.x.size(), s.v.data()->data(), by_forces.data()->data(), s.gathered.data()->data(),
               particles, law});

@@ -103,7 +103,7 @@ TEST_CASE("pins that a scene leads on and on stop where commands may send them")
   }
 }
 
-TEST_CASE("a hand of the scene takes hold as long as there is room beside all others and shots") {
+TEST_CASE("a hand of the scene takes hold if it fits beside all others and sling impulses") {
   const std::size_t free = GENERATE(0u, 1u, 2u);
   WorldDef def = hanging();
   HandDef hand;
@@ -116,6 +116,6 @@ TEST_CASE("a hand of the scene takes hold as long as there is room beside all ot
   REQUIRE(world.fire(world.grab(sling)));
   for (std::size_t k = 0; k + 1 + free < kMostGrabs; ++k) world.grab(GrabDef{});
   while (world.report().time < 0.06) REQUIRE_NOTHROW(world.step());
-  REQUIRE(world.grabs().shots.size() == 1);
+  REQUIRE(world.grabs().impulses.size() == 1);
   CHECK(world.grabs().list.size() == kMostGrabs - 1);
 }
