@@ -172,8 +172,9 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
   Real* const v = x + GridView<Real>::kVelocityLine * line;
   const Real* const inverse = x + (GridView<Real>::kInverseMassLine - component) * line;
   const Real* const external = Pulled ? g.external + (3 * r + component) * line : nullptr;
-  const V keep = hn::Set(d, step.keep), push = hn::Set(d, step.push), dt = hn::Set(d, step.dt);
-  const V fall = hn::Set(d, step.push * step.gravity[component]);
+  const V keep = hn::Set(d, step.keep), scaled_dt = hn::Set(d, step.scaled_dt),
+          dt = hn::Set(d, step.dt);
+  const V fall = hn::Set(d, step.scaled_dt * step.gravity[component]);
   visit_forces(g, from, [&](std::ptrdiff_t c, V force) HWY_ATTR {
     V pull = force;
     if constexpr (Pulled) {
@@ -182,7 +183,7 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
     }
     const V inverse_mass = hn::LoadU(d, inverse + c);
     const auto held = hn::Eq(inverse_mass, hn::Zero(d));
-    const V change = fused(d, force, hn::Mul(inverse_mass, push), fall);
+    const V change = fused(d, force, hn::Mul(inverse_mass, scaled_dt), fall);
     const V speed = hn::IfThenZeroElse(held, fused(d, hn::LoadU(d, v + c), keep, change));
     hn::StoreU(speed, d, v + c);
     hn::StoreU(hn::Add(hn::LoadU(d, x + c), hn::Mul(speed, dt)), d, x + c);

@@ -65,14 +65,14 @@ double sum_of_columns(const GridView<Real>& grid, const Real* values) {
   return sum;
 }
 
-/// Time step of a grid pass: v <- keep v + push (f/m + g), x <- x + dt v. Particles without inverse
-/// mass get velocity 0.
+/// Time step of a grid pass: v <- keep v + scaled_dt (f/m + g), x <- x + dt v. Particles without
+/// inverse mass get velocity 0.
 template <class Real>
 struct GridStep {
-  Real keep = 0, push = 0;
-  Real gravity[3] = {};       ///< [m/s^2]
-  Real dt = 0;                ///< of the drift [s]; 0: none
-  bool has_external = false;  ///< add the external forces
+  Real keep = 0, scaled_dt = 0;  ///< [1], [s]
+  Real gravity[3] = {};          ///< [m/s^2]
+  Real dt = 0;                   ///< of the drift [s]; 0: none
+  bool has_external = false;     ///< add the external forces
 };
 
 }  // namespace weft

@@ -27,12 +27,12 @@ HWY_INLINE void kick_particles(D d, const KickLaw<Real>& law,
                                const KickedParticles<Real>& particles, std::size_t i,
                                Triple<hn::Vec<D>> force, const Real* from, Real* to) {
   if (particles.external != nullptr) force = force + load_particles(d, particles.external + 3 * i);
-  const auto push = hn::Set(d, law.push), keep = hn::Set(d, law.keep);
+  const auto scaled_dt = hn::Set(d, law.scaled_dt), keep = hn::Set(d, law.keep);
   const auto inverse_mass = hn::LoadU(d, particles.inverse_mass + i);
   const Triple<hn::Vec<D>> gravity{hn::Set(d, law.gravity[0]), hn::Set(d, law.gravity[1]),
                                    hn::Set(d, law.gravity[2])};
-  const auto fall = drop_if(hn::Eq(inverse_mass, hn::Zero(d)), gravity * push);
-  const auto change = force * hn::Mul(inverse_mass, push) + fall;
+  const auto fall = drop_if(hn::Eq(inverse_mass, hn::Zero(d)), gravity * scaled_dt);
+  const auto change = force * hn::Mul(inverse_mass, scaled_dt) + fall;
   store_particles(d, load_particles(d, from + 3 * i) * keep + change, to + 3 * i);
 }
 

@@ -6,11 +6,11 @@
 
 namespace weft {
 
-/// v <- keep v + (f push/m + g push); gravity does not act on fixed particles, whose inverse mass
+/// v <- keep v + scaled_dt (f/m + g); gravity does not act on fixed particles, whose inverse mass
 /// is 0.
 template <class Real>
 struct KickLaw {
-  Real keep = 1, push = 0;        ///< push in [s]
+  Real keep = 1, scaled_dt = 0;   ///< [1], [s]
   std::array<Real, 3> gravity{};  ///< g [m/s^2]
 };
 

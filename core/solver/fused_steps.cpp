@@ -80,7 +80,8 @@ double advance_grid(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, Real d
   tick.profile[Stage::integration].work += size_of(part.particles);
   const Vec3<Real>& g = tick.surroundings.gravity;
   const double power = tick.grid(p).advance(
-      {k.keep, k.push, {g[0], g[1], g[2]}, drift, tick.has_external_forces}, tick.work.executor);
+      {k.keep, k.scaled_dt, {g[0], g[1], g[2]}, drift, tick.has_external_forces},
+      tick.work.executor);
   return power * static_cast<double>(drift);
 }
 

@@ -60,13 +60,14 @@ HWY_INLINE void relax_line(Use, D d, const SweepView<Real>& g, std::size_t table
       if (times != nullptr) give = hn::Mul(give, hn::LoadU(d, times + n));
       excess = hn::Sub(excess, give);
     }
-    const auto push = hn::Mul(hn::LoadU(d, share + n), excess);
+    const auto dlambda = hn::Mul(hn::LoadU(d, share + n), excess);
     if constexpr (Use::kWrites) {
-      auto lambda = push;
-      if constexpr (Use::kReads) lambda = hn::Add(hn::LoadU(d, g.multiplier[table] + k + n), push);
+      auto lambda = dlambda;
+      if constexpr (Use::kReads)
+        lambda = hn::Add(hn::LoadU(d, g.multiplier[table] + k + n), dlambda);
       hn::StoreU(lambda, d, g.multiplier[table] + k + n);
     }
-    const auto ratio = hn::Div(push, l);
+    const auto ratio = hn::Div(dlambda, l);
     const auto w_i = hn::LoadU(d, g.w + i + n), w_j = hn::LoadU(d, g.w + j + n);
     auto new_i = old_i + delta * hn::Mul(ratio, w_i), new_j = old_j - delta * hn::Mul(ratio, w_j);
     if (const std::ptrdiff_t left = count - n; left < static_cast<std::ptrdiff_t>(hn::Lanes(d))) {

@@ -146,10 +146,10 @@ void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std
     if (mobility == 0 || spring.stiffness == 0 || !(length > 0)) continue;
     const Real alpha = softness / spring.stiffness;
     Real& lambda = tick.work.multiplier[k];
-    const Real push = ((length - spring.rest_length) - alpha * lambda) / (mobility + alpha);
-    lambda += push;
-    displacement[i] += delta * (push / length * w[i]);
-    displacement[j] -= delta * (push / length * w[j]);
+    const Real dlambda = ((length - spring.rest_length) - alpha * lambda) / (mobility + alpha);
+    lambda += dlambda;
+    displacement[i] += delta * (dlambda / length * w[i]);
+    displacement[j] -= delta * (dlambda / length * w[j]);
   }
 }
 

@@ -78,7 +78,7 @@ void evaluate_external_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity,
 template <class Real>
 KickLaw<Real> law_of(const Tick<Real>& tick, const Kick<Real>& k) {
   const Vec3<Real>& g = tick.surroundings.gravity;
-  return {k.keep, k.push, {g[0], g[1], g[2]}};
+  return {k.keep, k.scaled_dt, {g[0], g[1], g[2]}};
 }
 
 template <class Real>
@@ -239,8 +239,8 @@ void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
   assert(s >= 0 && s <= substeps);
   const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
   const auto count = static_cast<Real>(substeps);
-  pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.push, tick.state,
-               tick.grabs);
+  pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.scaled_dt,
+               tick.state, tick.grabs);
 }
 
 /// The substeps of a tick in which hands or contact act between kick and drift.

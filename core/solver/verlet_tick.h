@@ -8,10 +8,10 @@
 
 namespace weft {
 
-/// v <- keep v + push (f/m + g)
+/// v <- keep v + scaled_dt (f/m + g)
 template <class Real>
 struct Kick {
-  Real keep, push;
+  Real keep, scaled_dt;
 };
 
 /// The three kicks of a tick. Opening and closing together make one full kick.

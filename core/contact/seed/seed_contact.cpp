@@ -224,9 +224,9 @@ std::uint64_t SeedContact<Real>::collide_edges(ClothState<Real>& state) {
         state.v[i] += change * wi;
         state.v[j] += change * wj;
       }
-      const Vec3<Real> push = normal * ((static_cast<Real>(def_.lift) - distance) / mobility);
-      state.x[i] += push * wi;
-      state.x[j] += push * wj;
+      const Vec3<Real> correction = normal * ((static_cast<Real>(def_.lift) - distance) / mobility);
+      state.x[i] += correction * wi;
+      state.x[j] += correction * wj;
     });
   }
   return tests;

@@ -145,9 +145,9 @@ void ElementSystem<Real>::apply(const Real* p, Real* y) const {
     at(y, i) = times<Real>(own_[static_cast<std::size_t>(i)], at(p, i));
   for (std::size_t n = 0; n < ends_.size(); ++n) {
     const auto [i, j] = ends_[n];
-    const Vec3<Real> push = times<Real>(blocks_[n], at(p, i) - at(p, j));
-    at(y, i) += push;
-    at(y, j) -= push;
+    const Vec3<Real> product = times<Real>(blocks_[n], at(p, i) - at(p, j));
+    at(y, i) += product;
+    at(y, j) -= product;
   }
   for (const Stencil& stencil : stencils_) {
     Vec3<Real> sum = Vec3<Real>::Zero();

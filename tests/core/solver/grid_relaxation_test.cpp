@@ -76,15 +76,15 @@ TEST_CASE("a prediction bends each particle by the force of the stencils, to 1e-
   grid.set_masses(state.inverse_mass, 1 / (dt * dt));
   grid.load(x, v, dt);
   Prediction<double> step{0.75, dt * dt, Vec3d(0, -9.81, 0), true};
-  const Vec3Array<double> push(x.size(), Vec3d(0, 0, 1e-3));
-  grid.load_force(push);
+  const Vec3Array<double> extra(x.size(), Vec3d(0, 0, 1e-3));
+  grid.load_force(extra);
   predict_grid(grid.view(), step);
   Vec3Array<double> displacement(x.size());
   grid.store_displacements(displacement);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3d expected =
         v[i] * dt * 0.75 +
-        ((force[i] + push[i]) * state.inverse_mass[i] + Vec3d(0, -9.81, 0)) * dt * dt;
+        ((force[i] + extra[i]) * state.inverse_mass[i] + Vec3d(0, -9.81, 0)) * dt * dt;
     CHECK((displacement[i] - expected).norm() < 1e-12);
   }
 }
