@@ -210,7 +210,7 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
                 Grabs<Real>& grabs) {
   assert(state.x.size() == model.mass.size());
   validate(def, model.triangles.size());
-  if (!has_room(grabs))
+  if (!has_capacity(grabs))
     throw DefinitionError("drag", std::to_string(kMostGrabs + 1),
                           "at most " + std::to_string(kMostGrabs) + " at once",
                           "release one first");

@@ -79,7 +79,7 @@ inline constexpr std::size_t kMostGrabs = 256;  ///< hands and sling impulses to
 
 /// Whether one more hand may take hold.
 template <class Real>
-bool has_room(const Grabs<Real>& grabs) {
+bool has_capacity(const Grabs<Real>& grabs) {
   return grabs.list.size() + grabs.impulses.size() < kMostGrabs;
 }
 

@@ -43,7 +43,7 @@ double next_opening(const Gripper& gripper, double seconds, double thickest) {
   if (gripper.gripping) return gripper.opening;
   if (gripper.opening < kJawNearOpening * thickest) step = std::min(step, kJawNearStep * thickest);
   double least = gripper.wanted;
-  // Two faces that both have cloth in front leave room for that cloth, and for no less.
+  // Two faces that both have cloth in front leave a gap for that cloth, and for no less.
   least = std::max(least, 2 * gripper.facing);
   return std::max(std::min(least, gripper.opening), gripper.opening - step);
 }
@@ -166,12 +166,12 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     gripper.opening = std::max(0.0, axis.dot(between) - 2 * gripper.def.half_extents[0]);
     gripper.facing = std::min(left.facing, right.facing);
     if (gripper.wanted >= gripper.opening) continue;
-    const double room = 2 * gripper.facing * (1 + kJawFacingSlack);
+    const double clearance = 2 * gripper.facing * (1 + kJawFacingSlack);
     const double resistance =
         std::min(left.impulse.dot(press_of(gripper, 0)), right.impulse.dot(press_of(gripper, 1))) /
         seconds;
     const bool stopped =
-        gripper.opening <= room || left.blocked || right.blocked || resistance > gripper.force;
+        gripper.opening <= clearance || left.blocked || right.blocked || resistance > gripper.force;
     gripper.gripping = gripper.facing > 0 && (gripper.gripping || stopped);
   }
 }

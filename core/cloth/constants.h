@@ -19,7 +19,7 @@ inline constexpr double kShakenMargin = 1.15;
 inline constexpr int kMostSubsteps = 20000;
 
 /// Least fraction of its stiffness that a softened cloth keeps [1]; below it fabric is a rubber
-/// band. Larger: a room that is too slow saves fewer substeps, as the root. Smaller: softer cloth.
+/// band. Larger: a world that is too slow saves fewer substeps, as the root. Smaller: softer cloth.
 inline constexpr double kLeastSoftness = 0.01;
 
 // Bending.

@@ -3,7 +3,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/constants.h"
 
-// Softer springs, for rooms that must save substeps.
+// Softer springs, for worlds that must save substeps.
 
 namespace weft {
 

@@ -117,14 +117,14 @@ Real* GridPass<Real>::allocate(AlignedVector<Real>& array, std::ptrdiff_t lines)
 }
 
 template <class Real>
-void GridPass<Real>::make_room(bool air) {
+void GridPass<Real>::allocate_external(bool air) {
   assert(fits());
   if (external_.empty()) view_.external = allocate(external_, view_.rows * 3);
   if (air && wind_.empty()) view_.wind = allocate(wind_, (view_.rows + 1) * 3);
 }
 
 template <class Real>
-void GridPass<Real>::make_room_for_paths() {
+void GridPass<Real>::allocate_paths() {
   assert(fits());
   allocate(paths_, view_.rows * 6);
   kept_ = motion_;
@@ -132,7 +132,7 @@ void GridPass<Real>::make_room_for_paths() {
 
 template <class Real>
 void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Real>& velocity) {
-  assert(!paths_.empty() && "make_room_for_paths comes first");
+  assert(!paths_.empty() && "allocate_paths comes first");
   assert(base.size() == velocity.size());
   const std::ptrdiff_t pitch = 6 * view_.line;
   grid_take_apart(view_, base.data()->data(), paths_.data(), pitch);
@@ -141,7 +141,7 @@ void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Rea
 
 template <class Real>
 Aabb<Real> GridPass<Real>::box_off_paths(Real time) const {
-  assert(!paths_.empty() && "make_room_for_paths comes first");
+  assert(!paths_.empty() && "allocate_paths comes first");
   std::array<Real, 6> corners;
   grid_box_paths(view_, paths_.data(), time, corners.data());
   return {{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}};
@@ -178,13 +178,13 @@ void GridPass<Real>::load_inverse_mass(const std::vector<Real>& inverse_mass) {
 
 template <class Real>
 void GridPass<Real>::load_wind(const Vec3Array<Real>& wind) {
-  assert(!wind_.empty() && "make_room(true) comes first");
+  assert(!wind_.empty() && "allocate_external(true) comes first");
   grid_take_apart(view_, wind.data()->data(), view_.wind, 3 * view_.line);
 }
 
 template <class Real>
 void GridPass<Real>::load_external(const Vec3Array<Real>& force) {
-  assert(!external_.empty() && "make_room comes first");
+  assert(!external_.empty() && "allocate_external comes first");
   grid_take_apart(view_, force.data()->data(), view_.external, 3 * view_.line);
 }
 
@@ -201,7 +201,7 @@ void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
 
 template <class Real>
 void GridPass<Real>::store_external(Vec3Array<Real>& force) const {
-  assert(!external_.empty() && "make_room comes first");
+  assert(!external_.empty() && "allocate_external comes first");
   grid_put_together(view_, view_.external, 3 * view_.line, force.data()->data());
 }
 
@@ -221,7 +221,7 @@ std::ptrdiff_t GridPass<Real>::first_row(int band) const {
 }
 
 template <class Real>
-void GridPass<Real>::make_room_for_bands() {
+void GridPass<Real>::allocate_bands() {
   bands_.clear();
   if (band_count() == 1) return;
   bands_.resize(static_cast<std::size_t>(band_count()));
@@ -300,7 +300,7 @@ double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& 
 
 template <class Real>
 void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
-  make_room(false);
+  allocate_external(false);
   grid_internal_forces(view_);
   store_external(force);
 }
@@ -308,7 +308,7 @@ void GridPass<Real>::compute_internal_forces(Vec3Array<Real>& force) {
 template <class Real>
 void GridPass<Real>::compute_air_forces(double density) {
   assert(density >= 0);
-  assert(!wind_.empty() && "make_room(true) comes first");
+  assert(!wind_.empty() && "allocate_external(true) comes first");
   const Real pressure = static_cast<Real>(0.5 * density) * air_normal_;
   grid_air_forces(view_, pressure, density > 0 ? air_tangential_ : Real(0));
 }

@@ -31,13 +31,13 @@ class GridPass {
 
   /// Sizes the arrays of external forces, and of the wind if there is air. Must precede every call
   /// that uses them.
-  void make_room(bool air);
+  void allocate_external(bool air);
 
   /// Sizes the arrays that `load_paths` and `keep` fill. Must precede both.
-  void make_room_for_paths();
+  void allocate_paths();
 
   /// Sizes the arrays for `advance` on several threads. Without them it runs on one.
-  void make_room_for_bands();
+  void allocate_bands();
 
   bool fits() const { return view_.rows > 0; }
 
@@ -59,7 +59,7 @@ class GridPass {
 
   /// Saves positions and velocities for `take_back`.
   void keep() {
-    assert(kept_.size() == motion_.size() && "make_room_for_paths comes first");
+    assert(kept_.size() == motion_.size() && "allocate_paths comes first");
     kept_ = motion_;
   }
   void take_back() {

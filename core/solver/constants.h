@@ -30,6 +30,6 @@ inline constexpr double kCalmRenewal = 0.9;
 
 /// Fraction of the distance to the nearest object that remains after rounding [1]. At 1 rounding
 /// could let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
-inline constexpr double kCalmRoom = 0.999;
+inline constexpr double kCalmClearance = 0.999;
 
 }  // namespace weft

@@ -15,7 +15,7 @@ namespace {
 template <class Real>
 struct Spell {
   const CalmPaths<Real>& paths;
-  Real room;          ///< displacement that every particle may make during the run [m]
+  Real clearance;     ///< displacement that every particle may make during the run [m]
   Real begun;         ///< its start, in the time of the paths [s]
   Vec3<Real> common;  ///< common displacement from the paths at its start [m]
 };
@@ -128,16 +128,16 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   const CalmPaths<Real>* paths = guard.calm_paths();
   const Contact<Real>* objects = tick.collision.weft;
   if (!paths || !(paths->time + tick.dt <= paths->horizon)) return 0;
-  const Real room = objects ? objects->calm_room(tick.state) * Real(kCalmRoom)
-                            : std::numeric_limits<Real>::infinity();
-  if (!(room > 3 * paths->reach)) {
+  const Real clearance = objects ? objects->calm_room(tick.state) * Real(kCalmClearance)
+                                 : std::numeric_limits<Real>::infinity();
+  if (!(clearance > 3 * paths->reach)) {
     next.substep = s + kCalmKeptSteps;
     return 0;
   }
   tick.work.load_paths(*paths);
   Real time = paths->time, kept_time = time;
   Aabb<Real> box = box_off_paths(tick, time), kept_box = box;
-  const Spell<Real> begin{*paths, room, time, box.centre()};
+  const Spell<Real> begin{*paths, clearance, time, box.centre()};
   const int first = s;
   int kept = s;
   double work = 0, kept_work = 0;
@@ -152,7 +152,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     time += tick.dt;
     box = box_off_paths(tick, time);
     const Real off = half_diagonal(box);
-    if (!(off <= paths->reach && farthest(begin, box, time) <= room)) {
+    if (!(off <= paths->reach && farthest(begin, box, time) <= clearance)) {
       // Particles may have touched: return to the saved positions, and repeat the steps with
       // contact.
       for (GridPass<Real>& grid : tick.work.grids) grid.take_back();

@@ -88,10 +88,10 @@ struct VerletWorkspace {
   void prepare(const ClothModel<Real>& model, const SolverDef& solver, Executor* threads);
 
   /// Sizes the additional arrays for air and sling impulses. Call before a tick that has them.
-  void make_room(const ClothModel<Real>& model, bool air, bool impulses);
+  void allocate_external(const ClothModel<Real>& model, bool air, bool impulses);
 
   /// Sizes the arrays for steps without contact, in a world with a guard (fused_steps.h).
-  void make_room_for_paths();
+  void allocate_paths();
 
   /// Loads these paths into the grids, unless they are loaded.
   void load_paths(const CalmPaths<Real>& paths);

@@ -19,7 +19,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   bool listed = solver.damping_sweeps > 1;  // whether the model's force arrays are needed
   for (std::size_t p = 0; p < grids.size(); ++p) {
     grids[p].prepare(model.parts[p]);
-    if (executor && grids[p].fits()) grids[p].make_room_for_bands();
+    if (executor && grids[p].fits()) grids[p].allocate_bands();
     if (!grids[p].fits()) meshes[p].prepare(model, model.parts[p]);
     all_grids = all_grids && grids[p].fits();
     listed = listed || !kicks_at_once(model, p);
@@ -27,23 +27,24 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
   external.clear();
   internal.assign(listed ? model.mass.size() : 0, Vec3<Real>::Zero());
   velocity.assign(solver.damping_sweeps > 1 ? model.mass.size() : 0, Vec3<Real>::Zero());
-  if (solver.damping_sweeps > 1) make_room(model, false, true);
+  if (solver.damping_sweeps > 1) allocate_external(model, false, true);
 }
 
 template <class Real>
-void VerletWorkspace<Real>::make_room(const ClothModel<Real>& model, bool air, bool impulses) {
+void VerletWorkspace<Real>::allocate_external(const ClothModel<Real>& model, bool air,
+                                              bool impulses) {
   if (!air && !impulses) return;
   assert(grids.size() == model.parts.size() && "prepared for this model");
   for (GridPass<Real>& grid : grids) {
-    if (grid.fits()) grid.make_room(air);
+    if (grid.fits()) grid.allocate_external(air);
   }
   if (impulses || !all_grids) external.resize(model.mass.size(), Vec3<Real>::Zero());
 }
 
 template <class Real>
-void VerletWorkspace<Real>::make_room_for_paths() {
+void VerletWorkspace<Real>::allocate_paths() {
   if (!all_grids) return;
-  for (GridPass<Real>& grid : grids) grid.make_room_for_paths();
+  for (GridPass<Real>& grid : grids) grid.allocate_paths();
   loaded_paths = 0;
 }
 

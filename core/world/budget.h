@@ -6,7 +6,7 @@
 
 namespace weft {
 
-/// Remedy of a room whose ticks exceed their time budget.
+/// Remedy of a world whose ticks exceed their time budget.
 enum class OverBudget {
   slow,    ///< simulated time passes more slowly
   soften,  ///< softer springs, so that fewer substeps suffice; then slower time

@@ -199,18 +199,18 @@ void World<Real>::prepare_solver() {
   else  // verlet steps some ticks for implicit
     verlet_.prepare(model_, def_.solver, runtime_.executor);
   if (kind == SolverKind::implicit) implicit_.prepare(model_);
-  if (guard_ && kind != SolverKind::relaxation) verlet_.make_room_for_paths();
+  if (guard_ && kind != SolverKind::relaxation) verlet_.allocate_paths();
   verlet_.elastic.reset();
-  make_room();
+  allocate_external();
 }
 
 /// Sizes the arrays for air and sling impulses as soon as there are any, so that no tick allocates.
 template <class Real>
-void World<Real>::make_room() {
+void World<Real>::allocate_external() {
   const bool air = !is_calm(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
   if (solver_of(def_) != SolverKind::relaxation)
-    verlet_.make_room(model_, air, !grabs_.impulses.empty());
+    verlet_.allocate_external(model_, air, !grabs_.impulses.empty());
 }
 
 template <class Real>
@@ -229,7 +229,7 @@ void World<Real>::sample_surroundings() {
   surroundings_.air_density = environment_.air_density;
   surroundings_.air = !is_calm(environment_);
   if (!surroundings_.air) return;
-  assert(surroundings_.wind.size() == model_.mass.size() && "make_room comes first");
+  assert(surroundings_.wind.size() == model_.mass.size() && "allocate_external comes first");
   const StageTimer timer(report_.profile, Stage::air, 0);
   const double time = static_cast<double>(tick_) / def_.tick_rate;
   report_.profile[Stage::fans].work += sample_air(environment_, time, state_.x, surroundings_.wind);

@@ -252,7 +252,7 @@ class World {
   long substeps_for_hands(SolverKind kind, const EnvironmentDef& environment, long cloth_alone,
                           int fewest) const;
   void prepare_solver();
-  void make_room();
+  void allocate_external();
   StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind,
                                  const EnvironmentDef& environment) const;
   void sample_surroundings();

@@ -75,7 +75,7 @@ std::optional<Vec3d> World<Real>::fire(GrabId id) {
   const int ticks = std::max(1, static_cast<int>(std::lround(kSlingSeconds * def_.tick_rate)));
   const auto force = fire_sling(id, ticks, state_, grabs_);
   if (!force) return std::nullopt;
-  make_room();
+  allocate_external();
   return force->template cast<double>() * (ticks * tick_seconds());
 }
 
@@ -122,7 +122,7 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
   environment_ = environment;
   wake_all();
-  make_room();
+  allocate_external();
   report_motion();
 }
 

@@ -101,7 +101,7 @@ void World<Real>::run_script() {
     const HandDef& hand = def_.hands[k];
     assert(!hand.path.empty());
     SceneHand& held = scene_hands_[k];
-    if (tick_of(hand.path.front().time) == tick_ && has_room(grabs_)) {
+    if (tick_of(hand.path.front().time) == tick_ && has_capacity(grabs_)) {
       GrabDef def = hold_of(model_, hand);
       for (std::size_t c = 0; c < 3; ++c) {
         const Index corner = model_.triangles[static_cast<std::size_t>(def.triangle)][c];

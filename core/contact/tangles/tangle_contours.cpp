@@ -168,13 +168,13 @@ void TangleContours::set_free(const std::vector<TangleCrossing>& crossings,
 void TangleContours::join(std::vector<TangleCrossing>& crossings,
                           const std::vector<char>& is_held) {
   // Capacity for crossings that arise while it is undone, so that steps do not allocate.
-  const std::size_t room = 4 * crossings.size();
+  const std::size_t capacity = 4 * crossings.size();
   if (order_.capacity() < 2 * crossings.size()) {
-    keys_.reserve(2 * room);
-    contours_.reserve(room);
-    order_.reserve(room);
-    free_.reserve(5 * room);
-    cuts_.reserve(room);
+    keys_.reserve(2 * capacity);
+    contours_.reserve(capacity);
+    order_.reserve(capacity);
+    free_.reserve(5 * capacity);
+    cuts_.reserve(capacity);
   }
   contours_.clear();
   order_.clear();

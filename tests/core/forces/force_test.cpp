@@ -194,7 +194,7 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
   GridPass<Real> grid;
   grid.prepare(model.parts[0]);
   REQUIRE(grid.fits());
-  grid.make_room(true);
+  grid.allocate_external(true);
   grid.load(x, v);
   grid.load_wind(wind);
   for (int repeat = 0; repeat < 2; ++repeat) {  // nothing may be left over from the first time

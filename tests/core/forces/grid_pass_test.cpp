@@ -50,8 +50,8 @@ Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
   inverse_mass[0] = inverse_mass[inverse_mass.size() / 2] = 0;
   GridPass<Real> grid;
   grid.prepare(model.parts[0]);
-  grid.make_room(true);
-  if (executor) grid.make_room_for_bands();
+  grid.allocate_external(true);
+  if (executor) grid.allocate_bands();
   grid.load(cloth.x, cloth.v);
   grid.load_inverse_mass(inverse_mass);
   grid.load_wind(wind);
@@ -122,7 +122,7 @@ TEST_CASE("a pinned particle stays where it is, and what pulls it counts no powe
   const Vec3Array<float> before = x;
   GridPass<float> grid;
   grid.prepare(model.parts[0]);
-  grid.make_room(false);
+  grid.allocate_external(false);
   grid.load(x, v);
   grid.load_inverse_mass(std::vector<float>(x.size(), 0));
   grid.load_external(pull);
