@@ -162,7 +162,7 @@ EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set) 
   if (set.gust_length) environment.gust_length = *set.gust_length;
   if (set.air_density) environment.air_density = *set.air_density;
   if (set.still_air) environment.still_air = *set.still_air;
-  if (set.drag) environment.drag = *set.drag;
+  if (set.drag) environment.damping = *set.drag;
   if (set.fans) {
     environment.fans.clear();
     for (const proto::Fan& f : *set.fans)
@@ -212,7 +212,7 @@ proto::State state_of(const ServedWorld& world) {
   state.gust_length = environment.gust_length;
   state.air_density = environment.air_density;
   state.still_air = environment.still_air;
-  state.drag = environment.drag;
+  state.drag = environment.damping;
   state.fabric = fabric_names(world.def().cloths);
   for (const FanDef& f : environment.fans)
     state.fans.push_back(

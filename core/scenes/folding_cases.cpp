@@ -50,7 +50,7 @@ void build_towel(WorldDef& def, const std::string&) {
   towel = lying_cloth(33, kSide, 0.0041);
   towel.fabric = make_fabric("cotton");
   def.colliders = {ground()};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   const std::vector<Hold> edge = {{0, 1}, {0.5, 1}, {1, 1}};
   const std::vector<Hold> both_layers = {{1, 0.03}, {1, 0.25}, {1, 0.75}, {1, 0.97}};
   take_over(def, edge, 0.5, 1.4, Vec3d(0, 0, -kFolded));

@@ -32,7 +32,7 @@ void hang(WorldDef& def) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
   def.pins = {{Corner::top_left, 0.05, {}}, {Corner::top_right, 0.05, {}}};
   def.colliders = {ground()};
-  def.environment.drag = 5;
+  def.environment.damping = 5;
 }
 
 void build_noise(WorldDef& def, const std::string&) {
@@ -64,7 +64,7 @@ void build_squeeze(WorldDef& def, const std::string&) {
     ball.motion.interpolation = Interpolation::smooth;
     def.colliders.push_back(ball);
   }
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 0.5, 1);
 }
 
@@ -83,7 +83,7 @@ void build_stack(WorldDef& def, const std::string&) {
   ball.motion.keyframes = {{1}, {2, pressed}, {3.5, pressed}, {4.5, Vec3d::Zero()}};
   ball.motion.interpolation = Interpolation::smooth;
   def.colliders = {ground(), ball};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 0.5, 1);
   def.verdict.rest_at = 1;
   def.verdict.back_by = 9.5;  // 5 s after the ball is lifted
@@ -101,7 +101,7 @@ void build_needles(WorldDef& def, const std::string&) {
                                CapsuleDef{foot, foot + Vec3d(0, kHeight, 0), kRadius}});
     }
   }
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 0.5);
 }
 
@@ -111,7 +111,7 @@ void build_knives(WorldDef& def, const std::string&) {
   for (int k = -2; k <= 2; ++k)
     def.colliders.push_back({"knife" + std::to_string(k + 3),
                              BoxDef{Vec3d(0.17 * k, 0.15, 0), Vec3d(0.001, 0.15, 0.3)}});
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 0.5);
 }
 
@@ -126,7 +126,7 @@ void build_rotating_sphere(WorldDef& def, const std::string&) {
     ball.motion.keyframes.push_back(
         {1 + kPeriod / 4 * k, Vec3d::Zero(), turn(k * pi / 2, Vec3d::UnitY())});
   def.colliders = {ground(), ball};
-  def.environment.drag = 0.3;
+  def.environment.damping = 0.3;
   judge(def, 0.5);
 }
 
@@ -156,7 +156,7 @@ void build_twist(WorldDef& def, const std::string&) {
     def.hands.push_back(hand);
   }
   def.colliders = {ground()};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 1);
   def.verdict.hands_lag = kWidth / 10;  // no hand is stopped: the end turns with them
 }
@@ -176,7 +176,7 @@ void build_funnel(WorldDef& def, const std::string&) {
     plate.orientation = around * turn(kSlope, Vec3d::UnitZ());
     def.colliders.push_back({"plate" + std::to_string(k), plate});
   }
-  def.environment.drag = 0.3;
+  def.environment.damping = 0.3;
   judge(def, 0.5);
 }
 
@@ -195,7 +195,7 @@ void build_tablecloth(WorldDef& def, const std::string&) {
     def.hands.push_back(hand_at(1, v, path));
     def.hands.back().radius = 0.05;
   }
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 1);
 }
 
@@ -214,14 +214,14 @@ void build_ten_hands(WorldDef& def, const std::string&) {
     hand.radius = kPalm;
     def.hands.push_back(hand);
   }
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 2);
 }
 
 void build_start_inside(WorldDef& def, const std::string&) {
   def.cloths[0] = lying_cloth(33, 0.9, 0.3);
   def.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.3, 0), 0.2}}};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 1, 0.2, 4);
 }
 

@@ -32,7 +32,7 @@ void drop_on_ball(WorldDef& def, int particles, const std::vector<FabricDef>& fa
     def.cloths.push_back(sheet);
   }
   def.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.4, 0), 0.2}}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
 }
 
 void build_mass_ratio(WorldDef& def, const std::string&) {
@@ -82,7 +82,7 @@ void build_point(WorldDef& def, const std::string&) {
   def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 4e-3;
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   def.colliders = {ground()};
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   DisturbanceDef gather;
   gather.time = 2;
   gather.gather = 5e-4;
@@ -97,7 +97,7 @@ void build_far_teleport(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(33, 33, 1.0, 1.0, 1.6, 0);
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};  // which leaves a single rest shape
   def.colliders = {ground()};
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   DisturbanceDef away, back;
   away.time = 2.5;
   away.pinned = Vec3d(0, 0, 10);
@@ -121,7 +121,7 @@ void build_meganewton(WorldDef& def, const std::string&) {
   hand.max_force = 1e6;
   hand.path = {{1, Vec3d::Zero()}, {2, Vec3d(0, 0, 1)}, {4, Vec3d(0, 0, -1)}, {5, Vec3d::Zero()}};
   def.hands = {hand};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 20);  // less than a metre of cloth is led two metres through the ball
 }
 
@@ -144,7 +144,7 @@ void build_pinch(WorldDef& def, const std::string&) {
       {0.5, Vec3d::Zero(), 0}, {1, out, 0},      {2, out, kOpen}, {3, Vec3d::Zero(), kOpen},
       {4, Vec3d::Zero(), 0},   {4.5, across, 0}, {5.5, out, 0},   {6.5, out, kOpen}};
   def.grippers = {fingers};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 2);  // their friction is 16 N, over 2 cm of 400 N/m
 }
 
@@ -182,7 +182,7 @@ void build_ring(WorldDef& def, const std::string&) {
   hand.path = {{1, Vec3d::Zero()}, {5, Vec3d(0, -0.75, 0)}, {6, Vec3d(0.2, -0.6, 0)}};
   hand.radius = 0.06;
   def.hands = {hand};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   judge(def, 1);
 }
 

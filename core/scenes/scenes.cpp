@@ -48,7 +48,7 @@ void build_default(WorldDef& def, const std::string&) {
   def.colliders = {ground(), {"form", mesh_object("dress-form", {}, {})}};
   def.environment.wind = Vec3d(0.3, 0, 1.7);
   def.environment.gust_speed = 0.9;
-  def.environment.drag = 0.1;
+  def.environment.damping = 0.1;
   let_sleep(def);
 }
 
@@ -58,7 +58,7 @@ void build_curtain(WorldDef& def, const std::string&) {
   def.colliders = {ground()};
   def.environment.wind = Vec3d(0.2, 0, 0.9);
   def.environment.gust_speed = 1.0;
-  def.environment.drag = 0.1;
+  def.environment.damping = 0.1;
   let_sleep(def);
 }
 
@@ -81,7 +81,7 @@ void build_drape_sphere(WorldDef& def, const std::string&) {
   def.cloths[0].origin = Vec3d(-0.65, 1.15, -0.65);
   def.cloths[0].v = Vec3d::UnitZ();
   def.colliders = {ground(), {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   let_sleep(def);
 }
 
@@ -91,7 +91,7 @@ void build_wall(WorldDef& def, const std::string&) {
   def.colliders = {
       ground(),
       {"wall", BoxDef{Vec3d(0, 0.9, -0.1), Vec3d(1.2, 0.9, 0.1), Eigen::Quaterniond::Identity()}}};
-  def.environment.drag = 0.3;
+  def.environment.damping = 0.3;
   let_sleep(def);
 }
 
@@ -115,7 +115,7 @@ void build_table(WorldDef& def, const std::string&) {
           {"leg", upright_box(Vec3d(x * (half_top[0] - kLeg), half_leg, z * (half_top[2] - kLeg)),
                               Vec3d(kLeg, half_leg, kLeg))});
   }
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   let_sleep(def);
 }
 
@@ -138,7 +138,7 @@ void build_hammock(WorldDef& def, const std::string&) {
       {"right-post", CapsuleDef{Vec3d(post, 0, 0), Vec3d(post, 1.4, 0), 0.04}},
       {"left-bar", CapsuleDef{Vec3d(-bar, kHeight, -half), Vec3d(-bar, kHeight, half), 0.02}},
       {"right-bar", CapsuleDef{Vec3d(bar, kHeight, -half), Vec3d(bar, kHeight, half), 0.02}}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   let_sleep(def);
 }
 
@@ -166,7 +166,7 @@ void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
   MeshPlacement placement;
   placement.scale = 0.08;  // ten units high: 0.77 m
   def.colliders = {ground(), {"bunny", mesh_object("bunny", mesh_directory, placement)}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   let_sleep(def);
 }
 
@@ -200,7 +200,7 @@ void build_turntable(WorldDef& def, const std::string&) {
   for (int k = 0; k < 5; ++k)
     board.motion.keyframes.push_back({kPeriod / 4 * k, Vec3d::Zero(), turns[k]});
   def.colliders = {ground(), board};
-  def.environment.drag = 0.1;
+  def.environment.damping = 0.1;
 }
 
 /// A ball under a sheet that rises at up to 1 m/s, waits, and comes down.
@@ -213,7 +213,7 @@ void build_lift_sphere(WorldDef& def, const std::string&) {
   const Vec3d lifted(0, 0.8, 0);
   ball.motion.keyframes = {{}, {1.5}, {2.7, lifted}, {4.5, lifted}, {6, Vec3d::Zero()}};
   def.colliders = {ground(), ball};
-  def.environment.drag = 0.3;
+  def.environment.damping = 0.3;
 }
 
 /// A cloth lies on a table and overhangs its edge, where jaws grasp, lift and hold it.
@@ -232,7 +232,7 @@ void build_gripper(WorldDef& def, const std::string&) {
   def.grippers = {gripper};
   def.colliders = {ground(),
                    {"table", upright_box(Vec3d(0, kTop / 2, 0), Vec3d(kHalf, kTop / 2, kHalf))}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
 }
 
 std::vector<SceneEntry> own_scenes() {

@@ -11,7 +11,7 @@ constexpr double kClearAfter = 2;  ///< [s]
 
 void fall_and_come_apart(WorldDef& def) {
   def.colliders = {ground()};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   judge(def, 0.5, 0.2, kClearAfter);
 }
 

@@ -32,7 +32,7 @@ void build_drape_test(WorldDef& def, const std::string&) {
   // A breath of air, a thousandth of the weight, determines where folds begin.
   def.environment.gust_speed = 0.05;
   def.environment.gust_length = 0.1;
-  def.environment.drag = 4;
+  def.environment.damping = 4;
 }
 
 void build_cantilever_test(WorldDef& def, const std::string&) {
@@ -54,7 +54,7 @@ void build_cantilever_test(WorldDef& def, const std::string&) {
   const BoxDef platform{Vec3d(kEdge - half[0], kTop - half[1], 0), half,
                         Eigen::Quaterniond::Identity()};
   def.colliders = {kGround, {"platform", platform}};
-  def.environment.drag = 10;
+  def.environment.damping = 10;
 }
 
 }  // namespace weft

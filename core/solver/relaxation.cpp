@@ -38,7 +38,7 @@ bool in_rows(const Tick<Real>& tick, std::size_t part) {
 /// Fraction of a velocity left by a substep without forces.
 template <class Real>
 double kept(const Tick<Real>& tick) {
-  return (1 - tick.solver.damping) / (1 + tick.surroundings.drag * static_cast<double>(tick.dt));
+  return (1 - tick.solver.damping) / (1 + tick.surroundings.damping * static_cast<double>(tick.dt));
 }
 
 /// Everything that is a force, not a constraint, except gravity and the bending of parts that are

@@ -325,7 +325,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   Tick<Real> tick{model,   surroundings, solver,       static_cast<Real>(dt),
                   grabs,   collision,    state,        work,
                   profile, has_hands,    has_impulses, has_impulses || surroundings.air};
-  const Kicks<Real> kicks(dt, surroundings.drag);
+  const Kicks<Real> kicks(dt, surroundings.damping);
   if (surroundings.air) {
     for (GridPass<Real>& grid : work.grids) {
       if (grid.fits()) grid.load_wind(surroundings.wind);

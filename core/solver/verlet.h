@@ -50,7 +50,7 @@ void visit_fields_of_solver(Def& s, Visitor&& visit) {
 template <class Real>
 struct Surroundings {
   Vec3<Real> gravity = Vec3<Real>::Zero();  ///< [m/s^2]
-  double drag = 0;                          ///< alpha [1/s]
+  double damping = 0;                       ///< alpha [1/s]
   bool air = false;                         ///< whether air forces are computed
   double air_density = 0;                   ///< [kg/m^3]
   Vec3Array<Real> wind;                     ///< at each particle [m/s]; only if `air`
@@ -108,8 +108,8 @@ struct VerletWorkspace {
 
 /// Leapfrog over one tick (Verlet 1967), with half a kick at its start and its end, so that
 /// positions and velocities are synchronous at the tick's end. Velocity is a separate variable,
-/// because position-only Verlet loses float precision at small steps. Drag is split exactly: v <-
-/// [v (1 - a dt/2) + dt f/m]/(1 + a dt/2). Contact corrects the velocities between each kick and
+/// because position-only Verlet loses float precision at small steps. Damping is split exactly: v
+/// <- [v (1 - a dt/2) + dt f/m]/(1 + a dt/2). Contact corrects the velocities between each kick and
 /// drift; the seed's contact also corrects positions after it.
 ///
 /// @param dt        substep [s], stable by stability_bound.h

@@ -19,9 +19,9 @@ template <class Real>
 struct Kicks {
   Kick<Real> opening, full, closing;
 
-  Kicks(double dt, double drag) {
-    assert(dt > 0 && drag >= 0);
-    const double lost = 0.5 * drag * dt;
+  Kicks(double dt, double damping) {
+    assert(dt > 0 && damping >= 0);
+    const double lost = 0.5 * damping * dt;
     opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
     full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
     closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt)};

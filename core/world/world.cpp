@@ -144,7 +144,7 @@ const TickReport& World<Real>::step() {
     rouse_sleepers();  // on which something acts
     if (rests()) return rest();
     const int substeps = choose_substeps(solver_of(def_));
-    sample_surroundings();                         // gravity, drag, the air at each particle
+    sample_surroundings();                         // gravity, damping, the air at each particle
     lead_hands(tick_seconds(), state_.x, grabs_);  // no farther than the cloth can follow
     advance_or_recover(substeps);  // forces, kick, contact, drift; more substeps if that blew up
     finish_targets();              // what was reached, held back or gripped
@@ -225,7 +225,7 @@ std::size_t World<Real>::solver_bytes() const {
 template <class Real>
 void World<Real>::sample_surroundings() {
   surroundings_.gravity = environment_.gravity.template cast<Real>();
-  surroundings_.drag = environment_.drag;
+  surroundings_.damping = environment_.damping;
   surroundings_.air_density = environment_.air_density;
   surroundings_.air = !is_calm(environment_);
   if (!surroundings_.air) return;

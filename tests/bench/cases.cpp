@@ -20,7 +20,7 @@ WorldDef quiet_world(int rows, int columns, const FabricDef& fabric) {
   cloth.u = Vec3d::UnitX();
   cloth.v = Vec3d::UnitZ();
   def.environment.air_density = 0;
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   // References are for springs and objects alone.
   def.contact.seed.self = SelfContact::none;
   return def;
@@ -40,7 +40,7 @@ WorldDef swing(int n, const FabricDef& fabric) {
 WorldDef static_rest(int n, const FabricDef& fabric) {
   WorldDef def = swing(n, fabric);
   pin_rows(def, n - 1, 1);
-  def.environment.drag = 10;
+  def.environment.damping = 10;
   return def;
 }
 
@@ -65,7 +65,7 @@ WorldDef flag(int n, const FabricDef& fabric) {
   def.cloths[0].u = Vec3d::UnitY();
   def.cloths[0].v = Vec3d::UnitX();
   pin_rows(def, 0, 1);
-  def.environment.drag = 0;
+  def.environment.damping = 0;
   def.environment.air_density = 1.225;
   def.environment.wind = Vec3d(6, 0, 0.8);
   return def;
@@ -78,7 +78,7 @@ WorldDef drape(int n, const FabricDef& fabric) {
   const double radius = 0.3, fall = 5e-3;
   def.cloths[0].origin = Vec3d(-0.5, 2 * radius + fabric.thickness + fall, -0.5);
   def.colliders = {{"sphere", SphereDef{Vec3d(0, radius, 0), radius}}};
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   return def;
 }
 

@@ -119,7 +119,7 @@ WorldDef hanging_sheet(int n, bool self_contact) {
   cloth.fabric = make_fabric("cotton");
   cloth.fabric.thickness = kThickness / (n - 1);
   for (int c = 0; c < n; ++c) def.pins.push_back({c, 0, {}});
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.contact.seed.self = self_contact ? SelfContact::guard : SelfContact::none;
   return def;
 }

@@ -10,7 +10,7 @@ namespace weft::bench {
 // Cotton of one square metre with a thickness of a part of its edge length, in states in which
 // contact costs differently much. All are made the same on each machine.
 
-/// A sheet of n x n particles that falls upright on the ground, where it crumples; drag 5/s.
+/// A sheet of n x n particles that falls upright on the ground, where it crumples; damping 5/s.
 /// @param thickness  in parts of the edge length
 WorldDef falling_sheet(int n, double thickness);
 

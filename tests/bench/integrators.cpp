@@ -10,12 +10,12 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// The right-hand side x' = v, v' = f(x)/m + g - drag v, three numbers a particle, all 0 where it
-/// is pinned.
+/// The right-hand side x' = v, v' = f(x)/m + g - damping v, three numbers a particle, all 0 where
+/// it is pinned.
 class Motion {
  public:
   explicit Motion(World<double>& world)
-      : drag_(world.environment().drag), position_(world.state().x),
+      : damping_(world.environment().damping), position_(world.state().x),
         velocity_(world.state().x.size(), Vec3d::Zero()), force_(position_.size()) {
     grid_.prepare(world.model().parts[0]);
     if (!grid_.fits()) throw std::runtime_error("the reference wants a regular grid");
@@ -36,11 +36,11 @@ class Motion {
     grid_.compute_internal_forces(force_);
     const double* f = force_.front().data();
     for (std::size_t i = 0; i < a.size(); ++i)
-      a[i] = f[i] * inverse_mass_[i] + (gravity_[i] - drag_ * v[i]);
+      a[i] = f[i] * inverse_mass_[i] + (gravity_[i] - damping_ * v[i]);
   }
 
  private:
-  double drag_;
+  double damping_;
   GridPass<double> grid_;
   Vec3Array<double> position_, velocity_, force_;
   Numbers inverse_mass_, gravity_;

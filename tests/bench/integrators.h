@@ -8,7 +8,7 @@
 namespace weft::bench {
 
 /// Runs a definition with the classical Runge-Kutta method of fourth order: springs, bending,
-/// gravity and drag, in double. The forces are core's, the integrator is not.
+/// gravity and damping, in double. The forces are core's, the integrator is not.
 /// @param substeps  a tick
 /// @param offset    added to the start of each particle that is not pinned [m]; may be empty
 Path run_runge_kutta(const WorldDef& def, int ticks, int sample_every, int substeps,

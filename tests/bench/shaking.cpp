@@ -60,7 +60,7 @@ ShakingFigure shake(const WorldDef& def, test::Disturbance disturbance, const Wo
     figure.from_rest = std::max(figure.from_rest, off);
     figure.back += off <= kAllowed ? 1 : 0;
     WorldDef free = def;
-    free.environment.drag = 0;
+    free.environment.damping = 0;
     World<float> undamped(free);
     const double more = gained(undamped, disturbance, seed, least, figure.rescues);
     figure.gained_energy = std::max(figure.gained_energy, more);

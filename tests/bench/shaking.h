@@ -12,9 +12,9 @@ struct ShakingFigure {
   double rigidity = 0;           ///< of bending, B [N m]
   int n = 0;
   int seeds = 0;
-  double from_rest = 0;  ///< 5 s later with drag 5/s: rms distance from its own rest, over 1 m
+  double from_rest = 0;  ///< 5 s later with damping 5/s: rms distance from its own rest, over 1 m
   int back = 0;          ///< of the seeds, those within 1 %
-  /// In 5 s without drag, and during the disturbance: most above the start and the disturbance's
+  /// In 5 s without damping, and during the disturbance: most above the start and the disturbance's
   /// work, over these two less the energy of the rest.
   double gained_energy = 0;
   int bounded = 0;  ///< of the seeds, those below 1 %

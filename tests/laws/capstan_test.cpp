@@ -52,7 +52,7 @@ WorldDef strip_and_bar(const Wrapped& path, const Vec3d& gravity, SolverKind sol
   cloth.fabric.friction = kFriction;
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = gravity;
-  def.environment.drag = 3;
+  def.environment.damping = 3;
   def.solver.kind = solver;
   def.colliders = {
       {"bar", CapsuleDef{Vec3d(0, 0, -1), Vec3d(0, 0, 1), kRadius - cloth.fabric.thickness}}};

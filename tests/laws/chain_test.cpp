@@ -137,7 +137,7 @@ TEST_CASE("a hanging sheet swings in its first mode with T = 5.2293 sqrt(L/g), t
     }
   }
   EnvironmentDef free = world.environment();
-  free.drag = 0;
+  free.damping = 0;
   world.set_environment(free);
   world.accept_state();
   const double origin = world.state().x[0][0], start = world.report().time;

@@ -60,7 +60,7 @@ TEST_CASE(
     WorldDef def = test::empty_world(cloth);
     def.environment.gravity = Vec3d(0, -9.81, 0);
     def.environment.air_density = 1.225;
-    def.environment.drag = 4;
+    def.environment.damping = 4;
     if (by_fan) {
       FanDef fan = fan_before_patch();
       fan.radius = 1;

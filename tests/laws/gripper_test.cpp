@@ -29,7 +29,7 @@ WorldDef hung_between_jaws() {
   cloth.v = -Vec3d::UnitY();
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = Vec3d(0, -kGravity, 0);
-  def.environment.drag = 4;
+  def.environment.damping = 4;
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   GripperDef gripper;
   gripper.centre = Vec3d(0, 1.15, 0);

@@ -30,7 +30,7 @@ WorldDef swing(int rows, int columns) {
   cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-4;
   WorldDef def = empty_world(cloth);
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}};
   return def;
 }
@@ -63,11 +63,12 @@ TEST_CASE("with implicit free fall is g t^2 / 2 and what the first substep adds 
   for (const Vec3d& v : world.state().v) CHECK(v[1] == Approx(-9.81).margin(1e-9));
 }
 
-TEST_CASE("with implicit and drag c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order") {
+TEST_CASE(
+    "with implicit and damping c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order") {
   // Reference: drag.linear.c2_t1 of the expected values: x = 2.784409782137793.
   const auto error_with = [](int substeps) {
     WorldDef def = implicit_world(flat_cloth(3, 3), substeps);
-    def.environment.drag = 2;
+    def.environment.damping = 2;
     World<double> world(def);
     const double start = centre_of_mass(world)[1];
     advance(world, 1.0);

@@ -34,7 +34,7 @@ WorldDef reference_world() {
   cloth.fabric.bending_warp = cloth.fabric.bending_weft = 0;
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   def.pins = {{0, 0}, {4, 0}};
   return def;
 }
@@ -86,13 +86,14 @@ TEST_CASE(
     CHECK(fallen(substeps) == Approx(4.905 * (1 + 1 / (60.0 * substeps))).margin(1e-9));
 }
 
-TEST_CASE("with linear drag c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order in dt") {
+TEST_CASE(
+    "with linear damping c the fall is (g/c) t - (g/c^2)(1 - exp(-c t)), second order in dt") {
   // Reference: drag.linear.c2_t1 of the expected values: v = 4.241180435724415, x
   // = 2.784409782137793.
   const auto error_with = [](int substeps) {
     WorldDef def = test::empty_world(test::flat_cloth(3, 3));
     def.environment.gravity = Vec3d(0, -9.81, 0);
-    def.environment.drag = 2;
+    def.environment.damping = 2;
     def.solver.min_substeps = substeps;
     World<double> world(def);
     const double start = test::centre_of_mass(world)[1];

@@ -18,13 +18,13 @@ double weight_of(const World<float>& world) {
   return mass * kGravity;
 }
 
-/// A sheet of 12 x 14 particles in the plane y = `height`, with gravity and much drag.
+/// A sheet of 12 x 14 particles in the plane y = `height`, with gravity and much damping.
 WorldDef sheet_at(double height) {
   ClothDef cloth = test::flat_cloth(12, 14);
   cloth.origin[1] = height;
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = Vec3d(0, -kGravity, 0);
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   return def;
 }
 
@@ -38,7 +38,7 @@ Vec3d sum_of_pins(const Reactions& reactions) {
 
 TEST_CASE("the pins of a cloth that hangs at rest carry its weight, and nothing across") {
   WorldDef def = sheet_at(1);
-  def.environment.drag = 8;
+  def.environment.damping = 8;
   def.pins = {{Corner::top_left, 0.05}, {Corner::top_right, 0.05}, {0, 0}};
   World<float> world(def);
   test::advance(world, 12);
@@ -55,7 +55,7 @@ TEST_CASE("the pins of a cloth that hangs at rest carry its weight, and nothing 
 TEST_CASE("the strip that holds a curtain carries its weight") {
   WorldDef def = make_scene("default");
   def.environment = EnvironmentDef{};
-  def.environment.drag = 8;
+  def.environment.damping = 8;
   def.colliders.clear();
   World<float> world(def);
   test::advance(world, 12);

@@ -7,7 +7,7 @@ namespace weft::test {
 /// Positions of the 25 particles of a 5 x 5 mass-spring cloth at three times, by an eighth-order
 /// Runge-Kutta method at relative tolerance 1e-12 (self error below 2e-12). Grid of 1 m, x = column
 /// h, z = row h, y = 0 at the start and at rest; 0.2 kg in equal masses; structural springs 200
-/// N/m, diagonals 50 N/m, skip-one springs 10 N/m; drag 0.5 /s; dashpot 0.02 N s/m along every
+/// N/m, diagonals 50 N/m, skip-one springs 10 N/m; damping 0.5 /s; dashpot 0.02 N s/m along every
 /// spring; g = 9.81 m/s^2 along -y; particles 0 and 4 pinned.
 struct ReferenceInstant {
   double time;

@@ -16,7 +16,7 @@ namespace {
 /// A square that starts level. Of this side the strip ends at a row of particles at each
 /// resolution, to 1.3 mm, so that it is the same cloth that hangs; where a strip ends between rows,
 /// what hangs is longer by up to a cell.
-World<float> hung(int n, const std::string& fabric, double drag) {
+World<float> hung(int n, const std::string& fabric, double damping) {
   WorldDef def;
   ClothDef& cloth = def.cloths[0];
   cloth.rows = cloth.columns = n;
@@ -26,7 +26,7 @@ World<float> hung(int n, const std::string& fabric, double drag) {
   cloth.fabric = make_fabric(fabric);
   def.pins = {{EdgeStrip{Side::top, 0.0501}, 0, {}}};
   def.environment.air_density = 0;
-  def.environment.drag = drag;
+  def.environment.damping = damping;
   def.contact.seed.self = SelfContact::none;
   return World<float>(def);
 }

@@ -44,7 +44,8 @@ inline bool keeps_energy(const ShakenSolver& solver, Disturbance kind) {
 
 /// One square metre in vacuum, without self-contact.
 /// @param stiffness  of the structural springs [N/m]: 196 "soft", 1962 "stiff"
-inline WorldDef hanging_square(int n, double stiffness, double drag, const ShakenSolver& solver) {
+inline WorldDef hanging_square(int n, double stiffness, double damping,
+                               const ShakenSolver& solver) {
   WorldDef def = empty_world(flat_cloth(n, n));
   ClothDef& cloth = def.cloths[0];
   cloth.v = -Vec3d::UnitY();
@@ -54,7 +55,7 @@ inline WorldDef hanging_square(int n, double stiffness, double drag, const Shake
   cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-5 * stiffness;
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = drag;
+  def.environment.damping = damping;
   def.solver.kind = solver.kind;
   if (solver.kind == SolverKind::relaxation) {
     cloth.fabric.damping_ratio = 0;

@@ -10,14 +10,15 @@
 
 using namespace weft;
 
-TEST_CASE("33 by 33: with drag 5/s each solver is within 1 % of its rest 5 s after a disturbance") {
+TEST_CASE(
+    "33 by 33: with damping 5/s each solver is within 1 % of its rest 5 s after a disturbance") {
   const double stiffness = GENERATE(196.0, 1962.0);
   const test::ShakenSolver solver =
       GENERATE(from_range(std::begin(test::kShakenSolvers), std::end(test::kShakenSolvers)));
   test::check_recovery(33, stiffness, solver);
 }
 
-TEST_CASE("33 by 33: without drag no solver gains energy beyond the work of the disturbance") {
+TEST_CASE("33 by 33: without damping no solver gains energy beyond the work of the disturbance") {
   const double stiffness = GENERATE(196.0, 1962.0);
   const test::ShakenSolver solver =
       GENERATE(from_range(std::begin(test::kShakenSolvers), std::end(test::kShakenSolvers)));

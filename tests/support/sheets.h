@@ -16,17 +16,17 @@ namespace weft::test {
 /// @param side            [m]
 /// @param top             height at which its upper edge starts [m]
 /// @param thickness_part  its thickness, as a part of the edge length
-/// @param drag            of the air [1/s]
+/// @param damping         uniform [1/s]
 /// @param fabric          but for the thickness
 inline WorldDef upright_sheet(int particles, double side, double top, double thickness_part,
-                              double drag, const FabricDef& fabric = {}) {
+                              double damping, const FabricDef& fabric = {}) {
   WorldDef def;
   ClothDef& cloth = def.cloths[0];
   cloth = hanging_cloth(particles, particles, side, side, top, 0);
   cloth.v = Vec3d(0, -1, -0.12).normalized();
   cloth.fabric = fabric;
   cloth.fabric.thickness = thickness_part * side / (particles - 1);
-  def.environment.drag = drag;
+  def.environment.damping = damping;
   def.colliders = {ground()};
   def.contact.seed.self = SelfContact::guard;
   return def;

@@ -23,7 +23,7 @@ inline ClothDef curtain(const char* name, double x) {
 }
 
 /// Cloths that hang; what has been still to 10 um for a second sleeps.
-inline WorldDef hanging(std::vector<ClothDef> cloths, double drag = 8) {
+inline WorldDef hanging(std::vector<ClothDef> cloths, double damping = 8) {
   WorldDef def;
   for (const ClothDef& cloth : cloths) {
     PinDef pin;
@@ -32,7 +32,7 @@ inline WorldDef hanging(std::vector<ClothDef> cloths, double drag = 8) {
     def.pins.push_back(pin);
   }
   def.cloths = std::move(cloths);
-  def.environment.drag = drag;
+  def.environment.damping = damping;
   def.sleep = {1, 1e-5};
   return def;
 }

@@ -25,12 +25,12 @@ void advance(World<Real>& world, double seconds) {
   }
 }
 
-/// Lets the world run under strong drag until nothing moves, for statics.
+/// Lets the world run under strong damping until nothing moves, for statics.
 /// @return the largest speed that is left [m/s]
 template <class Real>
-double settle(World<Real>& world, double drag, double seconds) {
+double settle(World<Real>& world, double damping, double seconds) {
   EnvironmentDef environment = world.environment();
-  environment.drag = drag;
+  environment.damping = damping;
   world.set_environment(environment);
   advance(world, seconds);
   double fastest = 0;

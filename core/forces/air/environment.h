@@ -17,7 +17,7 @@ struct EnvironmentDef {
   double gust_length = 0.6;            ///< size of an eddy [m]
   double air_density = 1.225;          ///< rho [kg/m^3]
   bool still_air = false;              ///< compute air forces even without wind
-  double drag = 0;                     ///< alpha, uniform velocity damping [1/s]
+  double damping = 0;                  ///< alpha, uniform velocity damping [1/s]
   std::vector<FanDef> fans;            ///< local winds, at most kMostFans
 };
 
@@ -30,7 +30,7 @@ void visit_fields_of_environment(Def& e, Visitor&& visit) {
   visit(FieldInfo{"gust_length", 0.01, 100, "m", "size of an eddy"}, e.gust_length);
   visit(FieldInfo{"air_density", 0, 1000, "kg/m^3", "density of the air"}, e.air_density);
   visit(FieldInfo{"still_air", 0, 1, "", "air forces even without wind"}, e.still_air);
-  visit(FieldInfo{"drag", 0, 1000, "1/s", "uniform velocity damping"}, e.drag);
+  visit(FieldInfo{"drag", 0, 1000, "1/s", "uniform velocity damping"}, e.damping);
 }
 
 /// Throws DefinitionError if a field is out of range or there are too many fans.

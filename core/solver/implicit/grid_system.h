@@ -18,7 +18,7 @@ struct NewtonPoint {
   const Vec3Array<Real>& x;  ///< [m]
   const Vec3Array<Real>& v;  ///< [m/s]
   Real rate;                 ///< derivative of velocities by positions [1/s]
-  /// Contribution of inertia and drag to the matrix per particle, times the unit matrix [N/m].
+  /// Contribution of inertia and damping to the matrix per particle, times the unit matrix [N/m].
   const std::vector<Real>& inertia;
   /// Contribution of the air; null without air [N/m].
   const std::vector<SymmetricBlock<Real>>* air;

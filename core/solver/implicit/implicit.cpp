@@ -51,13 +51,13 @@ EnergyReading energies_at(const Step<Real>& step, const Vec3Array<Real>& x,
   return reading;
 }
 
-/// Energy that drag took over the present displacements [J].
+/// Energy that damping took over the present displacements [J].
 template <class Real>
-double drag_work(const Step<Real>& step) {
+double damping_work(const Step<Real>& step) {
   double sum = 0;
   for (std::size_t i = 0; i < step.work.displacement.size(); ++i)
     sum += static_cast<double>(step.model.mass[i] * step.work.v[i].dot(step.work.displacement[i]));
-  return step.surroundings.drag * sum;
+  return step.surroundings.damping * sum;
 }
 
 /// Whether the energy after a substep has a source; if so, updates the credit of lost energy.
@@ -88,7 +88,7 @@ bool is_violent(const Step<Real>& step, const EnergyReading& before, const Energ
   const double had = mechanical(before.energies);
   if (!(had > step.work.violent_energy)) return false;
   if (!(std::max(before.largest_strain, after.largest_strain) > kViolentStrain)) return false;
-  const double lost = before.energies.total() + work - after.energies.total() - drag_work(step);
+  const double lost = before.energies.total() + work - after.energies.total() - damping_work(step);
   return !sound || lost > kViolentLoss * had + air_turnover(step);
 }
 

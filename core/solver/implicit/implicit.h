@@ -86,7 +86,7 @@ struct ImplicitWorkspace {
 ///   v' = (3x' - 4x + x_before) / 2h,   M (3v' - 4v + v_before) / 2h = f(x', v') - alpha M v',
 /// or backward Euler where the previous substep does not count: at the start, for particles that
 /// contact or pins stopped or pushed, or that moved between ticks, and after a change of the
-/// substep. Springs, dashpots, bending, air, drag and hands all act at the substep's end, so no
+/// substep. Springs, dashpots, bending, air, damping and hands all act at the substep's end, so no
 /// stiffness bounds the substep. The matrix is kept positive definite: the forces are exact, some
 /// of their derivatives are not (linear_terms.h). Contact corrects the mean velocities of a
 /// substep.

@@ -28,17 +28,17 @@ void place(Step<Real>& step) {
   }
 }
 
-/// Gravity, drag and inertia, with their part of the matrix.
+/// Gravity, damping and inertia, with their part of the matrix.
 template <class Real>
 void add_own(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
-  const auto drag = static_cast<Real>(step.surroundings.drag);
+  const auto damping = static_cast<Real>(step.surroundings.damping);
   for (std::size_t i = 0; i < work.x.size(); ++i) {
     const Real mass = step.model.mass[i];
     const Scheme<Real> scheme(step, i);
     work.force[i] =
-        (step.surroundings.gravity - work.v[i] * (scheme.rate + drag) + scheme.before) * mass;
-    work.inertia[i] = mass * scheme.rate * (scheme.rate + drag);
+        (step.surroundings.gravity - work.v[i] * (scheme.rate + damping) + scheme.before) * mass;
+    work.inertia[i] = mass * scheme.rate * (scheme.rate + damping);
   }
 }
 

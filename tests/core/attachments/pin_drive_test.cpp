@@ -15,7 +15,7 @@ WorldDef hung_cloth() {
   WorldDef def;
   def.cloths[0] = hanging_cloth(21, 21, 0.6, 0.6, 1.5, 0);
   def.pins = {{Corner::top_left, 0.05, {}}, {Corner::top_right, 0.05, {}}};
-  def.environment.drag = 2;
+  def.environment.damping = 2;
   def.contact.seed.self = SelfContact::guard;
   return def;
 }

@@ -55,7 +55,7 @@ TEST_CASE("softness 1 gives back the springs to the bit, and a reset does not") 
 TEST_CASE("a cloth that hangs and is softened stretches in proportion, and nothing blows up") {
   WorldDef def = hanging(1);
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   World<double> world(def);
   const auto lowest = [&] {
     double y = 0;

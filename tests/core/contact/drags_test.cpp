@@ -61,7 +61,7 @@ WorldDef stirred(int n, double thickness, unsigned seed) {
   cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 40;
   cloth.fabric.shear = 8;
   cloth.fabric.thickness = thickness;
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   TriangleMesh mesh = star(0.25);
   for (Vec3d& p : mesh.positions) p += Vec3d(0, 0.5, 0);
   ColliderDef spoon{"star", MeshDef{mesh}};

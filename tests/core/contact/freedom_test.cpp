@@ -89,7 +89,7 @@ WorldDef pressed_stack(const Stack& stack) {
   ball.motion.interpolation = Interpolation::smooth;
   ball.max_force = stack.force;
   def.colliders = {ground(), ball};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.contact.seed.self = SelfContact::guard;
   def.verdict.strain = 0.5;
   def.verdict.lost_motion = 1;
@@ -225,8 +225,8 @@ TEST_CASE("free fall, slide and drape take the same time as without self-contact
     set_fabric(fall.cloths.back(), k % 2 == 0 ? "silk" : "leather", 0.004);
   }
   check_times("free fall", fall, -Vec3d::UnitY(), 2);
-  fall.environment.drag = 1;
-  check_times("fall with drag", fall, -Vec3d::UnitY(), 2);
+  fall.environment.damping = 1;
+  check_times("fall with damping", fall, -Vec3d::UnitY(), 2);
 
   const double slope = 0.6;
   const Vec3d down(std::cos(slope), -std::sin(slope), 0), up(std::sin(slope), std::cos(slope), 0);
@@ -243,7 +243,7 @@ TEST_CASE("free fall, slide and drape take the same time as without self-contact
     drape.cloths[0] = lying_cloth(33, 0.9, 0.62);
     set_fabric(drape.cloths[0], fabric, 0.004);
     drape.colliders = {ground(), {"ball", SphereDef{Vec3d(0, 0.4, 0), 0.2}}};
-    drape.environment.drag = 0.5;
+    drape.environment.damping = 0.5;
     check_times(fabric, drape, -Vec3d::UnitY(), 0.1);
     check_times(fabric, drape, -Vec3d::UnitY(), 0.18);
   }

@@ -231,7 +231,7 @@ TEST_CASE("scenes in which nothing moves by itself in still air come to rest and
   if (name == "default") {  // its gusts never let it rest
     def.environment.wind.setZero();
     def.environment.gust_speed = 0;
-    def.environment.drag = 2;
+    def.environment.damping = 2;
   }
   WorldDef sleepless = def;
   sleepless.sleep.after = 0;

@@ -219,7 +219,7 @@ TEST_CASE("single precision keeps up with double at 1000 substeps, to 1e-4 of it
   WorldDef def = xpbd_world(cloth, GENERATE(1000, 100), 1);
   if (GENERATE(false, true)) def = spring_by_spring(def);
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   for (Index i = 0; i < 16; ++i) def.pins.push_back({i, 0, {}});
   World<float> single(def);
   World<double> twice(def);
@@ -241,7 +241,7 @@ TEMPLATE_TEST_CASE("every instruction set relaxes a grid to the same bits", "", 
   const int sweeps = GENERATE(1, 3);
   CAPTURE(rows, columns, sweeps);
   WorldDef def = xpbd_world(soft_cloth(rows, columns), 5, sweeps);
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.pins = {{0, 0, {}}};
   const auto hash = [&] {
     World<TestType> world(def);

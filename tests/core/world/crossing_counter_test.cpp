@@ -92,7 +92,7 @@ TEST_CASE("the smallest gap is that of what lies on an object, and none where no
   WorldDef def = crossed_sheets();
   def.cloths.pop_back();
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   World<float> world(def);
   CHECK(std::isinf(smallest_gap(world)));
   def.colliders = {{"floor", PlaneDef{Vec3d(0, 0.48, 0), Vec3d::UnitY()}}};

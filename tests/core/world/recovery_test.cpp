@@ -19,7 +19,7 @@ WorldDef draped(SolverKind solver, int substeps) {
   WorldDef def = test::empty_world(cloth);
   def.contact.seed.self = SelfContact::automatic;
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 2;
+  def.environment.damping = 2;
   def.colliders = {{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.1}},
                    {"ground", PlaneDef{Vec3d::Zero(), Vec3d::UnitY()}}};
   def.solver.kind = solver;

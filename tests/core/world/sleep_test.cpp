@@ -49,7 +49,7 @@ TEST_CASE("a cloth moves bit for bit as one that never sleeps until it does") {
 
 TEST_CASE("a cloth that goes on moving does not sleep, and neither does one that creeps") {
   WorldDef def = hanging({curtain("one", 0)}, 0);
-  def.cloths[0].v = Vec3d::UnitX();  // it swings down, and no drag stops it
+  def.cloths[0].v = Vec3d::UnitX();  // it swings down, and no damping stops it
   World<float> swinging(def);
   for (int tick = 0; tick < 300; ++tick) {
     swinging.step();
@@ -119,7 +119,7 @@ TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awa
   sheets[1].bending_model = GENERATE(BendingModel::automatic, BendingModel::hinges);
   for (ClothDef& sheet : sheets) sheet.fabric.thickness = 0.004;
   WorldDef def;
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   def.environment.wind = Vec3d(0.01, 0, 0);
   def.contact.seed.self = SelfContact::guard;
   def.solver.min_substeps = 40;  // more than either needs alone
@@ -171,7 +171,7 @@ TEST_CASE("sleep is the same for any number of threads, and a replay repeats it"
   WorldDef def;
   def.cloths = {test::flat_cloth(10, 10, 0.3, 0.3)};
   def.cloths[0].origin = Vec3d(-0.15, 0.15, -0.15);
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   def.colliders = {{"ball", SphereDef{Vec3d::Zero(), 0.1}},
                    {"ground", PlaneDef{Vec3d(0, -0.1, 0)}}};
   def.sleep = {0.5, 1e-3};

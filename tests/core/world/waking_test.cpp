@@ -122,7 +122,7 @@ TEST_CASE("cloth whose support leaves wakes and follows it") {
   WorldDef def;
   def.cloths = {test::flat_cloth(10, 10, 0.3, 0.3)};
   def.cloths[0].origin = Vec3d(-0.15, 0.01, -0.15);
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   def.sleep = {1, 1e-4};
   ColliderDef table{"table", BoxDef{Vec3d(0, -0.1, 0), Vec3d(0.3, 0.1, 0.3)}};
   table.motion.keyframes = {{5, Vec3d::Zero()}, {6, Vec3d(0, -0.5, 0)}};
@@ -154,7 +154,7 @@ TEST_CASE("a cloth that comes wakes its neighbour before they touch; they rest a
   held.radius = 1;
   held.cloth = "sheet";
   def.pins.push_back(held);
-  def.environment.drag = 4;
+  def.environment.damping = 4;
   def.contact.seed.self = SelfContact::guard;
   def.sleep = {0.5, 1e-3};
   World<float> world(def);

@@ -59,7 +59,7 @@ TEST_CASE("the hash sees an environment, a fan and a softness that are not the s
   const EnvironmentDef own = world.environment();
   const std::uint64_t start = world.hash();
   EnvironmentDef other = own;
-  other.drag += 0.125;
+  other.damping += 0.125;
   world.set_environment(other);
   const std::uint64_t dragged = world.hash();
   CHECK(dragged != start);

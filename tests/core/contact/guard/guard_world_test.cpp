@@ -347,7 +347,7 @@ TEST_CASE("layers that a hand presses on a ball with 50 N lose at most 1 % of th
   }
   def.colliders = {{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.2}}};
   def.contact.seed.self = SelfContact::guard;
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   World<float> world(def);
   CHECK(crossings_over(world, 20) == 0);
   GrabDef hand;

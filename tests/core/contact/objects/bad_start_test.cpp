@@ -17,7 +17,7 @@ WorldDef sheet_through(const ShapeDef& shape, double height) {
   cloth.origin = Vec3d(-0.3, height, -0.3);
   cloth.v = Vec3d::UnitZ();
   def.colliders = {{"ground", PlaneDef{}}, {"thing", shape}};
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.contact.seed.self = SelfContact::guard;
   return def;
 }

@@ -31,7 +31,7 @@ WorldDef heap_of_shapes(double friction, unsigned seed) {
   cloth.fabric.thickness = 0.006;
   cloth.fabric.friction = friction;
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.colliders = {{"ground", PlaneDef{}},
                    {"ball", SphereDef{Vec3d(0.1, 0.2, 0), 0.2}},
                    {"rod", CapsuleDef{Vec3d(-0.4, 0.1, -0.5), Vec3d(-0.3, 0.15, 0.5), 0.05}}};

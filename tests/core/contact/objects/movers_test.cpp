@@ -155,7 +155,7 @@ TEST_CASE("cloth on a slope slides as it does when both move at constant velocit
     def.cloths[0].u = turn * Vec3d::UnitX();
     def.cloths[0].origin = turn * Vec3d(-0.2, kThickness, -0.2);
     def.cloths[0].fabric.friction = 0.3;
-    def.environment.drag = 0;
+    def.environment.damping = 0;
     def.environment.gravity = Vec3d(0, -9.81, 0);
     const BoxDef slope{turn * Vec3d(0, -0.1, 0), Vec3d(2, 0.1, 2), turn};
     def.colliders = {{"slope", slope}};
@@ -198,7 +198,7 @@ TEST_CASE("a sphere that lifts at 1 m/s does not pass through the cloth that lie
 TEST_CASE("a turning bar wipes the cloth along and crosses it nowhere") {
   WorldDef def = test::empty_world(test::flat_cloth(21, 21, 0.6, 0.6));
   def.environment.gravity = Vec3d(0, -9.81, 0);
-  def.environment.drag = 0.5;
+  def.environment.damping = 0.5;
   def.cloths[0].origin = Vec3d(0.15, 0.006, -0.3);
   const BoxDef bar{Vec3d(0, 0.041, 0.45), Vec3d(0.8, 0.04, 0.02), Eigen::Quaterniond::Identity()};
   def.colliders = {{"ground", PlaneDef{}}, {"bar", bar}};
@@ -216,7 +216,7 @@ TEST_CASE("a turning bar wipes the cloth along and crosses it nowhere") {
 
 TEST_CASE("an object that meets cloth which cannot give way lags, and does not pass through") {
   WorldDef def = test::empty_world(test::flat_cloth(17, 17));
-  def.environment.drag = 2;
+  def.environment.damping = 2;
   for (const Index corner : {0, 16, 17 * 16, 17 * 17 - 1}) def.pins.push_back({corner, 0.05});
   const BoxDef block{Vec3d(0.5, -0.2, 0.5), Vec3d(0.1, 0.1, 0.1), Eigen::Quaterniond::Identity()};
   def.colliders = {{"block", block}};

@@ -64,7 +64,7 @@ WorldDef layers(const std::vector<Layer>& list, double restitution, bool guarded
     def.cloths.back().name = "layer " + std::to_string(def.cloths.size());
   }
   def.contact.seed.self = guarded ? SelfContact::guard : SelfContact::none;
-  def.environment.drag = 0;
+  def.environment.damping = 0;
   def.colliders = {{"floor", PlaneDef{}}};
   return def;
 }

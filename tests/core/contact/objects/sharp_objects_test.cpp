@@ -77,7 +77,7 @@ std::size_t draw_about(unsigned seed) {
   def.friction = random.uniform(0, 1) < 0.5 ? 0 : 0.5;
   Contact<Real> contact = cloth.meet(def, {{"object", MeshDef{mesh}}});
   std::size_t crossed = 0;
-  const double force = std::pow(10, random.uniform(-1, 2)), drag = std::min(force / 5, 0.3);
+  const double force = std::pow(10, random.uniform(-1, 2)), damping = std::min(force / 5, 0.3);
   std::vector<Vec3d> goals(cloth.state.x.size());
   for (int tick = 0; tick < 60; ++tick) {
     if (tick % 6 == 0) {
@@ -88,7 +88,7 @@ std::size_t draw_about(unsigned seed) {
       for (std::size_t i = 0; i < goals.size(); ++i) {
         const Vec3d way = goals[i] - cloth.position(static_cast<Index>(i));
         const double pull = std::min(force, 20 * force * way.norm());
-        cloth.forces[i] = way.normalized() * pull - drag * cloth.velocity(static_cast<Index>(i));
+        cloth.forces[i] = way.normalized() * pull - damping * cloth.velocity(static_cast<Index>(i));
       }
     });
   }

@@ -33,7 +33,7 @@ WorldDef floating(const std::vector<ClothDef>& cloths) {
   WorldDef def;
   def.cloths = cloths;
   def.environment.gravity.setZero();
-  def.environment.drag = 1;
+  def.environment.damping = 1;
   def.contact.seed.self = SelfContact::guard;
   return def;
 }
@@ -268,7 +268,7 @@ TEST_CASE("a cloth that is a heap is let through itself, unfolds, and has its gu
   WorldDef def;
   def.cloths[0] = sheet("cloth", 25, 0.8, Vec3d(0, 1, 0), kX, -kY);
   def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
-  def.environment.drag = 5;
+  def.environment.damping = 5;
   def.contact.seed.self = SelfContact::guard;
   DisturbanceDef gather;
   gather.gather = 5e-4;
