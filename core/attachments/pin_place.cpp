@@ -48,13 +48,13 @@ Index nearest_particle(const ClothModel<Real>& model, const IndexRange& range,
       point, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
   assert(range.count > 0);
   const MaterialBounds bounds = bounds_of(model, range);
-  const std::array<double, 2> part = {point.u, point.v};
+  const std::array<double, 2> fraction = {point.u, point.v};
   Index nearest = range.first;
   double least = std::numeric_limits<double>::infinity();
   for (Index i = range.first; i < range.end(); ++i) {
     double distance2 = 0;
     for (std::size_t k = 0; k < 2; ++k) {
-      const double wanted = bounds.low[k] + part[k] * (bounds.high[k] - bounds.low[k]);
+      const double wanted = bounds.low[k] + fraction[k] * (bounds.high[k] - bounds.low[k]);
       const double d = static_cast<double>(model.material[static_cast<std::size_t>(i)][k]) - wanted;
       distance2 += d * d;
     }

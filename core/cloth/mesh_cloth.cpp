@@ -117,7 +117,7 @@ Uv material_of(const ClothMesh& cloth) {
 }
 
 /// cos^2 of the angle between an edge and the warp.
-double warp_part(double du, double dv) {
+double squared_cosine(double du, double dv) {
   const double d2 = du * du + dv * dv;
   return d2 > 0 ? du * du / d2 : 0.5;
 }
@@ -190,8 +190,9 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   }
   for (const Edge& edge : model.edges) {
     const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
-    const double cos2 = warp_part(static_cast<double>(model.material[j][0] - model.material[i][0]),
-                                  static_cast<double>(model.material[j][1] - model.material[i][1]));
+    const double cos2 =
+        squared_cosine(static_cast<double>(model.material[j][0] - model.material[i][0]),
+                       static_cast<double>(model.material[j][1] - model.material[i][1]));
     const double length2 =
         (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
     const double stiffness = stiffness_along(fabric, cos2) * area.at(edge) / length2;
@@ -299,7 +300,7 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
       {def.rest_angle, true, fabric.bending_damping, def.bending_model == BendingModel::sine_hinges,
        [&](double du, double dv) {
          // An edge along v bends with curvature along u.
-         const double cos2 = warp_part(du, dv);
+         const double cos2 = squared_cosine(du, dv);
          return fabric.bending_weft * cos2 + fabric.bending_warp * (1 - cos2);
        }},
       model);

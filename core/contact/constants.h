@@ -11,9 +11,9 @@ namespace weft {
 /// and the certified gap of a pair is too small.
 inline constexpr double kCloseGap = 3e-4;
 
-/// Shares of the pass that measures how far particles have come, on several threads; with fewer
-/// particles than this one thread does it. More shares: more threads, and more waiting for each
+/// Chunks of the pass that measures how far particles have come, on several threads; with fewer
+/// particles than this one thread does it. More chunks: more threads, and more waiting for each
 /// other. Fewer particles: threads cost more than they save.
-inline constexpr std::size_t kTravelParts = 4, kLeastSharedTravel = 4096;
+inline constexpr std::size_t kTravelChunks = 4, kLeastSharedTravel = 4096;
 
 }  // namespace weft

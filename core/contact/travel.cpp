@@ -35,14 +35,14 @@ bool run_travel(const TravelPass<double>& pass) {
 }
 
 template <class Real>
-bool run_travel_in_parts(const TravelPass<Real>& pass, Executor* executor) {
+bool run_travel_in_chunks(const TravelPass<Real>& pass, Executor* executor) {
   assert(pass.particles == 0 || (pass.x && pass.v && pass.from && pass.reach && pass.travel2));
   if (!executor || pass.particles < kLeastSharedTravel) return run_travel(pass);
-  std::array<bool, kTravelParts> within;
-  run_chunks(executor, static_cast<int>(kTravelParts), [&](int chunk) {
-    const auto part = static_cast<std::size_t>(chunk);
-    const std::size_t first = pass.particles * part / kTravelParts,
-                      last = pass.particles * (part + 1) / kTravelParts;
+  std::array<bool, kTravelChunks> within;
+  run_chunks(executor, static_cast<int>(kTravelChunks), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    const std::size_t first = pass.particles * k / kTravelChunks,
+                      last = pass.particles * (k + 1) / kTravelChunks;
     TravelPass<Real> own = pass;
     own.particles = last - first;
     own.x += 3 * first;
@@ -50,19 +50,19 @@ bool run_travel_in_parts(const TravelPass<Real>& pass, Executor* executor) {
     own.from += 3 * first;
     own.reach += first;
     own.travel2 += first;
-    within[part] = run_travel(own);
+    within[k] = run_travel(own);
   });
-  return std::all_of(within.begin(), within.end(), [](bool part) { return part; });
+  return std::all_of(within.begin(), within.end(), [](bool one) { return one; });
 }
 
 }  // namespace
 
 bool measure_travel(const TravelPass<float>& pass, Executor* executor) {
-  return run_travel_in_parts(pass, executor);
+  return run_travel_in_chunks(pass, executor);
 }
 
 bool measure_travel(const TravelPass<double>& pass, Executor* executor) {
-  return run_travel_in_parts(pass, executor);
+  return run_travel_in_chunks(pass, executor);
 }
 
 float largest_deviation(const PathPass<float>& pass) {

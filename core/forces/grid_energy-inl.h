@@ -25,9 +25,9 @@ struct ColumnSums {
                              const Triple<hn::Vec<D>>& d) {
     const auto longer = hn::Sub(hn::Sqrt(fused_dot(tag, d, d)), rest_length);
     stretch = fused(tag, hn::Mul(stiffness, longer), longer, stretch);
-    const auto part =
+    const auto strain_here =
         hn::IfThenZeroElse(hn::Eq(stiffness, hn::Zero(tag)), hn::Div(hn::Abs(longer), rest_length));
-    strain = hn::IfThenElse(hn::Le(part, strain), strain, part);  // lets NaN through
+    strain = hn::IfThenElse(hn::Le(strain_here, strain), strain, strain_here);  // lets NaN through
   }
   HWY_INLINE void add_stencil(D tag, hn::Vec<D> stiffness, const Triple<hn::Vec<D>>& value) {
     bending = fused(tag, stiffness, fused_dot(tag, value, value), bending);

@@ -178,9 +178,9 @@ HWY_INLINE void pull_back(const MeshGroup& group, const MeshOffset* offset, cons
                           const std::uint16_t* pull, const Real* sum, Real* to) {
   const hn::CappedTag<Real, 4> d;
   const std::uint16_t* const end = pull + kMeshGroup * group.earlier;
-  for (std::size_t part = 0; part < 4; part += hn::Lanes(d)) {
-    const Real *const from = sum + part, *const kept = ring + part;
-    const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (offset[k] / 3) + part; };
+  for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+    const Real *const from = sum + lane, *const kept = ring + lane;
+    const auto own = [&](std::size_t k) HWY_ATTR { return to + 4 * (offset[k] / 3) + lane; };
     // Four at a time: each waits only for its own sums.
     for (std::size_t k = 0; k < kMeshGroup; k += 4) {
       auto f0 = hn::Load(d, from + 4 * quad_of_lane(k)),

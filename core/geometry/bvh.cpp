@@ -68,16 +68,16 @@ void Bvh<Real>::split(std::size_t node, Index begin, Index end,
   assert(begin < end && static_cast<std::size_t>(end) <= order_.size());
   nodes_[node].child.fill(kNoChild);
   std::array<Index, kWidth + 1> border{begin, end, end, end, end};
-  std::size_t parts = 1;
+  std::size_t children = 1;
   if (end - begin <= static_cast<Index>(kWidth)) {
-    for (parts = 0; begin + static_cast<Index>(parts) < end; ++parts)
-      border[parts] = begin + static_cast<Index>(parts);
+    for (children = 0; begin + static_cast<Index>(children) < end; ++children)
+      border[children] = begin + static_cast<Index>(children);
   } else {
     const Index middle = halve(begin, end, boxes);
     border = {begin, halve(begin, middle, boxes), middle, halve(middle, end, boxes), end};
-    parts = kWidth;
+    children = kWidth;
   }
-  for (std::size_t k = 0; k < parts; ++k) {
+  for (std::size_t k = 0; k < children; ++k) {
     const Index from = border[k], to = border[k + 1];
     if (to - from == 1) {
       nodes_[node].child[k] = ~order_[static_cast<std::size_t>(from)];

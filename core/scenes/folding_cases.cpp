@@ -32,7 +32,7 @@ void take_over(WorldDef& def, const std::vector<Hold>& holds, double start, doub
     hand.v = hold.v;
     hand.radius = 0.04;
     for (int k = 0; k <= kKeys; ++k) {
-      const double part = 0.5 - 0.5 * std::cos(pi * k / kKeys), angle = pi * part;
+      const double fraction = 0.5 - 0.5 * std::cos(pi * k / kKeys), angle = pi * fraction;
       const Vec3d up(0, displacement.norm() * kArch * std::sin(angle), 0);
       hand.path.push_back(
           {start + seconds * k / kKeys, displacement * (0.5 - 0.5 * std::cos(angle)) + up});

@@ -166,17 +166,17 @@ void build_storm(WorldDef& def, const std::string&) {
 }
 
 void build_ring(WorldDef& def, const std::string&) {
-  constexpr int kParts = 16;
+  constexpr int kRods = 16;
   constexpr double kWidth = 0.8, kThick = 0.01, kHeight = 0.8;
   constexpr double kCircle = kWidth / 4 + kThick;  // the hole is half as wide as the cloth
   def.cloths[0] = lying_cloth(33, kWidth, kHeight + 0.03);
   def.cloths[0].fabric = make_fabric("silk");
   def.colliders = {ground()};
   const auto at = [&](int k) {
-    const double angle = 2 * std::numbers::pi * k / kParts;
+    const double angle = 2 * std::numbers::pi * k / kRods;
     return Vec3d(kCircle * std::cos(angle), kHeight, kCircle * std::sin(angle));
   };
-  for (int k = 0; k < kParts; ++k)
+  for (int k = 0; k < kRods; ++k)
     def.colliders.push_back({"ring" + std::to_string(k), CapsuleDef{at(k), at(k + 1), kThick}});
   HandDef hand;
   hand.path = {{1, Vec3d::Zero()}, {5, Vec3d(0, -0.75, 0)}, {6, Vec3d(0.2, -0.6, 0)}};

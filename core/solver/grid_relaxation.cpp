@@ -96,22 +96,22 @@ void GridRelaxation<Real>::set_masses(const std::vector<Real>& inverse_mass, Rea
       free[place(r, c)] = inverse > 0 ? Real(1) : Real(0);
     }
   }
-  const auto share = [&](int kind, Real part_of_stiffness, std::ptrdiff_t i, std::ptrdiff_t j) {
+  const auto share = [&](int kind, Real fraction_of_stiffness, std::ptrdiff_t i, std::ptrdiff_t j) {
     const Real mobility = w[i] + w[j];
     if (!(stiffness[kind] > 0) || mobility == 0) return Real(0);
-    return Real(1) / (mobility + view_.alpha[kind] / part_of_stiffness);
+    return Real(1) / (mobility + view_.alpha[kind] / fraction_of_stiffness);
   };
   for (int r = 0; r < rows; ++r) {
-    const Real row_part = Real(0.5) * cells_at<Real>(r, rows);
+    const Real row_fraction = Real(0.5) * cells_at<Real>(r, rows);
     for (int c = 0; c < columns; ++c) {
       const std::ptrdiff_t here = place(r, c);
-      const Real column_part = Real(0.5) * cells_at<Real>(c, columns);
+      const Real column_fraction = Real(0.5) * cells_at<Real>(c, columns);
       const bool right = c + 1 < columns, below = r + 1 < rows;
       const auto set = [&](std::size_t spring, Real value) {
         at_origin(share_[spring])[here] = value;
       };
-      if (right) set(0, share(0, row_part, here, place(r, c + 1)));
-      if (below) set(1, share(1, column_part, here, place(r + 1, c)));
+      if (right) set(0, share(0, row_fraction, here, place(r, c + 1)));
+      if (below) set(1, share(1, column_fraction, here, place(r + 1, c)));
       if (!right || !below) continue;
       set(2, share(2, Real(1), here, place(r + 1, c + 1)));
       set(3, share(2, Real(1), place(r, c + 1), place(r + 1, c)));

@@ -84,7 +84,7 @@ inline constexpr double kMostRestError = 0.01;
 /// Depth inside a round object that counts as a crossing, as a fraction of its radius [1]; contact
 /// in float keeps no finer distance. Larger: shallow crossings are not counted. Smaller: rounding
 /// is.
-inline constexpr double kInRoundPart = 1e-5;
+inline constexpr double kInRoundFraction = 1e-5;
 
 // Picking.
 

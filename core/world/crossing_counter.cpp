@@ -145,7 +145,7 @@ void CrossingCounter<Real>::find_in_rounds(const World<Real>& world,
       return pose.position + pose.rotation * (p - pivot);
     };
     const Vec3d a = placed(ball ? ball->centre : rod->a), b = ball ? a : placed(rod->b);
-    const double radius = (ball ? ball->radius : rod->radius) * (1 - kInRoundPart);
+    const double radius = (ball ? ball->radius : rod->radius) * (1 - kInRoundFraction);
     Aabb<double> box;
     for (const Vec3d& end : {a, b}) {
       box.add((end.array() - radius).matrix());

@@ -128,7 +128,8 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
 
 template <class Real>
 void World<Real>::set_softness(double softness) {
-  check_field("", {"softness", kLeastSoftness, 1, "", "part of the springs' stiffness"}, softness);
+  check_field("", {"softness", kLeastSoftness, 1, "", "fraction of the springs' stiffness"},
+              softness);
   ClothModel<Real> model = build_cloths<Real>(def_.cloths);
   soften(softness, model);
   softness_ = softness;

@@ -50,7 +50,7 @@ std::size_t crossings(const World<Real>& world) {
 
 /// Part of the motion that the particles wanted and the guard took.
 template <class Real>
-double lost_part(const World<Real>& world) {
+double lost_fraction(const World<Real>& world) {
   const GuardCounts& counts = world.guard()->counts();
   return counts.wanted > 0 ? counts.truncated / counts.wanted : 0;
 }

@@ -21,11 +21,11 @@ inline Vec3<Real> lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) 
   bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9ull;
   bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBull;
   bits ^= bits >> 31;
-  const auto part = [&](int shift) {
+  const auto number = [&](int shift) {
     const auto low = static_cast<std::int32_t>((bits >> shift) & 0x1FFFFF);
     return static_cast<Real>(low - 0x100000) * Real(1.0 / 0x100000);
   };
-  return Vec3<Real>(part(0), part(21), part(42));
+  return Vec3<Real>(number(0), number(21), number(42));
 }
 
 /// Blending weight with zero slope and curvature at both ends, so that the field's curvature is

@@ -136,11 +136,11 @@ template <class Real>
 HWY_INLINE void gather_pairs(const Real* line, int columns, int coarse_columns, Real short_share,
                              Real share, Real* to) {
   const hn::ScalableTag<Real> d;
-  const auto part = hn::Set(d, share);
+  const auto factor = hn::Set(d, share);
   for (std::ptrdiff_t c = 0; c < coarse_columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
     hn::Vec<decltype(d)> here, behind;
     hn::LoadInterleaved2(d, line + 2 * c, here, behind);
-    hn::StoreU(hn::Mul(hn::Add(here, behind), part), d, to + c);
+    hn::StoreU(hn::Mul(hn::Add(here, behind), factor), d, to + c);
   }
   if (columns % 2 == 0) to[coarse_columns - 2] = line[columns - 2] * short_share;
 }

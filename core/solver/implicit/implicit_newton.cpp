@@ -28,7 +28,7 @@ void place(Step<Real>& step) {
   }
 }
 
-/// Gravity, damping and inertia, with their part of the matrix.
+/// Gravity, damping and inertia, with their terms of the matrix.
 template <class Real>
 void add_own(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
@@ -84,7 +84,7 @@ void add_air(Step<Real>& step) {
   }
 }
 
-/// Forces of the live hands at the end of the substep, with their part of the matrix.
+/// Forces of the live hands at the end of the substep, with their terms of the matrix.
 /// @param progress  fraction of the tick that has passed then, 0 to 1
 template <class Real>
 void add_hands(Step<Real>& step, Real progress) {
@@ -107,9 +107,9 @@ void add_hands(Step<Real>& step, Real progress) {
     const Vec3<Real> pull =
         (start + displacement - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
     const Real size = pull.norm(), most = static_cast<Real>(grab.def.max_force);
-    const Real part = size > most ? most / size : Real(1);
-    grab.force = pull * part;
-    hand.stiffness = part * (stiffness + grab.damping * Real(1.5) / step.dt);
+    const Real fraction = size > most ? most / size : Real(1);
+    grab.force = pull * fraction;
+    hand.stiffness = fraction * (stiffness + grab.damping * Real(1.5) / step.dt);
     for (std::size_t n = 0; n < grab.particles.size(); ++n) {
       grab.impulse[n] = grab.force * (grab.weights[n] * step.dt);
       work.force[static_cast<std::size_t>(grab.particles[n])] += grab.force * grab.weights[n];
@@ -117,7 +117,7 @@ void add_hands(Step<Real>& step, Real progress) {
   }
 }
 
-/// y += the hands' part of the matrix, times p.
+/// y += the hands' terms of the matrix, times p.
 template <class Real>
 void apply_hands(const ImplicitWorkspace<Real>& work, std::size_t part, const Real* p, Real* y) {
   for (std::size_t h = 0; h < work.hand_count; ++h) {

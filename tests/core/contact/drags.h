@@ -85,7 +85,7 @@ struct DragFigures {
     blow_ups += world.report().divergence ? 1 : 0;
     deepest = std::max(deepest, world.deepest_penetration());
     strain = std::max(strain, world.report().largest_strain);
-    lost = lost_part(world);
+    lost = lost_fraction(world);
   }
 };
 

@@ -91,7 +91,7 @@ Seen watch(World<Real>& world, int ticks) {
     seen.crossings += counter.count(world).total();
     seen.deepest = std::max(seen.deepest, world.deepest_penetration());
   }
-  seen.lost = lost_part(world);
+  seen.lost = lost_fraction(world);
   return seen;
 }
 

@@ -92,9 +92,9 @@ TEST_CASE("a sheet that crumples on the ground crosses itself at no tick, and mo
   World<float> world(upright_drop(20, part));
   jolt(world, 0.05, 1);
   CHECK(crossings_over(world, 120) == 0);
-  INFO("thickness " << part << " of the edge, lost " << lost_part(world));
+  INFO("thickness " << part << " of the edge, lost " << lost_fraction(world));
   CHECK(world.guard()->counts().anchored > 100);  // it met itself
-  CHECK(lost_part(world) < 0.2);
+  CHECK(lost_fraction(world) < 0.2);
   CHECK(world.deepest_penetration() < 1e-5);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a crumpling sheet in double crosses nothing either") {
   World<double> world(upright_drop(12, 0.25));
   jolt(world, 0.05, 2);
   CHECK(crossings_over(world, 90) == 0);
-  CHECK(lost_part(world) < 0.2);
+  CHECK(lost_fraction(world) < 0.2);
 }
 
 TEST_CASE("where nothing touches, a run with the guard is that without it, bit for bit") {
@@ -318,7 +318,7 @@ TEST_CASE("a sheet folded over itself comes to rest with its layers a thickness 
         std::min(lowest, static_cast<double>(state.x[static_cast<std::size_t>(16 * 17 + c)][1]));
   CHECK(lowest > 1.7 * thickness);
   CHECK(lowest < 2.6 * thickness);
-  CHECK(lost_part(world) < 0.01);
+  CHECK(lost_fraction(world) < 0.01);
 }
 
 TEST_CASE("the guard is chosen by name and goes with the contact of weft alone") {
@@ -357,5 +357,5 @@ TEST_CASE("layers that a hand presses on a ball with 50 N lose at most 1 % of th
   world.grab(hand);
   CHECK(crossings_over(world, 15) == 0);
   CHECK(world.grabs().list[0].force.norm() > 49.9);
-  CHECK(lost_part(world) < 0.01);
+  CHECK(lost_fraction(world) < 0.01);
 }
