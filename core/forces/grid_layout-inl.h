@@ -38,7 +38,7 @@ HWY_INLINE void store(D d, const Triple<hn::Vec<D>>& a, Real* at, std::ptrdiff_t
 
 /// Calls body(d, row, column, particle) for stretches of the grid's rows; `particle` is the offset
 /// of their first number in arrays of x y z x y z. A stretch is a whole vector where the row is
-/// long enough; the remainder goes particle by particle, so that each is visited exactly once.
+/// long enough, and one particle in the remainder, so that each is visited exactly once.
 template <class Real, class Body>
 HWY_INLINE void for_each_stretch(const GridView<Real>& g, Body&& body) {
   const GridTag<Real> wide;

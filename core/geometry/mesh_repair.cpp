@@ -32,7 +32,7 @@ bool has_valid_indices(const TriangleMesh& mesh) {
 /// Removes triangles without area, and keeps a closed surface closed where possible.
 class FlatTriangles {
  public:
-  explicit FlatTriangles(TriangleMesh& mesh) : mesh_(mesh), gone_(mesh.triangles.size(), false) {
+  explicit FlatTriangles(TriangleMesh& mesh) : mesh_(mesh), removed_(mesh.triangles.size(), false) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       enter(t);
       if (is_degenerate(mesh, mesh.triangles[t])) flat_.push_back(t);
@@ -46,7 +46,7 @@ class FlatTriangles {
       if (!pass()) break;
     }
     for (const std::size_t t : flat_) remove(t);
-    return erase_gone();
+    return erase_removed();
   }
 
  private:
@@ -57,7 +57,7 @@ class FlatTriangles {
     const std::vector<std::size_t> flat = std::exchange(flat_, {});
     bool changed = false;
     for (const std::size_t t : flat) {
-      if (gone_[t] || !is_degenerate(mesh_, mesh_.triangles[t])) continue;
+      if (removed_[t] || !is_degenerate(mesh_, mesh_.triangles[t])) continue;
       if (has_doubled_corner(mesh_.triangles[t])) {
         remove(t);  // its remainder is one side, there and back
         changed = true;
@@ -120,13 +120,13 @@ class FlatTriangles {
 
   void put(std::size_t t, const Triangle& corners) {
     mesh_.triangles[t] = corners;
-    gone_[t] = false;
+    removed_[t] = false;
     enter(t);
     if (is_degenerate(mesh_, corners)) flat_.push_back(t);
   }
 
   void remove(std::size_t t) {
-    gone_[t] = true;
+    removed_[t] = true;
     const Triangle& corners = mesh_.triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [first, last] = sides_.equal_range({corners[k], corners[(k + 1) % 3]});
@@ -136,19 +136,19 @@ class FlatTriangles {
     }
   }
 
-  std::size_t erase_gone() {
+  std::size_t erase_removed() {
     std::vector<Triangle> kept;
     kept.reserve(mesh_.triangles.size());
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (!gone_[t]) kept.push_back(mesh_.triangles[t]);
+      if (!removed_[t]) kept.push_back(mesh_.triangles[t]);
     }
-    const std::size_t gone = mesh_.triangles.size() - kept.size();
+    const std::size_t removed = mesh_.triangles.size() - kept.size();
     mesh_.triangles = std::move(kept);
-    return gone + cut_;
+    return removed + cut_;
   }
 
   TriangleMesh& mesh_;
-  std::vector<bool> gone_;
+  std::vector<bool> removed_;
   std::vector<std::size_t> flat_;
   std::multimap<Side, std::size_t> sides_;
   std::size_t cut_ = 0;  // flat triangles replaced by half of their neighbour
