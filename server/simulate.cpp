@@ -91,7 +91,7 @@ bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
 /// Crossings that break the scene's promise: contact of the seed promises nothing, and without
 /// self-contact cloths may pass through each other.
 std::size_t broken_promises(const World<float>& world, const WorldCrossings& found) {
-  if (contact_of(world.def()) != ContactModel::weft) return 0;
+  if (contact_of(world.def()) != ContactModel::certified) return 0;
   return found.objects.all() + (has_guard(world.def()) ? found.cloths.all() : 0);
 }
 

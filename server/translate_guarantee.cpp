@@ -23,7 +23,7 @@ std::vector<std::string> voiding_colliders(const ServedWorld& world) {
 
 proto::Guarantee guarantee_of(const ServedWorld& world, const BadStarts& bad_starts) {
   proto::Guarantee guarantee;
-  if (contact_of(world.def()) != ContactModel::weft) {
+  if (contact_of(world.def()) != ContactModel::certified) {
     guarantee.state = proto::GuaranteeState::none;
     return guarantee;
   }

@@ -13,44 +13,45 @@
 
 namespace weft {
 
-/// Contact and moving pins, as a solver calls them. One of the two contact models is set, the other
-/// is null; or neither is. The guard of cloths against each other accompanies `weft`. Moving pins
-/// are included because they too act between kick and drift.
+/// Contact and moving pins, as a solver calls them. Of the two contact models at most one is set:
+/// the certified one with `objects`, `guard` or both, or `seed`. Moving pins are included because
+/// they too act between kick and drift.
 template <class Real>
 struct Collision {
-  Contact<Real>* weft = nullptr;
+  Contact<Real>* objects = nullptr;
   SeedContact<Real>* seed = nullptr;
   ClothGuard<Real>* guard = nullptr;
   PinDrive<Real>* pins = nullptr;
 
-  bool empty() const { return !weft && !seed && !guard && !pins; }
+  bool empty() const { return !objects && !seed && !guard && !pins; }
 
   /// Whether anything touches now.
   bool touches(const ClothState<Real>& state) const {
-    return (weft && weft->touches(state.x)) || (guard && guard->presses()) ||
+    return (objects && objects->touches(state.x)) || (guard && guard->presses()) ||
            (seed && seed->touches());
   }
 
   /// Call before a kick, with the velocities of the last drift.
   void before_kick(const ClothState<Real>& state) const {
-    if (weft) weft->note_motion(state);
+    if (objects) objects->note_motion(state);
   }
   /// Call between the kick and the drift of `dt` [s]: makes the velocities admissible.
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
     assert(dt > 0);
-    assert(!(weft && seed) && !(guard && seed) && "one model of contact");
+    assert(!(objects && seed) && !(guard && seed) && "one model of contact");
     if (pins) pins->before_drift(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
-    if (weft) weft->note_kicked(state);
+    if (objects) objects->note_kicked(state);
     if (guard) guard->solve(state, dt, profile);
-    if (weft)
-      weft->resolve(state, dt, profile, guard);
+    if (objects)
+      objects->resolve(state, dt, profile, guard);
     else if (guard)
       guard->respond_alone(state, dt);
     if (seed) seed->separate(state, profile);
     const double truncated = guard ? guard->counts().truncated : 0;
     if (guard) guard->certify(state, dt, profile);
-    if (weft && !weft->move_objects(state, dt, guard && guard->counts().truncated > truncated)) {
+    if (objects &&
+        !objects->move_objects(state, dt, guard && guard->counts().truncated > truncated)) {
       assert(guard && "only what it truncates makes objects stand");
       guard->stand_still();
     }
@@ -66,10 +67,10 @@ struct Collision {
     assert(dt > 0);
     if (pins) pins->settle(state, dt);
     const StageTimer timer(profile, Stage::contact, 0);
-    if (weft) weft->note_kicked(state);
+    if (objects) objects->note_kicked(state);
     if (guard) guard->settle(state, dt, profile);
-    if (weft)
-      weft->settle(state, dt, profile, guard);
+    if (objects)
+      objects->settle(state, dt, profile, guard);
     else if (guard)
       guard->sweep(state);
   }

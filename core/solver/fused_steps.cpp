@@ -126,7 +126,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   if (s < next.substep || !may_be_calm(tick)) return 0;
   ClothGuard<Real>& guard = *tick.collision.guard;
   const CalmPaths<Real>* paths = guard.calm_paths();
-  const Contact<Real>* objects = tick.collision.weft;
+  const Contact<Real>* objects = tick.collision.objects;
   if (!paths || !(paths->time + tick.dt <= paths->horizon)) return 0;
   const Real clearance = objects ? objects->calm_room(tick.state) * Real(kCalmClearance)
                                  : std::numeric_limits<Real>::infinity();

@@ -169,7 +169,7 @@ void add_meetings(const World<Real>& world, const std::vector<Meeting>& meetings
   const auto has = [](const std::vector<std::string>& list, const std::string& text) {
     return std::find(list.begin(), list.end(), text) != list.end();
   };
-  if (contact_of(def) != ContactModel::weft) return;
+  if (contact_of(def) != ContactModel::certified) return;
   for (const Meeting& m : meetings) {
     const bool object = m.collider != kNone;
     if (!object && !has_guard(def)) continue;

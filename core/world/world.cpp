@@ -294,8 +294,8 @@ template <class Real>
 Collision<Real> World<Real>::collision() {
   PinDrive<Real>* pins = pins_.any_moving() ? &pin_drive_ : nullptr;
   if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins};
-  const bool weft = contact_of(def_) == ContactModel::weft && !def_.colliders.empty();
-  return {weft ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins};
+  const bool objects = contact_of(def_) == ContactModel::certified && !def_.colliders.empty();
+  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins};
 }
 
 /// One tick of the chosen solver.

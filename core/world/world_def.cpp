@@ -53,7 +53,7 @@ SolverKind solver_of(const WorldDef& def) {
 
 ContactModel contact_of(const WorldDef& def) {
   if (def.contact.model != ContactModel::automatic) return def.contact.model;
-  return def.model == Model::seed ? ContactModel::seed : ContactModel::weft;
+  return def.model == Model::seed ? ContactModel::seed : ContactModel::certified;
 }
 
 std::string look_name(const ClothDef& cloth) {
@@ -74,7 +74,7 @@ std::string cloth_name(const WorldDef& def, Index cloth) {
 
 bool has_guard(const WorldDef& def) {
   const SelfContact self = def.contact.seed.self;
-  return contact_of(def) == ContactModel::weft &&
+  return contact_of(def) == ContactModel::certified &&
          (self == SelfContact::automatic || self == SelfContact::guard);
 }
 
@@ -138,7 +138,7 @@ void validate_grippers(const WorldDef& def) {
       names.push_back(jaw.name);
     }
   }
-  if (!def.grippers.empty() && contact_of(def) != ContactModel::weft)
+  if (!def.grippers.empty() && contact_of(def) != ContactModel::certified)
     throw DefinitionError("grippers", std::to_string(def.grippers.size()), "none with this contact",
                           "set contact.model to weft");
 }

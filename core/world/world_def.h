@@ -34,7 +34,7 @@ enum class Model {
 /// The contact that keeps the cloth off objects and itself.
 enum class ContactModel {
   automatic,  ///< that of the world's model
-  weft,       ///< certified planes (contact.h): nothing passes through
+  certified,  ///< `weft`: certified planes (contact.h): nothing passes through
   seed,       ///< proximity and impulses (seed_contact.h)
 };
 
@@ -66,7 +66,7 @@ struct WorldDef {
   std::vector<DisturbanceDef> disturbances;  ///< applied at once, at most kMostDisturbances
   std::vector<WindKey> winds;                ///< in succession, at most kMostWinds
   VerdictDef verdict;                        ///< its limits as a hard case
-  std::vector<GripperDef> grippers;          ///< at most kMostGrippers; need contact weft
+  std::vector<GripperDef> grippers;          ///< at most kMostGrippers; need certified contact
 };
 
 /// Passes every field that does not belong to a cloth, collider or pin to `visit(path, info,
@@ -108,7 +108,7 @@ void visit_fields(Def& def, Visitor&& visit) {
 /// The solver chosen by the definition, never `automatic`.
 SolverKind solver_of(const WorldDef& def);
 
-/// The contact chosen by the definition: weft or seed.
+/// The contact chosen by the definition: certified or seed.
 ContactModel contact_of(const WorldDef& def);
 
 /// Name of the fabric that viewers draw a cloth as; empty if neither its look nor the preset of its

@@ -28,7 +28,7 @@ void World<Real>::take_reactions() {
   Reactions found;
   found.tick = tick_;
   found.colliders.assign(def_.colliders.size(), Vec3d::Zero());
-  if (collision().weft) found.contacts = contact_.contacts(state_.x);
+  if (collision().objects) found.contacts = contact_.contacts(state_.x);
   for (const ContactPoint& contact : found.contacts) {
     assert(static_cast<std::size_t>(contact.collider) < found.colliders.size());
     found.colliders[static_cast<std::size_t>(contact.collider)] -= contact.force();
