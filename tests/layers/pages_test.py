@@ -1,5 +1,6 @@
-"""Each Markdown page that a file of this repository names is there."""
+"""Each Markdown page that a file of this repository names is there, and each source that a page names."""
 
+import fnmatch
 import os
 import re
 import subprocess
@@ -11,6 +12,8 @@ ROOT = Path(os.environ.get("WEFT_SOURCE_DIR", Path(__file__).resolve().parents[2
 
 # A page's name with the folders before it.
 NAME = re.compile(r"[^\s\"'`()\[\]<>|,;:=]*\w\.m" r"d\b")
+# A source's path in a page: in back quotes, with a folder; "*" stands for any ending.
+SOURCE = re.compile(r"`([^`\s]*/[^`\s/]*\.(?:h|cpp|py|ts|js|mjs|\*))`")
 # A folder that only a run knows: "$into/" of the shell, "{self.tree}/" of a format string.
 UNKNOWN_FOLDER = re.compile(r"^.*(?:\$\w+|\})/")
 
@@ -40,6 +43,20 @@ def missing_pages(texts):
         for found in NAME.finditer(text):
             if not is_there(found[0], file, pages):
                 yield file, text.count("\n", 0, found.start()) + 1, found[0]
+
+
+def missing_sources(texts):
+    """Yields (page, line, path) of each source that a page names and that is missing.
+
+    A path counts from the page's folder, or from the root.
+    """
+    for page, text in texts.items():
+        if not page.endswith(".m" "d"):
+            continue
+        for found in SOURCE.finditer(text):
+            names = {normpath(f"{folder}/{found[1]}") for folder in (PurePosixPath(page).parent, ".")}
+            if not any(fnmatch.filter(texts, name) for name in names):
+                yield page, text.count("\n", 0, found.start()) + 1, found[1]
 
 
 def texts_of_this_repository():
@@ -92,6 +109,16 @@ class Pages(unittest.TestCase):
         self.assertIn("README.m" "d", texts)
         self.assertIn("core/world/world.cpp", texts)
         self.assertEqual(list(missing_pages(texts)), [])
+
+    def test_every_source_that_a_page_names_is_there(self):
+        self.assertEqual(list(missing_sources(texts_of_this_repository())), [])
+
+    def test_a_planted_path_of_a_missing_source_is_found_and_no_other(self):
+        page = "core/README.m" "d"
+        sources = {"core/world/a.cpp": "", "core/world/a.h": "", "web/src/b.ts": ""}
+        text = "`world/a.cpp` `world/a.*` `web/src/b.ts` `a.cpp` `f` in `world/c.cpp`\n`world/c.*`\n"
+        self.assertEqual(list(missing_sources({**sources, page: text})),
+                         [(page, 1, "world/c.cpp"), (page, 2, "world/c.*")])
 
     def test_each_planted_name_of_a_missing_page_is_found(self):
         for file, text in NAMED_AND_MISSING:
