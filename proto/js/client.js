@@ -151,8 +151,8 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   move(what, where, call) {
-    const names = { number: { pin: what }, string: { collider: what }, object: what };
-    const named = names[typeof what];
+    const named =
+      typeof what === 'object' ? what : typeof what === 'number' ? { pin: what } : { collider: what };
     return this.request('move', { ...named, ...where }, call);
   }
 

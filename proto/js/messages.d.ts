@@ -1,6 +1,14 @@
 // Types of the messages of weft.v1. proto/README.md gives the meaning and unit of each field.
 
 export type Vec3 = [number, number, number];
+export type {
+  Cloth,
+  Collider,
+  FabricName,
+  Look,
+  MeshAnnouncement,
+  View,
+} from './announcement.js';
 export type QueryWhat =
   | 'positions'
   | 'velocities'
@@ -47,58 +55,6 @@ export interface Welcome {
   codecs: string[];
   limits: Record<string, number>;
   capabilities: string[];
-}
-
-export interface Cloth {
-  name: string;
-  first_vertex: number;
-  vertices: number;
-  first_triangle: number;
-  triangles: number;
-  rows?: number;
-  columns?: number;
-  thickness: number;
-  look?: Look;
-}
-
-/** A sphere that should fill the first picture, and the side that it is seen from. */
-export interface View {
-  target: Vec3;
-  /** From the target towards the eye, of unit length. */
-  direction: Vec3;
-  radius: number;
-}
-
-/** How a cloth is to look; colours of front and back as `#rrggbb`. */
-export type Look = { fabric?: FabricName; color?: string; back?: string };
-export type FabricName = 'plain' | 'cotton' | 'silk' | 'denim' | 'wool' | 'leather' | 'nylon';
-
-/** `pivot` is the reference point of a pose [m]. */
-export type Collider = { name: string; pivot: Vec3 } & (
-  | { kind: 'plane'; point: Vec3; normal: Vec3 }
-  | { kind: 'sphere'; center: Vec3; radius: number }
-  | { kind: 'capsule'; a: Vec3; b: Vec3; radius: number }
-  | {
-      kind: 'box';
-      center: Vec3;
-      half_extents: Vec3;
-      orientation: [number, number, number, number];
-    }
-  | { kind: 'mesh'; vertices: number; triangles: number }
-);
-
-export interface MeshAnnouncement {
-  op: 'mesh';
-  epoch: number;
-  scene: string;
-  hash: string;
-  url: string;
-  bytes: number;
-  vertices: number;
-  triangles: number;
-  cloths: Cloth[];
-  colliders: Collider[];
-  view?: View;
 }
 
 export interface Energy {

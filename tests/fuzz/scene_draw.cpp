@@ -66,6 +66,11 @@ class SceneDraw {
     } else if (name == "source") {
       constexpr const char* kSources[] = {"gable", "loop", "dress-form"};
       json_[name] = kSources[dice.chance(0.6) ? 0 : 1 + dice.below(2)];
+    } else if (info.color) {
+      constexpr char kDigits[] = "0123456789abcdefABCDEF";
+      std::string color = "#";
+      while (color.size() < 7) color += kDigits[dice.below(sizeof kDigits - 1)];
+      if (dice.chance(0.5)) json_[name] = color;
     } else if (info.least > 0 || dice.chance(0.2)) {
       json_[name] = std::string(std::max<std::size_t>(info.least, dice.below(info.most)), 'x');
     }

@@ -154,12 +154,6 @@ TEST_CASE("a collider is moved by its place in the mesh message, whatever its na
   CHECK(after[2]["position"][0].get<double>() == Approx(0.5));
 
   const std::string hash = hash_of(*t.room);
-  for (const char* wrong : {"3", "4294967295", "-1", "0.5", "true", "\"\"", "[2]"}) {
-    const json told = t.say(
-        1, std::string(R"({"op":"move","id":2,"position":[0,0,0],"collider":)") + wrong + "}");
-    CHECK(told["op"] == "error");
-    CHECK(told["field"] == "collider");
-  }
   const json beyond = t.say(1, R"({"op":"move","id":3,"collider":3,"release":true})");
   CHECK(beyond["code"] == "unknown_collider");
   CHECK(beyond["limit"]["maximum"] == 2);

@@ -32,6 +32,8 @@ CLIENT_CALLS = [
          sends={"op": "move", "collider": "ball", "position": [0, 1, 0], "speed": 2}),
     call("move", "ball", release=True,
          sends={"op": "move", "collider": "ball", "release": True}),
+    call("move", {"collider": 3}, position=[0, 1, 0],
+         sends={"op": "move", "collider": 3, "position": [0, 1, 0]}),
     call("move", 9, position=[0, 1, 0], seconds=1.5, max_force=20,
          sends={"op": "move", "pin": 9, "position": [0, 1, 0], "seconds": 1.5, "max_force": 20}),
     call("move", 9, stop=True, sends={"op": "move", "pin": 9, "stop": True}),

@@ -87,6 +87,10 @@ ACCEPTED = [
         '"release":false}',
         op="move", collider="b", rotation=[0, 0.6, 0, 0.8], speed=20, turn_speed=0.001,
     ),
+    accepted('{"op":"move","collider":2147483647,"release":true}', op="move", collider=2147483647,
+             release=True),
+    accepted('{"op":"move","collider":3.0,"position":[0,1,0]}', op="move", collider=3, position=[0, 1, 0],
+             speed=0.5, turn_speed=2),
     accepted('{"op":"move","collider":"ball","release":true}', op="move", collider="ball",
              release=True),
     accepted(

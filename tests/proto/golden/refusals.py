@@ -130,6 +130,12 @@ def refused_fields():
     yield refuse('{"op":"speed","speed":"fast"}', "wrong_type", field="speed", value="fast")
     yield refuse('{"op":"move","position":[0,1,0]}', "missing_field", field="collider")
     yield refuse('{"op":"move","collider":"","position":[0,1,0]}', "wrong_length", field="collider")
+    yield refuse('{"op":"move","collider":"' + 65 * "b" + '","position":[0,1,0]}', "wrong_length", field="collider")
+    for wrong in ("-1", "2147483648"):
+        yield refuse('{"op":"move","collider":%s,"position":[0,1,0]}' % wrong, "out_of_range", field="collider",
+                     limit={"minimum": 0, "maximum": 2147483647})
+    for wrong in ("0.5", "true", "[2]", "{}"):
+        yield refuse('{"op":"move","collider":%s,"position":[0,1,0]}' % wrong, "wrong_type", field="collider")
     yield refuse('{"op":"move","collider":"ball"}', "missing_field", field="position")
     yield refuse('{"op":"move","collider":"ball","position":[0,1000.5,0]}', "out_of_range",
                  field="position[1]", limit=limits(-1000, 1000))
