@@ -42,7 +42,7 @@ struct Welcome {
 /// How a cloth is meant to look; each is empty if the scene does not tell it.
 struct LookInfo {
   std::string fabric;       ///< such as "silk"
-  std::string color, back;  ///< "#rrggbb", of the side that the normals point to and the other
+  std::string color, back;  ///< "#rrggbb", of the front and of the back
 };
 
 struct ClothInfo {

@@ -94,7 +94,7 @@ void describe_fabric(Io& io, FabricDef& fabric) {
 template <class Io>
 void describe_look(Io& io, LookDef& look) {
   io.fields([&](auto&& visit) { visit_fields_of_look(look, visit); });
-  io.text({"color", 7, 7, false, false, "of the side that the normals point to, #rrggbb", true},
+  io.text({"color", 7, 7, false, false, "of the front: u right, v down, #rrggbb", true},
           look.color);
   io.text({"back", 7, 7, false, false, "of the other side, #rrggbb", true}, look.back);
 }

@@ -20,10 +20,10 @@ enum class LookOf {
   nylon,
 };
 
-/// The look of one cloth.
+/// The look of one cloth. Its front is the side from which u runs to the right and v down.
 struct LookDef {
   LookOf fabric = LookOf::automatic;
-  std::string color;  ///< of the side that its normals point to, "#rrggbb"; empty: the viewer's
+  std::string color;  ///< of the front, "#rrggbb"; empty: the viewer's
   std::string back;   ///< of the other side, "#rrggbb"; empty: follows from `color`
 };
 

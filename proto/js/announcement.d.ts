@@ -19,7 +19,7 @@ export type FabricName = 'plain' | 'cotton' | 'silk' | 'denim' | 'wool' | 'leath
 /** How the author of a cloth wants it drawn. */
 export interface Look {
   fabric?: FabricName;
-  /** Of the side that the triangles face, "#rrggbb". */
+  /** Of the front, from where u runs right and v down, "#rrggbb". */
   color?: string;
   /** Of the other side. */
   back?: string;
