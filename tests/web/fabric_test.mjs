@@ -53,7 +53,8 @@ test('colours of fabrics and of the palette differ from each other to the eye', 
   for (const colors of [fabrics, palette]) {
     for (const [k, color] of colors.entries()) {
       for (const other of colors.slice(0, k)) {
-        assert.ok(difference(color, other) >= VISIBLY_OTHER, `${color.getHexString()} ${other.getHexString()}`);
+        const names = [color, other].map((each) => each.getHexString());
+        assert.ok(difference(color, other) >= VISIBLY_OTHER, `${names}`);
       }
     }
   }
@@ -98,14 +99,17 @@ test('a tile of each weave goes on at its borders and is even on the whole', () 
   for (const fabric of FABRICS) {
     const { texture } = weave_of(fabric);
     const { data, width } = texture.image;
-    const row = (y) => Array.from({ length: width * 4 }, (_, k) => data[y * width * 4 + k]);
-    const column = (x) => Array.from({ length: width * 4 }, (_, k) => data[((k >> 2) * width + x) * 4 + (k & 3)]);
-    const change = (one, other) => one.reduce((sum, value, k) => sum + Math.abs(value - other[k]), 0) / one.length;
+    const bytes = (place) => Array.from({ length: width * 4 }, (_, k) => data[place(k >> 2) * 4 + (k & 3)]);
+    const row = (y) => bytes((x) => y * width + x);
+    const column = (x) => bytes((y) => y * width + x);
+    const change = (one, other) =>
+      one.reduce((sum, value, k) => sum + Math.abs(value - other[k]), 0) / one.length;
     for (const line of [row, column]) {
       const inside = Array.from({ length: width - 1 }, (_, k) => change(line(k), line(k + 1)));
       assert.ok(change(line(width - 1), line(0)) <= Math.max(...inside) * 1.2 + 1, fabric);
     }
-    const mean = (channel) => data.reduce((sum, value, k) => sum + (k % 4 === channel ? value : 0), 0) / (width * width);
+    const mean = (channel) =>
+      data.reduce((sum, value, k) => sum + (k % 4 === channel ? value : 0), 0) / (width * width);
     for (const slope of [0, 1]) assert.ok(Math.abs(mean(slope) - 127.5) < 2, `${fabric}: ${mean(slope)}`);
     assert.ok(Math.abs(mean(3) - 127.5) < 4, `${fabric}: ${mean(3)}`);
   }
@@ -234,7 +238,9 @@ test('normals of a zigzag are evened out to two thirds of its slope, those of a 
     return { before, normals };
   };
   const inside = (act) => {
-    for (let row = 3; row < 14; row++) for (let column = 3; column < 14; column++) act((row * 17 + column) * 3);
+    for (let row = 3; row < 14; row++) {
+      for (let column = 3; column < 14; column++) act((row * 17 + column) * 3);
+    }
   };
   const dents = slant((u, v) => [u, v, Math.round(u * 16) % 4 < 2 ? 0.02 : 0]);
   inside((i) => {
@@ -247,7 +253,9 @@ test('normals of a zigzag are evened out to two thirds of its slope, those of a 
 });
 
 test('the size of a cloth follows from its start, also where it starts bent', () => {
-  for (const place of [(u, v) => [1.5 * u, 0.8 * v, 0], (u, v) => [0.3 * Math.sin(u * 5), 0.8 * v, 0.3 * Math.cos(u * 5)]]) {
+  const flat = (u, v) => [1.5 * u, 0.8 * v, 0];
+  const bent = (u, v) => [0.3 * Math.sin(u * 5), 0.8 * v, 0.3 * Math.cos(u * 5)];
+  for (const place of [flat, bent]) {
     const { positions, uv, triangles } = grid(33, place);
     const cloth = { first_triangle: 0, triangles: triangles.length / 3 };
     const [width, height] = fabric_extent(cloth, { restPositions: positions, uv, triangles });
@@ -260,13 +268,16 @@ test('triangles come from far to near, and each of them once', () => {
   const view = [1, 0, 0, 0, 0, 1, 0, 0, 0.6, 0, 0.8, 0, 0, 0, -3, 1];
   const ordered = new Uint32Array(triangles.length);
   new DepthOrder(triangles).sort({ matrixWorldInverse: { elements: view } }, positions, ordered);
-  const depth = (vertex) => view[2] * positions[vertex * 3] + view[6] * positions[vertex * 3 + 1] + view[10] * positions[vertex * 3 + 2];
+  const towards = [view[2], view[6], view[10]];
+  const depth = (vertex) =>
+    towards.reduce((sum, part, axis) => sum + part * positions[vertex * 3 + axis], 0);
   const depths = Array.from({ length: ordered.length / 3 }, (_, t) =>
     [0, 1, 2].reduce((sum, k) => sum + depth(ordered[t * 3 + k]) / 3, 0));
   const span = Math.max(...depths) - Math.min(...depths);
   for (const [t, value] of depths.entries()) {
     if (t > 0) assert.ok(value > depths[t - 1] - span / 4000, `triangle ${t}`);
   }
-  const names = (list) => Array.from({ length: list.length / 3 }, (_, t) => list.slice(t * 3, t * 3 + 3).join()).sort();
+  const names = (list) =>
+    Array.from({ length: list.length / 3 }, (_, t) => list.slice(t * 3, t * 3 + 3).join()).sort();
   assert.deepEqual(names(ordered), names(triangles));
 });

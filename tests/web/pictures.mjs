@@ -4,6 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdir, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
+import { figures_of, print_figures } from './figures.mjs';
 import { start_server } from './support/server.mjs';
 
 const USUAL_TICK = 240;
@@ -38,7 +39,11 @@ const EXTRA = {
 const COMPARED_WITH = { 12: 11 };
 
 const [folder, ...asked] = process.argv.slice(2);
-if (!folder) throw new Error('usage: pictures.mjs OUTPUT_FOLDER [SCENE[@TICK]]...');
+if (!folder) throw new Error('usage: pictures.mjs OUTPUT_FOLDER [--figures | SCENE[@TICK]...]');
+if (asked[0] === '--figures') {
+  print_figures(await figures_of(folder));
+  process.exit();
+}
 await mkdir(folder, { recursive: true });
 
 const listed = execFileSync(process.env.WEFT_PROGRAM, ['scenes', '--json'], { encoding: 'utf8' });

@@ -97,16 +97,25 @@ function uniforms_of(
 }
 
 /**
- * The shadow is looked up slightly on the side of the cloth that the light falls on. On the other
- * side the cloth would lie in its own shadow, and no light would pass through it.
+ * Shadows are looked up slightly on the side of the cloth that their light falls on. On the other
+ * side the cloth would lie in its own shadow, and no light would pass through it. A light's way is
+ * the direction in which the depth of its shadow grows; all shadows are of directional lights.
  */
 const SHADOW_TOWARDS_LIGHT = `
   #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
-    mat4 to_shadow = directionalShadowMatrix[0];
-    vec3 light_way = vec3(to_shadow[0].z, to_shadow[1].z, to_shadow[2].z);
-    transformedNormal = faceforward(transformedNormal, mat3(viewMatrix) * light_way, transformedNormal);
+    vec3 world_normal = inverseTransformDirection(transformedNormal, viewMatrix);
+    mat4 to_shadow;
+    vec3 light_way, offset;
+    #pragma unroll_loop_start
+    for ( int i = 0; i < NUM_DIR_LIGHT_SHADOWS; i ++ ) {
+      to_shadow = directionalShadowMatrix[ i ];
+      light_way = vec3(to_shadow[0].z, to_shadow[1].z, to_shadow[2].z);
+      offset = faceforward(world_normal, light_way, world_normal);
+      offset *= directionalLightShadows[ i ].shadowNormalBias;
+      vDirectionalShadowCoord[ i ] = to_shadow * (worldPosition + vec4(offset, 0.0));
+    }
+    #pragma unroll_loop_end
   #endif
-  #include <shadowmap_vertex>
 `;
 
 const DECLARATIONS = `

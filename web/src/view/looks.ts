@@ -72,10 +72,10 @@ export const FINISHES: Record<FabricName, Finish> = {
     ...WOVEN,
     color: '#0f7f78',
     weave: 'silk',
-    period: 0.0012,
+    period: 0.001,
     relief: 0.16,
     grooves: 0.12,
-    roughness: 0.36,
+    roughness: 0.32,
     back_roughness: 0.62,
     specular: 1,
     anisotropy: 0.55,
@@ -90,7 +90,7 @@ export const FINISHES: Record<FabricName, Finish> = {
     color: '#2b4a7d',
     back: '#a9b6c9',
     weave: 'denim',
-    period: 0.0045,
+    period: 0.0052,
     relief: 1,
     grooves: 0.6,
     white_weft: 0.55,
@@ -105,7 +105,7 @@ export const FINISHES: Record<FabricName, Finish> = {
     ...WOVEN,
     color: '#b08a3c',
     weave: 'wool',
-    period: 0.007,
+    period: 0.008,
     relief: 0.7,
     grooves: 0.45,
     roughness: 1,
@@ -197,6 +197,6 @@ export function back_of(look: Look | undefined, front: Color): Color {
   if (back && front.equals(new Color(color))) return new Color(back);
   const { h, s, l } = front.getHSL({ h: 0, s: 0, l: 0 }, SRGBColorSpace);
   const lighter = l < 0.62;
-  const saturation = s * (lighter ? 0.75 : 0.95);
-  return new Color().setHSL(h, saturation, lighter ? l + 0.12 : l - 0.11, SRGBColorSpace);
+  const saturation = s * (lighter ? 0.8 : 0.95);
+  return new Color().setHSL(h, saturation, lighter ? l + 0.07 : l - 0.11, SRGBColorSpace);
 }
