@@ -7,18 +7,14 @@ import {
   bounded,
   browser,
   drag_cloth,
-  particle_pixel,
   point_at_cloth,
   position,
   server,
   with_page,
   with_server,
 } from './support/default_page.mjs';
-import { import_page_module } from './support/page_module.mjs';
 
-// Hands by mouse and touch, on the cloth and beside it.
-
-const { LONG_PRESS } = await import_page_module('hold/input');
+// Hands by the mouse, on the cloth and beside it.
 
 test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () =>
   with_page({}, async (page, script) => {
@@ -52,10 +48,11 @@ test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () 
 
 test('the latency is told only while a hand holds in a running room', bounded, () =>
   with_page({}, async (page, script) => {
-    const told = async () => {
-      const value = page.locator('#latency');
-      return (await value.isVisible()) ? Number(await value.textContent()) : null;
-    };
+    const told = () =>
+      page.evaluate(() => {
+        const value = document.getElementById('latency');
+        return value.closest('div').hidden ? null : Number(value.textContent);
+      });
     await script.pause();
     await until(() => read(page, 'paused'));
     await drag_cloth(page, 0, -20);
@@ -170,7 +167,7 @@ test('two pages see each other’s hands, with names and colours', bounded, () =
       const color = (name) => roster.find((viewer) => viewer.name === name).color;
       assert.equal(seen.color, color('Ada'));
       assert.equal(seen.own, false);
-      assert.equal(await ben.locator('.name').textContent(), 'Ada');
+      assert.match(await ben.locator('.name').textContent(), /^Ada( · [\d.]+ N)?$/);
       await point_at_cloth(ben, 18 * COLUMNS + 8);
       await ben.mouse.down();
       await until(() => of(ada, 'Ben'), 'Ada sees the hand of Ben');
@@ -199,91 +196,6 @@ test('a drag ends when the pointer is cancelled and when the window loses the fo
       assert.equal(await read(page, 'input'), 'idle');
       await page.mouse.up();
     }
-  }),
-);
-
-/** Lets the test end the timers of long presses, so that it does not matter how slowly things go. */
-function hold_long_presses(page) {
-  return page.evaluate((long_press) => {
-    const { setTimeout, clearTimeout } = window;
-    const pressed = (window.long_presses = new Map());
-    window.setTimeout = (act, delay, ...rest) => {
-      if (delay !== long_press) return setTimeout(act, delay, ...rest);
-      const id = -1 - pressed.size;
-      pressed.set(id, act);
-      return id;
-    };
-    window.clearTimeout = (id) => pressed.delete(id) || clearTimeout(id);
-  }, LONG_PRESS);
-}
-
-const long_presses = (page) => page.evaluate(() => window.long_presses.size);
-
-test('one finger takes the cloth or turns, two shift and zoom, a long press pins', bounded, () =>
-  with_page({ width: 400, height: 720, touch: true }, async (page, script) => {
-    const session = await page.context().newCDPSession(page);
-    const touch = (type, ...points) =>
-      session.send('Input.dispatchTouchEvent', {
-        type,
-        touchPoints: points.map(([x, y], id) => ({ x, y, id })),
-      });
-    /** The camera when it rests elsewhere than it did. */
-    const camera_after = (before) =>
-      until(async () => {
-        const camera = await camera_at_rest(page);
-        return JSON.stringify(camera) !== JSON.stringify(before) && camera;
-      }, 'the camera goes elsewhere');
-    const at_start = async () => {
-      await script.reset();
-      await until(async () => (await read(page, 'tick')) === 0);
-    };
-    // Time stands still but where the test lets it pass, so that the cloth is where it is looked for.
-    await script.pause();
-    await at_start();
-    await hold_long_presses(page);
-    const particle = 4 * COLUMNS + 14;
-    const home = await camera_at_rest(page);
-    const height = (await position(script, particle))[1];
-    const first = await particle_pixel(page, particle);
-    await touch('touchStart', [first.x, first.y]);
-    await until(() => script.last.grabs.length === 1, 'one finger holds the cloth');
-    assert.equal(await long_presses(page), 1);
-    for (const dy of [15, 30, 60, 90]) await touch('touchMove', [first.x, first.y - dy]);
-    await until(async () => (await long_presses(page)) === 0, 'a finger that moves does not press');
-    await until(async () => {
-      await script.advance(5);
-      return (await position(script, particle))[1] > height + 0.1;
-    }, 'it is lifted');
-    await touch('touchEnd');
-    await until(() => script.last.grabs.length === 0);
-    assert.deepEqual(await camera_at_rest(page), home);
-
-    await at_start();
-    await touch('touchStart', [30, 480]);
-    await touch('touchMove', [110, 480]);
-    await touch('touchEnd');
-    const turned = await camera_after(home);
-    assert.equal(script.last.grabs.length, 0);
-
-    await touch('touchStart', [120, 470], [200, 470]);
-    await touch('touchMove', [100, 470], [220, 470]);
-    await touch('touchEnd');
-    const zoomed = await camera_after(turned);
-    assert.equal(script.last.grabs.length, 0);
-    const distance = ({ position: [x, , z] }) => Math.hypot(x, z);
-    assert.ok(distance(zoomed) < distance(turned) * 0.9);
-
-    await page.keyboard.press('f');
-    await camera_after(zoomed);
-    const pins = script.last.pins.length;
-    const again = await particle_pixel(page, particle);
-    await touch('touchStart', [again.x, again.y]);
-    await until(async () => (await long_presses(page)) === 1, 'a finger rests on the cloth');
-    assert.equal(script.last.pins.length, pins);
-    await page.evaluate(() => window.long_presses.forEach((act) => act()));
-    await until(() => script.last.pins.length === pins + 1, 'a long press pins');
-    await until(() => script.last.grabs.length === 0, 'and lets go');
-    await touch('touchEnd');
   }),
 );
 

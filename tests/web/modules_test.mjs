@@ -4,7 +4,9 @@ import { numbers } from './support/made_up.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 const { Fans } = await import_page_module('view/fans');
+const { FabricCircle } = await import_page_module('view/fabric_circle');
 const { HandLatency } = await import_page_module('hold/hand_latency');
+const { MarkDot, MarkLine } = await import_page_module('view/marks');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
 const { smooth_normals } = await import_page_module('view/normals');
 
@@ -81,5 +83,74 @@ test('normals of a plane grid are those of the plane, whatever the sizes of its 
     assert.ok(Math.abs(normals[i] + Math.SQRT1_2) < 1e-6);
     assert.ok(Math.abs(normals[i + 1]) < 1e-6);
     assert.ok(Math.abs(normals[i + 2] - Math.SQRT1_2) < 1e-6);
+  }
+});
+
+/** A grid of cloth in the plane of x and y, with one diagonal or the other. */
+function grid(columns, rows, cell) {
+  const positions = new Float32Array(columns * rows * 3);
+  for (let k = 0; k < columns * rows; k++)
+    positions.set([(k % columns) * cell, Math.floor(k / columns) * cell, 0], k * 3);
+  const triangles = [];
+  for (let row = 0; row + 1 < rows; row++)
+    for (let column = 0; column + 1 < columns; column++) {
+      const [a, b] = [row * columns + column, row * columns + column + 1];
+      const [c, d] = [a + columns, b + columns];
+      triangles.push(...((row + column) % 2 ? [a, b, c, b, d, c] : [a, b, d, a, d, c]));
+    }
+  return { positions, triangles: Uint32Array.from(triangles) };
+}
+
+test('marks are drawn fainter where something is in front of them, and nowhere twice', () => {
+  const GREATER = 6; // of three's depth functions
+  for (const mark of [new MarkLine(2, 0.9, 20), new MarkDot(5, 21)]) {
+    const opacities = new Map();
+    mark.group.traverse(({ material, renderOrder }) => {
+      if (!material) return;
+      assert.ok(material.depthTest && !material.depthWrite && material.transparent);
+      const side = material.depthFunc === GREATER ? 'hidden' : 'seen';
+      opacities.set(`${side} ${renderOrder}`, material.opacity);
+    });
+    const seen = [...opacities].filter(([name]) => name.startsWith('seen'));
+    assert.ok(seen.length > 0 && opacities.size === 2 * seen.length);
+    for (const [name, opacity] of seen) {
+      const hidden = opacities.get(name.replace('seen', 'hidden'));
+      assert.ok(hidden > 0.1 && hidden < 0.5 * opacity);
+    }
+  }
+});
+
+test('a circle in the fabric has its radius from any point, and goes with the cloth', () => {
+  const { positions, triangles } = grid(21, 31, 0.05);
+  const circle = new FabricCircle(positions, triangles);
+  const lifted = positions.map((value, k) => (k % 3 === 2 ? value + 2 : value));
+  const random = numbers(3);
+  for (let trial = 0; trial < 200; trial++) {
+    const u = random();
+    const v = random() * (1 - u);
+    const barycentric = [1 - u - v, u, v];
+    const triangle = 400 + Math.floor(random() * 300);
+    const centre = point_on_triangle(triangle, barycentric, positions, triangles);
+    const radius = 0.01 + 0.19 * random();
+    const line = circle.around({ triangle, barycentric }, radius, lifted);
+    assert.deepEqual(line[0], line.at(-1), 'it is closed');
+    for (const [x, y, z] of line) {
+      const inside = x > 1e-6 && x < 1 - 1e-6;
+      const distance = Math.hypot(x - centre[0], y - centre[1]);
+      assert.ok(Math.abs(z - 2) < 1e-5);
+      assert.ok(distance < radius + 1e-5);
+      if (inside) assert.ok(Math.abs(distance - radius) < 1e-5, `${distance} for ${radius}`);
+    }
+  }
+});
+
+test('a circle at the edge of the cloth follows the edge', () => {
+  const { positions, triangles } = grid(11, 11, 0.1);
+  const circle = new FabricCircle(positions, triangles);
+  const line = circle.around({ triangle: 0, barycentric: [1, 0, 0] }, 0.25, positions);
+  for (const [x, y] of line) {
+    assert.ok(x > -1e-6 && y > -1e-6 && Math.hypot(x, y) < 0.25 + 1e-6);
+    const on_edge = Math.min(x, y) < 1e-6;
+    assert.ok(on_edge || Math.abs(Math.hypot(x, y) - 0.25) < 1e-6);
   }
 });

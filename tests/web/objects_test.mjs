@@ -122,6 +122,84 @@ test('an object is drawn where it is, and goes where Ctrl, Shift and the mouse t
   }),
 );
 
+test('each leg of a table moves by itself, by a plain drag where objects are moved', bounded, () =>
+  with_server(['--scene', 'table', '--paused'], async (page, script) => {
+    const legs = async () =>
+      (await script.query('colliders')).filter(({ name }) => name === 'leg').map((leg) => leg.position);
+    await page.keyboard.press('o');
+    assert.equal(await page.locator('#objects').getAttribute('aria-pressed'), 'true');
+    await camera_at_rest(page);
+    assert.equal((await legs()).length, 4);
+    const moved = new Set();
+    for (const place of await legs()) {
+      const { x, y } = await pixel_of(page, [place[0], 0.1, place[2]]);
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await until(async () => (await read(page, 'input')) !== 'idle');
+      const holds = (await read(page, 'input')) === 'holding'; // the cloth may hide a leg
+      const before = await legs();
+      if (holds) await page.mouse.move(x + 30, y, { steps: 3 });
+      await page.mouse.up();
+      if (!holds) continue;
+      const which = await until(async () => {
+        await script.advance(5);
+        const ways = (await legs()).map((now, leg) =>
+          Math.hypot(...now.map((value, axis) => value - before[leg][axis])),
+        );
+        const moving = ways.flatMap((way, leg) => (way > 0.01 ? [leg] : []));
+        return moving.length && moving;
+      }, 'a leg moves');
+      assert.equal(which.length, 1, 'one leg alone moves');
+      moved.add(which[0]);
+      await until(async () => {
+        const { tick } = await script.query('state');
+        return (await read(page, 'tick')) === tick;
+      });
+    }
+    assert.ok(moved.size >= 2, `legs that moved: ${[...moved]}`);
+  }),
+);
+
+test('a hand carries a gripper, and a click closes and opens it', bounded, () =>
+  with_server(['--scene', 'gripper', '--paused'], async (page, script) => {
+    await page.setViewportSize({ width: 900, height: 700 });
+    const state = async () => (await script.query('grippers'))[0];
+    await camera_at_rest(page);
+    const start = await state();
+    const jaw = async () => {
+      const { position } = (await read(page, 'objects')).find(({ name }) => name === 'gripper.right');
+      return pixel_of(page, position);
+    };
+    const press = async () => {
+      const { x, y } = await jaw();
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await until(async () => (await read(page, 'input')) === 'holding', 'a jaw is held');
+      return { x, y };
+    };
+    const passing = (holds) =>
+      until(async () => {
+        await script.advance(5);
+        return holds(await state());
+      }, `${holds}`);
+    const settle = async () => {
+      const { tick } = await script.query('state');
+      await until(async () => (await read(page, 'tick')) === tick);
+    };
+    await press();
+    await page.mouse.up();
+    await passing(({ opening }) => opening < start.opening / 4);
+    await settle();
+    const { x, y } = await press();
+    await page.mouse.move(x, y - 80, { steps: 4 });
+    await page.mouse.up();
+    await passing(({ position }) => position[1] > start.position[1] + 0.05);
+    await passing(() => true);
+    await page.keyboard.press('g');
+    await passing(({ opening }) => opening > start.opening * 0.9);
+  }),
+);
+
 test('the head of a pin that a script moves goes with its cloth', bounded, () =>
   with_page({}, async (page, script) => {
     await script.pause();

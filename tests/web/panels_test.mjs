@@ -14,7 +14,7 @@ import {
 
 const CONTROLS = [
   ['button', /^Scenes: /],
-  ...['Pause', 'One step', 'Reset', 'Sling', 'Fan', 'Boxes', 'Frame the cloth', 'Dark', 'Help']
+  ...['Pause', 'One step', 'Reset', 'Sling', 'Move objects', 'Fan', 'Boxes', 'Frame the cloth', 'Dark', 'Help']
     .concat('Figures')
     .map((name) => ['button', name]),
   ...['Wind', 'Gravity', 'Fan'].map((name) => ['slider', name]),

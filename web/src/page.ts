@@ -10,6 +10,7 @@ import { HandLatency } from './hold/hand_latency.js';
 import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
 import type { View, Window } from './view/framing.js';
+import { KEY_HAND, KeyHand } from './hold/key_hand.js';
 import { listen_to_keys } from './hold/keys.js';
 import { loss_text, notice_text } from './panel/events.js';
 import { element } from './panel/element.js';
@@ -42,6 +43,7 @@ export class Page {
   readonly box_view: BoxView;
   readonly input: Input;
   readonly holding: Holding;
+  readonly key_hand: KeyHand;
   world: WorldView | null = null;
   state: State | null = null;
   phase: Phase = 'connecting';
@@ -52,7 +54,7 @@ export class Page {
     this.dirty = true;
   });
   private toolbar: Toolbar;
-  private reticle = new Reticle();
+  readonly reticle = new Reticle();
   private viewers: Viewer[] = [];
   private last_time = performance.now() / 1000;
   private camera_told_at = 0;
@@ -73,26 +75,33 @@ export class Page {
     const tell = (text: string) => this.panels.tell(text);
     this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
     this.stage.scene.add(this.box_view.boxes.lines);
-    this.holding = new Holding({
+    const reach = {
       client: this.client,
       orbit: this.orbit,
       fans: this.fans,
       pins: this.pins,
       world: () => this.world,
-      viewer: (id) => this.viewer(id),
+      viewer: (id: number) => this.viewer(id),
       hand_mode: () => this.toolbar.hand_mode,
+      moves_objects: () => this.toolbar.moves_objects,
+      is_finger: (hand: number) => this.input.is_finger(hand),
       size: () => this.size(),
       show_fans: () => this.show_fans(),
       tell,
-      lost: (reason) => this.lost(reason),
-    });
+      lost: (hand: number, reason: string) => this.lost(hand, reason),
+      announce: (text: string) => (element('announcer').textContent = text),
+      changed: () => (this.dirty = true),
+    };
+    this.holding = new Holding(reach);
+    this.key_hand = new KeyHand(reach, this.holding.pointed, this.holding);
     this.input = new Input(this.canvas, {
-      take: (point) => this.holding.take(point),
-      take_object: (point) => this.holding.take_object(point),
-      follow: (point) => this.holding.follow(point),
+      take: (hand, point) => this.holding.take(hand, point),
+      take_object: (hand, point) => this.holding.take_object(hand, point),
+      follow: (hand, point) => this.holding.follow(hand, point),
       push: (factor) => this.holding.push(factor),
-      let_go: (meant) => this.holding.let_go(meant),
-      toggle_pin: (point) => this.holding.toggle_pin(point),
+      let_go: (hand, meant) => this.holding.let_go(hand, meant),
+      pressable: (hand, point) => this.holding.pressable(hand, point),
+      press: (point) => this.holding.press(point),
       ...this.camera_actions(),
       pan: (dx, dy) => {
         this.director.leave();
@@ -101,13 +110,20 @@ export class Page {
       changed: () => (this.dirty = true),
     });
     listen_to_keys({
-      toggle_pin: () => this.holding.toggle_pin(this.input.point),
+      toggle_pin: () => this.toggle_pin(),
+      toggle_cursor: () => this.key_hand.toggle(),
+      arrow: (x, y, in_depth) => this.key_hand.arrow(x, y, in_depth),
+      enter: () => this.key_hand.enter(),
+      escape: () => this.key_hand.escape(),
       toggle_pause: () => this.toolbar.toggle_pause(),
       step: () => this.toolbar.one_step(),
       reset: () => this.toolbar.reset(),
       toggle_fan: () => this.toolbar.toggle_fan(),
       toggle_boxes: () => this.box_view.toggle(),
       toggle_sling: () => this.toolbar.toggle_sling(),
+      toggle_objects: () => this.toolbar.toggle_objects(),
+      widen: (factor) => this.widen(factor),
+      squeeze: () => this.holding.taking.squeeze(this.input.point),
       frame: () => this.frame(),
       scenes: () => this.toolbar.show_scenes(),
       help: () => this.toolbar.show_help(),
@@ -133,8 +149,10 @@ export class Page {
       this.world = new WorldView(announcement, data, this.stage);
       this.pins.fit(this.world.cloth_extent);
       this.holding.grabs = [];
+      this.holding.taking.grippers.renew();
       this.box_view.renew();
       if (!same) {
+        this.key_hand.forget();
         this.frame(true);
         this.unframed = true;
       }
@@ -171,6 +189,7 @@ export class Page {
     client.on('refused', ({ code, message }) => code !== 'unknown_drag' && panels.tell(message));
     client.on('fault', ({ message }) => panels.tell(message));
     document.addEventListener('visibilitychange', () => this.world?.playback.forget());
+    window.addEventListener('blur', () => this.key_hand.cancel());
   }
 
   private change_phase(phase: Phase): void {
@@ -180,6 +199,7 @@ export class Page {
     this.camera_moved = true;
     if (phase === 'open') return;
     this.input.cancel();
+    this.key_hand.cancel();
     this.holding.grabs = [];
     this.world?.playback.forget();
   }
@@ -205,10 +225,23 @@ export class Page {
     return this.viewers.find((viewer) => viewer.id === id);
   }
 
-  private lost(reason: string): void {
+  /** At what a pointer holds, at the keyboard's cursor, or under the mouse. */
+  private toggle_pin(): void {
+    if (this.input.state !== 'holding' && this.key_hand.toggle_pin()) return;
+    this.holding.toggle_pin(this.input.point);
+  }
+
+  private widen(factor: number): void {
+    this.holding.widen(factor);
+    this.panels.tell(`Your hand takes ${(this.holding.radius * 200).toFixed(1)} cm of the cloth`);
+    this.dirty = true;
+  }
+
+  private lost(hand: number, reason: string): void {
     const text = loss_text(reason);
     if (text && this.phase === 'open') this.panels.tell(text);
-    this.input.cancel();
+    if (hand === KEY_HAND) this.key_hand.cancel();
+    else this.input.drop(hand);
   }
 
   /** Turns and approaches by the viewer's hand, who keeps the camera from then on. */
@@ -304,9 +337,11 @@ export class Page {
   private point_at_cloth(): void {
     const { state, point } = this.input;
     const taken = this.holding.hover(state === 'idle' ? point : null);
-    if (point) this.holding.follow(point);
-    const { hovered } = this.holding;
-    this.reticle.update(hovered, this.world, this.orbit.camera, this.size().height);
+    this.input.follow();
+    this.key_hand.follow();
+    const { hovered, radius } = this.holding;
+    const ring = this.key_hand.holds ? null : (this.key_hand.cursor ?? hovered);
+    this.reticle.update(ring, radius, this.world, this.orbit.camera, this.size());
     const cursors = { idle: taken ? 'grab' : '', camera: 'move', holding: 'grabbing' };
     this.canvas.dataset.cursor = cursors[state];
   }

@@ -47,6 +47,10 @@ export function expose_probe(page: Page): void {
     get hands() {
       return structuredClone(page.hands.shown);
     },
+    /** The ring around what a hand would take: points [m], and its radius in the fabric [m]. */
+    get ring() {
+      return { points: structuredClone(page.reticle.shown), radius: page.holding.radius };
+    },
     /** Objects as drawn: position of the pivot [m] and rotation [x, y, z, w]. */
     get objects() {
       return page.world?.object_poses() ?? [];

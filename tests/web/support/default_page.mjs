@@ -46,10 +46,10 @@ export async function with_page(options, act) {
 }
 
 /** Gives a test a page and a script at a server of its own, and sees all three off. */
-export async function with_server(options, act) {
+export async function with_server(options, act, page_options = {}) {
   const own = await start_server(options);
   const script = await own.script();
-  const page = await open_page(browser, own.url);
+  const page = await open_page(browser, own.url, page_options);
   try {
     await act(page, script);
     assert.deepEqual(page.complaints, []);

@@ -3,10 +3,13 @@ import { require_package } from './packages.mjs';
 
 const { build } = require_package('esbuild');
 
-/** Imports a TypeScript module of the page that needs no browser. @param {string} name such as "view/ray" */
-export async function import_page_module(name) {
+/** Imports TypeScript modules of the page that need no browser, as one. @param {string[]} names such as "view/ray" */
+export async function import_page_module(...names) {
   const { outputFiles } = await build({
-    entryPoints: [fileURLToPath(new URL(`../../../web/src/${name}.ts`, import.meta.url))],
+    stdin: {
+      contents: names.map((name) => `export * from './${name}.ts';`).join('\n'),
+      resolveDir: fileURLToPath(new URL('../../../web/src', import.meta.url)),
+    },
     bundle: true,
     format: 'esm',
     write: false,

@@ -35,7 +35,8 @@ export abstract class HandleHold {
     this.depth.push(factor);
   }
 
-  end(): void {
+  /** @param _meant whether the hand opened, rather than being broken off */
+  end(_meant: boolean): void {
     if (this.timer) this.flush();
   }
 

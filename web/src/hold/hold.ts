@@ -3,12 +3,15 @@ import type { Drag, WeftClient } from '../../../proto/js/index.js';
 import type { Vec3 } from '../../../proto/js/messages.js';
 import type { OrbitCamera } from '../view/camera.js';
 import { PointerDepth } from './pointer_depth.js';
-import type { ClothHit } from '../view/ray.js';
-
-const RADIUS = 0.03; // of the held fabric [m]
+import type { ClothPoint } from '../view/fabric_circle.js';
 
 /** Live: the cloth follows. Sling: it is thrown on release. */
 export type HandMode = 'live' | 'sling';
+
+/** A point of the cloth and where it is now [m]. */
+export interface ClothPlace extends ClothPoint {
+  position: Vec3;
+}
 
 /** The own hand in the cloth. Its target stays under the pointer at a depth that the wheel sets. */
 export class Hold {
@@ -18,21 +21,22 @@ export class Hold {
   private drag: Drag;
   private depth: PointerDepth;
 
-  /** @param lost called with the reason when the hand lets go other than by `end` */
+  /**
+   * @param options radius of the held fabric [m]
+   * @param lost    called with the reason when the hand lets go other than by `end`
+   */
   constructor(
     client: WeftClient,
-    hit: ClothHit,
+    { triangle, barycentric, position }: ClothPlace,
     camera: OrbitCamera,
-    mode: HandMode,
+    options: { mode: HandMode; radius: number },
     lost: (reason: string) => void,
   ) {
-    const { triangle, barycentric, position } = hit;
     this.triangle = triangle;
     this.barycentric = barycentric;
     this.target = position;
     this.depth = new PointerDepth(camera, position);
-    const options = { target: position, radius: RADIUS, mode };
-    this.drag = client.drag({ triangle, barycentric }, options);
+    this.drag = client.drag({ triangle, barycentric }, { target: position, ...options });
     void this.drag.ended.then((reason) => reason !== 'end' && lost(reason));
   }
 

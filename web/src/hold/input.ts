@@ -1,23 +1,28 @@
 import { Vector2 } from 'three';
+import { Pointer } from './pointer.js';
 
-export const LONG_PRESS = 550; // [ms]
-const FINGER_WANDER = 10; // tolerated movement of a resting finger [pixels]
 const ORBIT_SPEED = 0.0052; // [rad per pixel]
 const ZOOM_SPEED = 0.0011; // [1 per pixel of the wheel]
-const DEPTH_SPEED = 0.0005;
+const DEPTH_SPEED = 0.0005; // [1 per pixel of the wheel]
+const FINGER_DEPTH = 1.5; // logarithm of the factor by a finger that moves by the view's height
 const LINE_HEIGHT = 16; // for wheels that count lines [pixels]
+const TAP_TIME = 350; // from a tap to the finger's return, to shift the view [ms]
+const TAP_WANDER = 40; // between the two [pixels]
 
 /** Actions of mouse, touch and wheel. Points are in normalised device coordinates. */
 export interface Actions {
-  /** Takes hold of the cloth if it is at the point. */
-  take(point: Vector2): boolean;
+  /** Takes hold of what is at the point. @param hand number of the pointer */
+  take(hand: number, point: Vector2): boolean;
   /** Takes hold of the object at the point. */
-  take_object(point: Vector2): boolean;
-  follow(point: Vector2): void;
+  take_object(hand: number, point: Vector2): boolean;
+  follow(hand: number, point: Vector2): void;
+  /** Moves all that is held away from the eye. @param factor of the distance */
   push(factor: number): void;
   /** @param meant the pointer was released, rather than the hold interrupted */
-  let_go(meant: boolean): void;
-  toggle_pin(point: Vector2): void;
+  let_go(hand: number, meant: boolean): void;
+  /** Whether a long press at the point does anything. */
+  pressable(hand: number, point: Vector2): boolean;
+  press(point: Vector2): void;
   orbit(azimuth: number, elevation: number): void;
   pan(dx: number, dy: number): void;
   zoom(factor: number): void;
@@ -26,24 +31,16 @@ export interface Actions {
 
 export type InputState = 'idle' | 'camera' | 'holding';
 
-interface Finger {
-  id: number;
-  x: number;
-  y: number;
-}
-
 /**
- * One state machine for mouse and touch. When idle, it hovers; what lies under the pressed pointer
- * decides whether it moves the camera or holds the cloth until its release.
+ * The state machine of mouse and touch. What lies under a pressed pointer decides what it does
+ * until its release: it is a hand, or it moves the camera, or, beside a hand, it pushes the hand
+ * away and draws it near. So each finger on the cloth is a hand of its own.
  */
 export class Input {
-  state: InputState = 'idle';
-  /** Where the mouse hovers or the hand holds; null outside the view. */
+  /** Where the mouse is; null outside the view. */
   point: Vector2 | null = null;
-  private fingers: Finger[] = []; // pressed ones, in order
-  private panning = false;
-  private press_timer = 0;
-  private press_start = { x: 0, y: 0 };
+  private pointers: Pointer[] = []; // pressed ones, in order
+  private last_tap = { time: -Infinity, x: 0, y: 0 };
 
   constructor(
     private view: HTMLElement,
@@ -55,9 +52,9 @@ export class Input {
     ) => view.addEventListener(name, handle, { passive: false });
     listen('pointerdown', (event) => this.down(event));
     listen('pointermove', (event) => this.move(event));
-    listen('pointerup', (event) => this.up(event));
-    listen('pointercancel', () => this.cancel());
-    listen('lostpointercapture', (event) => this.up(event));
+    listen('pointerup', (event) => this.up(event, true));
+    listen('pointercancel', (event) => this.up(event, false));
+    listen('lostpointercapture', (event) => this.up(event, true));
     listen('pointerleave', () => this.leave());
     listen('contextmenu', (event) => event.preventDefault());
     listen('wheel', (event) => this.wheel(event));
@@ -65,85 +62,145 @@ export class Input {
     document.addEventListener('visibilitychange', () => document.hidden && this.cancel());
   }
 
+  get state(): InputState {
+    if (this.with_role('hand').length > 0) return 'holding';
+    return this.with_role('camera').length > 0 ? 'camera' : 'idle';
+  }
+
+  /** Whether a pressed pointer is a finger. */
+  is_finger(id: number): boolean {
+    return this.pointers.some((pointer) => pointer.id === id && pointer.touch);
+  }
+
   /** Lets go of everything. */
   cancel(): void {
-    this.fingers = [];
-    this.enter('idle');
+    const pointers = this.pointers;
+    this.pointers = [];
+    for (const pointer of pointers) this.finish(pointer, false);
+  }
+
+  /** Makes a hand let go; its pointer does nothing until its release. */
+  drop(hand: number): void {
+    const pointer = this.pointers.find(({ id }) => id === hand);
+    if (pointer) this.spend(pointer);
+  }
+
+  /** Brings the hands under their pointers, whose view may have moved. */
+  follow(): void {
+    for (const { id, x, y } of this.with_role('hand')) this.actions.follow(id, this.locate(x, y));
   }
 
   private down(event: PointerEvent): void {
     event.preventDefault();
     this.view.focus({ preventScroll: true });
     const touch = event.pointerType === 'touch';
-    if (!touch && this.fingers.length > 0) return; // further buttons are ignored
+    if (!touch && this.pointers.length > 0) return; // further buttons are ignored
     this.view.setPointerCapture(event.pointerId);
-    this.fingers.push({ id: event.pointerId, x: event.clientX, y: event.clientY });
-    this.point = this.locate(event);
-    if (this.fingers.length > 1) {
-      this.enter('camera');
-      return;
-    }
+    const point = this.locate(event.clientX, event.clientY);
+    if (!touch) this.point = point;
+    const pointer = new Pointer(event);
+    this.choose_role(pointer, event, point);
+    this.pointers.push(pointer);
+    if (touch && pointer.role !== 'depth' && this.actions.pressable(pointer.id, point))
+      pointer.await_long_press(() => this.press(pointer));
+    this.actions.changed();
+  }
+
+  private choose_role(pointer: Pointer, event: PointerEvent, point: Vector2): void {
+    const touch = event.pointerType === 'touch';
     const object = event.shiftKey && event.ctrlKey;
-    this.panning = !touch && !object && (event.button !== 0 || event.shiftKey);
+    const shifts = !touch && !object && (event.button !== 0 || event.shiftKey);
+    const { id } = pointer;
     const take = () =>
-      object ? this.actions.take_object(this.point!) : this.actions.take(this.point!);
-    const holds = !this.panning && take();
-    this.enter(holds ? 'holding' : 'camera');
-    if (holds && touch) this.await_long_press(event);
+      object ? this.actions.take_object(id, point) : this.actions.take(id, point);
+    if (!shifts && take()) {
+      // Fingers beside the cloth belong to the hand from now on.
+      for (const other of this.with_role('camera')) other.role = 'depth';
+      pointer.role = 'hand';
+    } else {
+      pointer.role = this.with_role('hand').length > 0 ? 'depth' : 'camera';
+      pointer.pans = shifts || (touch && this.after_tap(event));
+    }
+  }
+
+  private after_tap({ timeStamp, clientX, clientY }: PointerEvent): boolean {
+    const { time, x, y } = this.last_tap;
+    return timeStamp - time < TAP_TIME && Math.hypot(clientX - x, clientY - y) < TAP_WANDER;
   }
 
   private move(event: PointerEvent): void {
-    if (this.fingers.length === 0) {
-      if (event.pointerType !== 'touch') this.point = this.locate(event);
+    if (this.pointers.length === 0) {
+      if (event.pointerType !== 'touch') this.point = this.locate(event.clientX, event.clientY);
       this.actions.changed();
       return;
     }
-    const finger = this.fingers.find(({ id }) => id === event.pointerId);
-    if (!finger) return;
-    const before = this.fingers.map(({ x, y }) => ({ x, y }));
-    const wander = Math.hypot(
-      event.clientX - this.press_start.x,
-      event.clientY - this.press_start.y,
-    );
-    if (wander > FINGER_WANDER) this.stop_waiting();
-    finger.x = event.clientX;
-    finger.y = event.clientY;
-    if (this.state === 'camera') this.move_camera(before);
-    else if (this.state === 'holding') {
-      this.point = this.locate(event);
-      this.actions.follow(this.point);
-    }
+    const pointer = this.pointers.find(({ id }) => id === event.pointerId);
+    if (!pointer) return;
+    const cameras = this.with_role('camera').map(({ x, y }) => new Vector2(x, y));
+    const dy = event.clientY - pointer.y;
+    pointer.move(event);
+    if (pointer.role === 'camera') this.move_camera(cameras);
+    if (pointer.role === 'depth')
+      this.actions.push(Math.exp((-dy / this.view.clientHeight) * FINGER_DEPTH));
+    if (pointer.role !== 'hand') return;
+    const point = this.locate(pointer.x, pointer.y);
+    if (!pointer.touch) this.point = point;
+    this.actions.follow(pointer.id, point);
   }
 
-  private up(event: PointerEvent): void {
-    const place = this.fingers.findIndex(({ id }) => id === event.pointerId);
+  private up(event: PointerEvent, meant: boolean): void {
+    const place = this.pointers.findIndex(({ id }) => id === event.pointerId);
     if (place < 0) return;
-    this.fingers.splice(place, 1);
-    if (event.pointerType === 'touch') this.point = null;
-    if (this.fingers.length === 0) this.enter('idle', true);
+    const [pointer] = this.pointers.splice(place, 1);
+    const { timeStamp: time, clientX: x, clientY: y } = event;
+    if (pointer.touch && pointer.role === 'camera' && !pointer.moved) this.last_tap = { time, x, y };
+    this.finish(pointer, meant);
+  }
+
+  /** Ends what a pointer did. */
+  private finish(pointer: Pointer, meant: boolean): void {
+    const { role } = pointer;
+    this.spend(pointer, meant);
+    // Fingers that pushed the last hand do not turn to the camera by themselves.
+    if (role !== 'hand' || this.state === 'holding') return;
+    for (const other of this.with_role('depth')) other.role = 'none';
+  }
+
+  private spend(pointer: Pointer, meant = false): void {
+    pointer.stop_waiting();
+    const { role } = pointer;
+    pointer.role = 'none';
+    if (role === 'hand') this.actions.let_go(pointer.id, meant);
+    this.actions.changed();
+  }
+
+  private press(pointer: Pointer): void {
+    const point = this.locate(pointer.x, pointer.y);
+    this.spend(pointer);
+    this.actions.press(point);
   }
 
   private leave(): void {
-    if (this.fingers.length > 0) return;
+    if (this.pointers.length > 0) return;
     this.point = null;
     this.actions.changed();
   }
 
-  private move_camera(before: { x: number; y: number }[]): void {
-    const [a, b] = this.fingers;
+  private move_camera(before: Vector2[]): void {
+    const [first, second] = this.with_role('camera');
     const height = this.view.clientHeight;
-    if (!b) {
-      const [dx, dy] = [a.x - before[0].x, a.y - before[0].y];
-      if (this.panning) this.actions.pan(dx / height, -dy / height);
-      else this.actions.orbit(-dx * ORBIT_SPEED, dy * ORBIT_SPEED);
+    const a = new Vector2(first.x, first.y);
+    if (!second) {
+      const { x, y } = a.sub(before[0]);
+      if (first.pans) this.actions.pan(x / height, -y / height);
+      else this.actions.orbit(-x * ORBIT_SPEED, y * ORBIT_SPEED);
       return;
     }
-    const middle = (p: { x: number; y: number }, q: { x: number; y: number }) =>
-      new Vector2((p.x + q.x) / 2, (p.y + q.y) / 2);
-    const shift = middle(a, b).sub(middle(before[0], before[1]));
+    const b = new Vector2(second.x, second.y);
+    const shift = a.clone().add(b).sub(before[0]).sub(before[1]).multiplyScalar(0.5);
     this.actions.pan(shift.x / height, -shift.y / height);
-    const spread = Math.hypot(a.x - b.x, a.y - b.y);
-    const spread_before = Math.hypot(before[0].x - before[1].x, before[0].y - before[1].y);
+    const spread = a.distanceTo(b);
+    const spread_before = before[0].distanceTo(before[1]);
     if (spread > 1 && spread_before > 1) this.actions.zoom(spread_before / spread);
   }
 
@@ -155,38 +212,17 @@ export class Input {
     const speed = event.ctrlKey ? 8 : 1;
     if (this.state === 'holding') this.actions.push(Math.exp(-amount * speed * DEPTH_SPEED));
     else this.actions.zoom(Math.exp(amount * speed * ZOOM_SPEED));
-  }
-
-  private await_long_press(event: PointerEvent): void {
-    this.press_start = { x: event.clientX, y: event.clientY };
-    const point = this.locate(event);
-    this.press_timer = window.setTimeout(() => {
-      // On a busy page the finger may have moved without an event yet; such events arrive before
-      // the next picture.
-      const timer = this.press_timer;
-      requestAnimationFrame(() => {
-        if (timer !== this.press_timer) return;
-        this.enter('idle'); // until it is lifted, the finger does nothing
-        this.actions.toggle_pin(point);
-      });
-    }, LONG_PRESS);
-  }
-
-  private stop_waiting(): void {
-    window.clearTimeout(this.press_timer);
-    this.press_timer = 0;
-  }
-
-  private enter(state: InputState, meant = false): void {
-    this.stop_waiting();
-    if (this.state === 'holding' && state !== 'holding') this.actions.let_go(meant);
-    this.state = state;
     this.actions.changed();
   }
 
-  private locate(event: PointerEvent): Vector2 {
+  private with_role(role: Pointer['role']): Pointer[] {
+    return this.pointers.filter((pointer) => pointer.role === role);
+  }
+
+  private locate(client_x: number, client_y: number): Vector2 {
     const { left, top, width, height } = this.view.getBoundingClientRect();
-    const x = ((event.clientX - left) / width) * 2 - 1;
-    return new Vector2(x, 1 - ((event.clientY - top) / height) * 2);
+    const x = ((client_x - left) / width) * 2 - 1;
+    return new Vector2(x, 1 - ((client_y - top) / height) * 2);
   }
 }
+

@@ -1,5 +1,6 @@
 const ORBIT_STEP = 0.12; // [rad]
 const ZOOM_STEP = 1.12;
+const RADIUS_STEP = 1.25;
 
 export interface KeyActions {
   toggle_pin(): void;
@@ -9,34 +10,60 @@ export interface KeyActions {
   toggle_fan(): void;
   toggle_boxes(): void;
   toggle_sling(): void;
+  toggle_objects(): void;
+  /** @param factor of the radius that a hand holds */
+  widen(factor: number): void;
+  /** Closes or opens grippers. */
+  squeeze(): void;
   frame(): void;
   scenes(): void;
   help(): void;
   figures(): void;
+  /** Puts the keyboard's cursor on the cloth, or takes it away. */
+  toggle_cursor(): void;
+  /** Moves what the keyboard holds or points with. @returns whether there is anything */
+  arrow(x: number, y: number, in_depth: boolean): boolean;
+  /** @returns whether there was anything to take or to let go */
+  enter(): boolean;
+  /** @returns whether there was anything to end */
+  escape(): boolean;
   orbit(azimuth: number, elevation: number): void;
   zoom(factor: number): void;
 }
 
+/** @returns false if the key did nothing and is left to the browser */
+type Action = (event: KeyboardEvent) => boolean | void;
+
 /** Keys of the whole page, except those that a focused control uses itself. */
 export function listen_to_keys(actions: KeyActions): void {
-  const anywhere: Record<string, () => void> = {
+  const arrow = (x: number, y: number) => (event: KeyboardEvent) => {
+    if (!actions.arrow(x, y, event.shiftKey)) actions.orbit(x * ORBIT_STEP, y * ORBIT_STEP);
+  };
+  const anywhere: Record<string, Action> = {
     m: () => actions.toggle_pin(),
     '.': () => actions.step(),
     r: () => actions.reset(),
     w: () => actions.toggle_fan(),
     b: () => actions.toggle_boxes(),
+    c: () => actions.toggle_cursor(),
     s: () => actions.toggle_sling(),
+    o: () => actions.toggle_objects(),
+    g: () => actions.squeeze(),
+    '[': () => actions.widen(1 / RADIUS_STEP),
+    ']': () => actions.widen(RADIUS_STEP),
     f: () => actions.frame(),
     l: () => actions.scenes(),
     i: () => actions.figures(),
     '?': () => actions.help(),
   };
-  const outside_controls: Record<string, () => void> = {
+  const outside_controls: Record<string, Action> = {
     ' ': () => actions.toggle_pause(),
-    ArrowLeft: () => actions.orbit(-ORBIT_STEP, 0),
-    ArrowRight: () => actions.orbit(ORBIT_STEP, 0),
-    ArrowUp: () => actions.orbit(0, ORBIT_STEP),
-    ArrowDown: () => actions.orbit(0, -ORBIT_STEP),
+    ArrowLeft: arrow(-1, 0),
+    ArrowRight: arrow(1, 0),
+    ArrowUp: arrow(0, 1),
+    ArrowDown: arrow(0, -1),
+    Enter: () => actions.enter(),
+    Escape: () => actions.escape(),
     '+': () => actions.zoom(1 / ZOOM_STEP),
     '-': () => actions.zoom(ZOOM_STEP),
   };
@@ -49,8 +76,8 @@ export function listen_to_keys(actions: KeyActions): void {
     const free = !element?.closest('button, input');
     const action = anywhere[key] ?? (free ? outside_controls[key] : undefined);
     if (!action) return;
+    const repeats = key.startsWith('Arrow') || '.+-[]'.includes(key);
+    if ((!event.repeat || repeats) && action(event) === false) return;
     event.preventDefault();
-    const repeats = key.startsWith('Arrow') || key === '.' || key === '+' || key === '-';
-    if (!event.repeat || repeats) action();
   });
 }

@@ -22,6 +22,7 @@ export class Toolbar {
   private scenes: SceneList;
   private fan = element<HTMLButtonElement>('fan');
   private sling = element<HTMLButtonElement>('sling');
+  private objects = element<HTMLButtonElement>('objects');
   private help = element<HTMLDialogElement>('help');
   private wind: Slider;
   private gravity: Slider;
@@ -52,6 +53,7 @@ export class Toolbar {
     element('reset').addEventListener('click', () => this.reset());
     this.fan.addEventListener('click', () => this.toggle_fan());
     this.sling.addEventListener('click', () => this.toggle_sling());
+    this.objects.addEventListener('click', () => this.toggle_objects());
     element('frame').addEventListener('click', () => view.frame());
     element('help-button').addEventListener('click', () => this.show_help());
     this.help.addEventListener('click', (event) => event.target === this.help && this.help.close());
@@ -122,6 +124,15 @@ export class Toolbar {
 
   toggle_sling(): void {
     this.sling.setAttribute('aria-pressed', String(this.hand_mode === 'live'));
+  }
+
+  /** Whether the hand moves objects too. */
+  get moves_objects(): boolean {
+    return this.objects.getAttribute('aria-pressed') === 'true';
+  }
+
+  toggle_objects(): void {
+    this.objects.setAttribute('aria-pressed', String(!this.moves_objects));
   }
 
   show_scenes(): void {

@@ -1,18 +1,22 @@
-import { Color, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from 'three';
+import { Group, Vector3 } from 'three';
 import type { PerspectiveCamera } from 'three';
-import { Line2 } from 'three/examples/jsm/lines/Line2.js';
-import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
-import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import type { Grab, Vec3, Viewer } from '../../../proto/js/messages.js';
+import { MarkDot, MarkLine } from './marks.js';
 
 export const NO_COLOR = '#5c6068'; // of an unknown viewer
 const LINE_WIDTH = 2.5; // [pixels]
+const LINE_OPACITY = 0.92;
 const DOT_RADIUS = 4.5; // [pixels]
 const TARGET_RADIUS = 6.5; // [pixels]
 const LABEL_OFFSET = 14; // [pixels]
+const FINGER_OFFSET = 56; // of a label that a finger must not cover, upwards [pixels]
+const STEADY_PART = 0.04; // by which a force changes before it is written anew
+const STEADY_FORCE = 0.05; // [N]
 
 /** A hand that holds the cloth, as drawn. */
 export interface Hand {
+  /** Differs from that of every other drawn hand, and stays. */
+  key: string;
   /** Identifies a hand: the room's number, or 0 for the own hand before the server has sent it. */
   id: number;
   name: string;
@@ -21,15 +25,21 @@ export interface Hand {
   target: Vec3;
   /** The own hand needs no name. */
   own: boolean;
+  /** Whether a finger covers its target. */
+  finger: boolean;
+  /** Whether cloth or objects hide its target. */
+  hidden: boolean;
+  /** With which it pulls [N]; null if that is not known yet. */
+  force: number | null;
 }
 
 /** The owner of another viewer's hand. */
 export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
   const name = who?.name ?? (viewer ? `viewer ${viewer}` : 'scene');
-  return { id, name, color: who?.color ?? NO_COLOR, own: false };
+  return { id, name, color: who?.color ?? NO_COLOR, own: false, finger: false };
 }
 
-/** Lines from held points to their targets, labelled with the hands' owners. */
+/** Lines from held points to their targets, labelled with the hands' owners and forces. */
 export class Hands {
   readonly group = new Group();
   private marks = new Map<string, HandMark>();
@@ -39,18 +49,17 @@ export class Hands {
 
   update(hands: Hand[], camera: PerspectiveCamera, width: number, height: number): void {
     this.shown = hands;
-    const key = (hand: Hand) => (hand.own ? 'own' : String(hand.id));
-    const present = new Set(hands.map(key));
+    const present = new Set(hands.map(({ key }) => key));
     for (const [name, mark] of this.marks) {
       if (present.has(name)) continue;
       mark.dispose();
       this.marks.delete(name);
     }
     for (const hand of hands) {
-      let mark = this.marks.get(key(hand));
+      let mark = this.marks.get(hand.key);
       if (!mark) {
-        mark = new HandMark(hand.own ? null : this.labels);
-        this.marks.set(key(hand), mark);
+        mark = new HandMark(this.labels);
+        this.marks.set(hand.key, mark);
         this.group.add(mark.group);
       }
       mark.update(hand, camera, width, height);
@@ -60,78 +69,59 @@ export class Hands {
 
 class HandMark {
   readonly group = new Group();
-  private line_geometry = new LineGeometry();
-  private line_material = new LineMaterial({
-    linewidth: LINE_WIDTH,
-    depthTest: false,
-    transparent: true,
-    opacity: 0.92,
-  });
-  private material = new MeshBasicMaterial({ depthTest: false, transparent: true });
-  private rim_material = new MeshBasicMaterial({ depthTest: false, transparent: true });
-  private sphere = new SphereGeometry(1, 20, 12);
-  private held = this.dot();
-  private target = this.dot();
-  private label: HTMLElement | null = null;
+  private line = new MarkLine(LINE_WIDTH, LINE_OPACITY, 20);
+  private held = new MarkDot(DOT_RADIUS, 21);
+  private target = new MarkDot(TARGET_RADIUS, 23);
+  private label = document.createElement('span');
+  private force: number | null = null; // as written [N]
 
-  constructor(labels: HTMLElement | null) {
-    const line = new Line2(this.line_geometry, this.line_material);
-    line.frustumCulled = false;
-    line.renderOrder = 20;
-    this.group.add(line);
-    if (!labels) return;
-    this.label = document.createElement('span');
+  constructor(labels: HTMLElement) {
+    for (const mark of this.parts) this.group.add(mark.group);
     this.label.className = 'name';
     labels.append(this.label);
   }
 
   update(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
-    this.line_geometry.setPositions([...hand.held, ...hand.target]);
-    this.line_material.color = new Color(hand.color);
-    this.line_material.resolution.set(width, height);
-    this.material.color = this.line_material.color;
-    scale_to_pixels(this.held, hand.held, DOT_RADIUS, camera, height);
-    scale_to_pixels(this.target, hand.target, TARGET_RADIUS, camera, height);
-    if (this.label) place_label(this.label, hand, camera, width, height);
+    this.line.set([hand.held, hand.target], width, height);
+    this.held.set(hand.held, camera, height);
+    this.target.set(hand.target, camera, height);
+    for (const part of this.parts) part.color = hand.color;
+    this.write(hand);
+    place_label(this.label, hand, camera, width, height);
   }
 
   dispose(): void {
     this.group.removeFromParent();
-    this.label?.remove();
-    this.sphere.dispose();
-    this.line_geometry.dispose();
-    for (const material of [this.line_material, this.material, this.rim_material]) {
-      material.dispose();
-    }
+    this.label.remove();
+    for (const part of this.parts) part.dispose();
   }
 
-  /** A dot with a white rim, visible on cloth of the same colour. */
-  private dot(): Group {
-    const rim = new Mesh(this.sphere, this.rim_material);
-    rim.renderOrder = 21;
-    const core = new Mesh(this.sphere, this.material);
-    core.scale.setScalar(0.72);
-    core.renderOrder = 22;
-    const dot = new Group().add(rim, core);
-    this.group.add(dot);
-    return dot;
+  private get parts() {
+    return [this.line, this.held, this.target];
+  }
+
+  private write({ name, color, own, hidden, force }: Hand): void {
+    const { label } = this;
+    label.style.setProperty('--color', color);
+    label.toggleAttribute('data-own', own);
+    label.toggleAttribute('data-hidden', hidden);
+    const steady =
+      force !== null &&
+      this.force !== null &&
+      Math.abs(force - this.force) < Math.max(STEADY_FORCE, STEADY_PART * this.force);
+    if (!steady) this.force = force;
+    const words = [own ? '' : name, this.force === null ? '' : force_text(this.force)];
+    const text = words.filter(Boolean).join(' · ');
+    if (label.textContent !== text) label.textContent = text;
   }
 }
 
-/** Positions an object and scales it to a size in pixels. */
-export function scale_to_pixels(
-  object: { position: Vector3; scale: Vector3 },
-  place: Vec3,
-  pixels: number,
-  camera: PerspectiveCamera,
-  height: number,
-): void {
-  object.position.set(...place);
-  const depth = object.position.clone().applyMatrix4(camera.matrixWorldInverse).z;
-  const height_there = 2 * Math.abs(depth) * Math.tan((camera.fov * Math.PI) / 360);
-  object.scale.setScalar((pixels * height_there) / height);
+/** @param force [N] */
+export function force_text(force: number): string {
+  return `${force.toFixed(force < 9.95 ? 1 : 0)} N`;
 }
 
+/** Beside the target of somebody's hand, beside the line of the own one. */
 function place_label(
   label: HTMLElement,
   hand: Hand,
@@ -139,11 +129,11 @@ function place_label(
   width: number,
   height: number,
 ): void {
-  const point = new Vector3(...hand.target).project(camera);
-  label.textContent = hand.name;
-  label.style.setProperty('--color', hand.color);
-  label.hidden = Math.abs(point.z) > 1;
+  const target = new Vector3(...hand.target);
+  const place = hand.own ? target.clone().add(new Vector3(...hand.held)).multiplyScalar(0.5) : target;
+  const point = place.project(camera);
+  label.hidden = Math.abs(point.z) > 1 || label.textContent === '';
   const x = ((point.x + 1) / 2) * width + LABEL_OFFSET;
-  const y = ((1 - point.y) / 2) * height;
+  const y = ((1 - point.y) / 2) * height - (hand.finger ? FINGER_OFFSET : 0);
   label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
 }

@@ -70,8 +70,9 @@ export class Objects {
   }
 
   /** Poses of the drawn objects. */
-  poses(): { name: string; position: number[]; rotation: number[] }[] {
-    return this.nodes.map(({ holder }) => ({
+  poses(): { place: number; name: string; position: number[]; rotation: number[] }[] {
+    return this.nodes.map(({ place, holder }) => ({
+      place,
       name: holder.children[0].name,
       position: holder.position.toArray(),
       rotation: holder.quaternion.toArray(),
@@ -104,7 +105,9 @@ export class Objects {
     this.caster.set(new Vector3(...origin), new Vector3(...direction));
     const met = this.caster.intersectObjects(this.group.children, true)[0];
     if (!met) return null;
+    const node = this.nodes.find(({ holder }) => holder === met.object.parent);
     return {
+      place: node?.place ?? -1,
       name: met.object.name,
       distance: met.distance,
       position: met.point.toArray(),
@@ -120,6 +123,8 @@ export class Objects {
 }
 
 export interface ObjectHit {
+  /** Index in the list of colliders. */
+  place: number;
   name: string;
   /** From the ray's origin [m]. */
   distance: number;

@@ -4,7 +4,7 @@ import type { Pin } from '../../../proto/js/messages.js';
 
 const PIN_RADIUS = 0.009; // of a head [m]
 const SMALL_CLOTH = 1; // smaller cloths get smaller heads [m]
-const REACH = 16; // of the pointer around a pin [pixels]
+const SAME_PLACE = 1; // between pins that are at one place [pixels]
 const SCENE_COLOR = '#4a4e55';
 
 /** Pin heads where particles are fixed, in the colours of their owners. */
@@ -48,23 +48,32 @@ export class Pins {
     });
   }
 
-  /** Pins under the pointer: those near it, and those that hold a particle. */
+  /** Pins at the place nearest to a point of the view, and those that hold a particle. */
   at(
-    point: Vector2 | null,
-    particle: number | null,
+    { point, particle, pixels }: PinSearch,
     camera: PerspectiveCamera,
     width: number,
     height: number,
   ): Pin[] {
-    return this.list.filter((pin, k) => {
-      if (pin.particle === particle) return true;
-      if (!point) return false;
+    const distances = this.list.map((pin, k) => {
+      if (!point) return Infinity;
       // The position of a fixed pin is known before the picture shows it.
       const at = pin.target ? this.group.children[k].position : new Vector3(...pin.position);
       const place = at.clone().project(camera);
       const dx = ((place.x - point.x) / 2) * width;
       const dy = ((place.y - point.y) / 2) * height;
-      return Math.abs(place.z) < 1 && Math.hypot(dx, dy) < REACH;
+      return Math.abs(place.z) < 1 ? Math.hypot(dx, dy) : Infinity;
     });
+    const nearest = Math.min(pixels, ...distances) + SAME_PLACE;
+    return this.list.filter(
+      (pin, k) => pin.particle === particle || distances[k] < Math.min(pixels, nearest),
+    );
   }
+}
+
+/** Where pins are looked for: within some pixels of a point, in normalised coordinates, and at a particle. */
+export interface PinSearch {
+  point: Vector2 | null;
+  particle: number | null;
+  pixels: number;
 }

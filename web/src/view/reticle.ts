@@ -1,44 +1,45 @@
-import { DoubleSide, Group, Mesh, MeshBasicMaterial, RingGeometry, Vector3 } from 'three';
+import { Group } from 'three';
 import type { PerspectiveCamera } from 'three';
-import { scale_to_pixels } from './hands.js';
-import type { ClothHit } from './ray.js';
-import { point_on_triangle } from './ray.js';
+import type { Vec3 } from '../../../proto/js/messages.js';
+import type { ClothPoint } from './fabric_circle.js';
+import { MarkLine } from './marks.js';
 import type { WorldView } from './world_view.js';
 
-const RADIUS = 7; // [pixels]
+const WIDTH = 1.8; // of the ring [pixels]
+const BORDER = 1.4; // of the dark line around it, on each side [pixels]
+const LIFT = 0.004; // towards the eye, of the distance to it
 
-/** A ring on the cloth that shows where the pointer would hold it. */
+/** A ring on the cloth around what a hand would hold, at its true size in the fabric. */
 export class Reticle {
   readonly group = new Group();
+  /** The points of the ring [m]; none if it is not shown. */
+  shown: Vec3[] = [];
+  private border = new MarkLine(WIDTH + 2 * BORDER, 0.45, 10, '#1d2025');
+  private ring = new MarkLine(WIDTH, 0.95, 11);
 
   constructor() {
-    const material = new MeshBasicMaterial({
-      color: '#ffffff',
-      side: DoubleSide,
-      transparent: true,
-      opacity: 0.85,
-      depthTest: false,
-    });
-    const ring = new Mesh(new RingGeometry(0.72, 1, 40), material);
-    ring.renderOrder = 10;
-    this.group.add(ring);
+    this.group.add(this.border.group, this.ring.group);
     this.group.visible = false;
   }
 
+  /**
+   * @param centre of the ring; null: none is shown
+   * @param radius in the fabric [m]
+   */
   update(
-    hit: ClothHit | null,
+    centre: ClothPoint | null,
+    radius: number,
     world: WorldView | null,
     camera: PerspectiveCamera,
-    height: number,
+    { width, height }: { width: number; height: number },
   ): void {
-    this.group.visible = hit !== null && world !== null;
-    if (!hit || !world) return;
-    const { positions } = world.playback;
-    const corner = (weights: number[]) =>
-      new Vector3(...point_on_triangle(hit.triangle, weights, positions, world.triangles));
-    const a = corner([1, 0, 0]);
-    const normal = corner([0, 1, 0]).sub(a).cross(corner([0, 0, 1]).sub(a)).normalize();
-    scale_to_pixels(this.group, hit.position, RADIUS, camera, height);
-    this.group.lookAt(this.group.position.clone().add(normal));
+    this.group.visible = centre !== null && world !== null;
+    this.shown = [];
+    if (!centre || !world) return;
+    this.shown = world.circle.around(centre, radius, world.playback.positions);
+    const eye = camera.position.toArray();
+    // The drawn cloth is rounder than its triangles and must not cover the ring.
+    const lifted = this.shown.map((p) => p.map((v, k) => v + LIFT * (eye[k] - v)) as Vec3);
+    for (const line of [this.border, this.ring]) line.set(lifted, width, height);
   }
 }

@@ -5,10 +5,13 @@ import { ClothMesh } from './cloth_mesh.js';
 import type { Subject } from './director.js';
 import { Objects } from './objects.js';
 import type { ObjectHit } from './objects.js';
+import { FabricCircle } from './fabric_circle.js';
 import { Playback } from '../wire/playback.js';
 import { cast_ray } from './ray.js';
 import type { ClothHit } from './ray.js';
 import type { Stage } from './stage.js';
+
+const CLEARANCE = 0.02; // before a point that something else hides [m]
 
 /**
  * Everything that belongs to one mesh of the server: cloths, objects, and the playback of frames.
@@ -17,10 +20,11 @@ export class WorldView {
   readonly playback: Playback;
   readonly cloth: ClothMesh;
   private objects: Objects;
+  private drawn_circle: FabricCircle | null = null;
 
   constructor(
     readonly announcement: MeshAnnouncement,
-    data: MeshData,
+    private data: MeshData,
     private stage: Stage,
   ) {
     this.playback = new Playback(announcement.vertices);
@@ -35,6 +39,22 @@ export class WorldView {
 
   get triangles(): Uint32Array {
     return this.cloth.triangles;
+  }
+
+  /** Circles in the fabric of the cloths. */
+  get circle(): FabricCircle {
+    this.drawn_circle ??= new FabricCircle(this.data.restPositions, this.triangles);
+    return this.drawn_circle;
+  }
+
+  /** Whether cloth or an object is between two points [m], with some room before the second. */
+  hides(eye: Vec3, point: Vec3): boolean {
+    const way = point.map((value, axis) => value - eye[axis]);
+    const length = Math.hypot(...way);
+    const direction = way.map((value) => value / length) as Vec3;
+    const cloth = cast_ray(eye, direction, this.playback.positions, this.triangles);
+    const nearest = Math.min(cloth?.distance ?? Infinity, this.objects.distance(eye, direction));
+    return nearest < length - CLEARANCE;
   }
 
   push(frame: Frame, now: number): void {
@@ -71,7 +91,7 @@ export class WorldView {
     return hit;
   }
 
-  object_poses(): { name: string; position: number[]; rotation: number[] }[] {
+  object_poses(): ReturnType<Objects['poses']> {
     return this.objects.poses();
   }
 
