@@ -1,11 +1,13 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
+import { require_package } from './support/packages.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // How cloth is drawn, without a browser: looks, weaves, and the finer mesh that is displayed.
 
 const { back_of, colors_of, FINISHES, PALETTE } = await import_page_module('view/looks');
 const { difference, lab_of } = await import_page_module('view/color');
+const { fabric_material } = await import_page_module('view/fabric');
 const { weave_of } = await import_page_module('view/weave');
 const { Subdivision } = await import_page_module('view/subdivision');
 const { corners_of } = await import_page_module('view/border');
@@ -15,6 +17,7 @@ const { even_normals, smooth_normals } = await import_page_module('view/normals'
 const { fabric_extent } = await import_page_module('view/rest_shape');
 const { DepthOrder } = await import_page_module('view/depth_order');
 
+const { ShaderLib } = require_package('three');
 const FABRICS = Object.keys(FINISHES);
 const VISIBLY_OTHER = 20; // difference of colours
 
@@ -112,6 +115,21 @@ test('a tile of each weave goes on at its borders and is even on the whole', () 
       data.reduce((sum, value, k) => sum + (k % 4 === channel ? value : 0), 0) / (width * width);
     for (const slope of [0, 1]) assert.ok(Math.abs(mean(slope) - 127.5) < 2, `${fabric}: ${mean(slope)}`);
     assert.ok(Math.abs(mean(3) - 127.5) < 4, `${fabric}: ${mean(3)}`);
+  }
+});
+
+test('the renderer’s shader has every part that the fabric’s replaces', () => {
+  const [color] = colors_of([{}]);
+  const material = fabric_material({}, color, weave_of('plain'), [1, 1]);
+  const { vertexShader, fragmentShader } = ShaderLib.physical;
+  const shader = { uniforms: {}, vertexShader, fragmentShader };
+  material.onBeforeCompile(shader);
+  for (const part of ['fabric_place = uv', 'faceforward(world_normal']) {
+    assert.ok(shader.vertexShader.includes(part), part);
+  }
+  const parts = ['uniform vec3 back_color', 'weave_seen', '? back_roughness', 'tbn * vec3(slope'];
+  for (const part of [...parts, 'RE_Direct_Fabric', 'getIBLIrradiance(-', 'pow(clear']) {
+    assert.ok(shader.fragmentShader.includes(part), part);
   }
 });
 
