@@ -40,6 +40,7 @@ function view() {
     clientHeight: HEIGHT,
   };
   const done = [];
+  let changes = 0;
   const log = (name) => (...values) => void done.push([name, ...values]);
   const on_cloth = (hand, point) => point.y > 0;
   const input = new Input(element, {
@@ -53,7 +54,7 @@ function view() {
     orbit: log('orbit'),
     pan: log('pan'),
     zoom: log('zoom'),
-    changed() {},
+    changed: () => (changes += 1),
   });
   const tell = (name, id, { x, y }, more = {}) =>
     handlers[name]({
@@ -67,7 +68,7 @@ function view() {
       ...more,
     });
   const names = () => done.splice(0).map(([name, value]) => (name === 'take' || name === 'let_go' || name === 'follow' ? `${name} ${value}` : name));
-  return { input, done, names, tell };
+  return { input, done, names, tell, changes: () => changes };
 }
 
 test('each finger on the cloth is a hand, which lets go by itself', () => {
@@ -87,13 +88,15 @@ test('each finger on the cloth is a hand, which lets go by itself', () => {
 
 test('a finger beside the cloth pushes what others hold, whichever comes first', () => {
   for (const first of ['hand', 'finger']) {
-    const { input, done, tell } = view();
+    const { input, done, tell, changes } = view();
     if (first === 'hand') tell('pointerdown', 2, CLOTH);
     tell('pointerdown', 3, BESIDE);
     if (first === 'finger') tell('pointerdown', 2, CLOTH);
     done.length = 0;
+    const before = changes();
     tell('pointermove', 3, { x: 100, y: 500 });
     tell('pointermove', 3, { x: 150, y: 700 });
+    assert.equal(changes(), before + 2, 'each asks for a picture, in which the hand follows');
     const [[up, away], [down, near], ...more] = done.splice(0);
     assert.deepEqual([up, down, more], ['push', 'push', []]);
     assert.ok(away > 1 && near < 1, `${away} ${near}`);

@@ -140,8 +140,10 @@ export class Input {
     const dy = event.clientY - pointer.y;
     pointer.move(event);
     if (pointer.role === 'camera') this.move_camera(cameras);
-    if (pointer.role === 'depth')
+    if (pointer.role === 'depth') {
       this.actions.push(Math.exp((-dy / this.view.clientHeight) * FINGER_DEPTH));
+      this.actions.changed(); // the hands follow with the next picture
+    }
     if (pointer.role !== 'hand') return;
     const point = this.locate(pointer.x, pointer.y);
     if (!pointer.touch) this.point = point;
