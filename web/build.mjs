@@ -7,6 +7,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { brotliCompress, gzip } from "node:zlib";
+import { slim_three } from "./slim_three.mjs";
 
 const [output, dependency_file] = process.argv.slice(2).map((path) => resolve(path));
 const here = dirname(fileURLToPath(import.meta.url));
@@ -27,6 +28,7 @@ const { metafile } = await build({
   sourcemap: true,
   format: "esm",
   target: "es2022",
+  plugins: [slim_three],
   metafile: true,
   logLevel: "warning",
 });
