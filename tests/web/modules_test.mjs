@@ -6,7 +6,7 @@ import { import_page_module } from './support/page_module.mjs';
 const { Fans } = await import_page_module('view/fans');
 const { FabricCircle } = await import_page_module('view/fabric_circle');
 const { HandLatency } = await import_page_module('hold/hand_latency');
-const { MarkDot, MarkLine } = await import_page_module('view/marks');
+const { MarkDot, MarkLine, OrbitCamera } = await import_page_module('view/marks', 'view/camera');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
 const { smooth_normals } = await import_page_module('view/normals');
 
@@ -117,6 +117,24 @@ test('marks are drawn fainter where something is in front of them, and nowhere t
       const hidden = opacities.get(name.replace('seen', 'hidden'));
       assert.ok(hidden > 0.1 && hidden < 0.5 * opacity);
     }
+  }
+});
+
+test('a dot lies before the place that it marks, by its radius, seen from anywhere', () => {
+  const orbit = new OrbitCamera();
+  orbit.resize(600, 400);
+  const dot = new MarkDot(5, 21);
+  for (const turn of [0, 1, 2]) {
+    orbit.orbit(turn, 0.2);
+    orbit.update(9);
+    const { camera } = orbit;
+    const place = [0.1, 1, -0.2];
+    dot.set(place, camera, 400);
+    const eye = camera.position;
+    const distance = (point) => Math.hypot(eye.x - point.x, eye.y - point.y, eye.z - point.z);
+    const [x, y, z] = place;
+    const before = distance({ x, y, z }) - distance(dot.group.position);
+    assert.ok(Math.abs(before / dot.group.scale.x - 1) < 1e-6, `${before}`);
   }
 });
 

@@ -91,6 +91,9 @@ export class MarkDot {
   /** @param height of the view [pixels] */
   set(place: Vec3, camera: PerspectiveCamera, height: number): void {
     scale_to_pixels(this.group, place, this.pixels, camera, height);
+    // In front of the cloth that it marks, whose drawn surface is rounder and thicker.
+    const { position, scale } = this.group;
+    position.addScaledVector(camera.position.clone().sub(position).normalize(), scale.x);
   }
 
   dispose(): void {
