@@ -1,6 +1,7 @@
 """Laws of the measuring program: a tiny report. No verdict depends on how long anything took."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -270,6 +271,38 @@ class Bench(unittest.TestCase):
                          "64² of drape at commit c, medians of up to 4 runs; "
                          "256² at commit a, medians of up to 3 runs.")
         self.assertEqual(tables.sizes_taken([cell("a", 256, 1)]), "256² at commit a, one run each.")
+
+    def test_the_report_tells_the_drag_that_each_scene_is_run_with(self):
+        # A function of cases.cpp sets what differs from the world or scene that it begins with.
+        source = (Path(__file__).parent / "cases.cpp").read_text(encoding="utf-8")
+        drags, begins = {}, {}
+        for name, body in re.findall(r"^WorldDef (\w+)\(int.*?\{(.*?)^\}", source, re.MULTILINE | re.DOTALL):
+            begins[name] = re.search(r"WorldDef def(?: = (\w+)\()?", body)[1]
+            drag = re.search(r"environment\.damping = ([\d.]+);", body)
+            drags[name] = float(drag[1]) if drag else drags[begins[name]]
+        for scene, drag in report.DRAG.items():
+            self.assertEqual(drags[scene.replace("-", "_")], drag, scene)
+        data = Path(__file__).parent / "data"
+        text = report.report_text(data)
+        for scene in report.SCENES:
+            self.assertIn(report.conditions(scene), text.split(f"## {report.SCENES[scene]}\n")[1].split("\n## ")[0])
+        self.assertIn(f"Conditions: {report.conditions('swing')}", text.split("## What an error costs\n")[1])
+
+    def test_what_was_not_measured_is_not_told_as_a_figure_and_commits_are_told(self):
+        self.assertEqual(report.machine_rows({"commit": "a", "load of the machine at the end": "the run was cut",
+                                              "CPU seconds of all measurements": 0}),
+                         [["commit", "a"], ["load of the machine at the end", "not measured: the run was cut"],
+                          ["CPU seconds of all measurements", "not measured: the run was cut"]])
+        self.assertEqual(report.commits([{"commit": "a"}], [{"commit": "a"}]), "")
+        self.assertIn("**not of one commit** but of 2: a, b;", report.commits([{"commit": "a"}], [{"commit": "b"}]))
+
+    def test_strains_are_told_of_the_settings_that_the_table_of_positions_names(self):
+        def cell(solver, cost, position, strain):
+            return {"scene": "swing", "fabric": "cotton", "n": 64, "solver": solver, "outcome": "ran",
+                    "cpu_per_second": cost, "position": position, "strain": strain}
+        cells = [cell("xpbd", 1, 0.05, 7), cell("xpbd", 2, 0.009, 1.6), cell("verlet", 3, 0.0001, 0.002)]
+        self.assertEqual(tables.strains_of_the_cheapest(cells),
+                         "Strains of these settings are off by: verlet 0.2 %, XPBD 160 to 700 %.")
 
     def test_a_commit_is_not_taken_for_a_number(self):
         self.assertEqual([tables.number(text) for text in ("5311e71", "1.5e-05", "3e+20", "-2", "yes")],

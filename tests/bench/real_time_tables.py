@@ -1,6 +1,6 @@
 """What verlet holds in real time, and what the solver implicit could gain and gains where it does not."""
 
-from tables import markdown, percent, seconds, taken
+from tables import markdown, percent, seconds, span_of, taken
 
 
 def held(row):
@@ -41,11 +41,6 @@ def told(row):
             f"{percent(row['contact'])}, springs {percent(row['springs'])}, air {percent(row['air'])})")
 
 
-def range_of(values):
-    low, high = percent(min(values)), percent(max(values))
-    return low if low == high else f"{low.removesuffix(' %')} to {high}"
-
-
 def with_implicit(slow):
     """What the solver implicit does with the cases that verlet does not hold; nothing if not measured."""
     measured = [row for row in slow if row["implicit"]]
@@ -72,8 +67,8 @@ def summary(rows):
     if two:
         text += f"Two threads hold {listed(two)}. "
     gain = [row for row in slow if with_free_springs(row) <= 1]
-    text += (f"Contact takes {range_of([row['contact'] for row in slow])} of their time, springs, bending and "
-             f"integration {range_of([row['springs'] for row in slow])}; ")
+    text += (f"Contact takes {span_of([row['contact'] for row in slow])} of their time, springs, bending and "
+             f"integration {span_of([row['springs'] for row in slow])}; ")
     if gain:
         text += f"if these cost nothing, {listed(gain)} would be held"
         text += "." if len(gain) == len(slow) else ", the others not."

@@ -20,11 +20,50 @@ SCENES = {"swing": "Swing from the horizontal", "static-rest": "Static rest",
 ABOUT = {
     "swing": "1 m × 1 m, held by one edge, let go when level.",
     "static-rest": "1 m × 1 m between two opposite edges; compared where it has come to rest.",
-    "cantilever": "A strip of 12 cm × 3 cm, clamped at one end, let go when level.",
+    "cantilever": "A strip of 12 cm × 3 cm, of which two rows are held at one end, let go when level. Held row by "
+                  "row, it bends as if it were clamped half a cell behind the second.",
     "hanging-strip": "1 m × 12 cm, upright, let go when not stretched yet: the way is the stretch "
                      "alone, so a solver with rigid springs is 100 % wrong.",
     "flag": "1 m × 1 m, held by one edge, in a wind of 6 m/s.",
     "drape": "1 m × 1 m, falls 5 mm on a sphere of 0.3 m radius, with friction."}
+# What else decides how large errors are: uniform drag, air, contact. As cases.cpp has them.
+DRAG = {"swing": 5, "static-rest": 10, "cantilever": 5, "hanging-strip": 5, "flag": 0, "drape": 0.5}  # [1/s]
+SURROUNDINGS = {"flag": "no contact", "drape": "no air, contact with the sphere alone"}
+OF_SCENES = "0 to 0.5/s"  # the drag of most built-in scenes
+
+
+def conditions(scene):
+    """Drag, air and contact of a scene in a few words."""
+    drag = f"a uniform drag of {DRAG[scene]:g}/s" if DRAG[scene] else "no drag but that of the air"
+    return f"{drag}, {SURROUNDINGS.get(scene, 'no air, no contact')}"
+
+
+def span(references, scene):
+    """From when to when a scene is compared, for the whole report: the earliest and latest of any case."""
+    rows = [row for row in references if row["scene"] == scene and not row["missing"]]
+    if not rows:
+        return "not compared: no reference"
+    first, last = min(r["compared_from_s"] for r in rows), max(r["compared_to_s"] for r in rows)
+    return f"compared at {last:g} s" if first == last else f"compared from {first:.2g} to {last:g} s"
+
+
+def about(references, scene):
+    return f"{ABOUT[scene]} Conditions: {conditions(scene)}; {span(references, scene)}, or less by the table."
+
+
+def machine_rows(machine):
+    """Of the machine, what was measured: a run that was cut has no end and no sum."""
+    cut = "not measured: the run was cut"
+    return [[key, cut if value == 0 or value == "the run was cut" else value] for key, value in machine.items()]
+
+
+def commits(*lists):
+    """A sentence on the commits that the tables come from."""
+    all_of = tables.unique(str(row["commit"]) for rows in lists for row in rows)
+    if len(all_of) < 2:
+        return ""
+    return (f" The tables are **not of one commit** but of {len(all_of)}: {', '.join(all_of)}; each says of which, "
+            "and figures of two tables are to be compared with care.")
 
 
 def report_text(data):
@@ -34,6 +73,7 @@ def report_text(data):
     parts, kernels = tables.read(data, "parts"), tables.read(data, "kernels")
     threads, real_time = tables.read(data, "threads"), tables.read(data, "real_time")
     shaking = tables.read(data, "shaking")
+    contact = tables.read(data, "contact"), tables.read(data, "contact_cases")
     out = ["# Speed against error", "",
            "Written by `./dev report`; not by hand. Times are CPU time of one thread where nothing else is "
            "said, and tell what one simulated second costs. They are medians of "
@@ -41,8 +81,10 @@ def report_text(data):
            "a run that failed is timed once; of the largest N in real time each N on the way to it is timed "
            "five times in a row; of the cases of \"Is the solver implicit called for?\" those far from real time "
            "are run once, and those with twice the substeps or with implicit; figures with one run beside "
-           "them, such as counts, memory and distances, are no times. The machine and its load, with the measuring itself:", "",
-           tables.markdown(["", ""], [[k, v] for k, v in machine.items()]), "",
+           "them, such as counts, memory and distances, are no times."
+           + commits(cells, kernels, parts, real_time, threads, shaking, *contact)
+           + " The machine and its load, with the measuring itself:", "",
+           tables.markdown(["", ""], machine_rows(machine)), "",
            "The tables as CSV, with every setting and the commit: " + ", ".join(
                f"[{name}](data/{name}.csv)" for name in
                ("accuracy", "references", "spatial", "kernels", "parts", "real_time", "threads", "contact", "contact_cases",
@@ -50,12 +92,17 @@ def report_text(data):
            "", "## What an error costs", "",
            "The cheapest setting of any solver whose positions stay within the error all the way of "
            "the swing, in CPU seconds a simulated second. "
+           f"Conditions: {conditions('swing')}; {span(references, 'swing')}. Most built-in scenes have a drag of "
+           f"{OF_SCENES}: errors that large steps make last longer there, so this table is too kind to implicit and "
+           "XPBD. Only positions are asked for; what strains and energy are off by stands in the tables of each scene. "
            f"Measured: {tables.sizes_taken(cells)}", "",
            tables.cost_of_accuracy(cells), "",
+           tables.strains_of_the_cheapest(cells), "",
            "## verlet against XPBD at 1 %", "", tables.summary_of_rivals(cells), "",
            "Both run the same springs, bending and drag in single precision, each with its own vector "
            "kernel. The error of strains is beside that of positions because lengths may be far off "
-           "while the cloth is about where it should be.", "",
+           "while the cloth is about where it should be. Conditions: "
+           + "; ".join(f"{scene}: {conditions(scene)}" for scene in SCENES) + ".", "",
            tables.verlet_against_xpbd(cells), "",
            "## How errors are measured", "",
            "The reference solves the same springs and masses in double precision, without dashpots: "
@@ -78,7 +125,7 @@ def report_text(data):
            "out. The seed's relaxation has rigid springs. Where verlet has no dashpots it is as XPBD is, and takes fewer substeps. "
            "\"Best of\" counts the different settings that were run."]
     for scene in tables.unique(cell["scene"] for cell in cells):
-        out += ["", f"## {SCENES[scene]}", "", ABOUT[scene], "",
+        out += ["", f"## {SCENES[scene]}", "", about(references, scene), "",
                 f"![Error against CPU time: {SCENES[scene]}](plots/{scene}.svg)", "",
                 tables.references(references, spatial, scene), "",
                 "The cheapest setting within 1 % in position, or the best one where none is:", "",
@@ -88,7 +135,7 @@ def report_text(data):
             "takes three numbers more for each particle, and the first shot of a sling as many; they are kept "
             "from then on.", "",
             "## What runs in real time", "",
-            "The largest square of particles whose swing needs at most half of one core: with verlet, as "
+            f"The largest square of particles whose swing ({conditions('swing')}) needs at most half of one core: with verlet, as "
             "scenes run it, the median of five runs of two ticks; with implicit the mean of the first second.", "", tables.real_time_sizes(kernels), "",
             "## Is the solver implicit called for?", "",
             "It is wanted as soon as verlet cannot hold a built-in scene, or cotton of 128 × 128 particles, in "
@@ -125,14 +172,14 @@ def report_text(data):
             "friction: what solving takes more than the same state does at μ = 0, measured in turn; elastic: "
             "springs, bending, integration. Folded and crumpled sheets lie on the ground, whose contact "
             "is booked with theirs. Sheets of 257² are measured in tenths of a tick.", "",
-            contact_tables.speed(tables.read(data, "contact")), "",
+            contact_tables.speed(contact[0]), "",
             "## Piles, hands and a model", "",
             "64 × 64 cotton, each tick the median of all runs, or each run of half a second. The sheet falls "
             "upright on the ground with drag 5/s and crumples there; nothing is put to sleep. The hand takes "
             "the pile at its rim and goes to and fro through its middle for a second, half a metre each way. "
             "A tick of 1/60 s is 16.7 ms. Crossings are counted exactly beside the timed ticks. "
             "`./dev report --contact` takes this section and the one before anew.", "",
-            contact_tables.cases(tables.read(data, "contact_cases")), "",
+            contact_tables.cases(contact[1]), "",
             "## Hard shaking", "",
             "Cloths of 1 m × 1 m that hang by one edge, in vacuum and without self-contact: every free particle is "
             "given a velocity of 20 m/s, its size, in a random direction; all free particles are put into a ball of "
@@ -157,12 +204,14 @@ def cost_in_readme(data):
     """What an error costs for cotton, and under which conditions this was measured."""
     cells = [cell for cell in tables.read(data, "accuracy")
              if cell["scene"] == "swing" and cell["fabric"] == "cotton"]
+    references = tables.read(data, "references")
     machine = {row["key"]: row["value"] for row in tables.read(data, "machine")}
     return (tables.cost_of_accuracy(cells) + "\n\n"
             "CPU seconds a simulated second of the cheapest setting of any solver that keeps within the error of "
-            "position;\na square metre of cotton, N particles, is held by one edge and swings down from the level. "
-            f"One thread of {machine['processor']},\n{machine['compiler']}, {machine['kernels']} kernels; "
-            f"{tables.sizes_taken(cells)}\n"
+            "**position**;\na square metre of cotton, N particles, is held by one edge and swings down from the level: "
+            f"{conditions('swing')}; {span(references, 'swing')}.\n{tables.strains_of_the_cheapest(cells)} "
+            f"One thread of {machine['processor']}, {machine['compiler']}, {machine['kernels']} kernels; "
+            f"{tables.sizes_taken(cells)} "
             "verlet ×1 is what a scene runs; XPBD is named by substeps × sweeps, implicit by substeps × iterations.")
 
 

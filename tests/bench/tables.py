@@ -114,6 +114,24 @@ def cost_of_accuracy(cells, scene="swing"):
     return markdown(["N", "fabric"] + [f"error {name}" for _, name in BOUNDS], rows)
 
 
+def strains_of_the_cheapest(cells, scene="swing"):
+    """What the strains of the settings named by `cost_of_accuracy` are off by: its bounds are those of position."""
+    off = {}
+    for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
+        for fabric in FABRICS:
+            for bound, _ in BOUNDS:
+                best = cheapest(of_case(cells, scene, fabric, n), bound)
+                if best:
+                    off.setdefault(best["solver"], []).append(best["strain"])
+    told = [f"{NAMES[solver]} {span_of(off[solver])}" for solver in SOLVERS if solver in off]
+    return f"Strains of these settings are off by: {', '.join(told)}." if told else ""
+
+
+def span_of(values):
+    low, high = percent(min(values)), percent(max(values))
+    return low if low == high else f"{low.removesuffix(' %')} to {high}"
+
+
 def verlet_against_xpbd(cells):
     rows = []
     for scene in unique(cell["scene"] for cell in cells):

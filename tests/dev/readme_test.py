@@ -112,6 +112,14 @@ class Readme(unittest.TestCase):
         page = (ROOT / "tests/bench/REPORT.md").read_text(encoding="utf-8")
         self.assertEqual(report.report_text(data), page)
 
+    def test_the_table_of_speed_and_error_tells_the_conditions_it_was_taken_under(self):
+        caption = README.split("<!-- report: cost of accuracy -->")[1].split("<!-- report: end -->")[0]
+        for condition in (r"drag of 5/s", r"no contact", r"from 0\.083 to 0\.5 s", r"Strains .* XPBD \d+"):
+            self.assertRegex(caption, condition)
+
+    def test_it_is_short(self):
+        self.assertLessEqual(len(README.splitlines()), 180)
+
     def test_every_test_that_the_tests_page_names_is_in_its_file(self):
         page = (ROOT / "tests/README.md").read_text(encoding="utf-8")
         names = re.findall(r"`([\w./]+)`|(?<=[ ;])\"([^\"]+)\"", page)
