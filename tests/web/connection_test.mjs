@@ -17,10 +17,11 @@ test('a hidden page asks for no frames, and goes on when it is seen again', boun
     await hide(true);
     await until(async () => {
       const last = await read(page, 'tick');
+      const pictures = await read(page, 'pictures');
       const now = await tick();
       await until(async () => (await tick()) > now + 60);
-      return (await read(page, 'tick')) === last;
-    }, 'no frame comes in the time of sixty ticks');
+      return (await read(page, 'tick')) === last && (await read(page, 'pictures')) === pictures;
+    }, 'no frame comes in the time of sixty ticks, and none is drawn');
     await hide(false);
     const seen = await tick();
     await until(async () => (await read(page, 'tick')) > seen);

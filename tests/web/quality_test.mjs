@@ -5,6 +5,7 @@ import { import_page_module } from './support/page_module.mjs';
 // How finely the page draws, on made-up times of pictures.
 
 const { Quality } = await import_page_module('view/quality');
+const { sample_of } = await import_page_module('view/samples');
 const { Rest } = await import_page_module('view/rest');
 
 const DISPLAY = 1 / 60; // [s]
@@ -35,7 +36,7 @@ test('after slowness ends the picture is at its finest within four seconds', () 
   for (const density of [1, 1.5, 2, 3]) {
     for (const seconds of [0.3, 5, 120]) {
       for (const slow of [machine(0.3, 0), machine(0.02, 0.08), machine(0, 0.06)]) {
-        const quality = new Quality(false, () => density);
+        const quality = new Quality(() => density);
         const finest = quality.pixel_ratio;
         draw(quality, seconds, slow);
         const after = draw(quality, 4, machine(0.002, 0.001));
@@ -46,7 +47,7 @@ test('after slowness ends the picture is at its finest within four seconds', () 
 });
 
 test('a machine that cannot keep up gets coarser pictures within a second', () => {
-  const quality = new Quality(false, () => 2);
+  const quality = new Quality(() => 2);
   const drawn = draw(quality, 3, machine(0.005, 0.03));
   const last = drawn.at(-1).ratio;
   assert.ok(last < 2, `${last}`);
@@ -57,7 +58,7 @@ test('the picture does not waver, whatever a machine needs for it', () => {
   let most = 0;
   for (const fixed of [0, 0.004, 0.01, 0.02, 0.03, 0.04, 0.044]) {
     for (const per_pixel of [0.002, 0.008, 0.015, 0.023, 0.031, 0.05, 0.09]) {
-      const quality = new Quality(false, () => 2);
+      const quality = new Quality(() => 2);
       const cost = machine(fixed, per_pixel);
       draw(quality, 20, cost);
       most = Math.max(most, changes(draw(quality, 120, cost)));
@@ -67,7 +68,7 @@ test('the picture does not waver, whatever a machine needs for it', () => {
 });
 
 test('a machine whose fine pictures are suddenly slow is asked ever more seldom', () => {
-  const quality = new Quality(false, () => 1);
+  const quality = new Quality(() => 1);
   const cliff = (ratio) => (ratio > 0.8 ? 0.08 : 0.01);
   draw(quality, 60, cliff);
   const drawn = draw(quality, 120, cliff);
@@ -75,7 +76,7 @@ test('a machine whose fine pictures are suddenly slow is asked ever more seldom'
 });
 
 test('a display of 30 pictures a second gets the finest one too', () => {
-  const quality = new Quality(false, () => 2);
+  const quality = new Quality(() => 2);
   draw(quality, 5, machine(0.2, 0), 1 / 30);
   const drawn = draw(quality, 60, machine(0.002, 0.001), 1 / 30);
   assert.equal(drawn.at(-1).ratio, 2);
@@ -120,5 +121,20 @@ test('a viewer who turns the view of a resting cloth does not put off its fine p
   for (let now = 0; now < 20; now += 2) {
     rest.update(now, true, false);
     assert.equal(rest.update(now + 0.5, false, false), true);
+  }
+});
+
+test('the exposures of a picture at rest are taken evenly over the pixel and the lights', () => {
+  for (const count of [8, 24]) {
+    const samples = Array.from({ length: count }, (_, k) => sample_of(k));
+    for (const [name, reach] of [['pixel', 0.5], ['key', 1], ['sky', 1]]) {
+      for (const axis of [0, 1]) {
+        const values = samples.map((sample) => sample[name][axis]);
+        const mean = values.reduce((sum, value) => sum + value, 0) / count;
+        assert.ok(Math.abs(mean) < 0.2 * reach, `${name}: a mean of ${mean}`);
+        assert.ok(values.every((value) => Math.abs(value) <= reach));
+        assert.ok(Math.max(...values) > 0.35 * reach && Math.min(...values) < -0.35 * reach);
+      }
+    }
   }
 });

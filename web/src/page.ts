@@ -49,9 +49,12 @@ export class Page {
   phase: Phase = 'connecting';
   pictures = 0;
   private panels = new Panels();
-  readonly stage = new Stage(this.canvas, (away) => {
-    this.panels.picture_lost(away);
-    this.dirty = true;
+  readonly stage = new Stage(this.canvas, {
+    lost: (away) => {
+      this.panels.picture_lost(away);
+      this.dirty = true;
+    },
+    changed: () => (this.dirty = true),
   });
   private toolbar: Toolbar;
   readonly reticle = new Reticle();
@@ -130,7 +133,7 @@ export class Page {
       figures: () => this.panels.toggle_figures(),
       ...this.camera_actions(),
     });
-    new ThemeSwitch(() => (this.dirty = true));
+    new ThemeSwitch((theme) => (this.stage.theme = theme));
     frame_focus(this.canvas);
     this.listen();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -280,7 +283,11 @@ export class Page {
 
   /** Whether the picture on the screen is up to date and as fine as it gets. */
   get fine(): boolean {
-    return this.stage.quality.still && !this.dirty;
+    return this.stage.quality.still && this.stage.fine && !this.dirty;
+  }
+
+  get lit(): boolean {
+    return this.stage.lit;
   }
 
   /** Draws again, as something has changed that is not part of the world. */
@@ -321,14 +328,19 @@ export class Page {
     this.drawn_last_time = this.dirty;
     const still = this.rest.update(now, this.dirty, moved && !this.state?.paused);
     if (this.stage.refine(still, this.dirty && again ? elapsed : null)) this.resize();
-    if (!this.dirty) return;
+    if (this.dirty) this.draw_picture();
+    else if (still) this.stage.expose(this.orbit.camera);
+  }
+
+  private draw_picture(): void {
     this.dirty = false;
     this.point_at_cloth();
     this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
     this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
     this.world?.look_from(this.orbit.camera);
-    this.stage.renderer.render(this.stage.scene, this.orbit.camera);
+    this.stage.draw(this.orbit.camera);
+    if (this.world && this.world.playback.tick >= 0) void this.stage.complete(this.orbit.camera);
     this.pictures += 1;
     const latency = this.latency.shown(this.world?.playback.time ?? 0, performance.now() / 1000);
     if (latency !== null) this.panels.latency(latency);

@@ -74,6 +74,10 @@ export function expose_probe(page: Page): void {
     get pictures() {
       return page.pictures;
     },
+    /** Whether the light has its reflections and shadows, which follow the first pictures. */
+    get lit() {
+      return page.lit;
+    },
     /** Whether the picture is as fine as possible, as it is while nothing changes. */
     get fine() {
       return page.fine;

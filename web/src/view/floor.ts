@@ -1,29 +1,39 @@
-import { Color, Mesh, PlaneGeometry, ShadowMaterial } from 'three';
+import { Mesh, PlaneGeometry, ShadowMaterial } from 'three';
+import type { Palette } from './palette.js';
 
-const GRID_COLOR = new Color('#8d877c');
-const GRID_RADIUS = 6; // at which the grid has faded out [m]
+const GRID_RADIUS = 5; // at which the grid has faded out [m]
 
-/** Shadows and a grid of 10 cm with stronger metres, over the dome's colour. */
-export function floor(height: number): Mesh {
-  const geometry = new PlaneGeometry(GRID_RADIUS * 2, GRID_RADIUS * 2).rotateX(-Math.PI / 2);
-  const material = new ShadowMaterial({ color: '#3b2f26', opacity: 0.25, depthWrite: false });
-  material.onBeforeCompile = (shader) => {
-    shader.uniforms.grid_color = { value: GRID_COLOR };
-    shader.uniforms.grid_radius = { value: GRID_RADIUS };
-    shader.vertexShader = shader.vertexShader.replace(
-      'void main() {',
-      'varying vec2 place;\nvoid main() {\nplace = position.xz;',
-    );
-    shader.fragmentShader = shader.fragmentShader
-      .replace('void main() {', `${GRID_FUNCTIONS}\nvoid main() {`)
-      .replace('#include <tonemapping_fragment>', GRID_OVER_SHADOW);
-  };
-  const mesh = new Mesh(geometry, material);
-  mesh.name = 'floor';
-  mesh.position.y = height;
-  mesh.receiveShadow = true;
-  mesh.renderOrder = -1;
-  return mesh;
+/** Shadows and a quiet grid of 10 cm with stronger metres, over the backdrop's colour. */
+export class Floor {
+  readonly mesh: Mesh;
+  private material: ShadowMaterial;
+  private uniforms = { grid_color: { value: null as unknown }, grid_radius: { value: GRID_RADIUS } };
+
+  constructor(palette: Palette) {
+    const size = GRID_RADIUS * 2;
+    this.material = new ShadowMaterial({ depthWrite: false });
+    this.material.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, this.uniforms);
+      shader.vertexShader = shader.vertexShader.replace(
+        'void main() {',
+        'varying vec2 place;\nvoid main() {\nplace = position.xz;',
+      );
+      shader.fragmentShader = shader.fragmentShader
+        .replace('void main() {', `${GRID_FUNCTIONS}\nvoid main() {`)
+        .replace('#include <tonemapping_fragment>', GRID_OVER_SHADOW);
+    };
+    this.mesh = new Mesh(new PlaneGeometry(size, size).rotateX(-Math.PI / 2), this.material);
+    this.mesh.name = 'floor';
+    this.mesh.receiveShadow = true;
+    this.mesh.renderOrder = -1;
+    this.paint(palette);
+  }
+
+  paint({ grid, shadow, shade }: Palette): void {
+    this.material.color.copy(shadow);
+    this.material.opacity = shade;
+    this.uniforms.grid_color.value = grid;
+  }
 }
 
 const GRID_FUNCTIONS = `
@@ -42,7 +52,7 @@ const GRID_FUNCTIONS = `
 
 const GRID_OVER_SHADOW = `
   float fade = 1.0 - smoothstep(0.15, 0.8, length(place) / grid_radius);
-  float strength = max(0.1 * lines(place, 0.1), 0.3 * lines(place, 1.0)) * fade;
+  float strength = max(0.06 * lines(place, 0.1), 0.2 * lines(place, 1.0)) * fade;
   float shade = gl_FragColor.a * (1.0 - smoothstep(0.6, 1.0, length(place) / grid_radius));
   gl_FragColor.rgb = mix(gl_FragColor.rgb, grid_color, strength / max(1e-4, strength + shade));
   gl_FragColor.a = strength + shade - strength * shade;

@@ -1,33 +1,139 @@
 import {
   BackSide,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
   Mesh,
   MeshBasicMaterial,
   PlaneGeometry,
   PMREMGenerator,
   Scene,
   SphereGeometry,
+  Vector3,
 } from 'three';
-import type { WebGLRenderer } from 'three';
+import type { Box3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import type { Sample } from './samples.js';
 
-/** Light from large bright panels in a dim room, for soft reflections. */
-export function soft_boxes(renderer: WebGLRenderer) {
+const KEY = new Vector3(-0.42, 1, 0.8).normalize(); // towards the key light, front left and above
+const BACK = new Vector3(0.62, 0.42, -0.85).normalize(); // towards the fill from behind
+const KEY_SPREAD = 0.07; // tangent of half the angle under which the key light is seen
+const SKY_SPREAD = 0.9; // the same for the light from above
+const KEY_BLUR = 0.012; // of the shadow's edge where the light does not move [m]
+const SKY_BLUR = 0.05; // [m]
+const SKY_STEP = 9; // between the shadows of neighbouring exposures, which has to be bridged [texels]
+const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
+const HEMISPHERE = { alone: 1.1, with_environment: 0.25 };
+const CONTACT = 0.85; // part of the light from above that its shadows take
+export const REFLECTED = 0.62; // part of the reflections' light that is used
+
+/**
+ * Light of a studio: a key light with shadows, a wide one from above whose shadows are those of
+ * contact, a fill from behind without any, and the reflections of soft boxes.
+ * At first it is simple: without reflections and shadows, whose preparation takes time.
+ */
+export class Light {
+  readonly group = new Group();
+  private key = new DirectionalLight('#fff3e4', 1.75);
+  private sky = new DirectionalLight('#f2f5ff', 0.75);
+  private back = new DirectionalLight('#e3ebff', 1.15);
+  private hemisphere = new HemisphereLight('#ffffff', '#b9b2a8', HEMISPHERE.alone);
+  private center = new Vector3();
+  private radius = 1; // of what is lit [m]
+
+  constructor() {
+    this.group.add(this.hemisphere);
+    for (const light of [this.key, this.sky, this.back]) this.group.add(light, light.target);
+    for (const [light, size] of [[this.key, MAP_SIZES.key], [this.sky, MAP_SIZES.sky]] as const) {
+      light.shadow.mapSize.set(size, size);
+      light.shadow.bias = -0.0004;
+      light.shadow.normalBias = 0.012;
+    }
+    this.back.position.copy(BACK);
+    this.show(null);
+  }
+
+  /** Changes between the first, simple light and the whole. */
+  set whole(whole: boolean) {
+    this.key.castShadow = this.sky.castShadow = whole;
+    this.hemisphere.intensity = whole ? HEMISPHERE.with_environment : HEMISPHERE.alone;
+  }
+
+  /** Draws the shadows of contact, or leaves them out where they would take too long. */
+  set contact(drawn: boolean) {
+    this.sky.shadow.autoUpdate = drawn;
+    this.sky.shadow.intensity = drawn ? CONTACT : 0;
+  }
+
+  /** Fits the shadows to the box that can move [m]; a smaller box gives finer ones. */
+  fit(box: Box3): void {
+    box.getCenter(this.center);
+    this.radius = Math.max(0.06, box.getSize(new Vector3()).length() * 0.75);
+    for (const light of [this.key, this.sky]) {
+      light.target.position.copy(this.center);
+      const view = light.shadow.camera;
+      [view.left, view.right, view.bottom, view.top] = [-1, 1, -1, 1].map((end) => end * this.radius);
+      [view.near, view.far] = [this.radius * 0.5, this.radius * 5.5];
+      view.updateProjectionMatrix();
+      light.shadow.normalBias = Math.min(0.012, this.radius * 0.01);
+    }
+    this.show(null);
+  }
+
+  /**
+   * Moves the lights to a point of their areas, so that the mean of many pictures has the shadows of
+   * areas; null: to their middles, with shadows that are blurred instead.
+   */
+  show(sample: Sample | null): void {
+    const texel = (size: number) => (2 * this.radius) / size;
+    const blur = (metres: number, size: number) => Math.min(14, Math.max(1, metres / texel(size)));
+    this.key.shadow.radius = sample ? 1 : blur(KEY_BLUR, MAP_SIZES.key);
+    this.sky.shadow.radius = sample ? SKY_STEP : blur(SKY_BLUR, MAP_SIZES.sky);
+    this.place(this.key, KEY, KEY_SPREAD, sample?.key);
+    this.place(this.sky, new Vector3(0, 1, 0.02), SKY_SPREAD, sample?.sky);
+  }
+
+  private place(light: DirectionalLight, to: Vector3, spread: number, at = [0, 0]): void {
+    const side = new Vector3(0, 0, -1).cross(to).normalize();
+    const direction = to.clone().addScaledVector(side, at[0] * spread);
+    direction.addScaledVector(to.clone().cross(side).normalize(), at[1] * spread);
+    light.position.copy(this.center).add(direction.setLength(this.radius * 3));
+  }
+}
+
+/**
+ * Reflections of large bright panels in a dim room, prepared for rough and smooth surfaces. They
+ * have to be made again when the graphics were lost.
+ */
+export function reflections(renderer: WebGLRenderer): WebGLRenderTarget {
+  const room = soft_boxes();
+  const generator = new PMREMGenerator(renderer);
+  const target = generator.fromScene(room, 0.03);
+  generator.dispose();
+  room.traverse((child) => {
+    if (!(child instanceof Mesh)) return;
+    child.geometry.dispose();
+    child.material.dispose();
+  });
+  return target;
+}
+
+function soft_boxes(): Scene {
   const room = new Scene();
   const shell = new SphereGeometry(10, 24, 12);
-  room.add(new Mesh(shell, new MeshBasicMaterial({ color: '#a9a6a2', side: BackSide })));
-  const panels: [number, number, number, number][] = [
-    [-6, 5, 5, 6],
-    [7, 3, 2, 2.5],
-    [0, 8, -3, 4],
+  room.add(new Mesh(shell, new MeshBasicMaterial({ color: '#8f8d8a', side: BackSide })));
+  const panels: [number, number, number, number, number][] = [
+    [-6, 5, 5, 5, 5.5],
+    [7, 3, 2, 4, 2],
+    [0, 8, -1, 5, 3],
+    [5, 3.5, -7, 5, 4.5],
+    [-7, 2.5, -5, 3, 3],
   ];
-  for (const [x, y, z, strength] of panels) {
-    const panel = new Mesh(new PlaneGeometry(5, 5), new MeshBasicMaterial());
+  for (const [x, y, z, size, strength] of panels) {
+    const panel = new Mesh(new PlaneGeometry(size, size), new MeshBasicMaterial());
     panel.material.color.setScalar(strength);
     panel.position.set(x, y, z);
     panel.lookAt(0, 0, 0);
     room.add(panel);
   }
-  const generator = new PMREMGenerator(renderer);
-  const texture = generator.fromScene(room, 0.03).texture;
-  generator.dispose();
-  return texture;
+  return room;
 }

@@ -1,5 +1,5 @@
 import { Color, DoubleSide, MeshBasicMaterial, WebGLRenderTarget } from 'three';
-import type { Camera, Group, Material, Mesh, Object3D, Scene, WebGLRenderer } from 'three';
+import type { Camera, Group, LineSegments, Material, Mesh, Object3D, Scene, WebGLRenderer } from 'three';
 
 /**
  * For each pixel, row by row from the top, the number of the cloth that is the nearest of cloths and
@@ -16,7 +16,11 @@ export function cloth_mask(
   const target = new WebGLRenderTarget(width, height);
   const cloths = [...parts.cloth.children] as Mesh[];
   const objects: Mesh[] = [];
-  parts.objects.traverse((each) => (each as Mesh).isMesh && objects.push(each as Mesh));
+  const lines: Object3D[] = []; // along edges
+  parts.objects.traverse((each) => {
+    if ((each as Mesh).isMesh) objects.push(each as Mesh);
+    else if ((each as LineSegments).isLineSegments) lines.push(each);
+  });
   const shown = scene.children.filter((child) => child.visible);
   const wanted = new Set<Object3D>([parts.cloth, parts.objects]);
   const undo = [
@@ -24,6 +28,7 @@ export function cloth_mask(
     ...cloths.map((mesh, k) => flat(mesh, k + 1)),
   ];
   for (const child of shown) child.visible = wanted.has(child);
+  for (const line of lines) line.visible = false;
   const { autoUpdate } = renderer.shadowMap;
   renderer.shadowMap.autoUpdate = false;
   renderer.setRenderTarget(target);
@@ -33,7 +38,7 @@ export function cloth_mask(
   renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
   renderer.setRenderTarget(null);
   renderer.shadowMap.autoUpdate = autoUpdate;
-  for (const child of shown) child.visible = true;
+  for (const child of [...shown, ...lines]) child.visible = true;
   for (const act of undo) act();
   target.dispose();
   return Uint8Array.from({ length: width * height }, (_, pixel) => {

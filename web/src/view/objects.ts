@@ -5,13 +5,14 @@ import {
   BufferGeometry,
   CapsuleGeometry,
   Group,
+  LineSegments,
   Mesh,
-  MeshStandardMaterial,
   Raycaster,
   SphereGeometry,
   Vector3,
 } from 'three';
 import { inner_offset } from './normals.js';
+import { ObjectLook } from './object_look.js';
 import type { Collider, MeshData, PoseSample, Vec3 } from '../../../proto/js/messages.js';
 
 const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
@@ -21,7 +22,7 @@ export class Objects {
   readonly group = new Group();
   /** Height of the ground [m], or null if there is none. */
   readonly ground: number | null = null;
-  private material = new MeshStandardMaterial({ color: '#c9bda9', roughness: 0.8 });
+  private look = new ObjectLook();
   private caster = new Raycaster();
   private nodes: Node[] = [];
   private ground_place = -1;
@@ -40,7 +41,10 @@ export class Objects {
         }
         continue;
       }
-      const mesh = new Mesh(geometry_of(collider, place, data, inset), this.material);
+      const geometry = geometry_of(collider, place, data, inset);
+      const mesh = new Mesh(geometry, this.look.material_of(collider));
+      const edges = this.look.edges_of(collider, geometry);
+      if (edges) mesh.add(edges);
       mesh.name = collider.name;
       mesh.castShadow = mesh.receiveShadow = true;
       place_object(mesh, collider);
@@ -117,8 +121,10 @@ export class Objects {
 
   dispose(): void {
     this.group.removeFromParent();
-    this.group.traverse((child) => child instanceof Mesh && child.geometry.dispose());
-    this.material.dispose();
+    this.group.traverse((child) => {
+      if (child instanceof Mesh || child instanceof LineSegments) child.geometry.dispose();
+    });
+    this.look.dispose();
   }
 }
 

@@ -1,6 +1,5 @@
 const MOST_PIXELS_PER_UNIT = 2;
 const LEAST_PIXELS_PER_UNIT = 0.5;
-const STILL_SUPERSAMPLING = 1.5; // without multisampling
 const SLOW_PICTURE = 0.045; // that makes the following ones coarser [s]
 const JUDGED_PICTURES = 5; // slow in a row
 // A step finer has twice the pixels, so a picture of less than half the limit has room for it.
@@ -27,19 +26,13 @@ export class Quality {
   private roomy_wait = ROOMY_WAIT;
   private tight_wait = TIGHT_WAIT;
 
-  /**
-   * @param software whether the processor draws, without multisampling
-   * @param density  physical pixels for each unit of the page's layout
-   */
-  constructor(
-    private software: boolean,
-    private density: () => number,
-  ) {}
+  /** @param density physical pixels for each unit of the page's layout */
+  constructor(private density: () => number) {}
 
   /** Pixels of the canvas for each unit of the page's layout. */
   get pixel_ratio(): number {
     const finest = Math.min(MOST_PIXELS_PER_UNIT, this.density());
-    if (this.still) return this.software ? finest * STILL_SUPERSAMPLING : finest;
+    if (this.still) return finest;
     return Math.min(finest, Math.max(LEAST_PIXELS_PER_UNIT, finest / Math.SQRT2 ** this.level));
   }
 

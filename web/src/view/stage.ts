@@ -1,73 +1,86 @@
-import {
-  DirectionalLight,
-  HemisphereLight,
-  NeutralToneMapping,
-  PCFShadowMap,
-  Scene,
-  Vector3,
-  WebGLRenderer,
-} from 'three';
-import type { Box3 } from 'three';
-import { dome } from './backdrop.js';
-import { floor } from './floor.js';
-import { soft_boxes } from './light.js';
+import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
+import type { Box3, PerspectiveCamera, WebGLRenderTarget } from 'three';
+import { Backdrop } from './backdrop.js';
+import { Exposure } from './exposure.js';
+import { Floor } from './floor.js';
+import { Light, REFLECTED, reflections } from './light.js';
+import { PALETTES } from './palette.js';
+import type { Theme } from './palette.js';
 import { draws_in_software, Quality } from './quality.js';
+import { sample_of } from './samples.js';
+import { soften_shadows } from './soft_shadow.js';
 
-/** A studio: light, a floor with a grid that fades into the distance, and the renderer. */
+const EXPOSURES = { hardware: 24, software: 10 }; // whose mean is the finest picture
+
+/** What the stage tells. */
+interface Heard {
+  /** Whether the graphics context is away; it comes back by itself, or never. */
+  lost: (away: boolean) => void;
+  /** The next picture would be another one. */
+  changed: () => void;
+}
+
+/**
+ * A studio: light, a floor with a grid that fades into the distance, and the renderer. The first
+ * pictures are simply lit; `complete` adds what takes time to prepare.
+ */
 export class Stage {
   readonly scene = new Scene();
   readonly renderer: WebGLRenderer;
-  readonly quality: Quality;
-  private sun = new DirectionalLight('#fff4e6', 2.4);
+  readonly quality = new Quality(() => window.devicePixelRatio);
+  private drawn_in: 'software' | 'hardware' = draws_in_software() ? 'software' : 'hardware';
+  private light_ = new Light();
+  private floor = new Floor(PALETTES.light);
+  private backdrop = new Backdrop(PALETTES.light);
+  private exposure: Exposure;
+  private exposed = 0; // pictures in the mean that is shown
+  private completing: Promise<void> | null = null;
+  /** Whether reflections and shadows are there. */
+  lit = false;
+  private room: WebGLRenderTarget | null = null; // that surfaces reflect
 
-  /** @param lost tells whether the graphics context is away; it comes back by itself, or never */
-  constructor(canvas: HTMLCanvasElement, lost: (away: boolean) => void) {
-    const software = draws_in_software();
-    this.quality = new Quality(software, () => window.devicePixelRatio);
+  constructor(
+    private canvas: HTMLCanvasElement,
+    private heard: Heard,
+  ) {
+    soften_shadows();
     // Multisampling is too expensive for software renderers, and leaves cracks there.
-    this.renderer = new WebGLRenderer({ canvas, antialias: !software });
+    this.renderer = new WebGLRenderer({ canvas, antialias: this.drawn_in === 'hardware' });
     this.renderer.toneMapping = NeutralToneMapping;
-    this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.scene.environment = soft_boxes(this.renderer);
-    canvas.addEventListener('webglcontextlost', () => lost(true));
+    this.exposure = new Exposure(this.renderer);
+    this.scene.add(this.backdrop.mesh, this.light_.group, this.floor.mesh);
+    this.floor.mesh.visible = false;
+    this.scene.environmentIntensity = REFLECTED;
+    canvas.addEventListener('webglcontextlost', () => heard.lost(true));
     // The renderer listens too, and first; what it loads from arrays it loads anew by itself.
     canvas.addEventListener('webglcontextrestored', () => {
-      this.scene.environment = soft_boxes(this.renderer);
-      lost(false);
+      if (this.room) this.make_room();
+      if (this.lit) this.light_up(true);
+      heard.lost(false);
     });
-    this.scene.environmentIntensity = 0.7;
-    this.scene.add(dome(), this.sun, this.sun.target);
-    this.scene.add(new HemisphereLight('#ffffff', '#cfc4b4', 0.45));
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(1024, 1024);
-    this.sun.shadow.radius = 3.5;
-    this.sun.shadow.bias = -0.0004;
-    this.sun.shadow.normalBias = 0.012;
   }
 
-  /** Places the floor at a height, or removes it. */
+  set theme(theme: Theme) {
+    this.floor.paint(PALETTES[theme]);
+    this.backdrop.paint(PALETTES[theme]);
+    this.heard.changed();
+  }
+
+  /** Places the floor at a height [m], or removes it. */
   set_floor(height: number | null): void {
-    this.scene.getObjectByName('floor')?.removeFromParent();
-    if (height !== null) this.scene.add(floor(height));
+    this.floor.mesh.visible = height !== null;
+    if (height !== null) this.raise_floor(height);
   }
 
   /** Raises or lowers the floor, if there is one. */
   raise_floor(height: number): void {
-    const floor = this.scene.getObjectByName('floor');
-    if (floor) floor.position.y = height;
+    this.floor.mesh.position.y = height;
   }
 
-  /** Fits the light's shadow to the box that can move [m]; a smaller box gives a finer shadow. */
+  /** Fits the lights' shadows to the box that can move [m]; a smaller box gives finer shadows. */
   light(box: Box3): void {
-    const center = box.getCenter(new Vector3());
-    const radius = Math.max(0.3, box.getSize(new Vector3()).length() * 0.75);
-    this.sun.target.position.copy(center);
-    this.sun.position.copy(center).add(new Vector3(-0.35, 1, 0.85).setLength(radius * 3));
-    const view = this.sun.shadow.camera;
-    [view.left, view.right, view.bottom, view.top] = [-radius, radius, -radius, radius];
-    [view.near, view.far] = [radius, radius * 5];
-    view.updateProjectionMatrix();
+    this.light_.fit(box);
   }
 
   resize(width: number, height: number): void {
@@ -86,4 +99,68 @@ export class Stage {
     if (interval !== null) this.quality.judge(interval);
     return this.renderer.getPixelRatio() !== this.quality.pixel_ratio;
   }
+
+  /** Draws the present picture. */
+  draw(camera: PerspectiveCamera): void {
+    this.exposed = 0;
+    this.light_.contact = this.drawn_in === 'hardware';
+    this.renderer.render(this.scene, camera);
+    if (this.lit && this.drawn_in === 'software') this.exposure.smooth();
+  }
+
+  /** Whether the picture is as fine as it gets. */
+  get fine(): boolean {
+    return this.lit && (this.exposed >= EXPOSURES[this.drawn_in] || !this.exposure.averages);
+  }
+
+  /** Makes a picture that does not change finer by one more exposure. */
+  expose(camera: PerspectiveCamera): void {
+    if (!this.lit || this.fine) return;
+    const { width, height } = this.canvas;
+    const sample = this.exposed > 0 ? sample_of(this.exposed - 1) : null;
+    if (sample) camera.setViewOffset(width, height, ...sample.pixel, width, height);
+    this.light_.show(sample);
+    this.light_.contact = true;
+    this.renderer.render(this.scene, camera);
+    this.exposure.add(this.exposed);
+    this.exposed += 1;
+    camera.clearViewOffset();
+    this.light_.show(null);
+  }
+
+  /**
+   * Prepares reflections and shadows beside the pictures that are drawn meanwhile, and adds them.
+   * Call it when a first picture is on the screen.
+   */
+  complete(camera: PerspectiveCamera): Promise<void> {
+    this.completing ??= this.prepare(camera);
+    return this.completing;
+  }
+
+  private async prepare(camera: PerspectiveCamera): Promise<void> {
+    await next_task();
+    this.make_room();
+    await next_task();
+    // Programs depend on the lights; they are linked while the simple ones go on drawing.
+    this.light_up(true);
+    const linked = this.renderer.compileAsync(this.scene, camera);
+    this.light_up(false);
+    await linked;
+    this.light_up(true);
+    this.lit = true;
+    this.heard.changed();
+  }
+
+  private make_room(): void {
+    this.room?.dispose();
+    this.room = reflections(this.renderer);
+  }
+
+  private light_up(whole: boolean): void {
+    this.scene.environment = whole && this.room ? this.room.texture : null;
+    this.light_.whole = this.renderer.shadowMap.enabled = whole;
+  }
 }
+
+/** Lets events that wait and a picture come before what follows. */
+const next_task = () => new Promise((done) => setTimeout(done));
