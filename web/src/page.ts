@@ -9,7 +9,7 @@ import { Hands } from './view/hands.js';
 import { HandLatency } from './hold/hand_latency.js';
 import { Holding } from './hold/holding.js';
 import { Input } from './hold/input.js';
-import type { View, Window } from './view/framing.js';
+import type { Window } from './view/framing.js';
 import { KEY_HAND, KeyHand } from './hold/key_hand.js';
 import { listen_to_keys } from './hold/keys.js';
 import { loss_text, notice_text } from './panel/events.js';
@@ -264,7 +264,7 @@ export class Page {
   private frame(at_once = false): void {
     if (!this.world) return;
     const asked = view_of_address(window.location.search);
-    const { view = null } = this.world.announcement as { view?: View };
+    const { view = null } = this.world.announcement;
     this.director.begin(this.world.subject(), asked ?? view, at_once);
   }
 

@@ -1,7 +1,8 @@
 import { Box3, Vector3 } from 'three';
+import type { View } from '../../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
 import { axes_of, part_outside, pose_around, pose_of_view } from './framing.js';
-import type { Pose, View, Window } from './framing.js';
+import type { Pose, Window } from './framing.js';
 
 const MARGIN = 1.06; // of the picture around what is framed
 const MOST_OUTSIDE = 0.1; // part of the cloth that may leave the picture before the camera follows

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three';
-import type { Vec3 } from '../../../proto/js/messages.js';
+import type { Vec3, View } from '../../../proto/js/messages.js';
 
 /** Where an orbiting camera stands: it looks at a target, from a distance [m] and two angles [rad]. */
 export interface Pose {
@@ -19,15 +19,6 @@ export interface Window {
   aspect: number;
   above: number;
   below: number;
-}
-
-/** A first view: a sphere around `target` that just fills the free picture, seen from a side. */
-export interface View {
-  target: Vec3;
-  /** From the target towards the eye; need not be unit. */
-  direction: Vec3;
-  /** [m] */
-  radius: number;
 }
 
 /** Unit vectors to the viewer's right, up and back. */
