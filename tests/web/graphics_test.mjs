@@ -1,0 +1,69 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { made_up_canvas, make_up_browser } from './support/made_up_gl.mjs';
+import { import_page_module } from './support/page_module.mjs';
+
+// What the page keeps on the graphics card, with graphics that are made up.
+
+make_up_browser();
+const { Stage } = await import_page_module('view/stage');
+const { WorldView } = await import_page_module('view/world_view');
+const { OrbitCamera } = await import_page_module('view/camera');
+
+const EXPOSURES = 24;
+const place = { pivot: [0, 0, 0] };
+const GROUND = { ...place, name: 'ground', kind: 'plane', point: [0, 0, 0], normal: [0, 1, 0] };
+const BALL = { ...place, name: 'ball', kind: 'sphere', center: [0, 0.3, 0], radius: 0.2 };
+const BOARD = {
+  ...place, name: 'board', kind: 'box', center: [0, 0.1, 0], half_extents: [0.3, 0.02, 0.3],
+  orientation: [0, 0, 0, 1],
+};
+
+/** A server's mesh of one square cloth, of so many cells along a side, and objects. */
+function mesh_of(cells, colliders) {
+  const side = cells + 1;
+  const place_of = (i) => [(i % side) / cells, Math.floor(i / side) / cells];
+  const points = Array.from({ length: side * side }, (_, i) => place_of(i));
+  const triangles = [];
+  for (let y = 0; y < cells; y++) {
+    for (let x = 0; x < cells; x++) {
+      const a = y * side + x;
+      triangles.push(a, a + 1, a + side, a + 1, a + side + 1, a + side);
+    }
+  }
+  const cloth = { name: 'cloth', first_vertex: 0, first_triangle: 0, thickness: 0.004 };
+  const size = { vertices: side * side, triangles: triangles.length / 3 };
+  return {
+    announcement: { scene: 'made up', ...size, cloths: [{ ...cloth, ...size }], colliders },
+    data: {
+      restPositions: Float32Array.from(points.flatMap(([u, v]) => [u, 1, v])),
+      triangles: Uint32Array.from(triangles),
+      uv: Float32Array.from(points.flat()),
+      colliders: [],
+    },
+  };
+}
+
+test('thirty scenes one after the other leave no buffer, vertex array or texture behind', async () => {
+  const alive = {};
+  const stage = new Stage(made_up_canvas(alive), { lost() {}, changed() {} });
+  const { camera } = new OrbitCamera();
+  const meshes = [mesh_of(6, [GROUND]), mesh_of(9, [GROUND, BALL, BOARD]), mesh_of(4, [])];
+  const show = async ({ announcement, data }) => {
+    const world = new WorldView(announcement, data, stage);
+    world.look_from(camera);
+    stage.draw(camera);
+    await stage.complete(camera);
+    stage.draw(camera);
+    for (let i = 0; i < EXPOSURES; i++) stage.expose(camera);
+    assert.ok(stage.fine);
+    const { Buffer, VertexArray, Texture, Framebuffer } = alive;
+    world.dispose();
+    return { Buffer, VertexArray, Texture, Framebuffer };
+  };
+  for (const mesh of meshes) await show(mesh); // the stage's own come with the first pictures
+  const kept = [];
+  for (const mesh of meshes) kept.push(await show(mesh));
+  assert.ok(kept[0].Buffer > 5, 'buffers are counted');
+  for (let i = 6; i < 30; i++) assert.deepEqual(await show(meshes[i % 3]), kept[i % 3]);
+});

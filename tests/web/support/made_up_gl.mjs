@@ -1,0 +1,69 @@
+// WebGL 2 without graphics: it takes every call, draws nothing, and counts what is alive.
+
+const NUMBERS = {
+  VERSION: 0x1f02,
+  SHADING_LANGUAGE_VERSION: 0x8b8c,
+  SCISSOR_BOX: 0x0c10,
+  VIEWPORT: 0x0ba2,
+  ACTIVE_UNIFORMS: 0x8b86,
+  ACTIVE_ATTRIBUTES: 0x8b89,
+  FRAMEBUFFER_COMPLETE: 0x8cd5,
+};
+const LARGE = 1024; // every limit that is asked for
+
+/** @param {object} canvas @param {Record<string, number>} alive is filled with counts by kind */
+function made_up_context(canvas, alive) {
+  const { VERSION, SHADING_LANGUAGE_VERSION, SCISSOR_BOX, VIEWPORT, ...rest } = NUMBERS;
+  const answers = new Map([
+    [VERSION, 'WebGL 2.0'],
+    [SHADING_LANGUAGE_VERSION, 'WebGL GLSL ES 3.00'],
+    [SCISSOR_BOX, [0, 0, canvas.width, canvas.height]],
+    [VIEWPORT, [0, 0, canvas.width, canvas.height]],
+  ]);
+  const counted = (kind, step) => (alive[kind] = (alive[kind] ?? 0) + step);
+  const context = {
+    ...NUMBERS,
+    canvas,
+    getParameter: (what) => answers.get(what) ?? LARGE,
+    getExtension: (name) => (name === 'EXT_color_buffer_float' ? {} : null),
+    getContextAttributes: () => ({ antialias: false }),
+    getShaderPrecisionFormat: () => ({ precision: 23, rangeMin: 127, rangeMax: 127 }),
+    isContextLost: () => false,
+    getProgramInfoLog: () => '',
+    getShaderInfoLog: () => '',
+    getProgramParameter: (_, what) =>
+      what === rest.ACTIVE_UNIFORMS || what === rest.ACTIVE_ATTRIBUTES ? 0 : true,
+    checkFramebufferStatus: () => rest.FRAMEBUFFER_COMPLETE,
+    getAttribLocation: () => 0,
+    getUniformLocation: () => ({}),
+  };
+  let next = 100_000;
+  return new Proxy(context, {
+    get(known, name) {
+      if (name in known || typeof name !== 'string') return known[name];
+      if (/^[A-Z0-9_]+$/.test(name)) return (known[name] = next++);
+      const [, act, kind] = /^(create|delete)(\w+)$/.exec(name) ?? [];
+      if (act === 'create') return () => (counted(kind, 1), {});
+      if (act === 'delete') return (thing) => void (thing && counted(kind, -1));
+      return () => undefined;
+    },
+  });
+}
+
+/** A canvas whose context is made up. @param {Record<string, number>} alive */
+export function made_up_canvas(alive) {
+  const canvas = { width: 64, height: 48, style: {}, addEventListener() {}, removeEventListener() {} };
+  let context;
+  canvas.getContext = () => (context ??= made_up_context(canvas, alive));
+  return canvas;
+}
+
+/** Stands in for what the renderer asks of a browser. */
+export function make_up_browser() {
+  globalThis.self ??= globalThis;
+  globalThis.window ??= { devicePixelRatio: 1 };
+  globalThis.document ??= {
+    createElement: () => made_up_canvas({}),
+    createElementNS: () => made_up_canvas({}),
+  };
+}
