@@ -30,18 +30,17 @@ export function launch_browser() {
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[], before?: () => void}} [options]
- *     view: target, direction and radius of the first view; before: what runs before the page's script
+ *   view?: number[]}} [options]
+ *     view: target, direction and radius of the first view
  */
 export async function open_page(browser, url, options = {}) {
-  const { width = 560, height = 420, touch = false, name = '', dark = false, view, before } = options;
+  const { width = 560, height = 420, touch = false, name = '', dark = false, view } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
     colorScheme: dark ? 'dark' : 'light',
     ignoreHTTPSErrors: true, // of a certificate that a test has made
   });
-  if (before) await context.addInitScript(before);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
