@@ -1,9 +1,9 @@
 // Bundles src/main.ts and styles/styles.css with all they import, and copies the files of static/
-// beside them.
+// and the pictures of scenes beside them.
 // usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
 import { cp, mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
-import { dirname, join, resolve } from "node:path";
+import { dirname, join, parse, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { brotliCompress, gzip } from "node:zlib";
@@ -12,11 +12,20 @@ import { slim_three } from "./slim_three.mjs";
 const [output, dependency_file] = process.argv.slice(2).map((path) => resolve(path));
 const here = dirname(fileURLToPath(import.meta.url));
 const static_files = join(here, "static");
+const scene_pictures = join(here, "picture", "scenes");
 
 // A file that is gone from the sources must be gone from the page.
 await rm(output, { recursive: true, force: true });
 await mkdir(output, { recursive: true });
 await cp(static_files, output, { recursive: true });
+
+// The page asks for a picture only if there is one.
+const pictures = (await readdir(scene_pictures)).filter((name) => name.endsWith(".jpg"));
+await cp(scene_pictures, join(output, "scenes"), { recursive: true });
+await writeFile(
+  join(output, "scenes", "pictures.json"),
+  JSON.stringify(pictures.map((name) => parse(name).name)),
+);
 
 const { metafile } = await build({
   absWorkingDir: here,
@@ -24,6 +33,7 @@ const { metafile } = await build({
   entryNames: "[name]",
   outdir: output,
   bundle: true,
+  splitting: true, // what is imported when it is needed is no part of the first load
   minify: true,
   sourcemap: true,
   format: "esm",
@@ -48,6 +58,8 @@ const inputs = [
   ...Object.keys(metafile.inputs),
   static_files,
   ...copied.map((name) => join(static_files, name)),
+  scene_pictures,
+  ...pictures.map((name) => join(scene_pictures, name)),
 ].map((path) => resolve(here, path));
 const escape = (path) => path.replaceAll(" ", "\\ ");
 await mkdir(dirname(dependency_file), { recursive: true });

@@ -16,6 +16,13 @@ const LOOKS = [
   ['dark phone', { ...PHONE, dark: true }],
 ];
 
+/** Stops the room: what stands still is not drawn, which leaves the browser to axe. */
+async function stand_still() {
+  const script = await server.script();
+  await script.pause();
+  script.close();
+}
+
 /** Rules that are broken, and those that axe could not decide, each with its elements. */
 async function faults(page) {
   const { violations, incomplete } = await page.evaluate(() =>
@@ -27,6 +34,7 @@ async function faults(page) {
 
 for (const [look, options] of LOOKS) {
   test(`axe finds no fault, and leaves nothing undecided: ${look}`, bounded, async () => {
+    await stand_still();
     const page = await open_page(browser, server.url, { ...options, name: 'Ada' });
     // By the protocol, for the page's own policy allows no script from elsewhere.
     await page.evaluate(axe);
@@ -41,10 +49,14 @@ for (const [look, options] of LOOKS) {
     await page.locator('#boxes').click();
     await until(async () => (await read(page, 'boxes')).lines.length > 0, 'boxes are shown');
     await clean('everything open');
+    await page.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
+    await clean('the dialog of the name');
+    await page.keyboard.press('Escape');
     for (const key of ['?', 'l']) {
       await page.locator('#view').focus();
       await page.keyboard.press(key);
       await until(() => page.getByRole('dialog').isVisible());
+      if (key === 'l') await until(() => page.locator('#scene-list img').count(), 'pictures are there');
       await clean(`the dialog of ${key}`);
       await page.keyboard.press('Escape');
     }

@@ -1,31 +1,15 @@
 // Draws scenes in the real page and writes the pictures, with a gallery page of them.
 // usage: WEFT_PROGRAM=build/weft node tests/web/pictures.mjs OUTPUT_FOLDER [SCENE[@TICK]]...
+//        The same with --figures measures looks; with --small [SCENE]... it takes the small pictures
+// of the scene browser, into web/picture/scenes.
 import { execFileSync } from 'node:child_process';
 import { mkdir, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
 import { figures_of, print_figures } from './figures.mjs';
-import { start_server } from './support/server.mjs';
+import { take_small } from './small_pictures.mjs';
+import { server_at, tick_of } from './support/moments.mjs';
 
-const USUAL_TICK = 240;
-/** Where a scene shows what it is about at another time. */
-const TICKS = {
-  default: 600,
-  'drape-sphere': 150,
-  'seed-fig4-no-bending': 100,
-  'seed-fig4-rest-angle': 100,
-  'seed-fig8-projection': 70,
-  'seed-fig8-fold-map': 70,
-  'seed-fig10-sharp-edge': 120,
-  'seed-fig10-edge-pairs': 120,
-  'seed-fig11-particle-pairs': 110,
-  'seed-fig12-triangle-pairs': 110,
-};
-/** What a hand does in experiments that are about hands, halfway to the picture's tick. */
-const HANDS = {
-  'seed-fig15-corners': (script) => script.release({ particle: 25 * 25 - 1 }),
-  'seed-fig16-drag': (script) => script.drag({ particle: 12 * 25 + 12 }, { target: [0, 1.24, 0.36] }).started,
-};
 const DESKTOP = { width: 1280, height: 800 };
 const PHONE = { width: 390, height: 780, touch: true };
 /** Pictures of a scene beside that of the scene by itself: what they show, and what is done for it. */
@@ -39,7 +23,7 @@ const EXTRA = {
 const COMPARED_WITH = { 12: 11 };
 
 const [folder, ...asked] = process.argv.slice(2);
-if (!folder) throw new Error('usage: pictures.mjs OUTPUT_FOLDER [--figures | SCENE[@TICK]...]');
+if (!folder) throw new Error('usage: pictures.mjs OUTPUT_FOLDER [--figures | --small [SCENE]... | SCENE[@TICK]...]');
 if (asked[0] === '--figures') {
   print_figures(await figures_of(folder));
   process.exit();
@@ -50,36 +34,39 @@ const listed = execFileSync(process.env.WEFT_PROGRAM, ['scenes', '--json'], { en
 const { scenes } = JSON.parse(listed);
 const browser = await launch_browser();
 try {
+  const small = asked[0] === '--small';
+  if (small) {
+    const names = asked.slice(1);
+    await take_small(browser, names.length ? names : scenes.map(({ name }) => name));
+  } else {
+    await take_large();
+  }
+} finally {
+  await browser.close();
+}
+
+async function take_large() {
   const chosen = asked.length
     ? asked.map((text) => {
         const [name, tick] = text.split('@');
         const scene = scenes.find((each) => each.name === name);
         if (!scene) throw new Error(`no scene '${name}'; there are ${scenes.map((s) => s.name)}`);
-        return { ...scene, tick: tick ? Number(tick) : (TICKS[name] ?? USUAL_TICK) };
+        return { ...scene, tick: tick ? Number(tick) : tick_of(name) };
       })
-    : scenes.map((scene) => ({ ...scene, tick: TICKS[scene.name] ?? USUAL_TICK }));
+    : scenes.map((scene) => ({ ...scene, tick: tick_of(scene.name) }));
   const pictures = [];
   for (const scene of chosen) pictures.push(...(await draw(scene)));
   await writeFile(join(folder, 'index.html'), gallery(pictures));
   console.log(`${pictures.length} pictures: ${join(folder, 'index.html')}`);
-} finally {
-  await browser.close();
 }
 
 /** Brings a scene to its tick and takes it as viewers see it. */
 async function draw(scene) {
-  const server = await start_server(['--paused', '--scene', scene.name]);
-  const script = await server.script();
-  const hand = HANDS[scene.name];
-  const before = hand ? Math.floor(scene.tick / 2) : scene.tick;
-  if (before > 0) await script.advance(before);
-  await hand?.(script);
-  if (scene.tick > before) await script.advance(scene.tick - before);
-  script.close(); // or its name would be in the pictures
+  const server = await server_at(scene.name, scene.tick);
   const pictures = [];
   const views = [{ view: 'desktop', title: '', options: DESKTOP }, ...(EXTRA[scene.name] ?? [])];
   for (const { view, title, options, act } of views) {
-    const page = await open_page(browser, server.url, { ...options, name: 'Ada' });
+    const page = await open_page(browser, server.url, { ...options, name: 'Ada', visited: true });
     await until(async () => (await read(page, 'tick')) === scene.tick, 'the tick is shown');
     await act?.(page);
     await camera_at_rest(page);

@@ -12,22 +12,28 @@ import { Input } from './hold/input.js';
 import type { Window } from './view/framing.js';
 import { KEY_HAND, KeyHand } from './hold/key_hand.js';
 import { listen_to_keys } from './hold/keys.js';
+import { Laboratory } from './view/laboratory.js';
 import { loss_text, notice_text } from './panel/events.js';
 import { element } from './panel/element.js';
 import { Panels } from './panel/panels.js';
 import type { Phase } from './panel/panels.js';
+import { covered } from './panel/free_part.js';
+import { Hint } from './panel/hint.js';
+import { LaboratoryPanel } from './panel/laboratory_panel.js';
+import { NameDialog, own_name } from './panel/own_name.js';
 import { frame_focus } from './panel/focus_frame.js';
-import { title_of } from './panel/scene_list.js';
+import { title_of } from './panel/scene_title.js';
 import { Pins } from './view/pins.js';
 import { Rest } from './view/rest.js';
 import { Reticle } from './view/reticle.js';
 import { Stage } from './view/stage.js';
 import { ThemeSwitch } from './panel/theme.js';
+import type { Theme } from './panel/theme.js';
 import { Toolbar } from './panel/toolbar.js';
+import { WindowTools } from './panel/window_tools.js';
 import { WorldView } from './view/world_view.js';
 
 const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
-const PANEL_MARGIN = 12; // between panels and a framed box [pixels]
 
 /**
  * Connects input, camera, picture and panels to the client; each of them knows only its own task.
@@ -41,6 +47,8 @@ export class Page {
   readonly fans = new Fans();
   readonly client: WeftClient;
   readonly box_view: BoxView;
+  readonly laboratory = new Laboratory();
+  private laboratory_panel: LaboratoryPanel;
   readonly input: Input;
   readonly holding: Holding;
   readonly key_hand: KeyHand;
@@ -56,6 +64,8 @@ export class Page {
     },
     changed: () => (this.dirty = true),
   });
+  private window_tools = new WindowTools(() => (this.dirty = true));
+  private hint = new Hint();
   private toolbar: Toolbar;
   readonly reticle = new Reticle();
   private viewers: Viewer[] = [];
@@ -70,7 +80,7 @@ export class Page {
 
   constructor() {
     this.stage.scene.add(this.hands.group, this.pins.group, this.fans.group, this.reticle.group);
-    this.client = connect_client();
+    this.client = connect_client(own_name());
     this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), {
       frame: () => this.frame(),
       fan: () => fan_of_view(this.orbit),
@@ -78,6 +88,11 @@ export class Page {
     const tell = (text: string) => this.panels.tell(text);
     this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
     this.stage.scene.add(this.box_view.boxes.lines);
+    new NameDialog(this.client, tell);
+    this.laboratory_panel = new LaboratoryPanel(this.client, (test) => {
+      void this.laboratory.show(test).then(() => (this.dirty = true));
+    });
+    this.stage.scene.add(this.laboratory.lines);
     const reach = {
       client: this.client,
       orbit: this.orbit,
@@ -131,9 +146,11 @@ export class Page {
       scenes: () => this.toolbar.show_scenes(),
       help: () => this.toolbar.show_help(),
       figures: () => this.panels.toggle_figures(),
+      hide_panels: () => this.window_tools.toggle_panels(),
+      change_speed: (steps) => this.toolbar.change_speed(steps),
       ...this.camera_actions(),
     });
-    new ThemeSwitch((theme) => (this.stage.theme = theme));
+    new ThemeSwitch((theme) => this.recolor(theme));
     frame_focus(this.canvas);
     this.listen();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -154,6 +171,7 @@ export class Page {
       this.holding.grabs = [];
       this.holding.taking.grippers.renew();
       this.box_view.renew();
+      this.laboratory_panel.renew();
       if (!same) {
         this.key_hand.forget();
         this.frame(true);
@@ -224,6 +242,11 @@ export class Page {
     this.dirty = true;
   }
 
+  private recolor(theme: Theme): void {
+    this.stage.theme = theme;
+    this.panels.recolor();
+  }
+
   private viewer(id: number): Viewer | undefined {
     return this.viewers.find((viewer) => viewer.id === id);
   }
@@ -270,13 +293,7 @@ export class Page {
 
   /** The part of the picture that no panel covers. */
   private window(): Window {
-    const toolbar = element('toolbar').getBoundingClientRect();
-    const corners = [...document.querySelectorAll('.corner')];
-    const { height } = this.size();
-    const lowest = Math.max(...corners.map((corner) => corner.getBoundingClientRect().bottom));
-    const above = Math.min(0.25, (lowest + PANEL_MARGIN) / height);
-    const below = Math.min(0.4, (height - toolbar.top) / height);
-    return this.orbit.window({ above, below });
+    return this.orbit.window(covered(this.size().height));
   }
 
   // ---- the picture --------------------------------------------------------------------------
@@ -313,6 +330,7 @@ export class Page {
     this.last_time = now;
     if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
     this.watch_latency(now);
+    if (this.holding.holds_cloth) this.hint.done();
     const moved = this.world?.show(now, this.holding.holds_cloth) ?? false;
     if (moved && this.world) {
       this.dirty = true;
@@ -324,6 +342,7 @@ export class Page {
     }
     this.tell_camera(now);
     this.box_view.follow(this.world?.playback.tick ?? -1);
+    this.laboratory_panel.follow(now);
     const again = this.drawn_last_time;
     this.drawn_last_time = this.dirty;
     const still = this.rest.update(now, this.dirty, moved && !this.state?.paused);
@@ -334,6 +353,7 @@ export class Page {
 
   private draw_picture(): void {
     this.dirty = false;
+    this.mark_laboratory();
     this.point_at_cloth();
     this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
@@ -361,6 +381,12 @@ export class Page {
   private watch_latency(now: number): void {
     const measurable = this.holding.holds_cloth && this.state?.paused === false;
     if (this.latency.watch(measurable, now)) this.panels.latency(null);
+  }
+
+  private mark_laboratory(): void {
+    if (!this.world) return;
+    const { announcement, triangles, playback } = this.world;
+    this.laboratory.update(announcement, triangles, playback.positions, this.pins.list);
   }
 
   private tell_camera(now: number): void {

@@ -70,6 +70,10 @@ export function expose_probe(page: Page): void {
       const { boxes, tick } = page.box_view;
       return { lines: boxes.drawn(), tick };
     },
+    /** Lines of a textile test's marks, three numbers per point. */
+    get laboratory() {
+      return page.laboratory.drawn();
+    },
     /** Pictures drawn so far; constant while nothing changes. */
     get pictures() {
       return page.pictures;

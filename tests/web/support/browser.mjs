@@ -30,17 +30,20 @@ export function launch_browser() {
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[]}} [options]
- *     view: target, direction and radius of the first view
+ *   view?: number[], visited?: boolean}} [options]
+ *     view: target, direction and radius of the first view; visited: not for the first time
  */
 export async function open_page(browser, url, options = {}) {
-  const { width = 560, height = 420, touch = false, name = '', dark = false, view } = options;
+  const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
+  const { view, visited = false } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
     colorScheme: dark ? 'dark' : 'light',
     ignoreHTTPSErrors: true, // of a certificate that a test has made
   });
+  context.setDefaultTimeout(LONGEST_WAIT);
+  if (visited) await context.addInitScript(() => localStorage.setItem('weft-taken', 'yes'));
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {

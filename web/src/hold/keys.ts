@@ -27,6 +27,9 @@ export interface KeyActions {
   enter(): boolean;
   /** @returns whether there was anything to end */
   escape(): boolean;
+  hide_panels(): void;
+  /** @param steps 1 doubles the speed of time, -1 halves it */
+  change_speed(steps: number): void;
   orbit(azimuth: number, elevation: number): void;
   zoom(factor: number): void;
 }
@@ -54,6 +57,9 @@ export function listen_to_keys(actions: KeyActions): void {
     f: () => actions.frame(),
     l: () => actions.scenes(),
     i: () => actions.figures(),
+    h: () => actions.hide_panels(),
+    '<': () => actions.change_speed(-1),
+    '>': () => actions.change_speed(1),
     '?': () => actions.help(),
   };
   const outside_controls: Record<string, Action> = {

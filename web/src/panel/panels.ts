@@ -2,6 +2,7 @@ import type { Roster, State } from '../../../proto/js/messages.js';
 import type { Refusal } from '../wire/connection.js';
 import { Disclosure } from './disclosure.js';
 import { element } from './element.js';
+import { EnergyChart } from './energy_chart.js';
 import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
@@ -17,7 +18,8 @@ export class Panels {
   private phase: Phase = 'connecting';
   private refusal: Refusal | null = null;
   private ticks: { tick: number; time: number }[] = [];
-  private figures = new Disclosure('figures', window.matchMedia(WIDE).matches);
+  private energy = new EnergyChart();
+  private figures = new Disclosure('figures', window.matchMedia(WIDE).matches, () => this.energy.draw());
 
   toggle_figures(): void {
     this.figures.toggle();
@@ -68,6 +70,8 @@ export class Panels {
     element('asleep').hidden = asleep === 0;
     set_text('asleep', asleep === 1 ? 'At rest' : `${asleep} cloths at rest`);
     this.guarantee(state);
+    this.strain(state);
+    this.energy.add(state);
     if (!state.paused) return;
     this.ticks = [];
     set_text('tick-rate', '0');
@@ -86,6 +90,17 @@ export class Panels {
     if (!crossings) return;
     counted.dataset.crossed = String(crossings.count > 0);
     set_text('crossings', crossings_text(crossings));
+  }
+
+  private strain({ strain: { largest, p99 } }: State): void {
+    const percent = (part: number) => `${(part * 100).toPrecision(2)} %`;
+    set_text('strain', `Stretched or squeezed by up to ${percent(largest)}`);
+    set_text('strain-p99', `99 of 100 threads by less than ${percent(p99)}`);
+  }
+
+  /** Draws again in the colours of another theme. */
+  recolor(): void {
+    this.energy.draw();
   }
 
   /** Shows a reduced value as long as it is reduced. */
@@ -115,8 +130,7 @@ export class Panels {
     const own_first = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
     const items = own_first.slice(0, MOST_NAMES).map(({ id, name, color }) => {
       const item = document.createElement('li');
-      item.append(span('swatch', ''), span('who', name));
-      if (id === own) item.append(span('', '(you)'));
+      item.append(span('swatch', ''), id === own ? own_entry(name) : span('who', name));
       item.style.setProperty('--color', color);
       return item;
     });
@@ -135,6 +149,15 @@ export class Panels {
     window.clearTimeout(this.toast_timer);
     this.toast_timer = window.setTimeout(() => (toast.hidden = true), TOAST_TIME);
   }
+}
+
+/** The own name, which can be changed. */
+function own_entry(name: string): HTMLElement {
+  const entry = document.createElement('button');
+  entry.type = 'button';
+  entry.title = 'Change your name';
+  entry.append(span('who', name), span('', ' (you)'));
+  return entry;
 }
 
 function span(name: string, text: string): HTMLElement {

@@ -1,37 +1,37 @@
 import { element } from './element.js';
+import type { SceneDialog } from './scene_dialog.js';
+import type { Scene } from './scene_groups.js';
+import { title_of } from './scene_title.js';
 
-interface Scene {
-  name: string;
-  /** One sentence on what to look at. */
-  description: string;
-}
-
-/**
- * The server's scenes with their descriptions, in a dialog behind a button that names the current
- * one.
- */
+/** The button that names the scene, and opens the dialog of all scenes. */
 export class SceneList {
   private button = element<HTMLButtonElement>('scene');
-  private dialog = element<HTMLDialogElement>('scenes');
-  private list = element('scene-list');
+  private dialog: Promise<SceneDialog> | null = null; // loaded when it is first opened
   private scenes: Scene[] = [];
   private shown = '';
 
   /** @param load called with a chosen scene */
   constructor(private load: (scene: string) => void) {
-    this.button.addEventListener('click', () => this.open());
-    this.dialog.addEventListener('click', ({ target }) => target === this.dialog && this.dialog.close());
+    this.button.addEventListener('click', () => void this.open());
   }
 
-  open(): void {
-    if (!this.button.disabled && !this.dialog.open) this.dialog.showModal();
+  async open(): Promise<void> {
+    if (this.button.disabled) return;
+    this.dialog ??= import('./scene_dialog.js').then(
+      ({ SceneDialog }) => new SceneDialog(title_of, this.load),
+    );
+    try {
+      (await this.dialog).open(this.scenes, this.shown);
+    } catch {
+      this.dialog = null; // the server is away; the next press tries again
+    }
   }
 
   /** Marks the current scene, chosen by any viewer. */
   choose(scene: string): void {
     if (this.shown === scene) return;
     this.shown = scene;
-    this.write();
+    this.name();
   }
 
   /** Requests the list of scenes from the server. */
@@ -40,42 +40,16 @@ export class SceneList {
       const response = await fetch('api/v1/scenes');
       if (!response.ok) return;
       this.scenes = ((await response.json()) as { scenes: Scene[] }).scenes;
-      this.write();
+      this.name();
     } catch {
       // The connection was lost again; its return repeats the request.
     }
   }
 
-  private write(): void {
+  private name(): void {
     element('scene-title').textContent = title_of(this.shown);
     const described = this.scenes.find(({ name }) => name === this.shown);
     if (described) this.button.title = described.description;
-    this.list.replaceChildren(...this.scenes.map((scene) => this.entry(scene)));
+    void this.dialog?.then((dialog) => dialog.show(this.scenes, this.shown));
   }
-
-  private entry({ name, description }: Scene): HTMLElement {
-    const choice = document.createElement('button');
-    choice.type = 'button';
-    choice.append(text_element('b', title_of(name)), text_element('span', description));
-    if (name === this.shown) choice.setAttribute('aria-current', 'true');
-    choice.addEventListener('click', () => {
-      this.dialog.close();
-      this.load(name);
-    });
-    const item = document.createElement('li');
-    item.append(choice);
-    return item;
-  }
-}
-
-function text_element(tag: string, text: string): HTMLElement {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  return made;
-}
-
-/** A scene's name as a title. */
-export function title_of(name: string): string {
-  const words = name.replaceAll('-', ' ');
-  return words.charAt(0).toUpperCase() + words.slice(1);
 }

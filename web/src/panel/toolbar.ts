@@ -2,9 +2,10 @@ import type { WeftClient } from '../../../proto/js/index.js';
 import type { Fan, State, Vec3 } from '../../../proto/js/messages.js';
 import { tell_refusal } from '../wire/connection.js';
 import type { HandMode } from '../hold/hold.js';
+import { Drawer } from './drawer.js';
 import { element } from './element.js';
 import { SceneList } from './scene_list.js';
-import { Slider } from './slider.js';
+import { linear, POWERS_OF_TWO, Slider } from './slider.js';
 
 function scaled(direction: Vec3, length: number): Vec3 {
   return direction.map((part) => part * length) as Vec3;
@@ -15,6 +16,9 @@ function direction_of(vector: Vec3): Vec3 | null {
   return length > 1e-9 ? scaled(vector, 1 / length) : null;
 }
 
+// What asks something of the server.
+const ASKING = 'pause step reset fan boxes scene speed wind gravity fan-speed'.split(' ');
+
 /** Buttons, the list of scenes, and the sliders of the air and of gravity. */
 export class Toolbar {
   private pause = element<HTMLButtonElement>('pause');
@@ -24,6 +28,7 @@ export class Toolbar {
   private sling = element<HTMLButtonElement>('sling');
   private objects = element<HTMLButtonElement>('objects');
   private help = element<HTMLDialogElement>('help');
+  private speed: Slider;
   private wind: Slider;
   private gravity: Slider;
   private fan_speed: Slider;
@@ -39,13 +44,14 @@ export class Toolbar {
     private tell: (message: string) => void,
     private view: { frame(): void; fan(): Fan },
   ) {
-    this.wind = new Slider('wind', 'm/s', (length) =>
+    this.speed = new Slider('speed', POWERS_OF_TWO, (speed) => this.run(client.speed(speed)));
+    this.wind = new Slider('wind', linear('m/s'), (length) =>
       this.run(client.set({ wind: scaled(this.wind_direction, length) })),
     );
-    this.gravity = new Slider('gravity', 'm/s²', (length) =>
+    this.gravity = new Slider('gravity', linear('m/s²'), (length) =>
       this.run(client.set({ gravity: scaled(this.gravity_direction, length) })),
     );
-    this.fan_speed = new Slider('fan-speed', 'm/s', (speed) =>
+    this.fan_speed = new Slider('fan-speed', linear('m/s'), (speed) =>
       this.run(client.set({ fans: this.fans.map((fan) => ({ ...fan, speed })) })),
     );
     this.pause.addEventListener('click', () => this.toggle_pause());
@@ -58,20 +64,13 @@ export class Toolbar {
     element('help-button').addEventListener('click', () => this.show_help());
     this.help.addEventListener('click', (event) => event.target === this.help && this.help.close());
     this.scenes = new SceneList((scene) => this.run(client.load(scene)));
-    element('more').addEventListener('click', () => this.open_controls());
-    element('view').addEventListener('pointerdown', () => this.open_controls(false));
+    new Drawer();
     this.enable(false);
-  }
-
-  /** Opens or closes the controls that have no place in the toolbar of a small screen. */
-  private open_controls(open = !('open' in element('toolbar').dataset)): void {
-    element('toolbar').toggleAttribute('data-open', open);
-    element('more').setAttribute('aria-expanded', String(open));
   }
 
   /** Disables the controls without a connection. */
   enable(connected: boolean): void {
-    for (const id of ['pause', 'step', 'reset', 'fan', 'boxes', 'scene', 'wind', 'gravity', 'fan-speed']) {
+    for (const id of ASKING) {
       element<HTMLButtonElement>(id).disabled = !connected;
     }
     if (connected) void this.scenes.fetch();
@@ -85,6 +84,7 @@ export class Toolbar {
     this.pause.title = `${action} (Space)`;
     this.wind_direction = direction_of(state.wind) ?? this.wind_direction;
     this.gravity_direction = direction_of(state.gravity) ?? this.gravity_direction;
+    this.speed.show(state.speed);
     this.wind.show(Math.hypot(...state.wind));
     this.gravity.show(Math.hypot(...state.gravity));
     this.scenes.choose(state.scene);
@@ -99,6 +99,11 @@ export class Toolbar {
   one_step(): void {
     if (this.paused) this.run(this.client.step());
     else this.run(this.client.pause());
+  }
+
+  /** Doubles the speed of time, or halves it. @param steps 1 or -1 */
+  change_speed(steps: number): void {
+    this.speed.step(steps);
   }
 
   reset(): void {
@@ -136,7 +141,7 @@ export class Toolbar {
   }
 
   show_scenes(): void {
-    this.scenes.open();
+    void this.scenes.open();
   }
 
   show_help(): void {

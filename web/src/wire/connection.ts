@@ -1,6 +1,5 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
 
-const LONGEST_NAME = 32; // of a viewer, by the wire
 const EVERY_TICK = 240; // frames per second; more than any display shows
 const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
 const PATIENCE = 3; // failed attempts before a proxy is suspected
@@ -16,13 +15,11 @@ const SUSPECTED_PROXY: Refusal = {
   hint: 'a proxy in between has to pass WebSocket upgrades on',
 };
 
-/** Connects to the server that the page came from; `?name=Ada` in its address names the viewer. */
-export function connect_client(): WeftClient {
+/** Connects to the server that the page came from. @param name of the viewer; may be empty */
+export function connect_client(name: string): WeftClient {
   const url = new URL('ws', window.location.href);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
   url.search = url.hash = '';
-  const asked = new URLSearchParams(window.location.search).get('name') ?? '';
-  const name = [...asked.replace(/\p{Cc}/gu, '').trim()].slice(0, LONGEST_NAME).join('');
   const client = new WeftClient(url.href, name ? { name } : {});
   const look = () => void client.view({ hz: document.hidden ? 0 : EVERY_TICK }).catch(() => {});
   document.addEventListener('visibilitychange', look);

@@ -1,0 +1,97 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { read, until } from './support/browser.mjs';
+import { bounded, with_server } from './support/default_page.mjs';
+import { import_page_module } from './support/page_module.mjs';
+import { start_server } from './support/server.mjs';
+
+// The textile tests: marks in the picture, and figures beside it.
+
+const { overhang, shadow } = await import_page_module('view/textile_marks');
+const { ruler } = await import_page_module('view/ruler');
+const { measurement_text, test_of } = await import_page_module('panel/laboratory_panel');
+
+const DISC = Math.PI * 0.09 ** 2; // of the drape test [m²]
+
+/** Runs a scene for so many ticks and gives the specimen, its rest and what the server measures. */
+async function specimen_of(scene, ticks) {
+  const server = await start_server(['--scene', scene, '--paused']);
+  const script = await server.script();
+  const { announcement, data } = await until(() => script.mesh);
+  await until(() => script.last.pins.length > 0);
+  const [cloth] = announcement.cloths;
+  const at_rest = { triangles: data.triangles, cloth, pin: script.last.pins[0], floor: 0 };
+  await script.advance(ticks);
+  const positions = (await script.query('positions')).flat();
+  const measured = await script.query('measurements');
+  script.close();
+  await server.stop();
+  return { specimen: { ...at_rest, positions }, rest: { ...at_rest, positions: data.restPositions }, measured };
+}
+
+/** Area inside an outline of pairs of points, seen from above [m²]. */
+function area(points) {
+  let twice = 0;
+  for (let i = 0; i < points.length; i += 6) {
+    twice += points[i] * points[i + 5] - points[i + 3] * points[i + 2];
+  }
+  return Math.abs(twice) / 2;
+}
+
+test('the outline on the floor has the area that the drape coefficient is made of, to 2 points', bounded, async () => {
+  const { specimen, rest, measured } = await specimen_of('drape-test', 240);
+  const flat = area(shadow(rest));
+  assert.ok(Math.abs(flat - Math.PI * 0.15 ** 2) < 0.05 * flat, `${flat}`);
+  const coefficient = (100 * (area(shadow(specimen)) - DISC)) / (flat - DISC);
+  const told = measured.drape_coefficient_percent;
+  assert.ok(told > 20 && told < 95, `${told}`);
+  assert.ok(Math.abs(coefficient - told) < 2, `${coefficient} and ${told}`);
+  assert.equal(test_of(measured), 'drape');
+});
+
+test('the lines of the cantilever have the droop and the angle that the server measures', bounded, async () => {
+  const { specimen, measured } = await specimen_of('cantilever-test', 240);
+  const { clamp, tip } = overhang(specimen);
+  const droop = clamp[1] - tip[1];
+  assert.ok(droop > 0.005 && Math.abs(droop - measured.droop_m) < 1e-5, `${droop}, ${measured.droop_m}`);
+  const angle = (Math.atan2(droop, Math.hypot(tip[0] - clamp[0], tip[2] - clamp[2])) * 180) / Math.PI;
+  assert.ok(Math.abs(angle - measured.chord_angle_degrees) < 0.05, `${angle}`);
+  assert.equal(test_of(measured), 'cantilever');
+});
+
+test('a ruler has a mark each centimetre, and longer ones at each fifth and tenth', () => {
+  const points = ruler([1, 2, 3], [1, 0, 0], [0, 0, 1], 0.3);
+  const marks = new Map();
+  for (let i = 6; i < points.length; i += 6) {
+    const [x, , z, to_x, , to_z] = points.slice(i, i + 6);
+    if (z === 3 && to_x === x) marks.set(Math.round((x - 1) * 1000), to_z - z);
+  }
+  assert.deepEqual([...marks.keys()], Array.from({ length: 31 }, (_, k) => 10 * k));
+  assert.ok(marks.get(10) < marks.get(50) && marks.get(50) < marks.get(100));
+});
+
+test('measurements are written in the units of a laboratory', () => {
+  assert.deepEqual(measurement_text('droop_m', 0.04123), { label: 'Droop', text: '4.12 cm' });
+  assert.equal(measurement_text('bending_rigidity_n_m', 1.234e-5).text, '12.34 µN m');
+  assert.equal(measurement_text('folds', 6).text, '6');
+  assert.equal(measurement_text('published_low_percent', 58), null);
+  assert.equal(test_of({}), null);
+});
+
+test('the page shows figures, band and marks of a textile test, and none elsewhere', bounded, () =>
+  with_server(['--scene', 'drape-test', '--paused'], async (page, script) => {
+    const panel = page.getByRole('region', { name: 'Laboratory' });
+    await script.advance(200);
+    const { drape_coefficient_percent, published_low_percent } = await script.query('measurements');
+    const shown = `${drape_coefficient_percent.toFixed(1)} %`;
+    await until(async () => (await panel.textContent()).includes(shown), 'it is asked again');
+    assert.ok((await panel.textContent()).includes(`Published: ${published_low_percent.toFixed(0)} to`));
+    await until(async () => (await read(page, 'laboratory')).length > 0, 'the outline is drawn');
+    await script.load('cantilever-test');
+    await until(async () => /Bending length/.test(await panel.textContent()));
+    await until(async () => (await read(page, 'laboratory')).length > 0, 'the angle is drawn');
+    await script.load('default');
+    await until(() => panel.isHidden());
+    assert.deepEqual(await read(page, 'laboratory'), []);
+  }),
+);

@@ -1,0 +1,91 @@
+import assert from 'node:assert/strict';
+import { readdir, stat } from 'node:fs/promises';
+import test from 'node:test';
+import { read, until } from './support/browser.mjs';
+import { bounded, server, with_page } from './support/default_page.mjs';
+import { import_page_module } from './support/page_module.mjs';
+
+// The browser of scenes: groups, search, keys and pictures.
+
+const { grouped, matches } = await import_page_module('panel/scene_groups');
+
+const LARGEST_PICTURE = 4096; // [bytes]
+const pictures = new URL('../../web/picture/scenes/', import.meta.url);
+const known = async () => (await (await fetch(new URL('api/v1/scenes', server.url))).json()).scenes;
+
+test('each scene is in one group, and words of a search begin words of title or description', async () => {
+  const scenes = await known();
+  const groups = grouped(scenes);
+  const listed = groups.flatMap(({ scenes: members }) => members.map(({ name }) => name));
+  assert.deepEqual(listed.toSorted(), scenes.map(({ name }) => name).toSorted());
+  assert.deepEqual(
+    groups.map(({ title }) => title),
+    ['Everyday', 'Fabrics', 'Hands and machines', 'Laboratory', 'The seed’s paper', 'Hard cases'],
+  );
+  assert.equal(groups[0].scenes[0].name, 'default');
+  const scene = { name: 'two-flags', description: 'Silk above and denim below.' };
+  for (const found of ['', 'flag', 'two fl', 'DENIM', 'silk two']) assert.ok(matches(scene, found), found);
+  for (const missed of ['lags', 'silk wool', 'x']) assert.ok(!matches(scene, missed), missed);
+});
+
+test('pictures are of scenes that there are, and at most 4 kB each', async () => {
+  const names = new Set((await known()).map(({ name }) => `${name}.jpg`));
+  const files = await readdir(pictures);
+  assert.ok(files.length > 0);
+  for (const file of files) {
+    assert.ok(names.has(file), file);
+    assert.ok((await stat(new URL(file, pictures))).size <= LARGEST_PICTURE, file);
+  }
+});
+
+test('typing filters the scenes, arrows go through them, and Enter loads one', bounded, () =>
+  with_page({ width: 900, height: 600 }, async (page, script) => {
+    const asked = [];
+    page.on('request', (request) => asked.push(new URL(request.url()).pathname));
+    await page.locator('#view').focus();
+    await page.keyboard.press('l');
+    const dialog = page.getByRole('dialog', { name: 'Scenes' });
+    const choices = dialog.getByRole('listitem').getByRole('button');
+    await until(async () => (await choices.count()) === (await known()).length);
+    const focused = () => page.evaluate(() => document.activeElement.querySelector('b')?.textContent);
+    await page.keyboard.press('ArrowDown');
+    assert.equal(await focused(), 'Default');
+    await page.keyboard.press('ArrowRight');
+    const second = await focused();
+    assert.notEqual(second, 'Default');
+    await page.keyboard.press('ArrowDown');
+    const below = await focused();
+    await page.keyboard.press('ArrowUp');
+    assert.equal(await focused(), second, `back from ${below}`);
+    await dialog.getByRole('searchbox').fill('silk curt');
+    await until(async () => (await choices.count()) === 1);
+    await page.keyboard.press('Enter');
+    await until(async () => (await read(page, 'scene')) === 'fan', 'the scene that was found is loaded');
+    assert.ok(!(await dialog.isVisible()));
+    await page.keyboard.press('l');
+    await dialog.getByRole('searchbox').fill('nothing like it');
+    await until(() => dialog.getByText('No scene is called so.').isVisible());
+    await page.keyboard.press('Escape');
+    await script.load('default');
+    await until(async () => (await read(page, 'scene')) === 'default');
+    // Pictures come when they are looked at.
+    const total = (await readdir(pictures)).length;
+    const came = asked.filter((path) => path.endsWith('.jpg')).length;
+    if (total > 30) assert.ok(came < total, `${came} of ${total}`);
+  }),
+);
+
+test('the first load is at most 180 kB as it comes, without what is opened later', bounded, () =>
+  with_page({}, async (page) => {
+    const loads = await page.evaluate(() =>
+      ['navigation', 'resource'].flatMap((type) =>
+        performance.getEntriesByType(type).map(({ name, encodedBodySize }) => [name, encodedBodySize]),
+      ),
+    );
+    const total = loads.reduce((sum, [, size]) => sum + size, 0);
+    const names = loads.map(([name]) => new URL(name).pathname);
+    assert.ok(total > 50_000 && total <= 180_000, `${total} bytes of ${names}`);
+    assert.ok(names.includes('/main.js') && names.includes('/styles.css'), `${names}`);
+    assert.ok(!names.some((name) => /scene_dialog|textile_marks|scenes\//.test(name)), `${names}`);
+  }),
+);
