@@ -40,6 +40,16 @@ inline constexpr double kSlingSeconds = 0.1;
 /// a strip takes particles beyond its width. Smaller: it misses particles on its line.
 inline constexpr double kStripSlack = 1e-5;
 
+/// Largest factor of the bending about the last held line of a strip [1]. Larger: the strip holds
+/// one line less where its border lies nearly half a cell beyond one, and the stiff hinge takes
+/// more substeps. Smaller: held lines lie farther beyond the border.
+inline constexpr double kMostStiffening = 8;
+
+/// Factors are multiples of one part in this many [1]. Larger: sums of the weights of single
+/// precision, 40 at most, no longer cancel, and a clamp pulls with a force that grows with the
+/// distance from the origin. Smaller: clamps lie off their places.
+inline constexpr double kStiffeningParts = 4096;
+
 // Motion of pins.
 
 /// At the start and the end of a motion [m/s^2]. Larger: short motions take less time, and pull

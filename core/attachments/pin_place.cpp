@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "core/attachments/constants.h"
@@ -29,6 +30,15 @@ MaterialBounds bounds_of(const ClothModel<Real>& model, const IndexRange& range)
     }
   }
   return bounds;
+}
+
+/// Distance of the lines across an axis of a grid [m]; 0 if the part is not a grid.
+template <class Real>
+double cell_of(const ClothPart<Real>& part, std::size_t axis) {
+  if (part.grid_springs)
+    return static_cast<double>(axis == 0 ? part.grid_springs->rest_warp
+                                         : part.grid_springs->rest_weft);
+  return static_cast<double>(axis == 0 ? part.cell_u : part.cell_v);
 }
 
 template <class Real>
@@ -65,9 +75,26 @@ Index nearest_particle(const ClothModel<Real>& model, const IndexRange& range,
   return nearest;
 }
 
+/// The width that a strip holds of a grid, and its clamp.
+/// @param low, high  material coordinates of the outermost lines across the strip [m]
+double held_width(const EdgeStrip& strip, double cell, double low, double high, double slack,
+                  std::size_t part, std::optional<ClampLine>& clamp) {
+  assert(cell > 0 && high > low);
+  const int all = static_cast<int>(std::lround((high - low) / cell)) + 1;
+  const HeldLines held = held_lines(strip.width / cell, slack / cell, all);
+  const int last = held.lines - 1;
+  if (last > 0 && held.lines < all) {
+    const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
+    const int first = static_cast<int>(std::lround((far_side ? high : low) / cell));
+    clamp = {part, strip.side, far_side ? first - last : first + last, held.stiffening};
+  }
+  return last * cell;
+}
+
 template <class Real>
-PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRange& range,
+PinnedParticles particles_of_strip(const ClothModel<Real>& model, const ClothPart<Real>& part,
                                    const EdgeStrip& strip) {
+  const IndexRange& range = part.particles;
   visit_fields_of_strip(
       strip, [](const FieldInfo& info, auto value) { check_field("pin.", info, value); });
   const MaterialBounds bounds = bounds_of(model, range);
@@ -75,10 +102,14 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const IndexRan
   const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
   const double slack = kStripSlack * (bounds.high[axis] - bounds.low[axis]);
   PinnedParticles held;
+  double width = strip.width;
+  if (const double cell = cell_of(part, axis); cell > 0)
+    width = held_width(strip, cell, bounds.low[axis], bounds.high[axis], slack,
+                       static_cast<std::size_t>(&part - model.parts.data()), held.clamp);
   for (Index i = range.first; i < range.end(); ++i) {
     const auto value = static_cast<double>(model.material[static_cast<std::size_t>(i)][axis]);
     const double inside = far_side ? bounds.high[axis] - value : value - bounds.low[axis];
-    if (inside <= strip.width + slack) held.particles.push_back(i);
+    if (inside <= width + slack) held.particles.push_back(i);
   }
   assert(!held.particles.empty());
   const double across = far_side ? 1 : 0;
@@ -96,10 +127,11 @@ template <class Real>
 PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def) {
   visit_fields_of_pin(
       def, [](const FieldInfo& info, double value) { check_field("pin.", info, value); });
-  const IndexRange part =
-      def.cloth.empty() ? model.parts.front().particles : named_part(model, def.cloth).particles;
+  const ClothPart<Real>& named =
+      def.cloth.empty() ? model.parts.front() : named_part(model, def.cloth);
+  const IndexRange part = named.particles;
   if (const auto* strip = std::get_if<EdgeStrip>(&def.place))
-    return particles_of_strip(model, part, *strip);
+    return particles_of_strip(model, named, *strip);
   PinnedParticles held;
   if (const auto* index = std::get_if<Index>(&def.place)) {
     const IndexRange range = def.cloth.empty() ? IndexRange{0, model.particle_count()} : part;

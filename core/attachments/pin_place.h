@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "core/cloth/cloth_model.h"
+#include "core/attachments/clamp_line.h"
 
 namespace weft {
 
@@ -14,9 +15,8 @@ namespace weft {
 // these lie in space.
 
 enum class Corner : std::uint8_t { top_left, top_right, bottom_left, bottom_right };
-enum class Side : std::uint8_t { top, bottom, left, right };
 
-/// All particles within `width` of one side of the fabric.
+/// All particles within `width` of one side of the fabric; of a grid the lines of held_lines().
 struct EdgeStrip {
   Side side = Side::top;
   double width = 0;  ///< [m], 0 to 100; 0: only the outermost line
@@ -42,7 +42,8 @@ struct PinDef {
 /// The particles of a pin.
 struct PinnedParticles {
   Index centre = 0;
-  std::vector<Index> particles;  ///< ascending; at least the centre
+  std::vector<Index> particles;    ///< ascending; at least the centre
+  std::optional<ClampLine> clamp;  ///< of a strip with a width, on a grid
 };
 
 /// Finds the particles of a pin. Throws DefinitionError on "pin.cloth", "pin.particle",

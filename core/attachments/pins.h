@@ -44,10 +44,11 @@ struct PinPath {
 struct Pin {
   PinId id = 0;
   PinDef def;
-  Index centre = 0;              ///< a particle in the middle of the held ones
-  std::vector<Index> particles;  ///< ascending
-  std::optional<PinPath> path;   ///< while it moves; otherwise its particles are fixed
-  Vec3d drive = Vec3d::Zero();   ///< mean force on the cloth in its last moving tick [N]
+  Index centre = 0;                ///< a particle in the middle of the held ones
+  std::vector<Index> particles;    ///< ascending
+  std::optional<PinPath> path;     ///< while it moves; otherwise its particles are fixed
+  Vec3d drive = Vec3d::Zero();     ///< mean force on the cloth in its last moving tick [N]
+  std::optional<ClampLine> clamp;  ///< of a strip, also while it moves
 };
 
 /// All pins of a cloth. Overlapping pins are counted: a particle is free when its last pin is
@@ -60,6 +61,9 @@ struct Pins {
   /// Whether any pin is moving.
   bool any_moving() const;
 };
+
+/// The clamps of all pins.
+std::vector<ClampLine> clamps_of(const Pins& pins);
 
 /// Whether a resting pin holds a particle.
 bool is_fixed(const Pins& pins, Index particle);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <vector>
 
 #include "core/cloth/cloth_model.h"
 
@@ -22,28 +23,46 @@ inline double share_down(const GridCells& g, int r, int c) {
   return 0.5 * (g.has_cell(r, c - 1) + g.has_cell(r, c));
 }
 
-/// Share of the second difference along u centred at (r, c).
+/// Share of the second difference along u centred at (r, c), with the factor of a clamp there.
 inline double share_bend_u(const GridCells& g, int r, int c) {
-  return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r - 1, c)) +
-                (g.has_cell(r, c - 1) && g.has_cell(r, c)));
+  const double half = 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r - 1, c)) +
+                             (g.has_cell(r, c - 1) && g.has_cell(r, c)));
+  return half > 0 ? half * g.stiffening_of_column(c) : 0;
 }
 
-/// Share of the second difference along v centred at (r, c).
+/// Share of the second difference along v centred at (r, c), with the factor of a clamp there.
 inline double share_bend_v(const GridCells& g, int r, int c) {
-  return 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
-                (g.has_cell(r - 1, c) && g.has_cell(r, c)));
+  const double half = 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
+                             (g.has_cell(r - 1, c) && g.has_cell(r, c)));
+  return half > 0 ? half * g.stiffening_of_row(r) : 0;
 }
 
-/// Row `k` of the matrix of second differences 1 -2 1 along `count` particles: the weights of the
-/// particle itself, of the previous and of the next one (two away it is 1), and the number of cells
-/// that meet there, 1 or 2.
+/// Row `k` of the matrix of second differences 1 -2 1 along a line of particles.
 template <class Real>
-std::array<Real, 4> bending_line(int k, int count) {
+struct BendingRow {
+  Real here = 0, before = 0, behind = 0;  ///< weights of the particle itself and its neighbours
+  Real two_before = 0, two_behind = 0;    ///< of those two away
+  Real cells = 0;                         ///< that meet at the particle, 1 or 2
+};
+
+/// @param count       of particles
+/// @param stiffening  factors of the differences centred at each particle; empty: 1
+template <class Real>
+BendingRow<Real> bending_row(int k, int count, const std::vector<double>& stiffening) {
   assert(k >= 0 && k < count);
-  const auto inner = [count](int n) { return n > 0 && n + 1 < count ? 1 : 0; };
-  const int before = inner(k - 1), here = inner(k), behind = inner(k + 1);
-  return {static_cast<Real>(before + 4 * here + behind), static_cast<Real>(-2 * (before + here)),
-          static_cast<Real>(-2 * (here + behind)), static_cast<Real>((k > 0) + (k + 1 < count))};
+  const auto inner = [&](int n) {
+    if (n <= 0 || n + 1 >= count) return 0.0;
+    return stiffening.empty() ? 1.0 : stiffening[static_cast<std::size_t>(n)];
+  };
+  const double before = inner(k - 1), here = inner(k), behind = inner(k + 1);
+  BendingRow<Real> row;
+  row.here = static_cast<Real>(before + 4 * here + behind);
+  row.before = static_cast<Real>(-2 * (before + here));
+  row.behind = static_cast<Real>(-2 * (here + behind));
+  row.two_before = static_cast<Real>(before);
+  row.two_behind = static_cast<Real>(behind);
+  row.cells = static_cast<Real>((k > 0) + (k + 1 < count));
+  return row;
 }
 
 /// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of a part's

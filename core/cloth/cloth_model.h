@@ -84,7 +84,16 @@ struct GridCells {
   int rows = 0, columns = 0;     ///< of particle sites; 0 if the cloth is not a grid
   std::vector<char> kept;        ///< 1 for each present cell, row by row
   std::vector<Index> particles;  ///< by site, counted from the part's first; kNone: no particle
+  /// Factors of the bending about each row and column, where a clamp shortens what bends there
+  /// (attachments/clamp_line.h); empty: all 1.
+  std::vector<double> row_stiffening, column_stiffening;
 
+  double stiffening_of_row(int r) const {
+    return row_stiffening.empty() ? 1 : row_stiffening[static_cast<std::size_t>(r)];
+  }
+  double stiffening_of_column(int c) const {
+    return column_stiffening.empty() ? 1 : column_stiffening[static_cast<std::size_t>(c)];
+  }
   bool has_cell(int r, int c) const {
     return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&
            kept[static_cast<std::size_t>(r * (columns - 1) + c)] != 0;

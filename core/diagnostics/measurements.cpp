@@ -65,10 +65,12 @@ std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothSt
       sum += state.x[static_cast<std::size_t>(at(r, c))].template cast<double>();
     return (sum / part.rows).eval();
   };
-  // Two pinned columns form a hinge that acts half a cell behind the second.
-  const int behind = std::max(pinned - 2, 0);
-  const Vec3d clamp = 0.5 * (column(pinned - 1) + column(behind));
-  const double cells = part.columns - 1 - 0.5 * (pinned - 1 + behind);
+  // The hinge at the last pinned column stands for the fabric from the clamp to the middle of the
+  // next cell; by itself (factor 1) it clamps half a cell behind.
+  const Vec3d last = column(pinned - 1);
+  const double beyond = pinned > 1 ? 0.5 - 1 / part.cells.stiffening_of_column(pinned - 1) : 0;
+  const Vec3d clamp = last + beyond * (last - column(std::max(pinned - 2, 0)));
+  const double cells = part.columns - pinned - beyond;
   const CantileverMeasurement m =
       measure_cantilever(clamp, column(part.columns - 1), cells * static_cast<double>(part.cell_u));
   const double rigidity =

@@ -23,8 +23,8 @@ void build_drape_test(WorldDef& def, const std::string&) {
   cloth.origin = Vec3d(-kDrapeSpecimenRadius, kHeight, -kDrapeSpecimenRadius);
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("cotton");
-  // The outermost pinned particles lie on average half a cell inside the pin's radius, and the
-  // fabric is clamped half a cell behind them.
+  // The outermost particles of a pinned disc lie on average half a cell inside its radius, and the
+  // fabric is clamped half a cell behind them: only strips clamp at their border.
   const double cell = cloth.width / (cloth.columns - 1);
   def.pins = {{MaterialPoint{0.5, 0.5}, kDrapeSupportRadius + cell, {}}};
   def.test = TextileTest::drape;
@@ -46,7 +46,7 @@ void build_cantilever_test(WorldDef& def, const std::string&) {
   cloth.origin = Vec3d(-kCell * (kClamped - 1), kHeight, -cloth.height / 2);
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("cotton");
-  def.pins = {{EdgeStrip{Side::left, kCell * (kClamped - 0.5)}, 0, {}}};
+  def.pins = {{EdgeStrip{Side::left, kCell * (kClamped - 1)}, 0, {}}};
   def.test = TextileTest::cantilever;
   // The platform ends short of the overhang, so that they never touch.
   constexpr double kEdge = -0.003, kTop = kHeight - 0.003;

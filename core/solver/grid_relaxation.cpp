@@ -6,8 +6,6 @@
 #include <cassert>
 #include <cstdint>
 
-#include "core/cloth/bending_stencil.h"
-
 namespace weft {
 namespace {
 
@@ -54,16 +52,19 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   view_.free = at_origin(free_);
 
   const auto row_size = static_cast<std::size_t>(view_.stride + 3 * kSweepMargin);
-  for (Array* table : {&border_, &softer_, &bend_, &bend_left_, &bend_right_, &cells_})
+  for (Array* table : {&border_, &softer_, &bend_, &bend_left_, &bend_right_, &bend_two_left_,
+                       &bend_two_right_, &cells_})
     table->assign(row_size, Real(0));
   const auto origin = [](Array& table) { return table.data() + kSweepMargin; };
   for (int c = 0; c < view_.columns; ++c) {
     const std::ptrdiff_t k = place(0, c);
-    const std::array<Real, 4> line = bending_line<Real>(c, view_.columns);
-    origin(bend_)[k] = line[0];
-    origin(bend_left_)[k] = line[1];
-    origin(bend_right_)[k] = line[2];
-    origin(cells_)[k] = line[3];
+    const BendingRow<Real> line = bending_row<Real>(c, view_.columns, part.cells.column_stiffening);
+    origin(bend_)[k] = line.here;
+    origin(bend_left_)[k] = line.before;
+    origin(bend_right_)[k] = line.behind;
+    origin(bend_two_left_)[k] = line.two_before;
+    origin(bend_two_right_)[k] = line.two_behind;
+    origin(cells_)[k] = line.cells;
     origin(border_)[k] = Real(0.5) * origin(cells_)[k];
     origin(softer_)[k] = Real(1) / origin(border_)[k];
   }
@@ -72,10 +73,11 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   view_.bend = origin(bend_);
   view_.bend_left = origin(bend_left_);
   view_.bend_right = origin(bend_right_);
+  view_.bend_two_left = origin(bend_two_left_);
+  view_.bend_two_right = origin(bend_two_right_);
   view_.cells = origin(cells_);
-  for (int r = 0; r < view_.rows; ++r) {
-    view_.row_bend.push_back(bending_line<Real>(r, view_.rows));
-  }
+  for (int r = 0; r < view_.rows; ++r)
+    view_.row_bend.push_back(bending_row<Real>(r, view_.rows, part.cells.row_stiffening));
   view_.length[0] = springs_.rest_warp;
   view_.length[1] = springs_.rest_weft;
   view_.length[2] = springs_.rest_shear;

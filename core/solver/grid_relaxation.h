@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/cloth/bending_stencil.h"
 #include "core/cloth/cloth_model.h"
 #include "core/math/aligned_vector.h"
 #include "core/types.h"
@@ -30,10 +31,12 @@ struct SweepView {
   Real* multiplier[4] = {};      ///< lambda [m kg]; used with more than one sweep
   const Real* border = nullptr;  ///< by column: 1/2 on border lines, else 1
   const Real* softer = nullptr;  ///< by column: 2 on border lines, else 1
-  const Real *bend = nullptr, *bend_left = nullptr, *bend_right = nullptr;  ///< by column
-  const Real* cells = nullptr;                ///< by column: cells that meet there, 1 or 2
-  std::vector<std::array<Real, 4>> row_bend;  ///< by row: the same three, and the cells
-  Real length[3] = {};                        ///< rest lengths: along, down, diagonal [m]
+  /// Bending along the rows, by column; see BendingRow.
+  const Real *bend = nullptr, *bend_left = nullptr, *bend_right = nullptr;
+  const Real *bend_two_left = nullptr, *bend_two_right = nullptr;
+  const Real* cells = nullptr;             ///< by column: cells that meet there, 1 or 2
+  std::vector<BendingRow<Real>> row_bend;  ///< bending across the rows, by row
+  Real length[3] = {};                     ///< rest lengths: along, down, diagonal [m]
   Real alpha[3] = {};  ///< alpha~ inside the grid [1/kg]; 0 without such springs
   QuadraticBending<Real> bending;
 };
@@ -100,7 +103,8 @@ class GridRelaxation {
   std::size_t first_ = 0;  ///< index in the model of the grid's particle 0
   std::array<Array, 3> x_, displacement_, force_;
   std::array<Array, 4> share_, multiplier_;
-  Array w_, free_, border_, softer_, bend_, bend_left_, bend_right_, cells_;
+  Array w_, free_, border_, softer_, bend_, bend_left_, bend_right_, bend_two_left_,
+      bend_two_right_, cells_;
 };
 
 }  // namespace weft

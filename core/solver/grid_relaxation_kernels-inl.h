@@ -140,21 +140,25 @@ struct Places {
 template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
 struct RowBending {
   D d;
-  V here, up, down, cells_across;  ///< weights of the stencils across the rows
-  V along, across, twist;          ///< stiffnesses
-  const Real *bend, *bend_left, *bend_right, *cells, *border;  ///< by column
+  V here, up, down, two_up, two_down, cells_across;  ///< weights of the stencils across the rows
+  V along, across, twist;                            ///< stiffnesses
+  const Real *bend, *bend_left, *bend_right, *bend_two_left, *bend_two_right;  ///< by column
+  const Real *cells, *border;                                                  ///< by column
   std::ptrdiff_t stride;
 
   HWY_INLINE RowBending(D tag, const SweepView<Real>& g, int r, std::ptrdiff_t column)
       : d(tag), bend(g.bend + column), bend_left(g.bend_left + column),
-        bend_right(g.bend_right + column), cells(g.cells + column), border(g.border + column),
-        stride(g.stride) {
-    const std::array<Real, 4>& line = g.row_bend[static_cast<std::size_t>(r)];
-    here = hn::Set(d, line[0]);
-    up = hn::Set(d, line[1]);
-    down = hn::Set(d, line[2]);
-    cells_across = hn::Set(d, line[3]);
-    along = hn::Set(d, Real(0.5) * line[3] * g.bending.along_u);
+        bend_right(g.bend_right + column), bend_two_left(g.bend_two_left + column),
+        bend_two_right(g.bend_two_right + column), cells(g.cells + column),
+        border(g.border + column), stride(g.stride) {
+    const BendingRow<Real>& line = g.row_bend[static_cast<std::size_t>(r)];
+    here = hn::Set(d, line.here);
+    up = hn::Set(d, line.before);
+    down = hn::Set(d, line.behind);
+    two_up = hn::Set(d, line.two_before);
+    two_down = hn::Set(d, line.two_behind);
+    cells_across = hn::Set(d, line.cells);
+    along = hn::Set(d, Real(0.5) * line.cells * g.bending.along_u);
     across = hn::Set(d, g.bending.along_v);
     twist = hn::Set(d, g.bending.twist);
   }
@@ -168,8 +172,10 @@ struct RowBending {
   HWY_INLINE V pull(const Real* x, const Real* left, const Real* right, std::ptrdiff_t n) const {
     const Real* p = x + n;
     const V x0 = hn::LoadU(d, p), xu = hn::LoadU(d, p - stride), xd = hn::LoadU(d, p + stride);
-    const V two_along = hn::Add(hn::LoadU(d, p - 1), hn::LoadU(d, p + 1));
-    const V two_across = hn::Add(hn::LoadU(d, p - 2 * stride), hn::LoadU(d, p + 2 * stride));
+    const V two_along = hn::Add(hn::Mul(hn::LoadU(d, p - 1), hn::LoadU(d, bend_two_left + n)),
+                                hn::Mul(hn::LoadU(d, p + 1), hn::LoadU(d, bend_two_right + n)));
+    const V two_across = hn::Add(hn::Mul(hn::LoadU(d, p - 2 * stride), two_up),
+                                 hn::Mul(hn::LoadU(d, p + 2 * stride), two_down));
     const V one_along = hn::Add(hn::Mul(hn::LoadU(d, left + n), hn::LoadU(d, bend_left + n)),
                                 hn::Mul(hn::LoadU(d, right + n), hn::LoadU(d, bend_right + n)));
     const V one_across = hn::Add(hn::Mul(xu, up), hn::Mul(xd, down));

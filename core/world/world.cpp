@@ -76,10 +76,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   state_ = initial_state(model_);
   for (const ClothPart<Real>& part : model_.parts)
     thickest_ = std::max(thickest_, part.fabric.thickness);
-  if (choose_substeps(solver_of(def_)) > kMostSubsteps)
-    throw DefinitionError("fabric", "too stiff for this mesh and tick",
-                          "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
-                          "lower the stiffness or the resolution, or raise tick_rate");
+  refuse_too_stiff();
   const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
@@ -89,6 +86,16 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);
   pick_tree_.build(boxes);
   reset();
+  refuse_too_stiff();  // clamps stiffen
+}
+
+/// Throws DefinitionError if a tick would take too many substeps.
+template <class Real>
+void World<Real>::refuse_too_stiff() const {
+  if (choose_substeps(solver_of(def_)) <= kMostSubsteps) return;
+  throw DefinitionError("fabric", "too stiff for this mesh and tick",
+                        "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
+                        "lower the stiffness or the resolution, or raise tick_rate");
 }
 
 template <class Real>
@@ -105,7 +112,7 @@ void World<Real>::reset() {
   grippers_ = initial_grippers(def_.grippers, def_.colliders.size() - 2 * def_.grippers.size());
   for (std::size_t k = 0; k < def_.pins.size(); ++k) {
     try {
-      pin(def_.pins[k]);
+      hold(def_.pins[k]);
     } catch (const DefinitionError& error) {
       const std::size_t dot = error.field.find('.');
       throw DefinitionError(
@@ -114,6 +121,7 @@ void World<Real>::reset() {
           error.value, error.limit, error.hint);
     }
   }
+  renew_clamps();
   tick_ = 0;
   if (!def_.winds.empty()) environment_.wind = def_.environment.wind;
   report_ = TickReport{};

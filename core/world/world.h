@@ -237,6 +237,8 @@ class World {
   void gather(double radius, std::uint64_t seed);
   void run_script();
   void finish_pins();
+  PinId hold(const PinDef& def);
+  void renew_clamps();
   void refuse_jaw(std::size_t collider) const;
   void masses_changed();
   void sleep_changed();
@@ -251,6 +253,7 @@ class World {
   int choose_substeps(SolverKind kind, const EnvironmentDef& environment) const;
   long substeps_for_hands(SolverKind kind, const EnvironmentDef& environment, long cloth_alone,
                           int fewest) const;
+  void refuse_too_stiff() const;
   void prepare_solver();
   void allocate_external();
   StabilityBound stability_bound(const ClothPart<Real>& part, SolverKind kind,

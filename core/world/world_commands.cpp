@@ -16,6 +16,14 @@ namespace weft {
 
 template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
+  const PinId id = hold(def);
+  renew_clamps();
+  return id;
+}
+
+/// Pins without regard to how the cloth bends at the border.
+template <class Real>
+PinId World<Real>::hold(const PinDef& def) {
   masses_changed();
   const PinId id = add_pin(model_, def, pins_, state_);
   wake(pins_.list.back().centre);
@@ -27,7 +35,24 @@ template <class Real>
 bool World<Real>::unpin(PinId id) {
   masses_changed();
   wake_held(id);
-  return remove_pin(model_, id, pins_, state_);
+  const bool found = remove_pin(model_, id, pins_, state_);
+  renew_clamps();
+  return found;
+}
+
+/// Bends cloth at the borders of pinned strips as if clamped there. The factors are constants of
+/// the model to the solvers, which are prepared anew when they change: only where a strip is pinned
+/// or released.
+template <class Real>
+void World<Real>::renew_clamps() {
+  if (!set_clamps(clamps_of(pins_), model_)) return;
+  if (!model_.hinges.empty()) {
+    model_.hinges = build_cloths<Real>(def_.cloths).hinges;
+    stiffen_hinges(model_);
+  }
+  renew_bending_bounds(model_);
+  prepare_solver();
+  report_present_state();
 }
 
 template <class Real>
@@ -138,7 +163,9 @@ void World<Real>::set_softness(double softness) {
   model_.springs = std::move(model.springs);
   for (std::size_t p = 0; p < model_.parts.size(); ++p) {
     model_.parts[p].grid_springs = model.parts[p].grid_springs;
-    model_.parts[p].bounds = model.parts[p].bounds;
+    FrequencyBounds& bounds = model_.parts[p].bounds;  // of bending they stay
+    bounds.membrane_omega2 = model.parts[p].bounds.membrane_omega2;
+    bounds.membrane_damping_rate = model.parts[p].bounds.membrane_damping_rate;
   }
   wake_all();
   prepare_solver();
@@ -234,6 +261,8 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
 
 #define WEFT_INSTANTIATE(Real)                                                          \
   template PinId World<Real>::pin(const PinDef&);                                       \
+  template PinId World<Real>::hold(const PinDef&);                                      \
+  template void World<Real>::renew_clamps();                                            \
   template bool World<Real>::unpin(PinId);                                              \
   template bool World<Real>::move_pin(PinId, const PinMove&);                           \
   template bool World<Real>::stop_pin(PinId);                                           \

@@ -22,9 +22,12 @@ struct BendingLine {
 /// All lines of a level in one direction.
 /// @param at    their positions, in cells of the finest level, ascending; at least two
 /// @param unit  the regular distance
+/// @param stiffening  factors of the bending about each line; empty: 1
 template <class Real>
-std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int unit) {
+std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int unit,
+                                             const std::vector<double>& stiffening) {
   assert(at.size() >= 2 && unit >= 1);
+  assert(stiffening.empty() || stiffening.size() == at.size());
   std::vector<BendingLine<Real>> lines(at.size());
   const auto step = [&](std::size_t k) {  // from line k to the next
     assert(at[k + 1] > at[k]);
@@ -41,7 +44,9 @@ std::vector<BendingLine<Real>> bending_lines(const std::vector<int>& at, int uni
   }
   for (std::size_t k = 1; k + 1 < at.size(); ++k) {
     // The curvature is 2 / (a + b) times the change of slope, over a length of (a + b) / 2.
-    const Real before = step(k - 1), behind = step(k), share = 2 / (before + behind);
+    const Real before = step(k - 1), behind = step(k);
+    const Real factor = stiffening.empty() ? Real(1) : static_cast<Real>(stiffening[k]);
+    const Real share = 2 / (before + behind) * factor;
     const Real change[3] = {1 / before, -1 / before - 1 / behind, 1 / behind};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j)

@@ -20,7 +20,7 @@ template <class Real>
 GridSystem<Real>::GridSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
     : springs_(GridLayout(part.rows, part.columns), model, part), particles_(part.particles) {
   assert(fits(model, part));
-  multigrid_.prepare(GridLayout(part.rows, part.columns), part.quadratic_bending);
+  multigrid_.prepare(GridLayout(part.rows, part.columns), part.quadratic_bending, part.cells);
   for (GridVector<Real>* vector : {&x_, &v_, &force_}) vector->assign(size(), Real(0));
 }
 

@@ -23,7 +23,8 @@ std::vector<int> every_second(const std::vector<int>& at) {
 }  // namespace
 
 template <class Real>
-void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<Real>& bending) {
+void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<Real>& bending,
+                              const GridCells& cells) {
   assert(finest.rows >= 2 && finest.columns >= 2);
   levels_.clear();
   std::vector<int> rows(static_cast<std::size_t>(finest.rows)),
@@ -34,7 +35,7 @@ void Multigrid<Real>::prepare(const GridLayout& finest, const QuadraticBending<R
     const GridLayout layout(static_cast<int>(rows.size()), static_cast<int>(columns.size()));
     Level& level = levels_.emplace_back();
     level.grid.prepare(layout, unit == 1);
-    level.grid.set_bending(bending, rows, columns, unit);
+    level.grid.set_bending(bending, cells, rows, columns, unit);
     level.strongest_bending =
         *std::max_element(level.grid.bending_bound.begin(), level.grid.bending_bound.end());
     for (GridVector<Real>* vector : {&level.residual, &level.sum, &level.product})

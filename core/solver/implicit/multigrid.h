@@ -17,7 +17,8 @@ template <class Real>
 class Multigrid {
  public:
   /// Sizes all levels for a grid of at least 2 x 2 particles.
-  void prepare(const GridLayout& finest, const QuadraticBending<Real>& bending);
+  void prepare(const GridLayout& finest, const QuadraticBending<Real>& bending,
+               const GridCells& cells);
 
   /// The finest level, for the caller to fill; `coarsen` computes its `inverse` and all coarser
   /// levels.

@@ -120,7 +120,7 @@ Real row_bound(const QuadraticBending<Real>& form, const BendingLine<Real>& row,
 }  // namespace
 
 template <class Real>
-void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form,
+void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form, const GridCells& cells,
                                    const std::vector<int>& rows_at,
                                    const std::vector<int>& columns_at, int unit) {
   assert(static_cast<int>(rows_at.size()) == layout.rows);
@@ -133,8 +133,10 @@ void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form,
   bending.along_v *= size;
   bending.twist *= size;
   bending_counts = form.along_u != 0 || form.along_v != 0 || form.twist != 0;
-  row_bending = bending_lines<Real>(rows_at, unit);
-  const std::vector<BendingLine<Real>> columns = bending_lines<Real>(columns_at, unit);
+  static const std::vector<double> kNone;
+  row_bending = bending_lines<Real>(rows_at, unit, unit == 1 ? cells.row_stiffening : kNone);
+  const std::vector<BendingLine<Real>> columns =
+      bending_lines<Real>(columns_at, unit, unit == 1 ? cells.column_stiffening : kNone);
   column_bending.assign(static_cast<std::size_t>(9 * bending_pitch()), Real(0));
   bending_bound.assign(static_cast<std::size_t>(layout.plane), Real(0));
   for (int c = 0; c < layout.columns; ++c) {

@@ -69,9 +69,11 @@ struct SpringGrid {
 
   /// Sets the bending and includes it from then on.
   /// @param form             of the finest level
+  /// @param cells            with its factors on the finest level, where they count; coarser ones,
+  ///                         which only precondition it, go without
   /// @param rows_at, columns_at, unit  see bending_lines
-  void set_bending(const QuadraticBending<Real>& form, const std::vector<int>& rows_at,
-                   const std::vector<int>& columns_at, int unit);
+  void set_bending(const QuadraticBending<Real>& form, const GridCells& cells,
+                   const std::vector<int>& rows_at, const std::vector<int>& columns_at, int unit);
 };
 
 /// y = A p. Pinned particles get 0.

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/attachments/constants.h"
 #include "core/error.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
@@ -44,12 +45,16 @@ TEST_CASE("corners are the ends of the first and last row") {
   CHECK(at(Corner::bottom_left, "second") == std::vector<Index>{35 + 8});
 }
 
-TEST_CASE("a strip holds the rows or columns within its width, and no other") {
+TEST_CASE("a strip holds the lines up to its border, or one more where that is nearer") {
+  // Cells are 0.2 m; a strip of 1.95 cells holds three lines.
   const ClothModel<double> model = two_cloths();
   const auto [side, width, rows_or_columns] = GENERATE(table<Side, double, int>({
       {Side::top, 0, 1},
       {Side::top, 0.2, 2},
-      {Side::bottom, 0.39, 2},
+      {Side::top, 0.27, 2},
+      {Side::top, 0.28, 3},
+      {Side::left, 0.01, 2},
+      {Side::bottom, 0.39, 3},
       {Side::left, 0, 1},
       {Side::right, 0.4, 3},
       {Side::right, 0.41, 3},
@@ -68,6 +73,59 @@ TEST_CASE("a strip holds the rows or columns within its width, and no other") {
                                             : 6 - column;
     CHECK(line < rows_or_columns);
   }
+}
+
+TEST_CASE("what bends at a strip's border reaches from there to the middle of the next cell") {
+  for (double width = 0; width < 8; width += 1.0 / 64) {
+    const HeldLines held = held_lines(width, 1e-6, 12);
+    CHECK(held.lines >= (width > 0 ? 2 : 1));
+    if (width == 0) continue;
+    const double middle_of_free_cell = held.lines - 0.5;
+    CHECK(held.stiffening == Approx(1 / (middle_of_free_cell - width)).epsilon(2e-4));
+    CHECK(held.stiffening <= kMostStiffening);
+    // Sums of such weights are exact in single precision.
+    CHECK(held.stiffening * kStiffeningParts == std::round(held.stiffening * kStiffeningParts));
+  }
+  CHECK(held_lines(2 - 1e-7, 1e-6, 12).lines == 3);
+  CHECK(held_lines(2 + 1e-7, 1e-6, 12).stiffening == 2);
+}
+
+TEST_CASE("what holds all lines, and a strip of no width, clamp nothing") {
+  const ClothModel<double> model = two_cloths();
+  CHECK(held_lines(0, 1e-6, 12).lines == 1);
+  CHECK(held_lines(11, 1e-6, 12).lines == 12);
+  CHECK(held_lines(10.5, 1e-6, 12).lines == 12);
+  CHECK_FALSE(find_pinned(model, {EdgeStrip{Side::left, 0}, 0, ""}).clamp);
+  CHECK_FALSE(find_pinned(model, {EdgeStrip{Side::bottom, 100}, 0, ""}).clamp);
+  CHECK_FALSE(find_pinned(model, {MaterialPoint{0.5, 0.5}, 0.3, ""}).clamp);
+}
+
+TEST_CASE("of strips along one side the widest clamps; those along others clamp beside it") {
+  ClothModel<double> model = two_cloths();
+  Pins pins = make_pins(model);
+  ClothState<double> state = initial_state(model);
+  const auto factors = [&] {
+    set_clamps(clamps_of(pins), model);
+    return model.parts[0].cells.row_stiffening;
+  };
+  const auto pin = [&](Side side, double width) {
+    return add_pin(model, {EdgeStrip{side, width}, 0, ""}, pins, state);
+  };
+  pin(Side::top, 0.2);
+  CHECK(factors() == std::vector<double>{1, 2, 1, 1, 1});
+  const PinId wide = pin(Side::top, 0.45);
+  CHECK(factors() == std::vector<double>{1, 1, 4, 1, 1});
+  pin(Side::bottom, 0.2);
+  CHECK(factors() == std::vector<double>{1, 1, 4, 2, 1});
+  pin(Side::right, 0.2);
+  CHECK(factors() == std::vector<double>{1, 1, 4, 2, 1});
+  CHECK(model.parts[0].cells.column_stiffening == std::vector<double>{1, 1, 1, 1, 1, 2, 1});
+  CHECK(model.parts[1].cells.row_stiffening.empty());
+  remove_pin(model, wide, pins, state);
+  CHECK(factors() == std::vector<double>{1, 2, 1, 2, 1});
+  CHECK_FALSE(set_clamps(clamps_of(pins), model));
+  CHECK(set_clamps({}, model));
+  CHECK(model.parts[0].cells.row_stiffening.empty());
 }
 
 TEST_CASE("a point of the fabric is its nearest particle, at any resolution") {

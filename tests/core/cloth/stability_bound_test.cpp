@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/attachments/clamp_line.h"
 #include "core/forces/force_pass.h"
 #include "tests/support/cloths.h"
 
@@ -61,6 +62,25 @@ TEST_CASE("leapfrog with lagged damping is stable up to the rule and unstable be
   };
   CHECK(size_after(0.999 * limit) < 1);
   CHECK(size_after(1.001 * limit) > 10);
+}
+
+TEST_CASE("the bending bound counts the stiff hinges at clamps, and not more than three times") {
+  ClothDef def = test::flat_cloth(9, 12);
+  def.fabric.bending_warp = def.fabric.bending_weft = 1e-3;
+  def.bending_model = GENERATE(BendingModel::hinges, BendingModel::quadratic);
+  ClothModel<double> model = build_cloth<double>(def);
+  const double membrane = model.parts[0].bounds.membrane_omega2;
+  REQUIRE(set_clamps({{0, Side::top, 3, 8}, {0, Side::right, 9, 4}}, model));
+  stiffen_hinges(model);
+  renew_bending_bounds(model);
+  const Vec3Array<double> still(model.mass.size(), Vec3d::Zero());
+  const double bending = highest_omega2(model, [&](const auto& x, auto& f) {
+    add_hinge_forces(model, x, still, f);
+    add_quadratic_bending_forces(model, x, f);
+  });
+  CHECK(model.parts[0].bounds.bending_omega2 >= bending);
+  CHECK(model.parts[0].bounds.bending_omega2 <= 3 * bending);
+  CHECK(model.parts[0].bounds.membrane_omega2 == membrane);
 }
 
 TEST_CASE(

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
+#include "core/attachments/clamp_line.h"
 #include "core/forces/force_pass.h"
 #include "core/solver/implicit/conjugate_gradients.h"
 #include "core/solver/implicit/element_system.h"
@@ -32,6 +33,8 @@ struct Shaken {
     cloth.fabric.bending_warp = 2e-3;
     cloth.fabric.bending_weft = 5e-3;
     model = build_cloth<double>(cloth);
+    if (std::min(rows, columns) > 4)
+      set_clamps({{0, Side::top, 1, 8}, {0, Side::right, columns - 3, 1.5}}, model);
     x = model.rest_positions;
     v.assign(x.size(), Vec3d::Zero());
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,0 +1,126 @@
+// Finds the lines that strips hold, and stiffens the bending at their borders.
+
+#include "core/attachments/clamp_line.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/attachments/constants.h"
+#include "core/cloth/stability_bound.h"
+
+namespace weft {
+namespace {
+
+/// Factors of one part while they are put together.
+struct LineFactors {
+  std::vector<double> rows, columns;
+};
+
+/// @param lines  that the part has in this direction
+void put(const ClampLine& clamp, int lines, std::vector<double>& factors) {
+  assert(clamp.line >= 0 && clamp.line < lines);
+  if (factors.empty()) factors.assign(static_cast<std::size_t>(lines), 1);
+  factors[static_cast<std::size_t>(clamp.line)] = clamp.stiffening;
+}
+
+/// The row that both ends of a hinge's edge lie on, or else the column; the factor there.
+template <class Real>
+double stiffening_of(const Hinge<Real>& hinge, const GridCells& cells,
+                     const std::vector<int>& site_of) {
+  const int a = site_of[static_cast<std::size_t>(hinge.x[0])],
+            b = site_of[static_cast<std::size_t>(hinge.x[1])];
+  if (a / cells.columns == b / cells.columns) return cells.stiffening_of_row(a / cells.columns);
+  if (a % cells.columns == b % cells.columns) return cells.stiffening_of_column(a % cells.columns);
+  return 1;
+}
+
+}  // namespace
+
+HeldLines held_lines(double width, double slack, int all) {
+  assert(width >= 0 && slack >= 0 && all >= 2);
+  if (width <= slack) return {1, 1};
+  const double cells = std::floor(width + slack);
+  if (cells >= all - 1) return {all, 1};
+  int last = static_cast<int>(cells);
+  double beyond = width - last;  // from the last held line to the clamp
+  if (last == 0 || beyond > 0.5 - 1 / kMostStiffening) {
+    ++last;
+    --beyond;
+  }
+  if (last >= all - 1) return {all, 1};
+  return {last + 1, std::round(kStiffeningParts / (0.5 - beyond)) / kStiffeningParts};
+}
+
+bool ClampLine::is_within(const ClampLine& other) const {
+  if (part != other.part || side != other.side) return false;
+  return side == Side::top || side == Side::left ? line < other.line : line > other.line;
+}
+
+template <class Real>
+bool set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
+  std::vector<LineFactors> factors(model.parts.size());
+  for (const ClampLine& clamp : clamps) {
+    assert(clamp.part < model.parts.size());
+    const auto reaches_beyond = [&](const ClampLine& other) { return clamp.is_within(other); };
+    if (std::any_of(clamps.begin(), clamps.end(), reaches_beyond)) continue;
+    const GridCells& cells = model.parts[clamp.part].cells;
+    LineFactors& of = factors[clamp.part];
+    clamp.is_row() ? put(clamp, cells.rows, of.rows) : put(clamp, cells.columns, of.columns);
+  }
+  bool changed = false;
+  for (std::size_t p = 0; p < factors.size(); ++p) {
+    GridCells& cells = model.parts[p].cells;
+    if (cells.row_stiffening == factors[p].rows && cells.column_stiffening == factors[p].columns)
+      continue;
+    cells.row_stiffening = std::move(factors[p].rows);
+    cells.column_stiffening = std::move(factors[p].columns);
+    changed = true;
+  }
+  return changed;
+}
+
+template <class Real>
+void stiffen_hinges(ClothModel<Real>& model) {
+  std::vector<int> site_of;
+  for (const ClothPart<Real>& part : model.parts) {
+    const GridCells& cells = part.cells;
+    if (cells.row_stiffening.empty() && cells.column_stiffening.empty()) continue;
+    site_of.assign(model.mass.size(), 0);
+    for (std::size_t site = 0; site < cells.particles.size(); ++site) {
+      if (cells.particles[site] != kNone)
+        site_of[static_cast<std::size_t>(part.particles.first + cells.particles[site])] =
+            static_cast<int>(site);
+    }
+    for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
+      Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(n)];
+      const auto factor = static_cast<Real>(stiffening_of(hinge, cells, site_of));
+      hinge.stiffness *= factor;
+      hinge.damping *= factor;
+    }
+  }
+}
+
+template <class Real>
+void renew_bending_bounds(ClothModel<Real>& model) {
+  for (ClothPart<Real>& part : model.parts) {
+    if (part.hinges.count == 0) {
+      bound_quadratic_bending(model, part);
+      continue;
+    }
+    const FrequencyBounds woven = part.bounds;
+    bound_frequencies(model, part);
+    part.bounds.membrane_omega2 = woven.membrane_omega2;
+    part.bounds.membrane_damping_rate = woven.membrane_damping_rate;
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                \
+  template bool set_clamps(const std::vector<ClampLine>&, ClothModel<Real>&); \
+  template void stiffen_hinges(ClothModel<Real>&);                            \
+  template void renew_bending_bounds(ClothModel<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

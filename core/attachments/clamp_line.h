@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+
+// Where the border of a pinned strip clamps a grid.
+
+namespace weft {
+
+enum class Side : std::uint8_t { top, bottom, left, right };
+
+/// Which lines of a grid a strip along one side holds.
+struct HeldLines {
+  int lines = 1;          ///< from the side on
+  double stiffening = 1;  ///< of the bending about the last of them
+};
+
+/// The lines that a strip of some width holds, and how the cloth bends at its border.
+///
+/// The hinge at the last held line stands for half a cell on either side of it. But the cloth is
+/// straight up to the clamp, e cells beyond that line, and bends from there to the middle of the
+/// first free cell only: over 1/2 - e of a cell in place of a whole one. So it is 1 / (1/2 - e)
+/// times as stiff, and the elastica is of second order in the cell for any e. Where this would pass
+/// kMostStiffening the strip holds one line more, which then lies beyond the clamp (e < 0). A
+/// strip of any width clamps, so it holds two lines at least; one of width 0 holds the outermost
+/// line, about which the cloth turns freely.
+/// @param width  of the strip, in cells, at least 0
+/// @param slack  by which rounding may miss a line, in cells
+/// @param all    lines that there are, at least 2; what holds all of them clamps nothing
+HeldLines held_lines(double width, double slack, int all);
+
+/// The border of a pinned strip along rows or columns of a grid.
+struct ClampLine {
+  std::size_t part = 0;  ///< of the model
+  Side side = Side::top;
+  int line = 0;           ///< the last held row or column
+  double stiffening = 1;  ///< see HeldLines
+
+  bool is_row() const { return side == Side::top || side == Side::bottom; }
+  /// Whether a strip along the same side holds this line and more.
+  bool is_within(const ClampLine& other) const;
+};
+
+/// Gives the grids of a model the factors of these clamps, and of no others.
+/// @returns whether any changed; what follows from them is then to be made anew: `stiffen_hinges`,
+///          `renew_bending_bounds`, and whatever else was prepared from the model
+template <class Real>
+bool set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model);
+
+/// Multiplies hinges along the clamped lines by the factors.
+/// @param model  with its hinges as woven
+template <class Real>
+void stiffen_hinges(ClothModel<Real>& model);
+
+/// Bounds the frequencies of bending anew, and leaves those of the membrane.
+template <class Real>
+void renew_bending_bounds(ClothModel<Real>& model);
+
+}  // namespace weft
