@@ -256,7 +256,7 @@ void Room::tell_slow_motion(double now) {
 
 Message Room::message_of(const SceneNotice& what) const {
   proto::Notice notice;
-  notice.level = proto::NoticeLevel::warning;
+  notice.level = what.warns ? proto::NoticeLevel::warning : proto::NoticeLevel::info;
   notice.code = what.code;
   notice.message = what.message;
   notice.tick = world_->tick();

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/world/cost.h"
 #include "core/world/object_repair.h"
+#include "core/world/pin_extent.h"
 #include "core/world/spring_hold.h"
 
 namespace weft::server {
@@ -30,6 +31,8 @@ std::vector<SceneNotice> notices_of(const ServedWorld& world,
   for (const std::string& repair : repairs) notices.push_back({"mesh_repaired", repair});
   for (const SlackSprings& slack : slack_springs(world))
     notices.push_back({"springs_slack", describe(slack)});
+  if (const auto pins = coarse_pins(world); !pins.empty())
+    notices.push_back({"pins_coarse", describe(pins), false});
   return notices;
 }
 

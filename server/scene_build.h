@@ -24,6 +24,7 @@ ComingStarts look_ahead(const ServedWorld& world, double tick_limit);
 struct SceneNotice {
   const char* code;  ///< of the notice
   std::string message;
+  bool warns = true;  ///< otherwise it informs
 };
 
 /// Everything about a scene that takes long to make and may fail; the replacement of the old scene

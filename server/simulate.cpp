@@ -306,7 +306,7 @@ int simulate(const SimulateOptions& options) {
   std::vector<std::string> notices;
   for (const SceneNotice& notice : notices_of(world, repairs)) {
     notices.push_back(notice.message);
-    std::fprintf(stderr, "weft: %s\n", notice.message.c_str());
+    if (notice.warns) std::fprintf(stderr, "weft: %s\n", notice.message.c_str());
   }
   const std::optional<Measurement> measured = run(world, options);
   if (!measured) {
