@@ -64,7 +64,10 @@ void visit_field_of_corner(Value& corner, Visitor&& visit) {
 template <class Def, class Visitor>
 void visit_fields_of_strip(Def& strip, Visitor&& visit) {
   visit(choice("side", "top|bottom|left|right", "side of the fabric"), strip.side);
-  visit(FieldInfo{"width", 0, 100, "m", "width of the pinned strip"}, strip.width);
+  visit(FieldInfo{"width", 0, 100, "m",
+                  "width of the pinned strip; on a grid it clamps at its border, and with 0 it "
+                  "holds a line that turns"},
+        strip.width);
 }
 template <class Def, class Visitor>
 void visit_fields_of_point(Def& point, Visitor&& visit) {

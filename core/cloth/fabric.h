@@ -46,7 +46,8 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
   visit(FieldInfo{"bending_damping", 0, 10, "s", "hinge damping per elastic stiffness"},
         f.bending_damping);
   visit(FieldInfo{"thickness", 1e-4, 0.1, "m", "contact distance from objects"}, f.thickness);
-  visit(FieldInfo{"friction", 0, 10, "", "Coulomb friction against objects"}, f.friction);
+  visit(FieldInfo{"friction", 0, 10, "", "Coulomb friction; between two cloths the mean of both"},
+        f.friction);
   visit(FieldInfo{"restitution", 0, 0.999, "", "fraction of the impact velocity that returns"},
         f.restitution);
   visit(FieldInfo{"air_normal", 0, 100, "", "drag coefficient across the wind"}, f.air_normal);

@@ -30,7 +30,9 @@ void visit_fields_of_relaxation(Def& r, Visitor&& visit) {
   visit(FieldInfo{"sweeps", 1, 10000, "", "sweeps over all springs per substep"}, r.sweeps);
   visit(FieldInfo{"substeps", 1, kMostSubsteps, "", "fewest substeps per tick"}, r.substeps);
   visit(FieldInfo{"damping", 0, 0.999, "", "fraction of the motion lost per substep"}, r.damping);
-  visit(FieldInfo{"compliance", 0, 1e6, "", "0: rigid springs; 1: as soft as the fabric"},
+  visit(FieldInfo{"compliance", 0, 1e6, "",
+                  "0: rigid springs; 1: those of the fabric in the limit of many substeps and "
+                  "sweeps, else softer"},
         r.compliance);
 }
 
