@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/membrane.h"
 #include "core/error.h"
 #include "core/geometry/constants.h"
 
@@ -41,6 +42,15 @@ void validate(const ClothDef& def) {
   if (def.mesh && def.skip_stiffness != 0)
     throw DefinitionError("cloth.skip_stiffness", number_text(def.skip_stiffness), "0 on a mesh",
                           "only a grid has second neighbours");
+  if (!def.mesh && def.membrane_model == MembraneModel::triangles)
+    throw DefinitionError("cloth.membrane_model", "triangles", "automatic or springs on a grid",
+                          "the springs of a grid have the fabric's tensor");
+  if (!has_membrane_triangles(def) && def.fabric.poisson != kPoissonOfGrid)
+    throw DefinitionError("fabric.poisson", number_text(def.fabric.poisson),
+                          "none, which is -1, without triangles",
+                          "only triangles of a mesh have a Poisson's ratio of their own; springs "
+                          "couple the threads as they resist shear");
+  if (has_membrane_triangles(def)) refuse_indefinite_membrane(def.fabric);
   if (def.mesh && def.direct_springs)
     throw DefinitionError("cloth.direct_springs", "given", "none on a mesh",
                           "only a grid has rows and columns");

@@ -27,6 +27,13 @@ enum class BendingModel {
   sine_hinges,  ///< hinges with moments by sin(theta/2), as printed in Bridson 2003 (the seed's)
 };
 
+/// Model of the cloth's resistance to stretch and shear.
+enum class MembraneModel {
+  automatic,  ///< springs on a grid; on a mesh triangles where the solver has them
+  springs,    ///< along the edges of a mesh: approximate, and what rigid relaxation needs
+  triangles,  ///< of constant strain: the fabric's tensor on any mesh
+};
+
 /// Outline of a grid within its rectangle.
 enum class Outline {
   rectangle,  ///< the whole rectangle
@@ -41,7 +48,7 @@ struct DirectSprings {
   double dashpot = 0;     ///< along every spring [N s/m]
 };
 
-/// A cloth of any shape, at rest as defined: every vertex a particle, every edge a spring.
+/// A cloth of any shape, at rest as defined: every vertex a particle.
 struct ClothMesh {
   TriangleMesh
       mesh;  ///< in world coordinates [m]; every vertex used, at most two triangles an edge
@@ -67,6 +74,7 @@ struct ClothDef {
   Outline outline = Outline::rectangle;  ///< a cut grid numbers its particles row by row
   double skip_stiffness = 0;             ///< the seed's bending springs, besides the hinges [N/m]
   BendingModel bending_model = BendingModel::automatic;
+  MembraneModel membrane_model = MembraneModel::automatic;
   MassLumping mass_lumping = MassLumping::area;
   std::optional<DirectSprings> direct_springs;
   FabricDef fabric;
@@ -95,6 +103,9 @@ void visit_fields_of_any_cloth(Def& c, Visitor&& visit) {
   visit(choice("bending_model", "automatic|hinges|quadratic|sine_hinges",
                "how the cloth resists bending"),
         c.bending_model);
+  visit(choice("membrane_model", "automatic|springs|triangles",
+               "how the cloth resists stretch; triangles on a mesh only"),
+        c.membrane_model);
   visit(choice("mass_lumping", "area|equal", "how the particles share the mass"), c.mass_lumping);
   visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
 }
@@ -118,6 +129,12 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
 /// checked later) and without bending damping.
 inline bool quadratic_bending_fits(const ClothDef& def) {
   return def.rest_angle == 0 && def.fabric.bending_damping == 0;
+}
+
+/// Whether the cloth is built from triangles of constant strain: a mesh, unless springs were asked
+/// for.
+inline bool has_membrane_triangles(const ClothDef& def) {
+  return def.mesh && def.membrane_model != MembraneModel::springs;
 }
 
 /// Checks every range and their combination (u and v independent, direct springs finite).

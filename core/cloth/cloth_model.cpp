@@ -37,6 +37,9 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
     spring.i += shift;
     spring.j += shift;
   }
+  for (MembraneTriangle<Real>& triangle : cloth.membrane) {
+    for (Index& corner : triangle.x) corner += shift;
+  }
   for (Hinge<Real>& hinge : cloth.hinges) {
     for (Index& corner : hinge.x) corner += shift;
   }
@@ -50,6 +53,7 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   part.edges = append(model.edges, cloth.edges);
   part.springs = append(model.springs, cloth.springs);
   part.hinges = append(model.hinges, cloth.hinges);
+  part.membrane = append(model.membrane, cloth.membrane);
   model.parts.push_back(std::move(part));
 }
 

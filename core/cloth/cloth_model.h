@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_def.h"
+#include "core/cloth/membrane_triangle.h"
 #include "core/types.h"
 
 // The constant data of cloths: masses, triangles, springs and hinges.
@@ -118,6 +119,8 @@ struct IndexRange {
 /// bounds of damping rates [1/s]; see stability_bound.h.
 struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
+  double membrane_shear_omega2 = 0;  ///< of it what goes with the square of the stretch; see
+                                     ///< membrane.h
   double membrane_damping_rate = 0, bending_damping_rate = 0;
 };
 
@@ -127,6 +130,8 @@ struct ClothPart {
   std::string name;
   FabricDef fabric;
   IndexRange particles, triangles, edges, springs, hinges;
+  IndexRange membrane;  ///< triangles of constant strain, in place of springs
+  MembraneTensor<Real> membrane_tensor;
   int rows = 0, columns = 0;    ///< of a whole grid, with particle (r, c) at particles.first +
                                 ///< r * columns + c; else 0
   Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
@@ -138,6 +143,12 @@ struct ClothPart {
   GridCells cells;                                 ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
+
+/// Springs and membrane triangles of a part.
+template <class Real>
+std::size_t membrane_elements(const ClothPart<Real>& part) {
+  return static_cast<std::size_t>(part.springs.count + part.membrane.count);
+}
 
 /// The constant data of the cloths. Several cloths follow each other in every list; no spring,
 /// hinge or triangle joins two of them.
@@ -152,7 +163,8 @@ struct ClothModel {
   std::vector<Edge> edges;                    ///< unique edges of the triangles
   std::vector<Spring<Real>> springs;          ///< of a grid ordered by first end, then kind
   std::vector<SpringKind> spring_kinds;
-  std::vector<Hinge<Real>> hinges;  ///< empty for a part with quadratic bending
+  std::vector<Hinge<Real>> hinges;               ///< empty for a part with quadratic bending
+  std::vector<MembraneTriangle<Real>> membrane;  ///< of a mesh, ordered by their first particle
 
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };

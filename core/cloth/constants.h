@@ -13,6 +13,20 @@ namespace weft {
 /// throughout (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
 inline constexpr double kShakenMargin = 1.15;
 
+/// Rounds in which triangles of a mesh find the shares of their corners' masses that make the bound
+/// of their frequency low [1]. Larger: loading takes longer, for a bound that is hardly lower.
+/// Smaller: more substeps on meshes with some bad triangles.
+inline constexpr int kMassSharingRounds = 24;
+
+/// Least weight of a corner in them, where the fabric resists in one direction only [1]. Larger: a
+/// worse start. Smaller: shares that are rounding.
+inline constexpr double kLeastShare = 1e-3;
+
+/// Length of a thread, 1 at rest, below which stretching does not raise the bound of a mesh's
+/// frequency: kShakenMargin has room for it [1]. Larger: a strongly stretched cloth may become
+/// unstable. Smaller: more substeps while cloth hangs.
+inline constexpr double kFreeStretch = 1.05;
+
 /// Most substeps of a tick; what needs more is too stiff for the explicit solver. Also the largest
 /// number in a definition. Larger: stiffer and finer cloth, and ticks that take as much longer.
 /// Smaller: a diverged tick is repeated with twice its substeps in fewer cases.

@@ -8,18 +8,23 @@
 
 namespace weft {
 
+/// The `poisson` of a fabric that has none of its own.
+inline constexpr double kPoissonOfGrid = -1;
+
 /// The material of a cloth in physical units, independent of any mesh: doubling the resolution does
 /// not change the cloth.
 ///
-/// Membrane: the plane-stress tensor has C11 = stretch_warp, C22 = stretch_weft, C12 = C66 = shear,
-/// so the uniaxial modulus along the warp is Y_w - G^2/Y_f.
-/// Bending: energy per area B/2 (warp), B/2 (weft) times curvature squared; B in every direction if
-/// both are equal.
+/// Membrane: the plane-stress tensor has C11 = stretch_warp, C22 = stretch_weft and C66 = shear.
+/// C12 is poisson * stretch_weft on a mesh, and on a grid, or without a Poisson's ratio, the same
+/// as C66. The uniaxial modulus along the warp is C11 - C12^2/C22. Bending: energy per area B/2
+/// (warp), B/2 (weft) times curvature squared; B in every direction if both are equal.
 struct FabricDef {
-  double areal_density = 0.2;    ///< sigma [kg/m^2]
-  double stretch_warp = 400;     ///< Y_w [N/m], along the columns' direction u
-  double stretch_weft = 400;     ///< Y_f [N/m], along the rows' direction v
-  double shear = 40;             ///< G [N/m]
+  double areal_density = 0.2;       ///< sigma [kg/m^2]
+  double stretch_warp = 400;        ///< Y_w [N/m], along the columns' direction u
+  double stretch_weft = 400;        ///< Y_f [N/m], along the rows' direction v
+  double shear = 40;                ///< G [N/m]
+  double poisson = kPoissonOfGrid;  ///< nu: what it narrows along v when pulled along u, per
+                                    ///< strain; of a mesh, below the root of Y_w / Y_f
   double bending_warp = 1e-5;    ///< B_w [N m], curvature along u
   double bending_weft = 1e-5;    ///< B_f [N m], curvature along v
   double damping_ratio = 0.05;   ///< dashpot along each spring, as a ratio of the highest mode
@@ -39,6 +44,9 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
   visit(FieldInfo{"stretch_warp", 0, 1e6, "N/m", "stretch stiffness along u"}, f.stretch_warp);
   visit(FieldInfo{"stretch_weft", 0, 1e6, "N/m", "stretch stiffness along v"}, f.stretch_weft);
   visit(FieldInfo{"shear", 0, 1e6, "N/m", "shear stiffness"}, f.shear);
+  visit(FieldInfo{"poisson", kPoissonOfGrid, 100, "",
+                  "of a mesh: narrowing along v per strain along u; -1: as on a grid"},
+        f.poisson);
   visit(FieldInfo{"bending_warp", 0, 10, "N m", "bending rigidity along u"}, f.bending_warp);
   visit(FieldInfo{"bending_weft", 0, 10, "N m", "bending rigidity along v"}, f.bending_weft);
   visit(FieldInfo{"damping_ratio", 0, 1, "", "spring damping of the highest mode"},

@@ -34,6 +34,7 @@ void complete_part(const ClothDef& def, ClothModel<Real>& model) {
   part.edges = all(model.edges);
   part.springs = all(model.springs);
   part.hinges = all(model.hinges);
+  part.membrane = all(model.membrane);
 }
 
 }  // namespace weft

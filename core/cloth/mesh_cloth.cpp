@@ -1,4 +1,4 @@
-// Checks a cloth's mesh and builds its springs, hinges and masses.
+// Checks a cloth's mesh and builds its membrane, hinges and masses.
 
 #include "core/cloth/mesh_cloth.h"
 
@@ -10,6 +10,7 @@
 #include "core/cloth/constants.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
+#include "core/cloth/membrane.h"
 #include "core/cloth/stability_bound.h"
 #include "core/error.h"
 #include "core/geometry/hinge_angle.h"
@@ -208,6 +209,31 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   }
 }
 
+/// Adds one membrane triangle per triangle, at rest as it lies and with the material's directions.
+template <class Real>
+void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
+  refuse_indefinite_membrane(fabric);
+  MembraneTensor<Real>& tensor = model.parts.front().membrane_tensor;
+  tensor.warp = static_cast<Real>(fabric.stretch_warp);
+  tensor.weft = static_cast<Real>(fabric.stretch_weft);
+  tensor.coupling = static_cast<Real>(membrane_coupling(fabric));
+  tensor.shear = static_cast<Real>(fabric.shear);
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    std::array<Vec3d, 3> x;
+    RestCorners material;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(model.triangles[t][k]);
+      x[k] = model.rest_positions[i].template cast<double>();
+      material[k] = {static_cast<double>(model.material[i][0]),
+                     static_cast<double>(model.material[i][1])};
+    }
+    if (!((x[1] - x[0]).cross(x[2] - x[0]).norm() > 0))
+      throw DefinitionError("cloth.mesh", "a triangle that is a line in the solver's precision",
+                            "triangles with an area", "move the mesh nearer to the origin");
+    model.membrane.push_back(membrane_triangle<Real>(model.triangles[t], laid_flat(x, material)));
+  }
+}
+
 /// Weights of a hinge: the derivative of its angle at rest, which is along the normal.
 template <class Real>
 HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& model) {
@@ -304,10 +330,17 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
          return fabric.bending_weft * cos2 + fabric.bending_warp * (1 - cos2);
        }},
       model);
-  add_edge_springs(fabric, model);
+  const bool triangles = has_membrane_triangles(def);
+  if (triangles)
+    add_membrane(fabric, model);
+  else
+    add_edge_springs(fabric, model);
   complete_part(def, model);
   bound_frequencies(model, part);
-  add_spring_damping(model, part, fabric.damping_ratio);
+  if (triangles)
+    bound_membrane(model, part);
+  else
+    add_spring_damping(model, part, fabric.damping_ratio);
   choose_bending(def, model);
   return model;
 }

@@ -8,12 +8,14 @@ namespace weft {
 
 /// Builds a cloth from a triangle mesh as a model with one part.
 ///
-/// Every edge is a spring with k = Y(a) sum A / l^2 over its one or two triangles (approximate,
-/// exact in the mean over directions for equilateral triangles), with Y(a) = Y_w cos^4 a + Y_f
-/// sin^4 a + 6 G sin^2 a cos^2 a, the stiffness of the fabric's tensor along the edge. Hinges over
-/// all inner edges have B l^2 / (A1 + A2); their rest angle is that of the mesh plus the cloth's
-/// rest angle. Mass: a third of each triangle to its corners, or equal. Particles are renumbered
-/// breadth-first, so that neighbours lie near each other in memory.
+/// Every triangle is a membrane of constant strain with the fabric's tensor (forces/membrane.h), at
+/// rest as it lies in the mesh; its threads run as the material coordinates do. With the membrane
+/// model `springs` every edge is a spring instead, with k = Y(a) sum A / l^2 over its one or two
+/// triangles (approximate, exact in the mean over directions for equilateral triangles), with Y(a)
+/// = Y_w cos^4 a + Y_f sin^4 a + 6 G sin^2 a cos^2 a, the stiffness of the fabric's tensor along
+/// the edge. Hinges over all inner edges have B l^2 / (A1 + A2); their rest angle is that of the
+/// mesh plus the cloth's rest angle. Mass: a third of each triangle to its corners, or equal.
+/// Particles are renumbered breadth-first, so that neighbours lie near each other in memory.
 ///
 /// Material coordinates are the uv, scaled equally in both directions so that the areas agree; or,
 /// without usable uv, the projection along the axis that the mesh faces most, with v downwards.

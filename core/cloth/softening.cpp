@@ -18,7 +18,12 @@ void soften(double softness, ClothModel<Real>& model) {
     spring.damping *= damping;
   }
   for (ClothPart<Real>& part : model.parts) {
+    MembraneTensor<Real>& tensor = part.membrane_tensor;
+    for (Real* number : {&tensor.warp, &tensor.weft, &tensor.coupling, &tensor.shear})
+      *number *= stiffness;
+    tensor.relaxation_time /= damping;
     part.bounds.membrane_omega2 *= softness;
+    part.bounds.membrane_shear_omega2 *= softness;
     part.bounds.membrane_damping_rate *= root;
     if (!part.grid_springs) continue;
     GridSprings<Real>& springs = *part.grid_springs;

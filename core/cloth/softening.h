@@ -7,9 +7,9 @@
 
 namespace weft {
 
-/// Makes all springs `softness` times as stiff. Their highest frequency, and with it the number of
-/// substeps, scales with the root of that; the dashpots keep their damping ratio. Bending is
-/// unchanged.
+/// Makes all springs and membranes `softness` times as stiff. Their highest frequency, and with it
+/// the number of substeps, scales with the root of that; the dashpots keep their damping ratio.
+/// Bending is unchanged.
 /// @param softness  kLeastSoftness to 1
 template <class Real>
 void soften(double softness, ClothModel<Real>& model);

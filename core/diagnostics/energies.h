@@ -18,10 +18,10 @@ struct Energies {
   double total() const { return kinetic + stretch + bending + gravity; }
 };
 
-/// Energies, and the strain found in the same pass over the springs.
+/// Energies, and the strain found in the same pass over the elements.
 struct EnergyReading {
   Energies energies;
-  double largest_strain = 0;  ///< |l - L| / L of the structural and shear springs
+  double largest_strain = 0;  ///< see ElasticEnergy
 };
 
 /// Energies of the present state, summed in double. NaN propagates.

@@ -1,10 +1,12 @@
-// Strain of springs: largest and 99th percentile.
+// Strain of springs and triangles: largest and 99th percentile.
 
 #include "core/diagnostics/strain.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+
+#include "core/forces/membrane.h"
 
 namespace weft {
 namespace {
@@ -21,6 +23,10 @@ void collect_strains(const ClothModel<Real>& model, const Vec3Array<Real>& x,
     assert(s.rest_length > 0);
     const Vec3<Real> d = x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)];
     strains.push_back(std::abs(d.norm() - s.rest_length) / s.rest_length);
+  }
+  for (const MembraneTriangle<Real>& t : model.membrane) {
+    const auto at = [&](std::size_t k) { return x[static_cast<std::size_t>(t.x[k])]; };
+    strains.push_back(principal_strain(membrane_strain<Real>(t, at(1) - at(0), at(2) - at(0))));
   }
 }
 

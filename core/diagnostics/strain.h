@@ -9,7 +9,8 @@
 
 namespace weft {
 
-/// Strain of the cloth at one instant: |l - L| / L over its structural and shear springs.
+/// Strain of the cloth at one instant: |l - L| / L over its structural and shear springs, and the
+/// principal strain over its membrane triangles.
 struct StrainStatistics {
   double largest = 0;
   double p99 = 0;  ///< 99th percentile: the element of rank floor(0.99 (n - 1))

@@ -15,6 +15,15 @@ namespace weft {
 /// the dashpot, which divides by it; the elastic force divides by its root alone.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
+/// The same for a triangle's threads, whose length is 1 at rest [1]: added to its square. Larger: a
+/// nearly collapsed triangle pulls more weakly. Smaller: too small for float beside the dashpot.
+inline constexpr double kSmallestSquaredStretch = 1e-10;
+
+/// Added to the determinant of a triangle's gradients, the inverse of twice its area, times the
+/// lengths of its threads [1/m^2]: lanes without a triangle stay finite. Larger: triangles of many
+/// square metres are softer. Smaller: infinite in float.
+inline constexpr double kLeastDeterminant = 1e-25;
+
 // Air.
 
 /// Keeps the division by a normal's length finite for a triangle without area [m^4]. Larger: small

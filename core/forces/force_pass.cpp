@@ -9,6 +9,7 @@
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/air/air_force.h"
 #include "core/forces/hinge.h"
+#include "core/forces/membrane.h"
 #include "core/forces/spring.h"
 #include "core/geometry/hinge_angle.h"
 
@@ -23,6 +24,12 @@ const T& at(const std::vector<T>& values, Index i) {
 template <class T>
 T& at(std::vector<T>& values, Index i) {
   return values[static_cast<std::size_t>(i)];
+}
+
+template <class Real>
+MembraneStrain<Real> strain_of(const MembraneTriangle<Real>& t, const Vec3Array<Real>& x) {
+  const Vec3<Real>& start = at(x, t.x[0]);
+  return membrane_strain<Real>(t, at(x, t.x[1]) - start, at(x, t.x[2]) - start);
 }
 
 /// Value of one bending stencil, sum_k w_k x_k.
@@ -46,6 +53,22 @@ void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& par
     const Vec3<Real> f = spring_force<Real>(s, at(x, s.j) - at(x, s.i), at(v, s.j) - at(v, s.i));
     at(force, s.i) += f;
     at(force, s.j) -= f;
+  }
+}
+
+template <class Real>
+void add_membrane_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                         const Vec3Array<Real>& x, const Vec3Array<Real>& v,
+                         Vec3Array<Real>& force) {
+  assert(v.size() == x.size() && force.size() == x.size());
+  assert(part.membrane.end() <= static_cast<Index>(model.membrane.size()));
+  for (Index n = part.membrane.first; n < part.membrane.end(); ++n) {
+    const MembraneTriangle<Real>& t = at(model.membrane, n);
+    const Vec3<Real> v1 = at(v, t.x[1]) - at(v, t.x[0]), v2 = at(v, t.x[2]) - at(v, t.x[0]);
+    const MembraneStress<Real> stress = membrane_stress<Real>(
+        part.membrane_tensor, t, strain_of(t, x), gradient_u(t, v1, v2), gradient_v(t, v1, v2));
+    const std::array<Vec3<Real>, 3> forces = membrane_forces(t, stress);
+    for (std::size_t k = 0; k < 3; ++k) at(force, t.x[k]) += forces[k];
   }
 }
 
@@ -122,6 +145,13 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
     const double strain = std::abs(stretch) / static_cast<double>(s.rest_length);
     if (!(strain <= energy.largest_strain)) energy.largest_strain = strain;
   }
+  for (Index n = part.membrane.first; n < part.membrane.end(); ++n) {
+    const MembraneTriangle<Real>& t = at(model.membrane, n);
+    const MembraneStrain<Real> strain = strain_of(t, x);
+    energy.stretch += membrane_energy(part.membrane_tensor, t, strain);
+    const auto principal = static_cast<double>(principal_strain(strain));
+    if (!(principal <= energy.largest_strain)) energy.largest_strain = principal;
+  }
   for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
     const Hinge<Real>& h = at(model.hinges, n);
     const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
@@ -140,6 +170,9 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
   template void add_spring_forces(const ClothModel<Real>&, const ClothPart<Real>&,           \
                                   const Vec3Array<Real>&, const Vec3Array<Real>&,            \
                                   Vec3Array<Real>&);                                         \
+  template void add_membrane_forces(const ClothModel<Real>&, const ClothPart<Real>&,         \
+                                    const Vec3Array<Real>&, const Vec3Array<Real>&,          \
+                                    Vec3Array<Real>&);                                       \
   template void add_hinge_forces(const ClothModel<Real>&, const ClothPart<Real>&,            \
                                  const Vec3Array<Real>&, const Vec3Array<Real>&,             \
                                  Vec3Array<Real>&);                                          \

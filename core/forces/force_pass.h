@@ -13,7 +13,8 @@ namespace weft {
 struct ElasticEnergy {
   double stretch = 0;
   double bending = 0;
-  double largest_strain = 0;  ///< largest |l - L| / L of the structural and shear springs
+  double largest_strain = 0;  ///< largest |l - L| / L of the structural and shear springs, and
+                              ///< principal strain of the membrane triangles
 };
 
 /// Adds the elastic and dashpot forces of all springs to `force` [N]; formula in spring.h.
@@ -21,6 +22,12 @@ struct ElasticEnergy {
 template <class Real>
 void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
                        const Vec3Array<Real>& x, const Vec3Array<Real>& v, Vec3Array<Real>& force);
+
+/// Adds the elastic and dashpot forces of all membrane triangles to `force` [N]; see membrane.h.
+template <class Real>
+void add_membrane_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                         const Vec3Array<Real>& x, const Vec3Array<Real>& v,
+                         Vec3Array<Real>& force);
 
 /// Adds the elastic and damping forces of all hinges to `force` [N]; formula in hinge.h.
 template <class Real>
@@ -44,7 +51,7 @@ void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
 template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part);
 
-/// Energies of springs and bending of a part, and its largest strain. NaN propagates.
+/// Energies of membrane and bending of a part, and its largest strain. NaN propagates.
 template <class Real>
 ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real>& part,
                              const Vec3Array<Real>& x);
@@ -63,6 +70,12 @@ template <class Real>
 void add_spring_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
                        const Vec3Array<Real>& v, Vec3Array<Real>& force) {
   for (const ClothPart<Real>& part : model.parts) add_spring_forces(model, part, x, v, force);
+}
+
+template <class Real>
+void add_membrane_forces(const ClothModel<Real>& model, const Vec3Array<Real>& x,
+                         const Vec3Array<Real>& v, Vec3Array<Real>& force) {
+  for (const ClothPart<Real>& part : model.parts) add_membrane_forces(model, part, x, v, force);
 }
 
 template <class Real>

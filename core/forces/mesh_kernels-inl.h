@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/forces/kick-inl.h"
+#include "core/forces/membrane_law-inl.h"
 #include "core/forces/mesh_view.h"
 #include "core/forces/spring_law-inl.h"
 
@@ -131,6 +132,87 @@ struct RingPlace {
   }
 };
 
+/// Pulls of both triangles of each pair, and the strains that they leave for the next substep.
+/// @tparam MeetsLast   as in `gather`
+/// @tparam Remembered  whether the rates of the strains are the differences from those that the
+///                     last substep left, or follow from the velocities
+template <bool MeetsLast, bool Remembered, class Real>
+struct PairLanes {
+  using D = hn::CappedTag<Real, kMeshGroup>;
+  using V = hn::Vec<D>;
+
+  MembraneLaw<D> law;
+  V per_substep;             ///< relaxation time over the substep
+  const MeshOffset* corner;  ///< of the first lane
+  const Real* shape;
+  Real* strain;
+  std::ptrdiff_t last;
+
+  HWY_INLINE Triple<V> at(const Real* from, int c) const {
+    return gather<MeetsLast>(D(), from, corner + c * kMeshGroup, last);
+  }
+
+  /// @param t        0 or 1
+  /// @param x1,v1    of the common edge's other end, relative to x0, v0
+  HWY_INLINE CornerDifferences<V> pulls(int t, const Real* x, const Real* v, const Triple<V>& x0,
+                                        const Triple<V>& x1, const Triple<V>& v0,
+                                        const Triple<V>& v1) const {
+    const D d;
+    const auto number = [&](int n)
+                            HWY_ATTR { return hn::LoadU(d, shape + (4 * t + n) * kMeshGroup); };
+    const TriangleShape<V> own{number(0), number(1), number(2), number(3)};
+    const Strained<D> now(d, law, own, {x1, at(x, 2 + t) - x0});
+    Real* const kept = strain + 3 * t * kMeshGroup;
+    StrainLanes<V> e = now.strain;
+    if constexpr (Remembered) {
+      const auto grown = [&](V strain_now, int n) HWY_ATTR {
+        const V before = hn::LoadU(d, kept + n * kMeshGroup);
+        return fused(d, per_substep, hn::Sub(strain_now, before), strain_now);
+      };
+      e = {grown(e.u, 0), grown(e.v, 1), grown(e.shear, 2)};
+    } else {
+      const StrainLanes<V> rates = now.rates(d, law, own, {v1, at(v, 2 + t) - v0});
+      e = {hn::Add(e.u, rates.u), hn::Add(e.v, rates.v), hn::Add(e.shear, rates.shear)};
+    }
+    hn::StoreU(now.strain.u, d, kept);
+    hn::StoreU(now.strain.v, d, kept + kMeshGroup);
+    hn::StoreU(now.strain.shear, d, kept + 2 * kMeshGroup);
+    return now.pulls(d, law, own, e);
+  }
+};
+
+/// Stores in the ring what a group of pairs of triangles pulls with at its corners.
+/// @param corner  offsets of the corners from the block's first particle
+/// @param x,v     of the block's first particle
+template <bool MeetsLast, bool Remembered, class Real>
+HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const MeshOffset* corner, const Real* shape,
+                           Real* strain, std::ptrdiff_t last, const Real* x, const Real* v,
+                           RingPlace<Real>& ring) {
+  using Lanes = PairLanes<MeetsLast, Remembered, Real>;
+  using V = typename Lanes::V;
+  const typename Lanes::D d;
+  const MembraneLaw<typename Lanes::D> law(d, mesh.tensor);
+  const V per_substep = hn::Set(d, mesh.tensor.relaxation_time * mesh.substeps_per_second);
+  Real* const slots[kPairCorners] = {ring.next(), ring.next(), ring.next(), ring.next()};
+  for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
+    const Lanes pair{law, per_substep, corner + k, shape + k, strain + k, last};
+    const auto x0 = pair.at(x, 0), x1 = pair.at(x, 1) - x0;
+    Triple<V> v0{}, v1{};
+    if constexpr (!Remembered) {
+      v0 = pair.at(v, 0);
+      v1 = pair.at(v, 1) - v0;
+    }
+    const CornerDifferences<V> first = pair.pulls(0, x, v, x0, x1, v0, v1);
+    store_quads(d, first.d2, k, slots[2]);
+    const CornerDifferences<V> second = pair.pulls(1, x, v, x0, x1, v0, v1);
+    store_quads(d, second.d2, k, slots[3]);
+    const Triple<V> pull1 = first.d1 + second.d1;
+    store_quads(d, pull1, k, slots[1]);
+    const V zero = hn::Zero(d);
+    store_quads(d, Triple<V>{zero, zero, zero} - (pull1 + (first.d2 + second.d2)), k, slots[0]);
+  }
+}
+
 /// Pulls on a group's members by later neighbours; also stored in the ring.
 /// @param x,v  of the block's first particle
 /// @param sum  forces as quads
@@ -148,10 +230,10 @@ HWY_INLINE void pull_group(const MeshView<Real>& mesh, const MeshGroup& group,
     const MeshOffset* offsets = offset + k;
     const Real* numbers = number + k;
     ring = start;
-    const auto x0 = gather<MeetsLast>(d, x, offsets, last),
-               v0 = gather<MeetsLast>(d, v, offsets, last);
-    offsets += kMeshGroup;
     Triple<V> f{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    const auto x0 = gather<MeetsLast>(d, x, offsets, last),
+               v0 = group.near > 0 ? gather<MeetsLast>(d, v, offsets, last) : f;
+    offsets += kMeshGroup;
     const auto add = [&](const Triple<V>& pull) HWY_ATTR {
       f = f + pull;
       store_quads(d, pull, k, ring.next());
@@ -203,7 +285,8 @@ HWY_INLINE void pull_back(const MeshGroup& group, const MeshOffset* offset, cons
 
 /// Calls take(first, count, force) for each block in order, with the forces as quads. The particles
 /// passed to it are not read again.
-template <class Real, class Take>
+/// @tparam Remembered  as in PairLanes
+template <bool Remembered, class Real, class Take>
 HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const Real* v,
                                Take&& take) {
   HWY_ALIGN Real sum[4 * kMeshBlock], force[4 * kMeshBlock];
@@ -211,20 +294,41 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
   const MeshOffset* offset = mesh.offset;
   const Real* number = mesh.number;
   const std::uint16_t* pull = mesh.pull;
+  const MeshPairs* pairs = mesh.pairs;
+  const MeshOffset* corner = mesh.corner;
+  const Real* shape = mesh.shape;
+  Real* strain = mesh.strain;
   RingPlace<Real> ring{mesh.ring, 0, mesh.ring_size};
   for (std::ptrdiff_t begin = 0; begin < mesh.count; begin += kMeshBlock) {
     const std::ptrdiff_t first = mesh.first + begin, last = 3 * (mesh.last - first);
     const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kMeshBlock, mesh.count - begin);
     const int groups = static_cast<int>((count + kMeshGroup - 1) / kMeshGroup);
     const Real *const x0 = x + 3 * first, *const v0 = v + 3 * first;
+    if (pairs != nullptr) {
+      for (std::uint32_t g = 0; g < pairs->groups; ++g) {
+        if (pairs->meets_last)
+          pull_pairs<true, Remembered>(mesh, corner, shape, strain, last, x0, v0, ring);
+        else
+          pull_pairs<false, Remembered>(mesh, corner, shape, strain, last, x0, v0, ring);
+        corner += kPairCorners * kMeshGroup;
+        shape += kPairNumbers * kMeshGroup;
+        strain += kPairStrains * kMeshGroup;
+      }
+      ++pairs;
+    }
     const MeshOffset* own[kMeshBlock / kMeshGroup];
     for (int g = 0; g < groups; ++g) {
       Real* const to = sum + 4 * kMeshGroup * g;
+      own[g] = offset;
+      if (group[g].near + group[g].far == 0) {
+        std::fill_n(to, 4 * kMeshGroup, Real(0));
+        offset += kMeshGroup;
+        continue;
+      }
       if (group[g].meets_last)
         pull_group<true>(mesh, group[g], offset, number, last, x0, v0, ring, to);
       else
         pull_group<false>(mesh, group[g], offset, number, last, x0, v0, ring, to);
-      own[g] = offset;
       offset += (1 + group[g].near + group[g].far) * kMeshGroup;
       number += (3 * group[g].near + group[g].far) * kMeshGroup;
     }
@@ -239,23 +343,33 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
 
 template <class Real>
 HWY_INLINE void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* to) {
-  for_each_block(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) {
+  for_each_block<false>(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) {
     for (std::size_t i = 0; i < count; ++i)
       std::memcpy(to + 3 * (first + i), force + 4 * i, 3 * sizeof(Real));
   });
 }
 
+template <bool Remembered, class Real>
+HWY_INLINE void kick_blocks(const MeshView<Real>& mesh, const KickLaw<Real>& law,
+                            const KickedParticles<Real>& particles, const Real* x, Real* v) {
+  for_each_block<Remembered>(
+      mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) HWY_ATTR {
+        for_each_particle<Real, kMeshGroup>(count, [&](auto d, std::size_t i) HWY_ATTR {
+          Triple<hn::Vec<decltype(d)>> f;
+          auto spare = hn::Zero(d);
+          hn::LoadInterleaved4(d, force + 4 * i, f.x, f.y, f.z, spare);
+          kick_particles(d, law, particles, first + i, f, v, v);
+        });
+      });
+}
+
 template <class Real>
 HWY_INLINE void kick_all(const MeshView<Real>& mesh, const KickLaw<Real>& law,
                          const KickedParticles<Real>& particles, const Real* x, Real* v) {
-  for_each_block(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) HWY_ATTR {
-    for_each_particle<Real, kMeshGroup>(count, [&](auto d, std::size_t i) HWY_ATTR {
-      Triple<hn::Vec<decltype(d)>> f;
-      auto spare = hn::Zero(d);
-      hn::LoadInterleaved4(d, force + 4 * i, f.x, f.y, f.z, spare);
-      kick_particles(d, law, particles, first + i, f, v, v);
-    });
-  });
+  if (mesh.pairs != nullptr && mesh.substeps_per_second > 0)
+    kick_blocks<true>(mesh, law, particles, x, v);
+  else
+    kick_blocks<false>(mesh, law, particles, x, v);
 }
 
 HWY_ATTR void mesh_forces_f32(const MeshView<float>& mesh, const float* x, const float* v,

@@ -1,4 +1,4 @@
-// Sorts a mesh's springs into the lists of its kernels.
+// Sorts a mesh's springs or triangles into the lists of its kernels.
 
 #include "core/forces/mesh_pass.h"
 
@@ -37,6 +37,19 @@ bool MeshPass<Real>::collect_springs(const ClothModel<Real>& model, const ClothP
     }
     rows[static_cast<std::size_t>(earlier - part.particles.first)].near.push_back(
         {later, s.rest_length, s.stiffness, 0});
+  }
+  return true;
+}
+
+/// Counts the pairs of triangles at each particle. @returns whether there are few enough
+template <class Real>
+bool MeshPass<Real>::count_pairs(const Pairs& pairs, const ClothPart<Real>& part, Rows& rows) {
+  for (const TrianglePair<Real>& pair : pairs) {
+    for (std::size_t c = 0; c < (pair.is_single() ? 3U : 4U); ++c) {
+      assert(part.particles.contains(pair.x[c]));
+      Row& row = rows[static_cast<std::size_t>(pair.x[c] - part.particles.first)];
+      if (++row.pulled_by > kMostSpringsAtParticle) return false;
+    }
   }
   return true;
 }
@@ -117,6 +130,38 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
   groups_.push_back(group);
 }
 
+/// Lists of the pairs of triangles that begin in a block, in whole groups: the last one may have
+/// some of the next block, and at the mesh's end lanes without a pair repeat the last.
+template <class Real>
+void MeshPass<Real>::add_pairs(const Pairs& pairs, std::size_t block, Rows& rows) {
+  const auto count = pairs.size();
+  const Index first = static_cast<Index>(view_.first) + static_cast<Index>(block);
+  MeshPairs of_block;
+  for (; listed_ < count && pairs[listed_].earliest() < first + kMeshBlock;
+       listed_ = std::min(count, listed_ + kMeshGroup), ++of_block.groups) {
+    const auto lane = [&](std::size_t k) -> const TrianglePair<Real>& {
+      return pairs[std::min(listed_ + k, count - 1)];
+    };
+    for (std::size_t c = 0; c < kPairCorners; ++c, pull_count_ += kMeshGroup) {
+      for (std::size_t k = 0; k < kMeshGroup; ++k) {
+        const Index particle = lane(k).x[c];
+        const std::ptrdiff_t ahead = 3 * static_cast<std::ptrdiff_t>(particle - first);
+        in_reach_ = in_reach_ && ahead == static_cast<MeshOffset>(ahead);
+        of_block.meets_last = of_block.meets_last || particle == view_.last;
+        corners_.push_back(static_cast<MeshOffset>(ahead));
+        if (listed_ + k < count && !(c == 3 && lane(k).is_single()))
+          rows[static_cast<std::size_t>(particle - view_.first)].earlier.push_back(pull_count_ +
+                                                                                   quad_of_lane(k));
+      }
+    }
+    for (std::size_t n = 0; n < kPairNumbers; ++n) {
+      for (std::size_t k = 0; k < kMeshGroup; ++k) shapes_.push_back(lane(k).shape[n]);
+    }
+    strains_.resize(strains_.size() + kPairStrains * kMeshGroup, Real(0));
+  }
+  pairs_.push_back(of_block);
+}
+
 /// Groups particles of a block that pull equally many others, so that few slots stay unused;
 /// particles pulled by equally many are adjacent, so that the branch predictor learns where their
 /// lists end.
@@ -133,12 +178,14 @@ void MeshPass<Real>::sort_block(const Rows& rows, Members& block) {
 /// one.
 /// @returns the members of each group
 template <class Real>
-std::vector<typename MeshPass<Real>::Members> MeshPass<Real>::lay_out(Rows& rows) {
+std::vector<typename MeshPass<Real>::Members> MeshPass<Real>::lay_out(const Pairs& pairs,
+                                                                      Rows& rows) {
   std::vector<Members> groups;
   std::size_t reach = 0;  // the farthest look-back in the ring
   for (std::size_t begin = 0; begin < rows.size(); begin += kMeshBlock) {
     Members block(std::min<std::size_t>(kMeshBlock, rows.size() - begin));
     std::iota(block.begin(), block.end(), begin);
+    if (!pairs.empty()) add_pairs(pairs, begin, rows);
     sort_block(rows, block);
     for (auto first = block.begin(); first != block.end();) {
       const auto end = first + std::min<std::ptrdiff_t>(kMeshGroup, block.end() - first);
@@ -178,11 +225,16 @@ void MeshPass<Real>::list_pulls(const Rows& rows, const std::vector<Members>& gr
 template <class Real>
 void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   *this = MeshPass();
-  if (part.springs.count == 0) return;
-  const Spring<Real>& one = model.springs[static_cast<std::size_t>(part.springs.first)];
-  const Real damping = one.stiffness > 0 ? one.damping / one.stiffness : Real(0);
+  if (membrane_elements(part) == 0) return;
   Rows rows(static_cast<std::size_t>(part.particles.count));
-  if (!collect_springs(model, part, damping, rows)) return;
+  const Pairs pairs = pair_triangles<Real>(
+      {model.membrane.data() + part.membrane.first, static_cast<std::size_t>(part.membrane.count)});
+  if (part.springs.count > 0) {
+    const Spring<Real>& one = model.springs[static_cast<std::size_t>(part.springs.first)];
+    view_.damping_per_stiffness = one.stiffness > 0 ? one.damping / one.stiffness : Real(0);
+    if (!collect_springs(model, part, view_.damping_per_stiffness, rows)) return;
+  }
+  if (!count_pairs(pairs, part, rows)) return;
   collect_bending(part, rows);
   for (const Row& row : rows) {
     for (const std::vector<Link>* links : {&row.near, &row.far}) {
@@ -192,8 +244,8 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   }
   view_.first = part.particles.first;
   view_.last = model.particle_count() - 1;
-  view_.damping_per_stiffness = damping;
-  list_pulls(rows, lay_out(rows));
+  view_.tensor = part.membrane_tensor;
+  list_pulls(rows, lay_out(pairs, rows));
   if (!in_reach_) {
     *this = MeshPass();
     return;
@@ -202,6 +254,10 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   numbers_.shrink_to_fit();
   groups_.shrink_to_fit();
   pulls_.shrink_to_fit();
+  pairs_.shrink_to_fit();
+  corners_.shrink_to_fit();
+  shapes_.shrink_to_fit();
+  strains_.shrink_to_fit();
   point_view();
   view_.count = part.particles.count;
 }
@@ -213,6 +269,10 @@ void MeshPass<Real>::point_view() {
   view_.number = numbers_.data();
   view_.pull = pulls_.data();
   view_.ring = ring_.data();
+  view_.pairs = pairs_.empty() ? nullptr : pairs_.data();
+  view_.corner = corners_.data();
+  view_.shape = shapes_.data();
+  view_.strain = strains_.data();
 }
 
 template <class Real>
@@ -226,17 +286,21 @@ void MeshPass<Real>::compute_forces(const Vec3Array<Real>& x, const Vec3Array<Re
 
 template <class Real>
 void MeshPass<Real>::kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
-                          const Vec3Array<Real>& x, Vec3Array<Real>& v) {
+                          const Vec3Array<Real>& x, Vec3Array<Real>& v, Real since_last) {
+  assert(since_last >= 0);
   assert(fits());
   assert(static_cast<std::ptrdiff_t>(x.size()) == view_.last + 1);
   assert(v.size() == x.size() && particles.inverse_mass != nullptr);
+  view_.substeps_per_second = since_last > 0 ? 1 / since_last : Real(0);
   mesh_kick(view_, law, particles, x.data()->data(), v.data()->data());
 }
 
 template <class Real>
 std::size_t MeshPass<Real>::bytes() const {
   return groups_.capacity() * sizeof(MeshGroup) + offsets_.capacity() * sizeof(MeshOffset) +
-         (numbers_.capacity() + ring_.capacity()) * sizeof(Real) +
+         pairs_.capacity() * sizeof(MeshPairs) + corners_.capacity() * sizeof(MeshOffset) +
+         (numbers_.capacity() + shapes_.capacity() + strains_.capacity() + ring_.capacity()) *
+             sizeof(Real) +
          pulls_.capacity() * sizeof(std::uint16_t);
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/cloth/membrane_triangle.h"
 #include "core/types.h"
 
 // Layout of the lists that a mesh's kernels work on.
@@ -36,10 +37,24 @@ struct MeshGroup {
   bool meets_last = false;  ///< the model's last particle is among them or their neighbours
 };
 
+/// The pairs of triangles that are computed before the particles of a block: those whose earliest
+/// corner is in it. They are in groups of kMeshGroup; the last group may begin the next block's.
+struct MeshPairs {
+  std::uint32_t groups = 0;
+  bool meets_last = false;  ///< the model's last particle is a corner
+};
+
+/// Corners and numbers of the rest shape of a TrianglePair.
+inline constexpr std::size_t kPairCorners = 4, kPairNumbers = 8;
+
+/// Strains of both its triangles.
+inline constexpr std::size_t kPairStrains = 6;
+
 /// Input of a mesh's kernel: lists per group without gaps, with lengths given by its slots. Each
 /// pair of neighbours is computed once, by the one that comes first in the mesh. Its pull is stored
 /// for the other particle, which takes it with the opposite sign, in a ring that wraps around once
-/// the overwritten pulls are no longer needed.
+/// the overwritten pulls are no longer needed. Pairs of triangles store what they pull at each
+/// corner in the same ring, one slot a corner.
 template <class Real>
 struct MeshView {
   const MeshGroup* group = nullptr;    ///< kMeshBlock / kMeshGroup per block
@@ -47,6 +62,13 @@ struct MeshView {
   /// By near slot rest lengths [m], stiffness [N/m] and entries of the bending matrix [N/m], by far
   /// slot only the negative entries, kMeshGroup each.
   const Real* number = nullptr;
+  const MeshPairs* pairs = nullptr;    ///< by block; null: none, but springs
+  const MeshOffset* corner = nullptr;  ///< of groups of pairs, kMeshGroup for each corner
+  const Real* shape = nullptr;         ///< and for each number
+  Real* strain = nullptr;              ///< and for each strain, as last computed
+  Real substeps_per_second = 0;        ///< if the rates of strain are the differences since then;
+                                       ///< 0: they follow from the velocities
+  MembraneTensor<Real> tensor;
   const std::uint16_t* pull = nullptr;  ///< offset in the ring by earlier slot, kMeshGroup each
   Real* ring = nullptr;       ///< pulls as quads [N], kMeshGroup per slot; then a slot of zeros
   std::size_t ring_size = 0;  ///< quads without that slot

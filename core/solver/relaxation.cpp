@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/forces/force_pass.h"
+#include "core/solver/membrane_relaxation.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -153,6 +154,34 @@ void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std
   }
 }
 
+/// The same for membrane triangles, which have no rigid form.
+template <class Real>
+void sweep_membrane(Tick<Real>& tick, const ClothPart<Real>& part, bool down) {
+  assert(tick.compliant());
+  const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
+  const Vec3Array<Real>& x = tick.state.x;
+  Vec3Array<Real>& displacement = tick.work.wanted;
+  const IndexRange& range = part.membrane;
+  for (Index n = 0; n < range.count; ++n) {
+    const auto at = static_cast<std::size_t>(down ? range.first + n : range.end() - 1 - n);
+    const MembraneTriangle<Real>& t = tick.model.membrane[at];
+    std::array<std::size_t, 3> i;
+    std::array<Real, 3> w;
+    for (std::size_t k = 0; k < 3; ++k) {
+      i[k] = static_cast<std::size_t>(t.x[k]);
+      w[k] = tick.state.inverse_mass[i[k]];
+    }
+    if (w[0] == 0 && w[1] == 0 && w[2] == 0) continue;
+    const auto from_first = [&](std::size_t k) -> Vec3<Real> {
+      return (x[i[k]] - x[i[0]]) + (displacement[i[k]] - displacement[i[0]]);
+    };
+    const MembraneStrain<Real> strain = membrane_strain<Real>(t, from_first(1), from_first(2));
+    const std::array<Vec3<Real>, 3> moved = relax_membrane(
+        part.membrane_tensor, t, softness, w, strain, tick.work.membrane_multiplier[at]);
+    for (std::size_t k = 0; k < 3; ++k) displacement[i[k]] += moved[k];
+  }
+}
+
 /// All sweeps of a substep over the springs of one part that is not swept row by row. Without
 /// compliance they follow the seed and restart in each substep; with it, `turn` counts the sweeps
 /// of the tick.
@@ -187,9 +216,12 @@ void sweep_rows(const SweepView<Real>& grid, int sweeps, int turn) {
 template <class Real>
 void relax(Tick<Real>& tick, int substep) {
   const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
-  const StageTimer timer(tick.profile, Stage::relaxation, tick.model.springs.size() * sweeps);
+  const std::size_t elements = tick.model.springs.size() + tick.model.membrane.size();
+  const StageTimer timer(tick.profile, Stage::relaxation, elements * sweeps);
   const int turn = substep * tick.solver.sweeps;
   std::fill(tick.work.multiplier.begin(), tick.work.multiplier.end(), Real(0));
+  std::fill(tick.work.membrane_multiplier.begin(), tick.work.membrane_multiplier.end(),
+            Vec3<Real>::Zero());
   if (!tick.compliant()) {
     relax_part(tick, {0, static_cast<Index>(tick.model.springs.size())}, turn);
     return;
@@ -200,7 +232,12 @@ void relax(Tick<Real>& tick, int substep) {
       sweep_rows(grid.view(), tick.solver.sweeps, turn);
       grid.store_displacements(tick.work.wanted);
     } else {
-      relax_part(tick, tick.model.parts[p].springs, turn);
+      const ClothPart<Real>& part = tick.model.parts[p];
+      relax_part(tick, part.springs, turn);
+      for (int s = 0; part.membrane.count > 0 && s < tick.solver.sweeps; ++s) {
+        stop_point();
+        sweep_membrane(tick, part, (turn + s) % 2 == 0);
+      }
     }
   }
 }
@@ -289,6 +326,7 @@ void RelaxationWorkspace<Real>::prepare(const ClothModel<Real>& model) {
   for (Vec3Array<Real>* array : {&force, &external, &wanted})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   multiplier.assign(model.springs.size(), Real(0));
+  membrane_multiplier.assign(model.membrane.size(), Vec3<Real>::Zero());
   energy.prepare(model);
   grids.assign(model.parts.size(), {});
   for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);

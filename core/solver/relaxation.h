@@ -43,6 +43,7 @@ struct RelaxationWorkspace {
   Vec3Array<Real> external;                 ///< of hands and air only [N]
   Vec3Array<Real> wanted;                   ///< positions before contact, or displacements [m]
   std::vector<Real> multiplier;             ///< of each spring, within the substep [N s^2]
+  Vec3Array<Real> membrane_multiplier;      ///< of each triangle's strains, likewise [kg m^2]
   std::vector<GridRelaxation<Real>> grids;  ///< for each part the row-wise form of XPBD
   EnergyPass<Real> energy;
 
@@ -58,9 +59,10 @@ struct RelaxationWorkspace {
 /// and backwards, so that the numbering favours no end of the cloth. Finally v = (x' - x) / dt.
 ///
 /// With compliance the same sweeps are XPBD (Macklin, Mueller, Chentanez 2016): a spring of
-/// stiffness k has compliance/k. Their variable is the displacement x' - x, so that many small
-/// substeps do not lose the velocity in the last bits of the positions; on grids they run row by
-/// row in colours (grid_relaxation.h).
+/// stiffness k has compliance/k, and the three strains of a membrane triangle are relaxed together
+/// with compliance times the inverse of its tensor (membrane_relaxation.h). Their variable is the
+/// displacement x' - x, so that many small substeps do not lose the velocity in the last bits of
+/// the positions; on grids they run row by row in colours (grid_relaxation.h).
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least 1

@@ -14,23 +14,24 @@
 namespace weft {
 namespace {
 
-/// Springs and quadratic bending of a part: by gathering, accounted to stretch, or element by
+/// Membrane and quadratic bending of a part: by gathering, accounted to stretch, or element by
 /// element.
 template <class Real>
-void evaluate_springs(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
+void evaluate_membrane(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
   const ClothPart<Real>& part = tick.part(p);
   Vec3Array<Real>& force = tick.work.internal;
   const std::size_t stencils = quadratic_stencil_count(part);
   if (tick.work.meshes[p].fits()) {
-    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+    const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     tick.profile[Stage::bending].work += stencils;
     tick.work.meshes[p].compute_forces(tick.state.x, velocity, force);
     return;
   }
   std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());
-  if (part.springs.count > 0) {
-    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+  if (membrane_elements(part) > 0) {
+    const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     add_spring_forces(tick.model, part, tick.state.x, velocity, force);
+    add_membrane_forces(tick.model, part, tick.state.x, velocity, force);
   }
   if (stencils > 0) {
     const StageTimer timer(tick.profile, Stage::bending, stencils);
@@ -42,7 +43,7 @@ void evaluate_springs(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& ve
 template <class Real>
 void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
   const ClothPart<Real>& part = tick.part(p);
-  evaluate_springs(tick, p, velocity);
+  evaluate_membrane(tick, p, velocity);
   if (part.hinges.count == 0) return;
   const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
@@ -98,22 +99,24 @@ void kick(Tick<Real>& tick, const IndexRange& range, const Kick<Real>& k,
   run_kick(pass);
 }
 
-/// Springs, bending and kick of a mesh in one pass, all accounted to stretch.
+/// Membrane, bending and kick of a mesh in one pass, all accounted to stretch.
+/// @param again  whether the last kick of the mesh was a substep ago
 template <class Real>
-void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k) {
+void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, bool again) {
   const ClothPart<Real>& part = tick.part(p);
-  const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+  const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
   tick.profile[Stage::bending].work += quadratic_stencil_count(part);
   tick.profile[Stage::integration].work += size_of(part.particles);
   const Real* const external =
       tick.has_external_forces ? tick.work.external.data()->data() : nullptr;
   tick.work.meshes[p].kick(law_of(tick, k), {tick.state.inverse_mass.data(), external},
-                           tick.state.x, tick.state.v);
+                           tick.state.x, tick.state.v, again ? tick.dt : Real(0));
 }
 
 /// Forces and kick of all parts, with positions and velocities of the model up to date.
+/// @param again  whether it is not the tick's first
 template <class Real>
-void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
+void advance_kick(Tick<Real>& tick, const Kick<Real>& k, bool again) {
   Vec3Array<Real>& v = tick.state.v;
   evaluate_external_forces(tick, v, tick.has_impulses);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
@@ -123,7 +126,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k) {
       advance_grid(tick, p, k, Real(0));
       tick.grid(p).store_velocities(v);
     } else if (tick.work.kicks_at_once(tick.model, p)) {
-      kick_mesh(tick, p, k);
+      kick_mesh(tick, p, k, again);
     } else {
       evaluate_elements(tick, p, v);
       kick(tick, tick.part(p).particles, k, v, v);
@@ -141,7 +144,7 @@ void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
       evaluate_elements(tick, p, velocity);
       continue;
     }
-    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.springs));
+    const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     tick.profile[Stage::bending].work += quadratic_stencil_count(part);
     tick.grid(p).load(tick.state.x, velocity);
     tick.grid(p).compute_internal_forces(tick.work.internal);
@@ -163,7 +166,7 @@ void kick_awake(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& fr
 template <class Real>
 void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   if (tick.solver.damping_sweeps == 1) {
-    advance_kick(tick, k);
+    advance_kick(tick, k, true);
     return;
   }
   Vec3Array<Real>&v = tick.state.v, &estimate = tick.work.velocity;
@@ -225,7 +228,7 @@ double drift(Tick<Real>& tick) {
 template <class Real>
 void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
   if (tick.solver.damping_sweeps == 1) {
-    advance_kick(tick, k);
+    advance_kick(tick, k, false);
     return;
   }
   evaluate_forces(tick, tick.state.v);

@@ -46,7 +46,7 @@ std::vector<SlackSprings> slack_springs(const World<Real>& world) {
   const int substeps = static_cast<int>(world.cost_in(def.environment).substeps);
   for (std::size_t k = 0; k < world.model().parts.size(); ++k) {
     const ClothPart<Real>& part = world.model().parts[k];
-    if (part.springs.count == 0) continue;
+    if (membrane_elements(part) == 0) continue;
     const double h = spacing_of(world.model(), part);
     SlackSprings slack;
     slack.substeps = substeps;

@@ -69,8 +69,8 @@ void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
-      model_(build_cloths<Real>(def.cloths)), contact_(make_contact(def_, model_, runtime)),
-      account_(total_mass(model_)),
+      model_(build_cloths<Real>(cloths_to_build(def_))),
+      contact_(make_contact(def_, model_, runtime)), account_(total_mass(model_)),
       sleep_(model_, def.sleep, tick_seconds(),
              solver_of(def) == SolverKind::relaxation || contact_of(def) == ContactModel::seed) {
   state_ = initial_state(model_);

@@ -155,7 +155,7 @@ template <class Real>
 void World<Real>::set_softness(double softness) {
   check_field("", {"softness", kLeastSoftness, 1, "", "fraction of the springs' stiffness"},
               softness);
-  ClothModel<Real> model = build_cloths<Real>(def_.cloths);
+  ClothModel<Real> model = build_cloths<Real>(cloths_to_build(def_));
   soften(softness, model);
   softness_ = softness;
   assert(model.springs.size() == model_.springs.size());
@@ -163,6 +163,7 @@ void World<Real>::set_softness(double softness) {
   model_.springs = std::move(model.springs);
   for (std::size_t p = 0; p < model_.parts.size(); ++p) {
     model_.parts[p].grid_springs = model.parts[p].grid_springs;
+    model_.parts[p].membrane_tensor = model.parts[p].membrane_tensor;
     FrequencyBounds& bounds = model_.parts[p].bounds;  // of bending they stay
     bounds.membrane_omega2 = model.parts[p].bounds.membrane_omega2;
     bounds.membrane_damping_rate = model.parts[p].bounds.membrane_damping_rate;

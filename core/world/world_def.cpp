@@ -66,6 +66,24 @@ std::string look_name(const ClothDef& cloth) {
   return word;
 }
 
+namespace {
+
+bool relaxes_rigidly(const WorldDef& def) {
+  return solver_of(def) == SolverKind::relaxation && def.relaxation.compliance == 0;
+}
+
+}  // namespace
+
+std::vector<ClothDef> cloths_to_build(const WorldDef& def) {
+  std::vector<ClothDef> cloths = def.cloths;
+  if (!relaxes_rigidly(def)) return cloths;
+  for (ClothDef& cloth : cloths) {
+    if (cloth.membrane_model == MembraneModel::automatic)
+      cloth.membrane_model = MembraneModel::springs;
+  }
+  return cloths;
+}
+
 std::string cloth_name(const WorldDef& def, Index cloth) {
   assert(cloth >= 0 && static_cast<std::size_t>(cloth) < def.cloths.size());
   const std::string& name = def.cloths[static_cast<std::size_t>(cloth)].name;
@@ -149,6 +167,12 @@ void validate(const WorldDef& def) {
   visit_fields(def, [](const std::string& path, const FieldInfo& info, const auto& value) {
     check_field(path, info, value);
   });
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    if (relaxes_rigidly(def) && def.cloths[k].membrane_model == MembraneModel::triangles)
+      throw DefinitionError(cloth_field(k, "cloth.membrane_model"), "triangles",
+                            "automatic or springs with rigid relaxation",
+                            "give relaxation.compliance, e.g. 1, or take another solver");
+  }
   const SelfContact self = def.contact.seed.self;
   const auto refuse_self = [&](const char* allowed, const char* hint) {
     throw DefinitionError("contact.self", text_of(self_contact_info(), self), allowed, hint);

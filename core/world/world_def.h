@@ -115,6 +115,10 @@ ContactModel contact_of(const WorldDef& def);
 /// fabric tells one.
 std::string look_name(const ClothDef& cloth);
 
+/// The cloths with a membrane that the solver has: rigid relaxation (compliance 0) needs springs,
+/// also along the edges of a mesh.
+std::vector<ClothDef> cloths_to_build(const WorldDef& def);
+
 /// Name of a cloth for messages; its number if it has none.
 std::string cloth_name(const WorldDef& def, Index cloth);
 

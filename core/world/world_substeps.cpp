@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cloth/membrane.h"
 #include "core/forces/air/air.h"
 #include "core/world/constants.h"
 #include "core/world/world.h"
@@ -59,9 +60,12 @@ template <class Real>
 StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverKind kind,
                                             const EnvironmentDef& environment) const {
   StabilityBound bound{part.bounds.bending_omega2, part.bounds.bending_damping_rate};
-  if (kind == SolverKind::verlet) {  // in verlet springs are forces too
-    bound.omega2 += part.bounds.membrane_omega2;
-    bound.damping_rate += part.bounds.membrane_damping_rate;
+  if (kind == SolverKind::verlet) {  // in verlet the membrane acts by forces too
+    const double stretched =
+        stretched_membrane_omega2(part.bounds, longest_thread(model_, part, state_.x));
+    bound.omega2 += part.bounds.membrane_omega2 + stretched;
+    bound.damping_rate += part.bounds.membrane_damping_rate +
+                          static_cast<double>(part.membrane_tensor.relaxation_time) * stretched;
   }
   if (is_calm(environment)) return bound;
   double speed2 = 0;

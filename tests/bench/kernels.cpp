@@ -46,6 +46,11 @@ WorldDef as_mesh(WorldDef def) {
   return def;
 }
 
+WorldDef with_edge_springs(WorldDef def) {
+  def.cloths[0].membrane_model = MembraneModel::springs;
+  return def;
+}
+
 /// A world whose ticks are timed in turn with those of others.
 struct Timed {
   World<float> world;
@@ -130,16 +135,18 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
   const FabricDef soft = bench_fabrics().front().fabric;
   const auto swing = [&](int n) { return swing_scene().make(n, soft); };
   Timed grid(swing(128)), small_grid(swing(64)), mesh(as_mesh(swing(quick ? 64 : 128)));
+  Timed net(with_edge_springs(as_mesh(swing(quick ? 64 : 128))));
   Timed xpbd(relaxing(swing(64), 128, 1, 1)), xpbd_sweeps(relaxing(swing(64), 16, 8, 1), 8);
   Timed seed(relaxing(swing(64), 1, 50, 0), 50);
   const int runs = 5, ticks = quick ? 1 : 4;
   for (int k = 0; k < runs; ++k) {
-    for (Timed* timed : {&grid, &small_grid, &mesh, &xpbd, &xpbd_sweeps, &seed}) timed->run(ticks);
+    for (Timed* timed : {&grid, &small_grid, &mesh, &net, &xpbd, &xpbd_sweeps, &seed}) timed->run(ticks);
   }
   std::vector<KernelFigure> figures = {
       figure("verlet on a grid of 128 x 128, with dashpots, a particle and substep", grid, 3),
       figure("verlet on a grid of 64 x 64, with dashpots, a particle and substep", small_grid, 0),
       figure("verlet on a triangle mesh, gathers, a particle and substep", mesh, 12),
+      figure("verlet on the same mesh with springs along its edges, a particle and substep", net, 0),
       figure("XPBD on a grid of 64 x 64, 128 substeps, a particle and substep", xpbd, 8),
       figure("XPBD on a grid of 64 x 64, 16 substeps of 8 sweeps, a particle and sweep",
              xpbd_sweeps, 8),

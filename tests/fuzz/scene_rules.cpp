@@ -62,8 +62,41 @@ void keep_cells(Dice dice, Json& cloth) {
     cloth["fabric"]["shear"] = most * (dice.chance(0.5) ? 0.999 : dice.uniform(0, 0.999));
 }
 
-void keep_cloth(const Dice& dice, Json& cloth) {
+/// Whether the scene's solver takes springs as rigid, and so has no membrane triangles.
+bool relaxes_rigidly(const Json& scene) {
+  const Json solver = scene.value("solver", Json::object());
+  const std::string kind = solver.value("kind", "automatic");
+  const bool relaxes = kind == "automatic" ? scene.value("model", "") == "seed" : kind == "relaxation";
+  const Json relaxation = scene.value("relaxation", Json::object());
+  return relaxes && relaxation.value("compliance", 0.0) == 0;
+}
+
+/// Keeps to membranes that the cloth can have, and their tensor positive definite.
+void keep_membrane(const Dice& dice, bool rigid, Json& cloth) {
+  const std::string model = cloth.value("membrane_model", "automatic");
+  const bool mesh = cloth.value("form", "") == "mesh";
+  if (model == "triangles" && (rigid || !mesh)) cloth.erase("membrane_model");
+  Json told = cloth.value("fabric", Json::object());
+  if (!mesh || rigid || model == "springs") {
+    if (told.contains("poisson")) cloth["fabric"].erase("poisson");
+    return;
+  }
+  const FabricDef preset = preset_of(told);
+  const double warp = told.value("stretch_warp", preset.stretch_warp),
+               weft = told.value("stretch_weft", preset.stretch_weft);
+  const double share = Dice(dice).uniform(0, 0.999);
+  const bool own = told.value("poisson", kPoissonOfGrid) != kPoissonOfGrid;
+  if (own && weft > 0)
+    cloth["fabric"]["poisson"] = std::min(100.0, share * std::sqrt(warp / weft));
+  else if (own)
+    cloth["fabric"].erase("poisson");
+  if ((!own || !(weft > 0)) && told.value("shear", preset.shear) >= std::sqrt(warp * weft))
+    cloth["fabric"]["shear"] = share * std::sqrt(warp * weft);
+}
+
+void keep_cloth(const Dice& dice, bool rigid, Json& cloth) {
   if (cloth.value("form", "") != "mesh") keep_cells(dice, cloth);
+  keep_membrane(dice, rigid, cloth);
   const Json fabric = cloth.value("fabric", Json::object());
   const bool bends_flat = !cloth.contains("rest_angle") && !fabric.contains("preset") &&
                           !fabric.contains("bending_damping");
@@ -169,7 +202,7 @@ void keep_contact(Json& scene) {
 
 void make_legal(const Dice& dice, Json& scene) {
   for (std::size_t k = 0; k < scene["cloths"].size(); ++k)
-    keep_cloth(dice.of("cloths").of(k), scene["cloths"][k]);
+    keep_cloth(dice.of("cloths").of(k), relaxes_rigidly(scene), scene["cloths"][k]);
   if (scene.contains("colliders")) {
     for (Json& collider : scene["colliders"]) {
       if (collider.contains("motion"))

@@ -75,8 +75,8 @@ def is_number(value):
 
 NUMBERS = "numbers of a vector"
 TAGS = {"shape", "place", "form"}
-WORDS = {"bending_model", "mass_lumping", "corner", "side", "kind", "model", "preset", "self", "objects",
-         "correction"}
+WORDS = {"bending_model", "membrane_model", "mass_lumping", "corner", "side", "kind", "model", "preset", "self",
+         "objects", "correction"}
 WHOLE = {"rows", "columns", "min_substeps", "sweeps", "substeps", "passes"}
 
 

@@ -19,8 +19,9 @@ inline constexpr double kViolentLoss = 0.1;
 /// Larger: the waves of slow cloth are damped away. Smaller: cloth near rest counts as violent.
 inline constexpr double kViolentSpeed = 1;
 
-/// And one of its springs has this strain [1]. Waves in a stiff cloth that snaps taut may have as
-/// much energy, and may be damped. Larger: less cloth counts as violent. Smaller: stiff cloth does.
+/// And one of its springs or triangles has this strain [1]. Waves in a stiff cloth that snaps taut
+/// may have as much energy, and may be damped. Larger: less cloth counts as violent. Smaller: stiff
+/// cloth does.
 inline constexpr double kViolentStrain = 0.1;
 
 /// Largest displacement of a particle in a substep, relative to its neighbours, that the guard can
@@ -70,6 +71,11 @@ inline constexpr double kJacobiDamping = 0.857;
 /// Factor by which pinned particles are heavier on the coarse levels [1]. Larger: float loses what
 /// stands beside it. Smaller: coarse levels move what is pinned.
 inline constexpr double kPinnedWeight = 1e5;
+
+/// Sine of the angle between the threads of a triangle below which it has no normal [1]: it then
+/// gets no stiffness from its tension. Larger: more of a crushed cloth is solved in more steps.
+/// Smaller: a normal that is rounding.
+inline constexpr double kLeastThreadSine = 1e-3;
 
 /// Bending with a matrix smaller than this fraction of the inertia is left to the finest level [1].
 /// Larger: cloth that hardly bends converges slowly. Smaller: coarse levels do work in vain.

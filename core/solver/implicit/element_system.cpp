@@ -31,7 +31,8 @@ Eigen::Map<Vec3<Real>> at(Real* p, Index particle) {
 
 template <class Real>
 ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
-    : particles_(part.particles), springs_(part.springs), hinges_(part.hinges) {
+    : particles_(part.particles), springs_(part.springs), hinges_(part.hinges),
+      tensor_(part.membrane_tensor) {
   const auto count = static_cast<std::size_t>(particles_.count);
   const auto margin = static_cast<std::size_t>(kGridMargin);
   size_ = (3 * count + margin - 1) / margin * margin;
@@ -43,6 +44,14 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
     ends_.push_back({spring.i - particles_.first, spring.j - particles_.first});
   }
   blocks_.assign(ends_.size(), {});
+  for (Index n = part.membrane.first; n < part.membrane.end(); ++n) {
+    MembraneTriangle<Real> t = model.membrane[static_cast<std::size_t>(n)];
+    for (Index& corner : t.x) {
+      assert(particles_.contains(corner));
+      corner -= particles_.first;
+    }
+    membrane_.push_back({t, {}});
+  }
   visit_bending_stencils(
       part, [&](Real stiffness, const Index* corners, const double* weights, int corner_count) {
         if (!(stiffness > 0)) return;
@@ -66,6 +75,26 @@ void ElementSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
   assert(static_cast<std::size_t>(particles_.end()) <= inverse_mass.size());
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i] = inverse_mass[static_cast<std::size_t>(particles_.first) + i] > 0 ? Real(1) : Real(0);
+}
+
+template <class Real>
+void ElementSystem<Real>::linearise_membrane(const NewtonPoint<Real>& point,
+                                             Vec3Array<Real>& force) {
+  const auto first = static_cast<std::size_t>(particles_.first);
+  for (MembraneElement& element : membrane_) {
+    const MembraneTriangle<Real>& t = element.triangle;
+    std::array<Vec3<Real>, 3> x, v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = point.x[first + static_cast<std::size_t>(t.x[k])];
+      v[k] = point.v[first + static_cast<std::size_t>(t.x[k])];
+    }
+    element.term = MembraneTerm<Real>(tensor_, t, x, v, point.rate);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(t.x[k]);
+      force[first + i] += element.term.forces()[k];
+      add_to(diagonal_[i], element.term.own(t, k));
+    }
+  }
 }
 
 template <class Real>
@@ -93,6 +122,7 @@ void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonP
     add_to(diagonal_[i - first], term.block);
     add_to(diagonal_[j - first], term.block);
   }
+  linearise_membrane(point, force);
   for (const Stencil& stencil : stencils_) {
     Vec3<Real> sum = Vec3<Real>::Zero();
     for (int n = 0; n < stencil.count; ++n)
@@ -148,6 +178,12 @@ void ElementSystem<Real>::apply(const Real* p, Real* y) const {
     const Vec3<Real> product = times<Real>(blocks_[n], at(p, i) - at(p, j));
     at(y, i) += product;
     at(y, j) -= product;
+  }
+  for (const MembraneElement& element : membrane_) {
+    const MembraneTriangle<Real>& t = element.triangle;
+    const std::array<Vec3<Real>, 3> push =
+        element.term.times(t, {at(p, t.x[0]), at(p, t.x[1]), at(p, t.x[2])});
+    for (std::size_t k = 0; k < 3; ++k) at(y, t.x[k]) += push[k];
   }
   for (const Stencil& stencil : stencils_) {
     Vec3<Real> sum = Vec3<Real>::Zero();

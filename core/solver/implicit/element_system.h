@@ -5,13 +5,14 @@
 #include "core/cloth/cloth_model.h"
 #include "core/solver/implicit/grid_system.h"
 #include "core/solver/implicit/linear_terms.h"
+#include "core/solver/implicit/membrane_term.h"
 #include "core/types.h"
 
 // Linear systems of meshes and other cloths without a regular grid.
 
 namespace weft {
 
-/// The linear systems of cloths other than regular grids, spring by spring and hinge by hinge,
+/// The linear systems of cloths other than regular grids, element by element,
 /// preconditioned by the inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the
 /// gradient of its angle (Gauss-Newton: the curvature of the angle itself may be indefinite).
 template <class Real>
@@ -47,7 +48,16 @@ class ElementSystem {
     Real stiffness;
   };
 
+  struct MembraneElement {
+    MembraneTriangle<Real> triangle;  ///< particles counted from the part's first
+    MembraneTerm<Real> term;
+  };
+
+  void linearise_membrane(const NewtonPoint<Real>& point, Vec3Array<Real>& force);
+
   IndexRange particles_, springs_, hinges_;
+  MembraneTensor<Real> tensor_;
+  std::vector<MembraneElement> membrane_;
   std::size_t size_ = 0;  ///< a multiple of kGridMargin
   std::vector<std::array<Index, 2>> ends_;
   std::vector<SymmetricBlock<Real>> blocks_;

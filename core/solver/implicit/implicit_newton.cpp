@@ -150,8 +150,7 @@ void linearise(Step<Real>& step, Real progress) {
   for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
     if (step.state.is_asleep(p)) continue;
     const ClothPart<Real>& part = step.model.parts[p];
-    const StageTimer timer(step.profile, Stage::stretch,
-                           static_cast<std::size_t>(part.springs.count));
+    const StageTimer timer(step.profile, Stage::stretch, membrane_elements(part));
     step.profile[Stage::bending].work +=
         quadratic_stencil_count(part) + static_cast<std::size_t>(part.hinges.count);
     std::visit([&](auto& system) { system.linearise(step.model, point, work.force); },

@@ -106,7 +106,9 @@ TEST_CASE("a mesh's mass is density times area, by thirds to the corners") {
 }
 
 TEST_CASE("equilateral springs stretch like the isotropic fabric with a third for the shear") {
-  const ClothModel<double> model = build_cloth<double>(sheet_cloth(21, 21, 0.05));
+  ClothDef def = sheet_cloth(21, 21, 0.05);
+  def.membrane_model = MembraneModel::springs;
+  const ClothModel<double> model = build_cloth<double>(def);
   for (const Spring<double>& s : model.springs) {
     CHECK(s.rest_length == Approx(0.05));
     // Inner: Y (2 sqrt(3)/4 l^2) / l^2; on the border half.
@@ -199,11 +201,13 @@ TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hin
 
 TEST_CASE("a curved mesh is at rest as it lies") {
   ClothDef def = sheet_cloth(9, 9, 0.1);
+  def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
   for (Vec3d& p : def.mesh->mesh.positions) p[2] = 0.3 * std::sin(3 * p[0]) * std::cos(2 * p[1]);
   const ClothModel<double> model = build_cloth<double>(def);
   const Vec3Array<double> still(model.mass.size(), Vec3d::Zero());
   Vec3Array<double> force = still;
   add_spring_forces(model, model.rest_positions, still, force);
+  add_membrane_forces(model, model.rest_positions, still, force);
   add_hinge_forces(model, model.rest_positions, still, force);
   for (const Vec3d& f : force) CHECK(f.norm() < 1e-9);  // springs have 1e-14 m^2 added to l^2
 }

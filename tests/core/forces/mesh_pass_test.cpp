@@ -104,6 +104,7 @@ Shaken<Real> forces_on(const ClothDef& def) {
   pass.compute_forces(s.x, s.v, s.gathered);
   s.element_wise.assign(s.x.size(), Vec3<Real>::Zero());
   add_spring_forces(s.model, s.x, s.v, s.element_wise);
+  add_membrane_forces(s.model, s.x, s.v, s.element_wise);
   add_quadratic_bending_forces(s.model, s.x, s.element_wise);
   return s;
 }
@@ -119,7 +120,8 @@ double largest(const Vec3Array<Real>& forces) {
 
 TEST_CASE("forces gathered by particle are those of the elements, to 1e-12 of the largest") {
   SeededRandom random(7);
-  const ClothDef def = ragged_mesh(GENERATE(18, 27, 63, 64, 65, 200, 700), random);
+  ClothDef def = ragged_mesh(GENERATE(18, 27, 63, 64, 65, 200, 700), random);
+  def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
   const Shaken<double> s = forces_on<double>(def);
   CHECK(s.model.hinges.empty());
   const double scale = largest(s.element_wise);
@@ -132,7 +134,9 @@ TEST_CASE("forces gathered by particle are those of the elements, to 1e-12 of th
 
 TEST_CASE("gathered forces add up to nothing: no momentum is made") {
   SeededRandom random(8);
-  const Shaken<double> s = forces_on<double>(ragged_mesh(300, random));
+  ClothDef def = ragged_mesh(300, random);
+  def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
+  const Shaken<double> s = forces_on<double>(def);
   Vec3d sum = Vec3d::Zero(), turn = Vec3d::Zero();
   for (std::size_t i = 0; i < s.x.size(); ++i) {
     sum += s.gathered[i];
@@ -157,7 +161,8 @@ TEST_CASE("a mesh moved far from the origin bends and stretches with the same fo
 
 TEST_CASE("every instruction set gathers the same bits") {
   SeededRandom random(10);
-  const ClothDef def = ragged_mesh(200, random);
+  ClothDef def = ragged_mesh(200, random);
+  def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
   const auto best = forces_on<float>(def).gathered;
   const std::int64_t supported = hwy::SupportedTargets();
   int tried = 0;
@@ -174,14 +179,20 @@ TEST_CASE("every instruction set gathers the same bits") {
 
 TEST_CASE("springs whose damping does not go with their stiffness stay element-wise") {
   SeededRandom random(11);
-  ClothModel<float> model = build_cloth<float>(ragged_mesh(100, random));
+  ClothDef def = ragged_mesh(100, random);
+  def.membrane_model = MembraneModel::springs;
+  ClothModel<float> model = build_cloth<float>(def);
   model.springs[3].damping *= 2;
   CHECK(!is_gathered(model));
 }
 
 TEST_CASE("hubs of many springs, and neighbours far apart in memory, stay element-wise") {
-  CHECK(is_gathered(build_cloth<float>(wheel(64))));
-  CHECK(!is_gathered(build_cloth<float>(wheel(65))));
+  for (const MembraneModel membrane : {MembraneModel::triangles, MembraneModel::springs}) {
+    ClothDef most = wheel(64), more = wheel(65);
+    most.membrane_model = more.membrane_model = membrane;
+    CHECK(is_gathered(build_cloth<float>(most)));
+    CHECK(!is_gathered(build_cloth<float>(more)));
+  }
   ClothModel<float> model = build_cloth<float>(test::flat_cloth(190, 190));
   CHECK(is_gathered(model));
   model.springs[0].j = 190 * 190 - 1;
@@ -190,7 +201,8 @@ TEST_CASE("hubs of many springs, and neighbours far apart in memory, stay elemen
 
 TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by them") {
   SeededRandom random(12);
-  const ClothDef def = ragged_mesh(GENERATE(18, 63, 65, 700), random);
+  ClothDef def = ragged_mesh(GENERATE(18, 63, 65, 700), random);
+  def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
   const Shaken<float> s = forces_on<float>(def);
   const Vec3Array<float> pull = test::random_velocities(s.model, 1, random);
   std::vector<float> inverse_mass;
@@ -207,7 +219,7 @@ TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by 
     pass.prepare(s.model, s.model.parts[0]);
     for (int again = 0; again < 2; ++again) {
       at_once = s.v;
-      pass.kick(law, particles, s.x, at_once);
+      pass.kick(law, particles, s.x, at_once, 0);
       CHECK(at_once == by_forces);
     }
     CHECK(at_once[0] == s.v[0] * law.keep);
@@ -218,10 +230,19 @@ TEST_CASE("a mesh's lists leave few slots free: particles with as many neighbour
   // The offset to itself, its part of a group's head, and in the mean three springs, two further
   // neighbours and what as many earlier ones have found.
   const double needed = 2 + 0.25 + 3 * (2 + 3 * 4) + 2 * (2 + 4) + (3 + 2) * 2;
-  const ClothModel<float> model = build_cloth<float>(union_jack(64));
+  ClothDef def = union_jack(64);
+  def.membrane_model = MembraneModel::springs;
+  const ClothModel<float> springs = build_cloth<float>(def);
   MeshPass<float> pass;
-  pass.prepare(model, model.parts[0]);
+  pass.prepare(springs, springs.parts[0]);
   CHECK(static_cast<double>(pass.bytes()) / (64 * 64) < 1.15 * needed);
+  // Two triangles with three ways and five numbers each, and six corners' pulls; bending leads to
+  // all five neighbours.
+  const double triangles = 2 + 0.25 + 2 * (3 * 2 + 5 * 4) + 6 * 2 + 5 * (2 + 4) + 5 * 2;
+  def.membrane_model = MembraneModel::triangles;
+  const ClothModel<float> membrane = build_cloth<float>(def);
+  pass.prepare(membrane, membrane.parts[0]);
+  CHECK(static_cast<double>(pass.bytes()) / (64 * 64) < 1.15 * triangles);
 }
 
 TEST_CASE("verlet takes at most 125 bytes a particle of a large mesh, until air or hands come") {
