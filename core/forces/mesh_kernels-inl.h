@@ -152,16 +152,16 @@ struct PairLanes {
     return gather<MeetsLast>(D(), from, corner + c * kMeshGroup, last);
   }
 
-  /// @param t        0 or 1
-  /// @param x1,v1    of the common edge's other end, relative to x0, v0
-  HWY_INLINE CornerDifferences<V> pulls(int t, const Real* x, const Real* v, const Triple<V>& x0,
-                                        const Triple<V>& x1, const Triple<V>& v0,
-                                        const Triple<V>& v1) const {
+  /// @param t      0 or 1
+  /// @param x      of its corners
+  /// @param v0,v1  of x0, and of x1 relative to that
+  HWY_INLINE CornerDifferences<V> pulls(int t, const CornerDifferences<V>& x, const Real* v,
+                                        const Triple<V>& v0, const Triple<V>& v1) const {
     const D d;
     const auto number = [&](int n)
                             HWY_ATTR { return hn::LoadU(d, shape + (4 * t + n) * kMeshGroup); };
     const TriangleShape<V> own{number(0), number(1), number(2), number(3)};
-    const Strained<D> now(d, law, own, {x1, at(x, 2 + t) - x0});
+    const Strained<D> now(d, law, own, x);
     Real* const kept = strain + 3 * t * kMeshGroup;
     StrainLanes<V> e = now.strain;
     if constexpr (Remembered) {
@@ -181,12 +181,43 @@ struct PairLanes {
   }
 };
 
+/// Adds what bending pulls with between the corners of a pair.
+/// @param link  weights of the six links, of the first lane
+/// @param x     of corners 1, 2, 3 from corner 0
+template <class D, class Real, class V = hn::Vec<D>>
+HWY_INLINE void add_links(D d, const Real* link, const Triple<V> (&x)[3], Triple<V> (&pull)[3]) {
+  const auto weight = [&](int n) HWY_ATTR { return hn::LoadU(d, link + n * kMeshGroup); };
+  for (int c = 0; c < 3; ++c) pull[c] = fused(d, x[c], weight(c), pull[c]);
+  int n = 3;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a + 1; b < 3; ++b, ++n) {
+      const Triple<V> more = (x[b] - x[a]) * weight(n);
+      pull[b] = pull[b] + more;
+      pull[a] = pull[a] - more;
+    }
+  }
+}
+
+/// Where the kernel is in the lists of pairs.
+template <class Real>
+struct PairPlace {
+  const MeshOffset* corner;
+  const Real *shape, *link;  ///< link: null without bending
+  Real* strain;
+
+  HWY_INLINE void next() {
+    corner += kPairCorners * kMeshGroup;
+    shape += kPairNumbers * kMeshGroup;
+    strain += kPairStrains * kMeshGroup;
+    if (link != nullptr) link += kPairLinks * kMeshGroup;
+  }
+};
+
 /// Stores in the ring what a group of pairs of triangles pulls with at its corners.
-/// @param corner  offsets of the corners from the block's first particle
-/// @param x,v     of the block's first particle
+/// @param x,v  of the block's first particle
 template <bool MeetsLast, bool Remembered, class Real>
-HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const MeshOffset* corner, const Real* shape,
-                           Real* strain, std::ptrdiff_t last, const Real* x, const Real* v,
+HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const PairPlace<Real>& at,
+                           std::ptrdiff_t last, const Real* x, const Real* v,
                            RingPlace<Real>& ring) {
   using Lanes = PairLanes<MeetsLast, Remembered, Real>;
   using V = typename Lanes::V;
@@ -195,21 +226,21 @@ HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const MeshOffset* corner,
   const V per_substep = hn::Set(d, mesh.tensor.relaxation_time * mesh.substeps_per_second);
   Real* const slots[kPairCorners] = {ring.next(), ring.next(), ring.next(), ring.next()};
   for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
-    const Lanes pair{law, per_substep, corner + k, shape + k, strain + k, last};
-    const auto x0 = pair.at(x, 0), x1 = pair.at(x, 1) - x0;
+    const Lanes pair{law, per_substep, at.corner + k, at.shape + k, at.strain + k, last};
+    const auto x0 = pair.at(x, 0);
+    const Triple<V> from[3] = {pair.at(x, 1) - x0, pair.at(x, 2) - x0, pair.at(x, 3) - x0};
     Triple<V> v0{}, v1{};
     if constexpr (!Remembered) {
       v0 = pair.at(v, 0);
       v1 = pair.at(v, 1) - v0;
     }
-    const CornerDifferences<V> first = pair.pulls(0, x, v, x0, x1, v0, v1);
-    store_quads(d, first.d2, k, slots[2]);
-    const CornerDifferences<V> second = pair.pulls(1, x, v, x0, x1, v0, v1);
-    store_quads(d, second.d2, k, slots[3]);
-    const Triple<V> pull1 = first.d1 + second.d1;
-    store_quads(d, pull1, k, slots[1]);
+    const CornerDifferences<V> first = pair.pulls(0, {from[0], from[1]}, v, v0, v1),
+                               second = pair.pulls(1, {from[0], from[2]}, v, v0, v1);
+    Triple<V> pull[3] = {first.d1 + second.d1, first.d2, second.d2};
+    if (at.link != nullptr) add_links(d, at.link + k, from, pull);
+    for (int c = 0; c < 3; ++c) store_quads(d, pull[c], k, slots[c + 1]);
     const V zero = hn::Zero(d);
-    store_quads(d, Triple<V>{zero, zero, zero} - (pull1 + (first.d2 + second.d2)), k, slots[0]);
+    store_quads(d, Triple<V>{zero, zero, zero} - (pull[0] + (pull[1] + pull[2])), k, slots[0]);
   }
 }
 
@@ -295,9 +326,7 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
   const Real* number = mesh.number;
   const std::uint16_t* pull = mesh.pull;
   const MeshPairs* pairs = mesh.pairs;
-  const MeshOffset* corner = mesh.corner;
-  const Real* shape = mesh.shape;
-  Real* strain = mesh.strain;
+  PairPlace<Real> pair{mesh.corner, mesh.shape, mesh.link, mesh.strain};
   RingPlace<Real> ring{mesh.ring, 0, mesh.ring_size};
   for (std::ptrdiff_t begin = 0; begin < mesh.count; begin += kMeshBlock) {
     const std::ptrdiff_t first = mesh.first + begin, last = 3 * (mesh.last - first);
@@ -307,12 +336,10 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
     if (pairs != nullptr) {
       for (std::uint32_t g = 0; g < pairs->groups; ++g) {
         if (pairs->meets_last)
-          pull_pairs<true, Remembered>(mesh, corner, shape, strain, last, x0, v0, ring);
+          pull_pairs<true, Remembered>(mesh, pair, last, x0, v0, ring);
         else
-          pull_pairs<false, Remembered>(mesh, corner, shape, strain, last, x0, v0, ring);
-        corner += kPairCorners * kMeshGroup;
-        shape += kPairNumbers * kMeshGroup;
-        strain += kPairStrains * kMeshGroup;
+          pull_pairs<false, Remembered>(mesh, pair, last, x0, v0, ring);
+        pair.next();
       }
       ++pairs;
     }

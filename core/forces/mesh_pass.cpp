@@ -11,6 +11,7 @@
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/constants.h"
+#include "core/forces/force_pass.h"
 #include "core/forces/mesh_kernels.h"
 
 namespace weft {
@@ -130,6 +131,25 @@ void MeshPass<Real>::add_group(Rows& rows, const Members& members, std::size_t b
   groups_.push_back(group);
 }
 
+/// Moves the bending between the corners of pairs from the rows, which need not lead to each other
+/// then, to the first pair that has both.
+template <class Real>
+void MeshPass<Real>::give_links(Rows& rows, Pairs& pairs) const {
+  constexpr std::size_t kEnds[kPairLinks][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  for (TrianglePair<Real>& pair : pairs) {
+    for (std::size_t n = 0; n < kPairLinks; ++n) {
+      const auto [earlier, later] = std::minmax({pair.x[kEnds[n][0]], pair.x[kEnds[n][1]]});
+      std::vector<Link>& links = rows[static_cast<std::size_t>(earlier - view_.first)].far;
+      const auto found = std::find_if(links.begin(), links.end(), [later = later](const Link& one) {
+        return one.neighbour == later;
+      });
+      if (found == links.end()) continue;
+      pair.link[n] = static_cast<Real>(-found->bending_weight);
+      links.erase(found);
+    }
+  }
+}
+
 /// Lists of the pairs of triangles that begin in a block, in whole groups: the last one may have
 /// some of the next block, and at the mesh's end lanes without a pair repeat the last.
 template <class Real>
@@ -158,6 +178,9 @@ void MeshPass<Real>::add_pairs(const Pairs& pairs, std::size_t block, Rows& rows
       for (std::size_t k = 0; k < kMeshGroup; ++k) shapes_.push_back(lane(k).shape[n]);
     }
     strains_.resize(strains_.size() + kPairStrains * kMeshGroup, Real(0));
+    for (std::size_t n = 0; n < (bends_ ? kPairLinks : 0); ++n) {
+      for (std::size_t k = 0; k < kMeshGroup; ++k) links_.push_back(lane(k).link[n]);
+    }
   }
   pairs_.push_back(of_block);
 }
@@ -226,8 +249,9 @@ template <class Real>
 void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   *this = MeshPass();
   if (membrane_elements(part) == 0) return;
+  view_.first = part.particles.first;
   Rows rows(static_cast<std::size_t>(part.particles.count));
-  const Pairs pairs = pair_triangles<Real>(
+  Pairs pairs = pair_triangles<Real>(
       {model.membrane.data() + part.membrane.first, static_cast<std::size_t>(part.membrane.count)});
   if (part.springs.count > 0) {
     const Spring<Real>& one = model.springs[static_cast<std::size_t>(part.springs.first)];
@@ -236,13 +260,14 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   }
   if (!count_pairs(pairs, part, rows)) return;
   collect_bending(part, rows);
+  bends_ = quadratic_stencil_count(part) > 0;
+  if (bends_) give_links(rows, pairs);
   for (const Row& row : rows) {
     for (const std::vector<Link>* links : {&row.near, &row.far}) {
       for (const Link& link : *links)
         ++rows[static_cast<std::size_t>(link.neighbour - part.particles.first)].pulled_by;
     }
   }
-  view_.first = part.particles.first;
   view_.last = model.particle_count() - 1;
   view_.tensor = part.membrane_tensor;
   list_pulls(rows, lay_out(pairs, rows));
@@ -258,6 +283,7 @@ void MeshPass<Real>::prepare(const ClothModel<Real>& model, const ClothPart<Real
   corners_.shrink_to_fit();
   shapes_.shrink_to_fit();
   strains_.shrink_to_fit();
+  links_.shrink_to_fit();
   point_view();
   view_.count = part.particles.count;
 }
@@ -273,6 +299,7 @@ void MeshPass<Real>::point_view() {
   view_.corner = corners_.data();
   view_.shape = shapes_.data();
   view_.strain = strains_.data();
+  view_.link = links_.empty() ? nullptr : links_.data();
 }
 
 template <class Real>
@@ -299,7 +326,8 @@ template <class Real>
 std::size_t MeshPass<Real>::bytes() const {
   return groups_.capacity() * sizeof(MeshGroup) + offsets_.capacity() * sizeof(MeshOffset) +
          pairs_.capacity() * sizeof(MeshPairs) + corners_.capacity() * sizeof(MeshOffset) +
-         (numbers_.capacity() + shapes_.capacity() + strains_.capacity() + ring_.capacity()) *
+         (numbers_.capacity() + shapes_.capacity() + links_.capacity() + strains_.capacity() +
+          ring_.capacity()) *
              sizeof(Real) +
          pulls_.capacity() * sizeof(std::uint16_t);
 }

@@ -67,6 +67,7 @@ class MeshPass {
   static void sort_block(const Rows& rows, Members& block);
   std::uint8_t stored_slots(std::size_t slots);
   void add_group(Rows& rows, const Members& members, std::size_t block);
+  void give_links(Rows& rows, Pairs& pairs) const;
   void add_pairs(const Pairs& pairs, std::size_t block, Rows& rows);
   std::vector<Members> lay_out(const Pairs& pairs, Rows& rows);
   void list_pulls(const Rows& rows, const std::vector<Members>& groups);
@@ -77,9 +78,10 @@ class MeshPass {
   std::vector<MeshOffset> corners_;
   std::vector<MeshGroup> groups_;
   std::vector<MeshOffset> offsets_;
-  AlignedVector<Real> numbers_, shapes_, strains_, ring_;
+  AlignedVector<Real> numbers_, shapes_, links_, strains_, ring_;
   std::vector<std::uint16_t> pulls_;
   std::size_t pull_count_ = 0;  // lanes of slots laid out so far
+  bool bends_ = false;          // pairs have links
   std::size_t listed_ = 0;      // pairs laid out so far
   bool in_reach_ = true;        // every neighbour is within a MeshOffset, every count in its 8 bits
 };

@@ -47,8 +47,8 @@ struct MeshPairs {
 /// Corners and numbers of the rest shape of a TrianglePair.
 inline constexpr std::size_t kPairCorners = 4, kPairNumbers = 8;
 
-/// Strains of both its triangles.
-inline constexpr std::size_t kPairStrains = 6;
+/// Strains of both its triangles, and pairs of its corners.
+inline constexpr std::size_t kPairStrains = 6, kPairLinks = 6;
 
 /// Input of a mesh's kernel: lists per group without gaps, with lengths given by its slots. Each
 /// pair of neighbours is computed once, by the one that comes first in the mesh. Its pull is stored
@@ -65,6 +65,8 @@ struct MeshView {
   const MeshPairs* pairs = nullptr;    ///< by block; null: none, but springs
   const MeshOffset* corner = nullptr;  ///< of groups of pairs, kMeshGroup for each corner
   const Real* shape = nullptr;         ///< and for each number
+  const Real* link = nullptr;          ///< and for each two corners, 0-1 0-2 0-3 1-2 1-3 2-3, their
+                                       ///< negative entry of the bending matrix [N/m]; null: none
   Real* strain = nullptr;              ///< and for each strain, as last computed
   Real substeps_per_second = 0;        ///< if the rates of strain are the differences since then;
                                        ///< 0: they follow from the velocities

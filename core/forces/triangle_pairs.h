@@ -19,6 +19,9 @@ struct TrianglePair {
   std::array<Index, 4> x{};
   /// u1, u2, v1, v2 [1/m] of both, as in MembraneTriangle, from x0 to x1 and to the third corner.
   std::array<Real, 8> shape{};
+  /// Of its corners 0-1 0-2 0-3 1-2 1-3 2-3 the negative entry of the bending matrix, for the pass
+  /// over the mesh to fill in [N/m].
+  std::array<Real, 6> link{};
 
   bool is_single() const { return x[3] == x[0]; }
   Index earliest() const;

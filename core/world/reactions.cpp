@@ -18,6 +18,7 @@ void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& st
   Vec3Array<Real> force = hand_forces;
   force.resize(model.mass.size(), Vec3<Real>::Zero());
   add_spring_forces(model, state.x, state.v, force);
+  add_membrane_forces(model, state.x, state.v, force);
   add_hinge_forces(model, state.x, state.v, force);
   add_quadratic_bending_forces(model, state.x, force);
   if (surroundings.air)

@@ -34,7 +34,7 @@ struct Reactions {
   std::vector<Vec3d> colliders;
 };
 
-/// Forces on pinned particles: minus those of springs, bending, gravity, air and hands.
+/// Forces on pinned particles: minus those of membrane, bending, gravity, air and hands.
 /// @param hand_forces    forces of hands on each particle [N]; empty if there are none
 /// @param reactions receives `pins`; its contacts are taken into account
 template <class Real>

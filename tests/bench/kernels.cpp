@@ -140,13 +140,15 @@ std::vector<KernelFigure> measure_kernels(bool quick) {
   Timed seed(relaxing(swing(64), 1, 50, 0), 50);
   const int runs = 5, ticks = quick ? 1 : 4;
   for (int k = 0; k < runs; ++k) {
-    for (Timed* timed : {&grid, &small_grid, &mesh, &net, &xpbd, &xpbd_sweeps, &seed}) timed->run(ticks);
+    for (Timed* timed : {&grid, &small_grid, &mesh, &net, &xpbd, &xpbd_sweeps, &seed})
+      timed->run(ticks);
   }
   std::vector<KernelFigure> figures = {
       figure("verlet on a grid of 128 x 128, with dashpots, a particle and substep", grid, 3),
       figure("verlet on a grid of 64 x 64, with dashpots, a particle and substep", small_grid, 0),
       figure("verlet on a triangle mesh, gathers, a particle and substep", mesh, 12),
-      figure("verlet on the same mesh with springs along its edges, a particle and substep", net, 0),
+      figure("verlet on the same mesh with springs along its edges, a particle and substep", net,
+             0),
       figure("XPBD on a grid of 64 x 64, 128 substeps, a particle and substep", xpbd, 8),
       figure("XPBD on a grid of 64 x 64, 16 substeps of 8 sweeps, a particle and sweep",
              xpbd_sweeps, 8),

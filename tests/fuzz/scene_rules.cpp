@@ -66,7 +66,8 @@ void keep_cells(Dice dice, Json& cloth) {
 bool relaxes_rigidly(const Json& scene) {
   const Json solver = scene.value("solver", Json::object());
   const std::string kind = solver.value("kind", "automatic");
-  const bool relaxes = kind == "automatic" ? scene.value("model", "") == "seed" : kind == "relaxation";
+  const bool relaxes =
+      kind == "automatic" ? scene.value("model", "") == "seed" : kind == "relaxation";
   const Json relaxation = scene.value("relaxation", Json::object());
   return relaxes && relaxation.value("compliance", 0.0) == 0;
 }

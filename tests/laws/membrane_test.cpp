@@ -51,8 +51,7 @@ struct Compliance {
 /// its own sides [J/m^2].
 double energy_density(const ClothModel<double>& model, double area, double a, double b, double g) {
   Vec3Array<double> x = model.rest_positions;
-  for (Vec3d& p : x)
-    p = Vec3d(p[0] * (1 + a) + 0.5 * g * p[1], 0.5 * g * p[0] + (1 + b) * p[1], 0);
+  for (Vec3d& p : x) p = Vec3d(p[0] * (1 + a) + 0.5 * g * p[1], 0.5 * g * p[0] + (1 + b) * p[1], 0);
   return elastic_energy(model, x).stretch / area;
 }
 
@@ -98,7 +97,7 @@ TEST_CASE("on any mesh modulus, shear and Poisson's ratio are the fabric's in ev
 TEST_CASE("patch test: stretched and sheared alike everywhere, inner particles feel no force") {
   for (const Cut cut : test::kCuts) {
     INFO(test::name_of(cut));
-    constexpr double kEdge = 0.02, kStrain = 0.1;
+    constexpr double kEdge = 0.02, kStrain = 0.2;
     ClothDef def = test::triangle_sheet(cut, 0.2, 0.16, kEdge, 0.4);
     def.fabric = kFabrics[0];
     def.fabric.bending_warp = def.fabric.bending_weft = 0;
@@ -135,12 +134,7 @@ struct Hung {
   double compliance(const ClothDef& strip, double length) const {
     WorldDef def = test::empty_world(strip);
     def.environment.gravity = Vec3d(0, -1, 0);
-    def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
-    def.pins.clear();
-    const std::vector<Vec3d>& places = strip.mesh->mesh.positions;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (places[i][1] > -1e-9) def.pins.push_back({static_cast<Index>(i), 0, {}});
-    }
+    def.pins = test::upper_border(strip);
     def.solver.kind = solver;
     if (solver == SolverKind::relaxation) {
       def.relaxation.compliance = 1;

@@ -2,6 +2,7 @@
 
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
+#include "tests/support/sheets_of_triangles.h"
 #include "tests/support/worlds.h"
 
 // What holds a cloth carries its weight.
@@ -50,6 +51,20 @@ TEST_CASE("the pins of a cloth that hangs at rest carry its weight, and nothing 
   // Two corners alike, but for what the third pin shares with the first.
   CHECK(reactions.pins[0].force[1] + reactions.pins[2].force[1] ==
         Approx(reactions.pins[1].force[1]).epsilon(0.02));
+}
+
+TEST_CASE("the pins of a mesh carry its weight, whatever its membrane") {
+  ClothDef sheet = test::triangle_sheet(test::Cut::irregular, 0.4, 0.3, 0.05, 0.5);
+  sheet.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
+  WorldDef def = test::empty_world(sheet);
+  def.environment.gravity = Vec3d(0, -kGravity, 0);
+  def.environment.damping = 8;
+  def.pins = test::upper_border(sheet);
+  World<float> world(def);
+  test::advance(world, 6);
+  const Vec3d sum = sum_of_pins(world.coming_reactions());
+  CHECK(sum[1] == Approx(weight_of(world)).epsilon(1e-3));
+  CHECK(std::hypot(sum[0], sum[2]) < weight_of(world) * 1e-3);
 }
 
 TEST_CASE("the strip that holds a curtain carries its weight") {

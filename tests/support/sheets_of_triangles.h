@@ -4,7 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/cloth/cloth_def.h"
+#include "core/attachments/pins.h"
+#include "core/cloth/cloth_model.h"
 #include "tests/support/cloths.h"
 #include "tests/support/random.h"
 
@@ -37,8 +38,8 @@ inline FlatMesh cut_rectangle(Cut cut, double width, double height, double h) {
     std::array<double, 2> p = {s, height * r / rows};
     // Inner points are moved; those of the border stay on it.
     if (cut == Cut::irregular) {
-      if (s > 0 && s < width) p[0] += 0.27 * width / columns * random.uniform(-1, 1);
-      if (r > 0 && r < rows) p[1] += 0.27 * height / rows * random.uniform(-1, 1);
+      if (s > 0 && s < width) p[0] += 0.2 * width / columns * random.uniform(-1, 1);
+      if (r > 0 && r < rows) p[1] += 0.2 * height / rows * random.uniform(-1, 1);
     }
     row[static_cast<std::size_t>(r)].push_back(static_cast<Index>(mesh.points.size()));
     mesh.points.push_back(p);
@@ -58,10 +59,9 @@ inline FlatMesh cut_rectangle(Cut cut, double width, double height, double h) {
       std::size_t a = 0, b = 0;
       const auto s_of = [&](Index i) { return mesh.points[static_cast<std::size_t>(i)][0]; };
       while (a + 1 < upper.size() || b + 1 < lower.size()) {
-        const bool along_upper =
-            b + 1 == lower.size() ||
-            (a + 1 < upper.size() && s_of(upper[a + 1]) - s_of(lower[b]) <=
-                                         s_of(lower[b + 1]) - s_of(upper[a]));
+        const bool along_upper = b + 1 == lower.size() ||
+                                 (a + 1 < upper.size() && s_of(upper[a + 1]) - s_of(lower[b]) <=
+                                                              s_of(lower[b + 1]) - s_of(upper[a]));
         if (along_upper) {
           mesh.triangles.push_back({upper[a], lower[b], upper[a + 1]});
           ++a;
@@ -103,6 +103,16 @@ inline ClothDef triangle_sheet(Cut cut, double width, double height, double h, d
   mesh.mesh.triangles = flat.triangles;
   def.mesh = mesh;
   return def;
+}
+
+/// Pins on the border of such a sheet at y = 0, whose particles have their own numbers.
+inline std::vector<PinDef> upper_border(const ClothDef& sheet) {
+  std::vector<PinDef> pins;
+  const ClothModel<double> model = build_cloth<double>(sheet);
+  for (std::size_t i = 0; i < model.rest_positions.size(); ++i) {
+    if (model.rest_positions[i][1] > -1e-9) pins.push_back({static_cast<Index>(i), 0, {}});
+  }
+  return pins;
 }
 
 }  // namespace weft::test

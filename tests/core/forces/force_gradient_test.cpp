@@ -69,8 +69,8 @@ double energy_of(const ClothModel<double>& model, const Vec3Array<double>& x) {
 }  // namespace
 
 TEST_CASE("what moves a cloth is minus the gradient of the energy that it tells, to 1e-5") {
-  ClothDef grid = test::flat_cloth(4, 5, 1, 0.6), disc = grid, mesh =
-      test::triangle_sheet(test::Cut::irregular, 0.5, 0.4, 0.1, 0.5), narrowing = mesh;
+  ClothDef grid = test::flat_cloth(4, 5, 1, 0.6), disc = grid,
+           mesh = test::triangle_sheet(test::Cut::irregular, 0.5, 0.4, 0.1, 0.5), narrowing = mesh;
   disc.rows = disc.columns = 6;
   disc.outline = Outline::ellipse;
   narrowing.fabric.poisson = 0.4;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/forces/force_pass.h"
 #include "core/solver/implicit/membrane_term.h"
+#include "tests/support/seeded_random.h"
 #include "tests/support/sheets_of_triangles.h"
 
 using namespace weft;
@@ -192,8 +193,7 @@ TEST_CASE("the implicit matrix of a triangle is symmetric, positive and exact al
     const Eigen::Matrix3d turn = Eigen::Quaterniond(0.3, 0.1, -0.7, 0.5).normalized().matrix();
     const double det = t.u1 * t.v2 - t.u2 * t.v1;
     const double long_u = 1.02, long_v = 1.05;
-    const Corners pulled{Vec3d::Zero(),
-                         turn * Vec3d(long_u * t.v2 / det, -long_v * t.u2 / det, 0),
+    const Corners pulled{Vec3d::Zero(), turn * Vec3d(long_u * t.v2 / det, -long_v * t.u2 / det, 0),
                          turn * Vec3d(-long_u * t.v1 / det, long_v * t.u1 / det, 0)};
     const Block9 exact = difference_of_forces(c, t, pulled);
     const MembraneTerm<double> term(c, t, pulled, still, 1);
@@ -203,8 +203,7 @@ TEST_CASE("the implicit matrix of a triangle is symmetric, positive and exact al
     const MembraneTerm<double> crumpled(c, t, x, still, 1);
     const Block9 matrix = matrix_of(crumpled, t);
     CHECK((matrix - matrix.transpose()).norm() < 1e-12 * matrix.norm());
-    CHECK(Eigen::SelfAdjointEigenSolver<Block9>(matrix).eigenvalues()[0] >
-          -1e-12 * matrix.norm());
+    CHECK(Eigen::SelfAdjointEigenSolver<Block9>(matrix).eigenvalues()[0] > -1e-12 * matrix.norm());
     for (std::size_t k = 0; k < 3; ++k) {
       const SymmetricBlock<double> own = crumpled.own(t, k);
       const auto block = matrix.block<3, 3>(3 * static_cast<int>(k), 3 * static_cast<int>(k));
@@ -226,17 +225,18 @@ double highest_frequency2(const ClothModel<double>& model, const Vec3Array<doubl
   for (int round = 0; round < 400; ++round) {
     double size = 0;
     for (const Vec3d& p : y) size = std::max(size, p.norm());
+    for (Vec3d& p : y) p /= size;
     constexpr double kStep = 1e-7;
     Vec3Array<double> high = x, low = x, up = still, down = still;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      high[i] += y[i] * (kStep / size);
-      low[i] -= y[i] * (kStep / size);
+      high[i] += y[i] * kStep;
+      low[i] -= y[i] * kStep;
     }
     add_membrane_forces(model, high, still, up);
     add_membrane_forces(model, low, still, down);
     double yy = 0, yky = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vec3d ky = (down[i] - up[i]) * (size / (2 * kStep));
+      const Vec3d ky = (down[i] - up[i]) / (2 * kStep);
       yy += model.mass[i] * y[i].squaredNorm();
       yky += y[i].dot(ky);
       y[i] = ky / model.mass[i];
