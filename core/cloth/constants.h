@@ -20,7 +20,7 @@ inline constexpr int kMassSharingRounds = 24;
 
 /// Least weight of a corner in them, where the fabric resists in one direction only [1]. Larger: a
 /// worse start. Smaller: shares that are rounding.
-inline constexpr double kLeastShare = 1e-3;
+inline constexpr double kLeastCornerWeight = 1e-3;
 
 /// Length of a thread, 1 at rest, below which stretching does not raise the bound of a mesh's
 /// frequency: kShakenMargin has room for it [1]. Larger: a strongly stretched cloth may become

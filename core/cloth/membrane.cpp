@@ -151,8 +151,8 @@ class MassShares {
       : model_(model), part_(part), shares_(static_cast<std::size_t>(part.membrane.count)) {
     // To begin with as each corner resists being moved, and none without mass.
     const auto& c = part.membrane_tensor;
-    const double base =
-        static_cast<double>(c.shear) + kLeastShare * static_cast<double>(c.warp + c.weft + c.shear);
+    const double base = static_cast<double>(c.shear) +
+                        kLeastCornerWeight * static_cast<double>(c.warp + c.weft + c.shear);
     for (std::size_t n = 0; n < shares_.size(); ++n) {
       const Gradients<Real> b(triangle(n));
       const auto area = static_cast<double>(triangle(n).area);
