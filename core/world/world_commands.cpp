@@ -166,6 +166,7 @@ void World<Real>::set_softness(double softness) {
     model_.parts[p].membrane_tensor = model.parts[p].membrane_tensor;
     FrequencyBounds& bounds = model_.parts[p].bounds;  // of bending they stay
     bounds.membrane_omega2 = model.parts[p].bounds.membrane_omega2;
+    bounds.membrane_shear_omega2 = model.parts[p].bounds.membrane_shear_omega2;
     bounds.membrane_damping_rate = model.parts[p].bounds.membrane_damping_rate;
   }
   wake_all();
