@@ -9,17 +9,6 @@
 namespace weft::proto {
 namespace {
 
-// The fixed part after the common header.
-struct FrameFields {
-  std::uint64_t tick;
-  double time, server_time;
-  std::uint32_t sequence, reference, epoch, vertices;
-  float step;
-  std::uint32_t sections;
-};
-static_assert(sizeof(FrameFields) == 48);
-constexpr std::size_t kFrameBytes = kCommonBytes + sizeof(FrameFields);
-
 bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
@@ -74,6 +63,20 @@ bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) 
   }
 }
 
+/// What is wrong with the fixed part of a frame; null if nothing is.
+const char* fault_of(const BinaryHeader& common, const FrameFields& fields) {
+  if (common.codec == 1) return "unknown codec";
+  if (fields.tick >= kTickEnd) return "the tick is too large";
+  if (!std::isfinite(fields.time) || !std::isfinite(fields.server_time))
+    return "a time is not finite";
+  const bool key = (common.flags & kFrameKey) != 0;
+  if (common.codec == 0 && (fields.step != 0 || fields.reference != fields.sequence || !key))
+    return "a float32 frame builds on no other";
+  if (common.codec == 0) return nullptr;
+  if (!std::isfinite(fields.step) || fields.step <= 0) return "the step is not above 0";
+  return key == (fields.reference == fields.sequence) ? nullptr : "a key frame builds on no other";
+}
+
 template <class Sample>
 void put_samples(BinaryWriter& writer, SectionKind kind, std::span<const Sample> samples) {
   if (!samples.empty()) writer.put_section(kind, 0, samples);
@@ -100,28 +103,36 @@ void encode_frame(const FrameView& frame, Bytes& out) {
 }
 
 Result<Frame> decode_frame(std::span<const std::byte> message) {
-  const Result<BinaryHeader> common = read_header(message, BinaryType::frame, kFrameBytes, 0);
+  Result<FrameParts> parts = read_frame(message);
+  if (!parts) return std::move(parts).error();
+  if (parts->codec != 0) return binary_error("unknown codec");
+  return std::move(parts->frame);
+}
+
+Result<FrameParts> read_frame(std::span<const std::byte> message) {
+  const Result<BinaryHeader> common =
+      read_header(message, BinaryType::frame, kFrameBytes, kPackedCodec);
   if (!common) return common.error();
   const auto fields = read_at<FrameFields>(message, kCommonBytes);
-  if (fields.tick >= kTickEnd) return binary_error("the tick is too large");
-  if (!std::isfinite(fields.time) || !std::isfinite(fields.server_time))
-    return binary_error("a time is not finite");
-  if (fields.step != 0 || fields.reference != fields.sequence || !(common->flags & kFrameKey))
-    return binary_error("a float32 frame builds on no other");
+  if (const char* fault = fault_of(*common, fields)) return binary_error(fault);
   Result<std::vector<Section>> sections = read_sections(message, kFrameBytes, fields.sections);
   if (!sections) return std::move(sections).error();
-  Frame frame;
-  frame.header = {common->flags,   fields.tick,      fields.time, fields.server_time,
-                  fields.sequence, fields.reference, fields.epoch};
+  FrameParts parts;
+  parts.codec = common->codec;
+  parts.vertices = fields.vertices;
+  parts.step = fields.step;
+  parts.frame.header = {common->flags,   fields.tick,      fields.time, fields.server_time,
+                        fields.sequence, fields.reference, fields.epoch};
   bool positions = false;
   for (const Section& section : *sections) {
     if (section.index != 0) continue;
-    if (!read_section(section, fields.vertices, frame))
+    if (!read_section(section, fields.vertices, parts.frame))
       return binary_error("a section does not fit the frame");
-    positions = positions || section.kind == kPositions;
+    if (section.kind == kPackedPositions) parts.packed = section.payload;
+    positions = positions || section.kind == (parts.codec == 0 ? kPositions : kPackedPositions);
   }
   if (!positions) return binary_error("the frame has no positions");
-  return frame;
+  return parts;
 }
 
 }  // namespace weft::proto

@@ -12,6 +12,8 @@
 
 namespace weft::proto {
 
+inline constexpr std::uint8_t kPackedCodec = 2;  ///< of frames; codec/packed_frame.h reads it
+
 enum FrameFlag : std::uint8_t {
   kFrameKey = 1,   ///< needs no other frame
   kFrameJump = 2,  ///< the state was replaced; do not interpolate to it
@@ -109,7 +111,29 @@ struct Frame {
   std::vector<ReactionSample> reactions;
 };
 
-/// Accepts exactly what README.md allows, with finite positions. Never reads outside `message`.
+/// Accepts exactly what README.md allows of codec f32, with finite positions. Never reads outside
+/// `message`.
 Result<Frame> decode_frame(std::span<const std::byte> message);
+
+/// The fixed part of a frame after the common header, as it is on the wire.
+struct FrameFields {
+  std::uint64_t tick;
+  double time, server_time;
+  std::uint32_t sequence, reference, epoch, vertices;
+  float step;
+  std::uint32_t sections;
+};
+static_assert(sizeof(FrameFields) == 48);
+inline constexpr std::size_t kFrameBytes = kCommonBytes + sizeof(FrameFields);
+
+/// A frame in either codec, as far as no other frame is needed to read it.
+struct FrameParts {
+  Frame frame;  ///< with positions in codec f32 only
+  std::uint8_t codec = 0;
+  std::uint32_t vertices = 0;
+  float step = 0;                     ///< of the packed positions' lattice [m], above 0
+  std::span<const std::byte> packed;  ///< packed positions, inside the message; not checked
+};
+Result<FrameParts> read_frame(std::span<const std::byte> message);
 
 }  // namespace weft::proto

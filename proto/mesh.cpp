@@ -7,6 +7,7 @@
 
 #include <xxhash.h>
 
+#include "proto/codec/order.h"
 #include "proto/section_kinds.h"
 #include "proto/types.h"
 
@@ -17,6 +18,7 @@ struct MeshFields {
   std::uint32_t vertices, triangles, collider_meshes, sections;
 };
 constexpr std::size_t kMeshBytes = kCommonBytes + sizeof(MeshFields);
+constexpr std::size_t kOrderBytes = 4 * sizeof(std::uint32_t);  // of a vertex
 constexpr std::size_t kTriangleBytes = 3 * sizeof(std::uint32_t);
 
 bool all_finite(const std::vector<float>& values) {
@@ -82,6 +84,14 @@ bool read_colliders(const std::vector<Section>& sections, const MeshFields& fiel
          triangle_sections == fields.collider_meshes;
 }
 
+bool read_order_of(const std::vector<Section>& sections, const MeshFields& fields,
+                   SceneMesh& mesh) {
+  const Section* section = find_section(sections, kOrder, 0);
+  if (section == nullptr) return true;
+  return read_exactly(section, std::size_t{fields.vertices} * kOrderBytes, mesh.order) &&
+         codec::read_order(mesh.order, fields.vertices).has_value();
+}
+
 }  // namespace
 
 Bytes encode_mesh_data(const SceneMesh& mesh) {
@@ -90,7 +100,7 @@ Bytes encode_mesh_data(const SceneMesh& mesh) {
   const auto colliders = static_cast<std::uint32_t>(mesh.colliders.size());
   writer.put(MeshFields{static_cast<std::uint32_t>(mesh.rest_positions.size() / 3),
                         static_cast<std::uint32_t>(mesh.triangles.size() / 3), colliders,
-                        3 + 2 * colliders});
+                        3 + 2 * colliders + (mesh.order.empty() ? 0 : 1)});
   writer.put_section(kRestPositions, 0, std::span(mesh.rest_positions));
   writer.put_section(kTriangles, 0, std::span(mesh.triangles));
   writer.put_section(kUv, 0, std::span(mesh.uv));
@@ -98,6 +108,7 @@ Bytes encode_mesh_data(const SceneMesh& mesh) {
     writer.put_section(kColliderPositions, collider.collider, std::span(collider.positions));
     writer.put_section(kColliderTriangles, collider.collider, std::span(collider.triangles));
   }
+  if (!mesh.order.empty()) writer.put_section(kOrder, 0, std::span(mesh.order));
   writer.finish();
   return out;
 }
@@ -112,6 +123,7 @@ Result<SceneMesh> decode_mesh_data(std::span<const std::byte> message) {
   if (!read_cloth(*sections, fields, mesh)) return binary_error("the cloth's sections do not fit");
   if (!read_colliders(*sections, fields, mesh))
     return binary_error("the colliders' sections do not fit");
+  if (!read_order_of(*sections, fields, mesh)) return binary_error("the order does not fit");
   return mesh;
 }
 

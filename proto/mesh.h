@@ -23,6 +23,8 @@ struct SceneMesh {
   std::vector<std::uint32_t> triangles;  ///< three per triangle, each below the number of vertices
   std::vector<float> uv;                 ///< two per vertex
   std::vector<ColliderMesh> colliders;   ///< ascending by `collider`
+  std::vector<std::uint32_t> order;      ///< of the codec `packed`, if a cloth is not a grid; else
+                                         ///< empty: codec/order.h
   bool operator==(const SceneMesh&) const = default;
 };
 

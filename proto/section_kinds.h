@@ -12,11 +12,13 @@ enum SectionKind : std::uint16_t {
   kPoses = 4,
   kContacts = 5,
   kReactions = 6,
+  kPackedPositions = 7,
   kRestPositions = 16,
   kTriangles = 17,
   kUv = 18,
   kColliderPositions = 19,
   kColliderTriangles = 20,
+  kOrder = 21,
 };
 
 }  // namespace weft::proto

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import calls
 import commands
+import packed
 import refusals
 from samples import (
     APPLIED_NUMBERS,
@@ -29,6 +30,16 @@ from samples import (
     pose_bytes,
     reaction_bytes,
 )
+from sealing import (
+    floats,
+    frame_body,
+    integers,
+    message,
+    patched,
+    round_float,
+    seal,
+    section,
+)
 
 FRAME, MESH, DATA, ACK = 1, 2, 3, 4
 POSITIONS, GRABS, APPLIED, POSES, CONTACTS, REACTIONS = 1, 2, 3, 4, 5, 6
@@ -36,59 +47,6 @@ REST, TRIANGLES, UV, COLLIDER_POSITIONS, COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
 KEY, JUMP, PAUSED = 1, 2, 4
 FLOAT32_MAX, FLOAT32_LEAST = 2.0**127 * (2 - 2.0**-23), 2.0**-149
 NAN, INFINITY = float("nan"), float("inf")
-
-
-def pad(data):
-    return data + bytes(-len(data) % 8)
-
-
-def seal(data, length=None):
-    """Puts length and checksum into a message."""
-    data = bytearray(data)
-    struct.pack_into("<I", data, 4, len(data) if length is None else length)
-    struct.pack_into("<II", data, 8, 0, 0)
-    words = struct.unpack(f"<{len(data) // 4}I", data[: len(data) // 4 * 4])
-    a = sum(words) % 2**32
-    b = sum((j + 1) * word for j, word in enumerate(words)) % 2**32
-    struct.pack_into("<II", data, 8, a, b)
-    return bytes(data)
-
-
-def message(kind, body, codec=0, flags=0, version=1):
-    return seal(pad(struct.pack("<BBBBIII", kind, version, codec, flags, 0, 0, 0) + body))
-
-
-def section(kind, index, payload):
-    return pad(struct.pack("<HHI", kind, index, len(payload)) + payload)
-
-
-def floats(values):
-    return struct.pack(f"<{len(values)}f", *values)
-
-
-def integers(values):
-    return struct.pack(f"<{len(values)}I", *values)
-
-
-def round_float(values):
-    """What is left of numbers after a float32."""
-    return list(struct.unpack(f"<{len(values)}f", floats(values)))
-
-
-def frame_body(header, vertices, sections, step=0.0):
-    fixed = struct.pack(
-        "<QddIIIIfI",
-        header["tick"],
-        header["time"],
-        header["server_time"],
-        header["sequence"],
-        header["reference"],
-        header["epoch"],
-        vertices,
-        step,
-        len(sections),
-    )
-    return fixed + b"".join(sections)
 
 
 def frame(
@@ -242,13 +200,6 @@ def accepted():
     yield data("data_nothing", "d", 1, 2, 16, [])
 
 
-def patched(base, offset, layout, *values):
-    """Other bytes at an offset, with the checksum put right again."""
-    changed = bytearray(base)
-    struct.pack_into("<" + layout, changed, offset, *values)
-    return seal(changed, struct.unpack_from("<I", changed, 4)[0])
-
-
 def refused_frames(good):
     """Each breaks one rule and keeps all others, the checksum too."""
     header = frame_header()
@@ -388,6 +339,7 @@ def main(folder):
     (folder / "ack.bin").write_bytes(struct.pack("<BBHI", ACK, 1, 0, 2**32 - 2))
     write_json(folder / "binary.json", contents)
     write_json(folder / "refused_binary.json", list(refused(messages)))
+    packed.write(folder)
     write_json(folder / "accepted_commands.json", commands.ACCEPTED)
     write_json(folder / "refused_commands.json", refusals.refused())
     write_json(folder / "client_calls.json", calls.CLIENT_CALLS)

@@ -42,3 +42,18 @@ def sealed(message):
         a, b = a + word, b + (j + 1) * word
     struct.pack_into("<II", message, 8, a % 2**32, b % 2**32)
     return bytes(message)
+
+
+def packed_streams():
+    """Golden streams of the codec `packed`: name, cloths, mesh message, pairs of frames (packed, plain)."""
+    streams = []
+    for name, content in read_json("packed.json").items():
+        if name == "refused":
+            continue
+        stream, cut = read(f"{name}.bin"), []
+        while stream:
+            length = struct.unpack_from("<I", stream, 4)[0]
+            cut.append(stream[:length])
+            stream = stream[length:]
+        streams.append((name, content["cloths"], cut[0], list(zip(cut[1::2], cut[2::2]))))
+    return streams

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "proto/codec/entropy.h"
+#include "proto/codec/token.h"
+
+namespace weft::proto::codec {
+namespace {
+
+constexpr std::size_t kMostCodedBytes = 2;  // of one token
+constexpr std::size_t kMostRawBytes = 3;    // of one residual
+constexpr std::size_t kWordRoom = 8;        // the raw bits are written a word at a time
+
+void put_byte(Bytes& out, std::uint32_t value) {
+  out.push_back(static_cast<std::byte>(value));
+}
+
+void put_word(Bytes& out, std::uint32_t value) {
+  for (std::uint32_t shift = 0; shift < 32; shift += 8) put_byte(out, (value >> shift) & 255U);
+}
+
+}  // namespace
+
+TokenTable normalise(std::span<const std::uint32_t, 64> counts) {
+  TokenTable table;
+  std::uint64_t total = 0;
+  for (const std::uint32_t count : counts) total += count;
+  if (total == 0) return table;
+  std::uint32_t sum = 0, largest = 0;
+  for (std::uint32_t t = 0; t < kTokens; ++t) {
+    if (counts[t] == 0) continue;
+    const std::uint64_t share = std::uint64_t{kFrequencySum} * counts[t] / total;
+    table.frequencies[t] = static_cast<std::uint16_t>(std::max<std::uint64_t>(share, 1));
+    table.tokens = t + 1;
+    sum += table.frequencies[t];
+    if (table.frequencies[t] > table.frequencies[largest]) largest = t;
+  }
+  // Tokens that were raised to 1 may make the sum too large by up to 57.
+  const std::uint32_t excess = sum > kFrequencySum ? sum - kFrequencySum : 0;
+  if (table.frequencies[largest] > excess) {
+    table.frequencies[largest] =
+        static_cast<std::uint16_t>(table.frequencies[largest] + kFrequencySum - sum);
+    return table;
+  }
+  for (std::uint32_t t = 0; sum > kFrequencySum; t = (t + 1) % kTokens) {
+    if (table.frequencies[t] < 2) continue;
+    --table.frequencies[t];
+    --sum;
+  }
+  return table;
+}
+
+std::uint32_t EntropyEncoder::encode(std::span<const std::uint32_t> residuals,
+                                     std::span<const Neighbours> neighbours, Bytes& out) {
+  assert(residuals.size() == 3 * (neighbours.size() + 1));
+  take_tokens(residuals, neighbours);
+  put_tables(out);
+  code_tokens(out);
+  const auto raw = std::as_bytes(std::span(raw_).first(raw_bytes_));
+  out.insert(out.end(), raw.begin(), raw.end());
+  return raw_bytes_;
+}
+
+/// First pass, forwards: contexts, tokens and their counts, and the raw bits.
+void EntropyEncoder::take_tokens(std::span<const std::uint32_t> residuals,
+                                 std::span<const Neighbours> neighbours) {
+  const std::size_t count = neighbours.size();
+  tokens_.resize(3 * count);
+  raw_.resize(kMostRawBytes * 3 * count + kWordRoom);
+  for (auto& counts : counts_) counts.fill(0);
+  std::uint16_t* next = tokens_.data();
+  std::uint64_t held = 0;  // raw bits that do not fill a byte yet
+  std::uint32_t held_bits = 0;
+  std::size_t written = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::uint32_t* const plane = residuals.data() + c * (count + 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t context = context_of(plane[neighbours[i].a] + plane[neighbours[i].b]);
+      const Token token = token_of(plane[i]);
+      assert(token.token < kTokens);
+      ++counts_[context][token.token];
+      *next++ = static_cast<std::uint16_t>(context << 6U | token.token);
+      if (token.bit_count == 0) continue;
+      held |= std::uint64_t{token.bits} << held_bits;
+      held_bits += token.bit_count;
+      std::memcpy(raw_.data() + written, &held, sizeof held);
+      written += held_bits / 8;
+      held >>= held_bits / 8 * 8;
+      held_bits %= 8;
+    }
+  }
+  raw_bytes_ = static_cast<std::uint32_t>(written + (held_bits > 0 ? 1 : 0));
+}
+
+void EntropyEncoder::put_tables(Bytes& out) {
+  for (std::size_t context = 0; context < kContexts; ++context) {
+    const TokenTable table = normalise(counts_[context]);
+    put_byte(out, table.tokens);
+    std::uint32_t start = 0;
+    for (std::uint32_t t = 0; t < table.tokens; ++t) {
+      const std::uint32_t f = table.frequencies[t];
+      put_byte(out, f < 128 ? f : (f & 127U) | 128U);
+      if (f >= 128) put_byte(out, f >> 7U);
+      if (f == 0) continue;
+      // Dividing by f as multiplying by its reciprocal, exact for states below 2^31.
+      const auto s = static_cast<std::uint32_t>(std::bit_width(f - 1));
+      Symbol& symbol = symbols_[context][t];
+      symbol.limit = f << 19U;
+      symbol.complement = static_cast<std::uint16_t>(kFrequencySum - f);
+      symbol.reciprocal =
+          f < 2 ? ~0U : static_cast<std::uint32_t>(((std::uint64_t{1} << (31 + s)) + f - 1) / f);
+      symbol.shift = static_cast<std::uint8_t>(f < 2 ? 0 : s - 1);
+      symbol.bias = f < 2 ? start + kFrequencySum - 1 : start;
+      start += f;
+    }
+  }
+}
+
+/// Second pass, backwards, as the decoder goes forwards.
+void EntropyEncoder::code_tokens(Bytes& out) {
+  coded_.resize(kMostCodedBytes * tokens_.size() + 2);
+  std::uint8_t* const end = coded_.data() + coded_.size();
+  std::uint8_t* front = end;
+  std::array<std::uint32_t, 2> states = {kStateLow, kStateLow};
+  for (std::size_t j = tokens_.size(); j-- > 0;) {
+    const Symbol& symbol = symbols_[tokens_[j] >> 6U][tokens_[j] & 63U];
+    std::uint32_t x = states[j & 1U];
+    while (x >= symbol.limit) {
+      *--front = static_cast<std::uint8_t>(x);
+      x >>= 8U;
+    }
+    const auto high = static_cast<std::uint32_t>(std::uint64_t{x} * symbol.reciprocal >> 32U);
+    states[j & 1U] = x + symbol.bias + (high >> symbol.shift) * symbol.complement;
+  }
+  put_word(out, states[0]);
+  put_word(out, states[1]);
+  const auto coded = std::as_bytes(std::span(front, end));
+  out.insert(out.end(), coded.begin(), coded.end());
+}
+
+}  // namespace weft::proto::codec

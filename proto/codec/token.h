@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace weft::proto::codec {
+
+/// A residual as the token that is coded and the low bits that go as they are.
+struct Token {
+  std::uint32_t token = 0, bits = 0, bit_count = 0;
+};
+
+inline Token token_of(std::uint32_t value) {
+  if (value < 16) return {value, 0, 0};
+  const auto e = static_cast<std::uint32_t>(std::bit_width(value)) - 1;
+  return {16 + 2 * (e - 4) + ((value >> (e - 1)) & 1U), value & ((1U << (e - 1)) - 1), e - 1};
+}
+
+/// Low bits that follow a token.
+inline std::uint32_t bit_count_of(std::uint32_t token) {
+  return token < 16 ? 0 : ((token - 16) >> 1U) + 3;
+}
+
+inline std::uint32_t value_of(std::uint32_t token, std::uint32_t bits) {
+  if (token < 16) return token;
+  return ((2U + (token & 1U)) << bit_count_of(token)) | bits;
+}
+
+/// Context of a residual by the sum of those of its neighbours a and b.
+inline std::size_t context_of(std::uint32_t around) {
+  constexpr auto kClasses = [] {
+    std::array<std::uint8_t, 41> classes{};
+    for (std::size_t sum = 0; sum < classes.size(); ++sum)
+      classes[sum] = sum <= 2    ? static_cast<std::uint8_t>(sum)
+                     : sum <= 4  ? 3
+                     : sum <= 8  ? 4
+                     : sum <= 16 ? 5
+                                 : 6;
+    return classes;
+  }();
+  return around < kClasses.size() ? kClasses[around] : 7;
+}
+
+}  // namespace weft::proto::codec
