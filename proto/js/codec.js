@@ -2,6 +2,7 @@
 // use; for any input, a decoder returns a message or throws ProtocolError.
 
 import {
+  ProtocolError,
   demand,
   demandFinite,
   demandZero,
@@ -11,6 +12,7 @@ import {
   readSections,
   readTick,
 } from './bytes.js';
+import { readOrder } from './order.js';
 
 export { ProtocolError } from './bytes.js';
 
@@ -31,6 +33,8 @@ const NO_COLLIDER = 0xffffffff;
 /** @type {('pin' | 'collider')[]} */
 const REACTION_OF = ['pin', 'collider'];
 const MOST_COMPONENTS = 16;
+const FLOAT32 = 0;
+const PACKED = 2;
 const FLAG_KEY = 1;
 const FLAG_JUMP = 2;
 const FLAG_PAUSED = 4;
@@ -42,11 +46,13 @@ const KIND = {
   poses: 4,
   contacts: 5,
   reactions: 6,
+  packedPositions: 7,
   restPositions: 16,
   triangles: 17,
   uv: 18,
   colliderPositions: 19,
   colliderTriangles: 20,
+  order: 21,
 };
 
 /**
@@ -55,6 +61,9 @@ const KIND = {
  * @typedef {import('./messages.js').Data} Data
  * @typedef {import('./bytes.js').Section} Section
  * @typedef {import('./bytes.js').Message} Message
+ * @typedef {{key: boolean, sequence: number, reference: number, step: number, vertices: number}}
+ *   PackedHeader
+ * @typedef {(header: PackedHeader, payload: Uint8Array) => Float32Array} Unpack  of packed positions
  */
 
 /**
@@ -162,24 +171,50 @@ function readReactions(view, section) {
   return reactions;
 }
 
+/** @type {Unpack} */
+function unpackNothing() {
+  throw new ProtocolError('a packed frame builds on earlier ones: FrameDecoder reads it');
+}
+
 /**
+ * Checks how a frame says that it is coded.
  * @param {Message} message
- * @returns {Frame}
+ * @returns {PackedHeader}
  */
-function readFrame({ codec, flags, view }) {
-  demand(codec === 0, 'unknown codec');
+function readPackedHeader({ codec, flags, view }) {
+  demand(codec === FLOAT32 || codec === PACKED, 'unknown codec');
   demand(view.byteLength >= FRAME_BYTES, 'the message is too short');
-  const time = view.getFloat64(24, true);
-  const serverTime = view.getFloat64(32, true);
+  const key = (flags & FLAG_KEY) !== 0;
   const sequence = view.getUint32(40, true);
   const reference = view.getUint32(44, true);
-  const vertices = view.getUint32(52, true);
+  const step = view.getFloat32(56, true);
+  demand(key === (reference === sequence), 'a key frame builds on no other');
+  const fits = codec === FLOAT32 ? key && step === 0 : Number.isFinite(step) && step > 0;
+  demand(fits, 'the step does not fit the codec');
+  return { key, sequence, reference, step, vertices: view.getUint32(52, true) };
+}
+
+/**
+ * @param {Message} message
+ * @param {Unpack} unpack
+ * @returns {Frame}
+ */
+function readFrame(message, unpack) {
+  const { codec, flags, view } = message;
+  const header = readPackedHeader(message);
+  const time = view.getFloat64(24, true);
+  const serverTime = view.getFloat64(32, true);
   demand(Number.isFinite(time) && Number.isFinite(serverTime), 'a time is not finite');
-  const alone = (flags & FLAG_KEY) !== 0 && reference === sequence && view.getFloat32(56, true) === 0;
-  demand(alone, 'a float32 frame builds on no other');
   const sections = readSections(view, FRAME_BYTES, view.getUint32(60, true));
   /** @param {number} kind */
   const find = (kind) => sections.find((s) => s.kind === kind && s.index === 0);
+  /** Last of all: from there on packed frames build on this one. */
+  const positions = () => {
+    if (codec === FLOAT32) return readFloats(view, find(KIND.positions), header.vertices * 3);
+    const packed = find(KIND.packedPositions);
+    demand(packed !== undefined, 'the frame has no positions');
+    return unpack(header, new Uint8Array(view.buffer, view.byteOffset + packed.offset, packed.length));
+  };
   const grabs = find(KIND.grabs);
   const applied = find(KIND.applied);
   const poses = find(KIND.poses);
@@ -193,16 +228,29 @@ function readFrame({ codec, flags, view }) {
     tick: readTick(view, 16),
     time,
     serverTime,
-    sequence,
-    reference,
+    sequence: header.sequence,
+    reference: header.reference,
     epoch: view.getUint32(48, true),
-    positions: readFloats(view, find(KIND.positions), vertices * 3),
     grabs: grabs ? readGrabs(view, grabs) : [],
     applied: applied ? readApplied(view, applied) : [],
     poses: poses ? readPoses(view, poses) : [],
     contacts: contacts ? readContacts(view, contacts) : [],
     reactions: reactions ? readReactions(view, reactions) : [],
+    positions: positions(),
   };
+}
+
+/**
+ * @param {DataView} view
+ * @param {Section | undefined} section  absent if all cloths are grids
+ * @param {number} vertices
+ */
+function readOrderWords(view, section, vertices) {
+  if (!section) return null;
+  demand(section.length === vertices * 16, 'a section does not fit');
+  const words = new Uint32Array(view.buffer, view.byteOffset + section.offset, vertices * 4);
+  readOrder(words);
+  return words;
 }
 
 /**
@@ -246,6 +294,7 @@ function readMesh({ codec, view }) {
     restPositions: readFloats(view, find(KIND.restPositions), vertices * 3),
     triangles: readTriangles(view, find(KIND.triangles), triangles, vertices),
     uv: readFloats(view, find(KIND.uv), vertices * 2),
+    order: readOrderWords(view, find(KIND.order), vertices),
     colliders,
   };
 }
@@ -286,7 +335,7 @@ function readData({ codec, view }) {
  */
 export function decodeBinary(bytes) {
   const message = readMessage(bytes);
-  if (message.type === FRAME) return readFrame(message);
+  if (message.type === FRAME) return readFrame(message, unpackNothing);
   if (message.type === MESH) return readMesh(message);
   demand(message.type === DATA, 'unknown type');
   return readData(message);
@@ -294,12 +343,13 @@ export function decodeBinary(bytes) {
 
 /**
  * @param {ArrayBuffer | ArrayBufferView} bytes
+ * @param {Unpack} [unpack]  of a packed frame's positions; by default those are refused
  * @returns {Frame}
  */
-export function decodeFrame(bytes) {
+export function decodeFrame(bytes, unpack = unpackNothing) {
   const message = readMessage(bytes);
   demand(message.type === FRAME, 'not a frame');
-  return readFrame(message);
+  return readFrame(message, unpack);
 }
 
 /**

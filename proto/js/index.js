@@ -21,3 +21,5 @@ export {
   decodeMesh,
   encodeAck,
 } from './codec.js';
+export { orderOf } from './order.js';
+export { FrameDecoder } from './packed.js';

@@ -351,6 +351,8 @@ export interface MeshData {
   triangles: Uint32Array;
   /** Two values per vertex. */
   uv: Float32Array;
+  /** Four values per vertex, of the codec `packed`; null if all cloths are grids. */
+  order: Uint32Array | null;
   colliders: ColliderMesh[];
 }
 

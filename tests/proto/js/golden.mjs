@@ -1,3 +1,4 @@
+import { decodeMesh, orderOf } from '../../../proto/js/index.js';
 import { readFileSync } from 'node:fs';
 
 const root = new URL('../../../', import.meta.url);
@@ -39,4 +40,23 @@ export function sealed(bytes) {
   view.setUint32(8, Number(BigInt.asUintN(32, a)), true);
   view.setUint32(12, Number(BigInt.asUintN(32, b)), true);
   return bytes;
+}
+
+/** Golden streams of the codec `packed`: a mesh, and frames as pairs (packed, plain). */
+export function packedStreams() {
+  const streams = [];
+  for (const [name, { cloths }] of Object.entries(readGoldenJson('packed.json'))) {
+    if (name === 'refused') continue;
+    const messages = [];
+    for (let rest = readGolden(`${name}.bin`); rest.length; ) {
+      const length = new DataView(rest.buffer, rest.byteOffset).getUint32(4, true);
+      messages.push(rest.slice(0, length));
+      rest = rest.subarray(length);
+    }
+    const [mesh, ...halves] = messages;
+    const frames = [];
+    for (let i = 0; i < halves.length; i += 2) frames.push([halves[i], halves[i + 1]]);
+    streams.push({ name, cloths, mesh, order: orderOf(cloths, decodeMesh(mesh)), frames });
+  }
+  return streams;
 }

@@ -1,0 +1,162 @@
+// Tokens of the codec `packed` (proto/README.md section 10): tables of frequencies, rANS with two
+// states, raw bits. Survives any bytes: it throws nothing but ProtocolError.
+
+import { demand } from './bytes.js';
+
+const CONTEXTS = 8;
+const MOST_TOKENS = 58;
+const SLOTS = 4096;
+const STATE_LOW = 2 ** 23;
+const CHECK_EVERY = 64; // values between two looks at the cursors
+const PADDING = 3 * CHECK_EVERY + 8; // they take at most 2 coded and 3 raw bytes each
+const LAST_CLASS = 41; // sums from here on are of context 7
+
+const CONTEXT_OF = new Uint8Array(LAST_CLASS + 1);
+for (let sum = 0; sum <= LAST_CLASS; ++sum)
+  CONTEXT_OF[sum] = [0, 1, 2, 4, 8, 16, 40, Infinity].findIndex((most) => sum <= most);
+
+/**
+ * Places of vertices in coding order, and of their neighbours; a missing one is the number of
+ * vertices.
+ * @typedef {{vertices: Uint32Array, a: Uint32Array, b: Uint32Array, c: Uint32Array}} Order
+ */
+
+export class EntropyDecoder {
+  #tokens = new Uint8Array(CONTEXTS * SLOTS); // of each slot
+  #frequencies = new Uint16Array(CONTEXTS * 64);
+  #starts = new Uint16Array(CONTEXTS * 64);
+  #used = new Uint8Array(CONTEXTS);
+  #buffer = new Uint8Array(0);
+  // Where reading stands.
+  #now = 0;
+  #next = 0;
+  #coded = 0;
+  #bit = 0;
+
+  /**
+   * Reads three planes of residuals, zigzag; or throws ProtocolError.
+   * @param {Uint8Array} bytes      tables, states, coded bytes and raw bits
+   * @param {number} rawLength      of the raw bits [bytes]
+   * @param {Order} order
+   * @param {Int32Array} residuals  three planes of as many places and one, which gets 0
+   */
+  decode(bytes, rawLength, order, residuals) {
+    const codedEnd = bytes.length - rawLength;
+    demand(codedEnd >= 0, 'the raw bits are cut off');
+    let at = 0;
+    for (let context = 0; context < CONTEXTS; ++context)
+      at = this.#readTable(bytes, at, codedEnd, context);
+    demand(at + 8 <= codedEnd, 'the states are cut off');
+    const view = new DataView(bytes.buffer, bytes.byteOffset + at, 8);
+    this.#now = view.getUint32(0, true);
+    this.#next = view.getUint32(4, true);
+    for (const state of [this.#now, this.#next])
+      demand(state >= STATE_LOW && state < 256 * STATE_LOW, 'a state is out of range');
+    const codedLength = codedEnd - (at + 8);
+    this.#fill(bytes.subarray(at + 8, codedEnd), bytes.subarray(codedEnd));
+    const raw = codedLength + PADDING;
+    this.#coded = 0;
+    this.#bit = 8 * raw;
+    const stride = order.vertices.length + 1;
+    for (let plane = 0; plane < 3; ++plane)
+      this.#decodePlane(codedLength, 8 * (raw + rawLength), order, residuals, plane * stride);
+    const rest = 8 * (raw + rawLength) - this.#bit;
+    const empty = rest < 8 && (rest === 0 || this.#buffer[raw + rawLength - 1] >> (8 - rest) === 0);
+    const ended = this.#now === STATE_LOW && this.#next === STATE_LOW && this.#coded === codedLength;
+    demand(ended && empty, 'the packed positions do not end as they should');
+  }
+
+  /**
+   * @param {Uint8Array} coded
+   * @param {Uint8Array} raw
+   */
+  #fill(coded, raw) {
+    const needed = coded.length + raw.length + 2 * PADDING;
+    if (this.#buffer.length < needed) this.#buffer = new Uint8Array(2 * needed);
+    this.#buffer.set(coded);
+    this.#buffer.fill(0, coded.length, coded.length + PADDING);
+    this.#buffer.set(raw, coded.length + PADDING);
+    this.#buffer.fill(0, needed - PADDING, needed);
+  }
+
+  /**
+   * @param {Uint8Array} bytes
+   * @param {number} at
+   * @param {number} end
+   * @param {number} context
+   */
+  #readTable(bytes, at, end, context) {
+    demand(at < end, 'a table is cut off');
+    const count = bytes[at++];
+    demand(count <= MOST_TOKENS, 'too many tokens');
+    this.#used[context] = count > 0 ? 1 : 0;
+    let start = 0;
+    for (let token = 0; token < count; ++token) {
+      demand(at < end, 'a table is cut off');
+      let f = bytes[at++];
+      if (f >= 128) {
+        demand(at < end, 'a table is cut off');
+        f = (f & 127) | (bytes[at++] << 7);
+      }
+      demand(f <= SLOTS - start, 'frequencies are too large');
+      this.#frequencies[context * 64 + token] = f;
+      this.#starts[context * 64 + token] = start;
+      this.#tokens.fill(token, context * SLOTS + start, context * SLOTS + start + f);
+      start += f;
+    }
+    demand(count === 0 || start === SLOTS, 'frequencies do not add up');
+    return at;
+  }
+
+  /**
+   * @param {number} codedEnd
+   * @param {number} bitEnd
+   * @param {Order} order
+   * @param {Int32Array} residuals
+   * @param {number} plane  where it begins
+   */
+  #decodePlane(codedEnd, bitEnd, { vertices, a, b }, residuals, plane) {
+    const count = vertices.length;
+    const tokens = this.#tokens;
+    const frequencies = this.#frequencies;
+    const starts = this.#starts;
+    const used = this.#used;
+    const buffer = this.#buffer;
+    let now = this.#now;
+    let next = this.#next;
+    let coded = this.#coded;
+    let bit = this.#bit;
+    residuals[plane + count] = 0;
+    for (let begin = 0; begin < count; begin += CHECK_EVERY) {
+      const end = Math.min(count, begin + CHECK_EVERY);
+      for (let i = begin; i < end; ++i) {
+        // Residuals stay below 2^25, so that their sum is a small integer.
+        const around = residuals[plane + a[i]] + residuals[plane + b[i]];
+        const context = around < LAST_CLASS ? CONTEXT_OF[around] : 7;
+        demand(used[context] === 1, 'a context that does not occur');
+        const slot = now & (SLOTS - 1);
+        const token = tokens[context * SLOTS + slot];
+        const place = context * 64 + token;
+        let x = Math.imul(frequencies[place], now >>> 12) + slot - starts[place];
+        while (x < STATE_LOW) x = (x << 8) | buffer[coded++];
+        now = next;
+        next = x;
+        if (token < 16) {
+          residuals[plane + i] = token;
+        } else {
+          const low = ((token - 16) >> 1) + 3;
+          const byte = bit >> 3;
+          const word =
+            buffer[byte] | (buffer[byte + 1] << 8) | (buffer[byte + 2] << 16) | (buffer[byte + 3] << 24);
+          residuals[plane + i] = ((2 + (token & 1)) << low) | ((word >>> (bit & 7)) & ((1 << low) - 1));
+          bit += low;
+        }
+      }
+      demand(coded <= codedEnd && bit <= bitEnd, 'the packed positions are cut off');
+    }
+    this.#now = now;
+    this.#next = next;
+    this.#coded = coded;
+    this.#bit = bit;
+  }
+}
