@@ -9,12 +9,12 @@
 #include "proto/binary.h"
 #include "proto/codec/order.h"
 
-// Residuals to bytes and back: tokens in eight contexts, coded by rANS with two states, and the low
+// Residuals to bytes and back: tokens in ten contexts, coded by rANS with two states, and the low
 // bits of large residuals as they are. README.md section 10.
 
 namespace weft::proto::codec {
 
-inline constexpr std::size_t kContexts = 8;
+inline constexpr std::size_t kContexts = 10;
 inline constexpr std::uint32_t kTokens = 58;
 inline constexpr std::uint32_t kFrequencyBits = 12;
 inline constexpr std::uint32_t kFrequencySum = 1U << kFrequencyBits;

@@ -65,7 +65,7 @@ Result<PayloadHeader> read_payload_header(std::span<const std::byte> payload, bo
   const std::size_t size = sizeof(Fields) + (key ? 3 * sizeof(double) : 0);
   if (payload.size() < size) return binary_error("the packed positions are cut off");
   const auto fields = read_at<Fields>(payload, 0);
-  if (fields.base > 2 || fields.spatial > 2 || fields.zero != 0)
+  if (fields.base > 2 || fields.spatial > 3 || fields.zero != 0)
     return binary_error("the prediction is unknown");
   PayloadHeader header;
   header.prediction = {static_cast<Base>(fields.base), static_cast<Spatial>(fields.spatial)};

@@ -12,7 +12,9 @@ constexpr std::uint32_t kSampleStride = 17;
 // What a residual costs, in tenths of a bit: a zero 0.6, another its length and 1.3.
 constexpr std::uint32_t kZeroCost = 6, kBitCost = 10, kSignCost = 13;
 
-constexpr std::array<Spatial, 3> kSpatials = {Spatial::none, Spatial::mean, Spatial::corner};
+constexpr std::array<Spatial, 4> kSpatials = {Spatial::none, Spatial::mean, Spatial::corner,
+                                              Spatial::blend};
+using Costs = std::array<std::uint64_t, kSpatials.size()>;
 
 /// Views on one component of a frame and of its references.
 struct Component {
@@ -38,10 +40,11 @@ std::uint32_t cost_of(std::uint32_t residual) {
 
 /// Adds to the costs of each spatial prediction what one vertex costs.
 void add_costs(const Component& component, Base base, std::uint32_t place, const Neighbours& near,
-               std::uint32_t none, std::array<std::uint64_t, 3>& costs) {
+               std::uint32_t none, Costs& costs) {
   const std::uint32_t value = component.at(base, place);
-  const std::array<std::uint32_t, 3> around = {
-      component.at(base, near.a), component.at(base, near.b), component.at(base, near.c)};
+  // The place behind them is that of what is missing.
+  const std::array<std::uint32_t, 4> around = {
+      component.at(base, near.a), component.at(base, near.b), component.at(base, near.c), 0};
   const Neighbours local{0, near.b == none ? 3U : 1U, 2};
   for (std::size_t s = 0; s < kSpatials.size(); ++s)
     costs[s] += cost_of(value - predict(kSpatials[s], around.data(), local, 3));
@@ -74,8 +77,10 @@ void residuals_of(Spatial spatial, std::span<const Neighbours> neighbours,
     fill([](const Neighbours&) { return 0U; });
   else if (spatial == Spatial::mean)
     fill([&](const Neighbours& near) { return predict(Spatial::mean, differences, near, none); });
-  else
+  else if (spatial == Spatial::corner)
     fill([&](const Neighbours& near) { return predict(Spatial::corner, differences, near, none); });
+  else
+    fill([&](const Neighbours& near) { return predict(Spatial::blend, differences, near, none); });
   out[none] = 0;
 }
 
@@ -92,8 +97,10 @@ void restore(const Prediction& prediction, std::span<const Neighbours> neighbour
     sum_up(Spatial::none);
   else if (prediction.spatial == Spatial::mean)
     sum_up(Spatial::mean);
-  else
+  else if (prediction.spatial == Spatial::corner)
     sum_up(Spatial::corner);
+  else
+    sum_up(Spatial::blend);
   const std::int32_t* const last = references.last ? references.last->plane(component) : nullptr;
   const std::int32_t* const before =
       references.before ? references.before->plane(component) : nullptr;
@@ -111,7 +118,7 @@ Prediction choose_prediction(std::span<const Neighbours> neighbours, const Integ
                              const References& references) {
   assert(!references.before || references.last);
   const auto none = static_cast<std::uint32_t>(neighbours.size());
-  std::array<std::array<std::uint64_t, 3>, 3> costs{};
+  std::array<Costs, 3> costs{};
   for (int c = 0; c < 3; ++c) {
     const Component component{now.plane(c), references.last ? references.last->plane(c) : nullptr,
                               references.before ? references.before->plane(c) : nullptr};

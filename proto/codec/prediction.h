@@ -19,7 +19,12 @@ enum class Base : std::uint8_t {
 };
 
 /// From which neighbours' differences one is predicted.
-enum class Spatial : std::uint8_t { none = 0, mean = 1, corner = 2 };
+enum class Spatial : std::uint8_t {
+  none = 0,
+  mean = 1,    ///< of a and b
+  corner = 2,  ///< of the parallelogram, a + b - c
+  blend = 3,   ///< halfway between: 3/4 a + 3/4 b - 1/2 c, less moved by noise
+};
 
 struct Prediction {
   Base base = Base::none;
@@ -47,8 +52,11 @@ inline std::uint32_t predict(Spatial spatial, const std::uint32_t* values, const
   if (spatial == Spatial::none) return 0;
   if (spatial == Spatial::corner) return values[near.a] + values[near.b] - values[near.c];
   if (near.b == none) return values[near.a];
-  return static_cast<std::uint32_t>(static_cast<std::int32_t>(values[near.a] + values[near.b]) >>
-                                    1);
+  const std::uint32_t sum = values[near.a] + values[near.b];
+  const auto halved = [](std::uint32_t value, int times) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(value) >> times);
+  };
+  return spatial == Spatial::mean ? halved(sum, 1) : halved(3 * sum - 2 * values[near.c] + 2, 2);
 }
 
 /// The difference of one component to its base, for all places and the missing one.

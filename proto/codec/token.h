@@ -31,16 +31,15 @@ inline std::uint32_t value_of(std::uint32_t token, std::uint32_t bits) {
 /// Context of a residual by the sum of those of its neighbours a and b.
 inline std::size_t context_of(std::uint32_t around) {
   constexpr auto kClasses = [] {
-    std::array<std::uint8_t, 41> classes{};
-    for (std::size_t sum = 0; sum < classes.size(); ++sum)
-      classes[sum] = sum <= 2    ? static_cast<std::uint8_t>(sum)
-                     : sum <= 4  ? 3
-                     : sum <= 8  ? 4
-                     : sum <= 16 ? 5
-                                 : 6;
+    constexpr std::array<std::size_t, 9> kMost = {0, 1, 2, 4, 8, 16, 40, 100, 250};
+    std::array<std::uint8_t, kMost.back() + 1> classes{};
+    for (std::size_t sum = 0, context = 0; sum < classes.size(); ++sum) {
+      while (sum > kMost[context]) ++context;
+      classes[sum] = static_cast<std::uint8_t>(context);
+    }
     return classes;
   }();
-  return around < kClasses.size() ? kClasses[around] : 7;
+  return around < kClasses.size() ? kClasses[around] : 9;
 }
 
 }  // namespace weft::proto::codec

@@ -43,14 +43,17 @@ function alignedView(bytes) {
 
 /** @param {DataView} view */
 function checksum(view) {
-  const words = new Uint32Array(view.buffer, view.byteOffset, view.byteLength / 4);
+  // Signed, so that engines add integers; the sums modulo 2^32 are the same.
+  const words = new Int32Array(view.buffer, view.byteOffset, view.byteLength / 4);
   let a = 0;
   let b = 0;
   for (let j = 0; j < words.length; ++j) {
-    if (j === 2 || j === 3) continue; // the sums themselves
     a = (a + words[j]) | 0;
     b = (b + Math.imul(words[j], j + 1)) | 0;
   }
+  // Without the sums themselves, words 2 and 3.
+  a = (a - words[2] - words[3]) | 0;
+  b = (b - Math.imul(words[2], 3) - Math.imul(words[3], 4)) | 0;
   return [a >>> 0, b >>> 0];
 }
 

@@ -3,17 +3,17 @@
 
 import { demand } from './bytes.js';
 
-const CONTEXTS = 8;
+const CONTEXTS = 10;
 const MOST_TOKENS = 58;
 const SLOTS = 4096;
 const STATE_LOW = 2 ** 23;
 const CHECK_EVERY = 64; // values between two looks at the cursors
 const PADDING = 3 * CHECK_EVERY + 8; // they take at most 2 coded and 3 raw bytes each
-const LAST_CLASS = 41; // sums from here on are of context 7
+const LAST_CLASS = 251; // sums from here on are of the last context
 
 const CONTEXT_OF = new Uint8Array(LAST_CLASS + 1);
 for (let sum = 0; sum <= LAST_CLASS; ++sum)
-  CONTEXT_OF[sum] = [0, 1, 2, 4, 8, 16, 40, Infinity].findIndex((most) => sum <= most);
+  CONTEXT_OF[sum] = [0, 1, 2, 4, 8, 16, 40, 100, 250, Infinity].findIndex((most) => sum <= most);
 
 /**
  * Places of vertices in coding order, and of their neighbours; a missing one is the number of
@@ -23,8 +23,8 @@ for (let sum = 0; sum <= LAST_CLASS; ++sum)
 
 export class EntropyDecoder {
   #tokens = new Uint8Array(CONTEXTS * SLOTS); // of each slot
-  #frequencies = new Uint16Array(CONTEXTS * 64);
-  #starts = new Uint16Array(CONTEXTS * 64);
+  // Of each token, the frequency, and those below it added up, from bit 16 on.
+  #shares = new Int32Array(CONTEXTS * 64);
   #used = new Uint8Array(CONTEXTS);
   #buffer = new Uint8Array(0);
   // Where reading stands.
@@ -99,8 +99,7 @@ export class EntropyDecoder {
         f = (f & 127) | (bytes[at++] << 7);
       }
       demand(f <= SLOTS - start, 'frequencies are too large');
-      this.#frequencies[context * 64 + token] = f;
-      this.#starts[context * 64 + token] = start;
+      this.#shares[context * 64 + token] = f | (start << 16);
       this.#tokens.fill(token, context * SLOTS + start, context * SLOTS + start + f);
       start += f;
     }
@@ -118,39 +117,43 @@ export class EntropyDecoder {
   #decodePlane(codedEnd, bitEnd, { vertices, a, b }, residuals, plane) {
     const count = vertices.length;
     const tokens = this.#tokens;
-    const frequencies = this.#frequencies;
-    const starts = this.#starts;
+    const shares = this.#shares;
     const used = this.#used;
     const buffer = this.#buffer;
     let now = this.#now;
     let next = this.#next;
     let coded = this.#coded;
     let bit = this.#bit;
+    let value = 0; // of the place before; most places follow their neighbour a
     residuals[plane + count] = 0;
     for (let begin = 0; begin < count; begin += CHECK_EVERY) {
       const end = Math.min(count, begin + CHECK_EVERY);
       for (let i = begin; i < end; ++i) {
         // Residuals stay below 2^25, so that their sum is a small integer.
-        const around = residuals[plane + a[i]] + residuals[plane + b[i]];
-        const context = around < LAST_CLASS ? CONTEXT_OF[around] : 7;
+        const left = a[i] === i - 1 ? value : residuals[plane + a[i]];
+        const around = left + residuals[plane + b[i]];
+        const context = around < LAST_CLASS ? CONTEXT_OF[around] : CONTEXTS - 1;
         demand(used[context] === 1, 'a context that does not occur');
         const slot = now & (SLOTS - 1);
-        const token = tokens[context * SLOTS + slot];
-        const place = context * 64 + token;
-        let x = Math.imul(frequencies[place], now >>> 12) + slot - starts[place];
-        while (x < STATE_LOW) x = (x << 8) | buffer[coded++];
+        const token = tokens[(context << 12) | slot];
+        const share = shares[(context << 6) | token];
+        let x = Math.imul(share & 0xffff, now >>> 12) + slot - (share >> 16);
+        if (x < STATE_LOW) {
+          x = (x << 8) | buffer[coded++];
+          if (x < STATE_LOW) x = (x << 8) | buffer[coded++];
+        }
         now = next;
         next = x;
-        if (token < 16) {
-          residuals[plane + i] = token;
-        } else {
+        value = token;
+        if (token >= 16) {
           const low = ((token - 16) >> 1) + 3;
           const byte = bit >> 3;
           const word =
             buffer[byte] | (buffer[byte + 1] << 8) | (buffer[byte + 2] << 16) | (buffer[byte + 3] << 24);
-          residuals[plane + i] = ((2 + (token & 1)) << low) | ((word >>> (bit & 7)) & ((1 << low) - 1));
+          value = ((2 + (token & 1)) << low) | ((word >>> (bit & 7)) & ((1 << low) - 1));
           bit += low;
         }
+        residuals[plane + i] = value;
       }
       demand(coded <= codedEnd && bit <= bitEnd, 'the packed positions are cut off');
     }

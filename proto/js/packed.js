@@ -1,17 +1,19 @@
 // The codec `packed` (proto/README.md section 10): positions as whole numbers that build on earlier
 // frames. Survives any bytes: it throws nothing but ProtocolError, and then has changed nothing.
 
-import { demand } from './bytes.js';
+import { demand, demandFinite } from './bytes.js';
 import { decodeFrame } from './codec.js';
 import { EntropyDecoder } from './entropy.js';
 
 const FIXED_BYTES = 20;
 const KEY_BYTES = FIXED_BYTES + 24;
 const MOST_STEPS = 2 ** 20;
+const SURELY_FINITE = 1e38; // coordinates below are finite as float32 too
 const STEP = 1;
 const STRAIGHT = 2;
 const MEAN = 1;
 const CORNER = 2;
+const BLEND = 3;
 
 /**
  * @typedef {import('./entropy.js').Order} Order
@@ -31,7 +33,7 @@ function readPayload(bytes, key) {
   demand(bytes.length >= (key ? KEY_BYTES : FIXED_BYTES), 'the packed positions are cut off');
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const [base, neighbours] = bytes;
-  const known = base <= STRAIGHT && neighbours <= CORNER && view.getUint16(2, true) === 0;
+  const known = base <= STRAIGHT && neighbours <= BLEND && view.getUint16(2, true) === 0;
   demand(known, 'the prediction is unknown');
   demand(!key || base === 0, 'a key frame builds on no other');
   const before = view.getUint32(4, true);
@@ -51,7 +53,7 @@ function readPayload(bytes, key) {
 }
 
 /**
- * Residuals to differences, in place; arithmetic is modulo 2^32. Places before one are done.
+ * Residuals to differences, in place; arithmetic is modulo 2^32. Neighbours come before.
  * @param {number} neighbours
  * @param {Order} order
  * @param {Int32Array} values
@@ -59,23 +61,25 @@ function readPayload(bytes, key) {
  */
 function addNeighbours(neighbours, { vertices, a, b, c }, values, plane) {
   const count = vertices.length;
-  if (neighbours === CORNER) {
-    for (let i = 0; i < count; ++i) {
-      const v = values[plane + i];
-      const around = values[plane + a[i]] + values[plane + b[i]] - values[plane + c[i]];
-      values[plane + i] = ((v >>> 1) ^ -(v & 1)) + around;
+  let before = 0; // the place before is neighbour a of most
+  for (let i = 0; i < count; ++i) {
+    const v = values[plane + i];
+    let d = (v >>> 1) ^ -(v & 1);
+    if (neighbours !== 0) {
+      const atA = a[i] === i - 1 ? before : values[plane + a[i]];
+      if (neighbours === CORNER) {
+        d = (d + atA + values[plane + b[i]] - values[plane + c[i]]) | 0;
+      } else {
+        let sum = (atA + values[plane + b[i]]) | 0;
+        if (b[i] !== count) {
+          if (neighbours === MEAN) sum >>= 1;
+          else sum = (Math.imul(3, sum) - (values[plane + c[i]] << 1) + 2) >> 2;
+        }
+        d = (d + sum) | 0;
+      }
     }
-  } else if (neighbours === MEAN) {
-    for (let i = 0; i < count; ++i) {
-      const v = values[plane + i];
-      const sum = (values[plane + a[i]] + values[plane + b[i]]) | 0;
-      values[plane + i] = ((v >>> 1) ^ -(v & 1)) + (b[i] === count ? sum : sum >> 1);
-    }
-  } else {
-    for (let i = 0; i < count; ++i) {
-      const v = values[plane + i];
-      values[plane + i] = (v >>> 1) ^ -(v & 1);
-    }
+    values[plane + i] = d;
+    before = d;
   }
 }
 
@@ -87,9 +91,10 @@ function addNeighbours(neighbours, { vertices, a, b, c }, values, plane) {
  * @param {Int32Array} before
  */
 function addEarlier(base, values, last, before) {
-  if (base === STEP) for (let i = 0; i < values.length; ++i) values[i] += last[i];
+  if (base === STEP) for (let i = 0; i < values.length; ++i) values[i] = (values[i] + last[i]) | 0;
   if (base !== STRAIGHT) return;
-  for (let i = 0; i < values.length; ++i) values[i] += 2 * last[i] - before[i];
+  for (let i = 0; i < values.length; ++i)
+    values[i] = (values[i] + (last[i] << 1) - before[i]) | 0;
 }
 
 /** Decodes the frames of one mesh in either codec, in the order in which they were sent. */
@@ -185,8 +190,8 @@ export class FrameDecoder {
     demand(outside >= 0, 'a number is out of range');
     const right = sumA >>> 0 === payload.sumA && sumB >>> 0 === payload.sumB;
     demand(right, 'the sums of the numbers do not match');
-    for (let i = 0; i < positions.length; ++i)
-      demand(Number.isFinite(positions[i]), 'a coordinate is not finite');
+    const farthest = Math.max(...origin.map(Math.abs)) + MOST_STEPS * step;
+    if (farthest > SURELY_FINITE) demandFinite(positions);
     return positions;
   }
 }

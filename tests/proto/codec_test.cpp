@@ -189,7 +189,7 @@ TEST_CASE("A stream is exact in any order of predictions, over any ages of refer
       request.before = 100 + n - 2;
       if (n % 3 > 0)
         request.prediction = Prediction{static_cast<Base>(random() % (1 + std::min(n % 20, 2U))),
-                                        static_cast<Spatial>(random() % 3)};
+                                        static_cast<Spatial>(random() % 4)};
       const Bytes payload = encoder.encode(order, lattice, now, request);
       std::vector<float> shown(3 * std::size_t{order.size()});
       positions_of(lattice, now, order.vertices, shown);

@@ -99,7 +99,7 @@ def predictions():
     stream.key(waves(stream.order, 2), 2, extra=[section(GRABS, 0, grab_bytes(HANDS))])
     phase = 2
     for base in (1, 2, 0):
-        for neighbours in (0, 1, 2):
+        for neighbours in (0, 1, 2, 3):
             phase += 1
             stream.add(waves(stream.order, phase, noise=2), base, neighbours)
     stream.add(waves(stream.order, 20), 1, 2, skip=8)
@@ -137,7 +137,7 @@ def small(rows, columns):
     stream = of_grid(rows, columns)
     for phase in range(2):
         stream.key(waves(stream.order, phase), phase + 1)
-    for base, neighbours in ((1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)):
+    for base, neighbours in ((1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2), (2, 3)):
         stream.add(waves(stream.order, base * 3 + neighbours, noise=1), base, neighbours)
     return stream
 
@@ -177,7 +177,7 @@ def two_meshes():
     ]
     stream = Stream(order, rest, triangles, cloths, True)
     stream.key(waves(order, 0))
-    for base, neighbours in ((1, 0), (1, 1), (2, 2), (1, 2), (2, 1), (0, 1)):
+    for base, neighbours in ((1, 0), (1, 1), (2, 2), (1, 3), (2, 1), (0, 3)):
         stream.add(waves(order, 1 + len(stream.frames), noise=1), base, neighbours)
     return stream
 
@@ -218,7 +218,7 @@ def refused(stream):
     yield "no positions", 2, patched(key, KIND, "H", 901)
     yield "base 3", 4, patched(step, PAYLOAD, "B", 3)
     yield "key with base 1", 2, patched(key, PAYLOAD, "B", 1)
-    yield "neighbours 3", 2, patched(key, PAYLOAD + 1, "B", 3)
+    yield "neighbours 4", 2, patched(key, PAYLOAD + 1, "B", 4)
     yield "reserved", 2, patched(key, PAYLOAD + 2, "H", 1)
     yield "before without need", 4, patched(step, PAYLOAD + 4, "I", 1)
     yield "raw bits longer than all", 2, patched(key, PAYLOAD + 8, "I", 2**32 - 1)

@@ -42,7 +42,11 @@ def prediction(neighbours, d, a, b, c):
         return 0
     if neighbours == 2:
         return value[0] + value[1] - value[2]
-    return value[0] if b is None else signed((value[0] + value[1]) % WORD) >> 1
+    if b is None:
+        return value[0]
+    if neighbours == 1:
+        return signed((value[0] + value[1]) % WORD) >> 1
+    return signed((3 * (value[0] + value[1]) - 2 * value[2] + 2) % WORD) >> 2
 
 
 def zigzag(r):
@@ -59,7 +63,8 @@ def token_of(v):
 
 
 def context_of(around):
-    return next((i for i, most in enumerate((0, 1, 2, 4, 8, 16, 40)) if around <= most), 7)
+    most = (0, 1, 2, 4, 8, 16, 40, 100, 250)
+    return next((i for i, bound in enumerate(most) if around <= bound), 9)
 
 
 def normalised(counts):
@@ -126,7 +131,7 @@ def payload(order, base, neighbours, now, last=None, before=None, before_sequenc
             symbols.append((context_of(around), token))
             bits |= low << bit_count
             bit_count += count
-    counts = [[0] * MOST_TOKENS for _ in range(8)]
+    counts = [[0] * MOST_TOKENS for _ in range(10)]
     for context, token in symbols:
         counts[context][token] += 1
     tables = [normalised(c) if sum(c) else c for c in counts]

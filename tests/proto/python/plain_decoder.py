@@ -92,7 +92,7 @@ class Tokens:
 
     def __init__(self, data):
         self.data, self.at = data, 0
-        self.tables = [self.read_table() for _ in range(8)]
+        self.tables = [self.read_table() for _ in range(10)]
         demand(self.at + 8 <= len(data), "the states are cut off")
         self.states = list(struct.unpack_from("<II", data, self.at))
         self.at += 8
@@ -130,7 +130,7 @@ class Tokens:
         demand(self.states == [STATE_LOW] * 2 and self.at == len(self.data), "no end")
 
 
-CONTEXTS = [0, 1, 2, 3, 3] + [4] * 4 + [5] * 8 + [6] * 24 + [7]
+CONTEXTS = [0, 1, 2, 3, 3] + [4] * 4 + [5] * 8 + [6] * 24 + [7] * 60 + [8] * 150 + [9]
 
 
 def signed(value):
@@ -142,7 +142,7 @@ def residuals(tokens, bits, near, number):
     """Of one component."""
     v = [0] * (len(near) + 1)
     for i, (a, b, _) in enumerate(near):
-        token = tokens.take(number + i, CONTEXTS[min(v[a] + v[b], 41)])
+        token = tokens.take(number + i, CONTEXTS[min(v[a] + v[b], 251)])
         low = (token - 16) // 2 + 3
         v[i] = token if token < 16 else (2 + token % 2 << low) + bits.take(low)
     return v
@@ -153,8 +153,10 @@ def restore(v, near, neighbours):
     d = [0] * len(v)
     none = len(near)
     for i, (a, b, c) in enumerate(near):
-        mean = d[a] if b == none else signed(d[a] + d[b]) >> 1
-        predicted = (0, mean, d[a] + d[b] - d[c])[neighbours]
+        total = d[a] + d[b]
+        blend = signed(3 * total - 2 * d[c] + 2) >> 2
+        guess = (0, signed(total) >> 1, total - d[c], blend)[neighbours]
+        predicted = d[a] if b == none and neighbours % 2 == 1 else guess
         d[i] = signed((v[i] >> 1 ^ -(v[i] & 1)) + predicted)
     return d
 
@@ -222,7 +224,7 @@ class Decoder:
         payload, size = frame.sections[7, 0], 44 if frame.key else 20
         demand(frame.vertices == self.vertices and len(payload) >= size, "it does not fit")
         base, neighbours, zero, before, raw, a, b = struct.unpack_from("<BBHIIII", payload)
-        demand(base <= 2 and neighbours <= 2 and zero == 0, "the prediction is unknown")
+        demand(base <= 2 and neighbours <= 3 and zero == 0, "the prediction is unknown")
         demand(not (frame.key and base), "a key frame builds on no other")
         origin = struct.unpack_from("<3d", payload, 20) if frame.key else self.origin
         held = [] if frame.key else self.held
