@@ -253,12 +253,13 @@ struct Load {
   bool operator==(const Load&) const = default;
 };
 
-enum class Codec : std::uint8_t { f32 };
+enum class Codec : std::uint8_t { f32, packed };
 
 struct View {
   std::optional<double> hz;  ///< most frames a second; 0: none
   std::optional<Codec> codec;
-  std::optional<bool> forces;  ///< contacts and reactions in the frames
+  std::optional<double> error;  ///< most that a packed vertex may be off [m]
+  std::optional<bool> forces;   ///< contacts and reactions in the frames
   bool operator==(const View&) const = default;
 };
 

@@ -138,6 +138,7 @@ struct FieldWriter {
   void operator()(const View& c) {
     put_if(out, "hz", c.hz);
     if (c.codec) out["codec"] = name_of(*c.codec);
+    put_if(out, "error", c.error);
     put_if(out, "forces", c.forces);
   }
   template <class Plain>

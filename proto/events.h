@@ -34,7 +34,7 @@ struct Welcome {
   std::string scene;
   double tick_rate = 60;  ///< [1/s]
   double clock = 0;       ///< server's monotonic clock, now [s]
-  std::vector<std::string> codecs = {"f32"};
+  std::vector<std::string> codecs = {"f32", "packed"};
   ServerLimits limits;
   std::vector<std::string> capabilities;
 };

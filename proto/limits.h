@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -40,8 +41,11 @@ inline constexpr Range kStepRange{1, 600};        ///< [ticks]
 inline constexpr Range kAdvanceRange{1, 100000};  ///< [ticks]
 inline constexpr Range kSpeedRange{0.01, 10};
 inline constexpr Range kFrameRateRange{0, 240};     ///< [1/s]
-inline constexpr Range kGravityRange{-1000, 1000};  ///< each component [m/s^2]
-inline constexpr Range kWindRange{-100, 100};       ///< each component [m/s]
+inline constexpr Range kPackedErrorRange{1e-5, 1};  ///< [m]
+/// Bounds of the error of packed frames; a viewer gets the largest that is not above what it asks.
+inline constexpr std::array<double, 2> kPackedErrors = {1e-5, 1e-4};  ///< [m]
+inline constexpr Range kGravityRange{-1000, 1000};                    ///< each component [m/s^2]
+inline constexpr Range kWindRange{-100, 100};                         ///< each component [m/s]
 inline constexpr std::size_t kMostFans = 4;
 inline constexpr Range kFanSpeedRange{0, 50};      ///< [m/s]
 inline constexpr Range kFanRadiusRange{0.01, 10};  ///< [m]

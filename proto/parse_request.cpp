@@ -267,9 +267,10 @@ Command read_view(FieldReader& in) {
   View view;
   in.read_if_there("hz", view.hz, kFrameRateRange);
   in.read_if_there("codec", view.codec, kCodecWords);
+  in.read_if_there("error", view.error, kPackedErrorRange);
   in.read_if_there("forces", view.forces);
   if (in.ok() && view == View{})
-    in.fail(ErrorCode::missing_field, "hz", "view needs hz, codec or forces");
+    in.fail(ErrorCode::missing_field, "hz", "view needs hz, codec, error or forces");
   return view;
 }
 

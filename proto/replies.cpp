@@ -191,6 +191,7 @@ struct ReplyWriter {
     out["command"] = "view";
     out["hz"] = r.hz;
     out["codec"] = name_of(r.codec);
+    if (r.codec == Codec::packed) out["error"] = r.error;
     out["forces"] = r.forces;
   }
   void operator()(const VectorsReply& r) {  // the data is appended as text

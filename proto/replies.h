@@ -112,6 +112,7 @@ struct ViewReply {
   double hz = 0;
   Codec codec = Codec::f32;
   bool forces = false;
+  double error = 0;  ///< bound of packed frames [m]
 };
 
 /// Positions, velocities or boxes as JSON, `components` values per row. Only encode_reply reads the

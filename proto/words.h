@@ -17,7 +17,7 @@ inline constexpr std::array<const char*, 18> kQueryWhatWords = {
     "camera",    "roster",       "state",    "work",      "trees",    "boxes",
     "colliders", "measurements", "contacts", "reactions", "grippers", "crossings"};
 inline constexpr std::array<const char*, 3> kQueryFormatWords = {"json", "f32", "f64"};
-inline constexpr std::array<const char*, 1> kCodecWords = {"f32"};
+inline constexpr std::array<const char*, 2> kCodecWords = {"f32", "packed"};
 
 enum class DragPhase : std::uint8_t { start, move, end };
 inline constexpr std::array<const char*, 3> kDragPhaseWords = {"start", "move", "end"};

@@ -50,7 +50,8 @@ void Hub::welcome_done(proto::ViewerId viewer) {
   count_takers();
 }
 
-void Hub::offer_mesh(std::uint64_t hash, SharedBytes bytes) {
+void Hub::offer_mesh(std::uint64_t hash, SharedBytes bytes, const PackedMesh& packed) {
+  packer_.begin(packed);
   for (auto& [id, viewer] : viewers_) viewer.channel->drop_frame();
   meshes_.emplace_front(hash, std::move(bytes));
   if (meshes_.size() > kKeptMeshes) meshes_.pop_back();
@@ -82,6 +83,13 @@ void Hub::want_forces(proto::ViewerId viewer, bool wanted) {
   count_takers();
 }
 
+void Hub::want_packed(proto::ViewerId viewer, double error) {
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  found->second.channel->pack_with(packer_, error);
+  count_takers();
+}
+
 void Hub::poll() {
   for (auto& [id, viewer] : viewers_) {
     viewer.channel->poll();
@@ -101,13 +109,15 @@ SharedBytes Hub::find_mesh(std::uint64_t hash) const {
 }
 
 void Hub::count_takers() {
-  int takers = 0, force_takers = 0;
+  int takers = 0, force_takers = 0, packed_takers = 0;
   for (const auto& [id, viewer] : viewers_) {
     takers += viewer.channel->wants_frames() ? 1 : 0;
     force_takers += viewer.channel->wants_forces() ? 1 : 0;
+    packed_takers += viewer.channel->packed_error() > 0 ? 1 : 0;
   }
   frame_takers_.store(takers, std::memory_order_relaxed);
   force_takers_.store(force_takers, std::memory_order_relaxed);
+  if (packed_takers == 0) packer_.forget();
 }
 
 void Hub::count_frames(Viewer& viewer) {

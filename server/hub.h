@@ -9,6 +9,7 @@
 
 #include "proto/types.h"
 #include "server/clock.h"
+#include "server/frame_packer.h"
 #include "server/metrics.h"
 #include "server/viewer_channel.h"
 
@@ -28,11 +29,14 @@ class Hub {
   /// To every welcomed viewer.
   void broadcast(const Message& message);
   void welcome_done(proto::ViewerId viewer);
-  void offer_mesh(std::uint64_t hash, SharedBytes bytes);
+  void offer_mesh(std::uint64_t hash, SharedBytes bytes, const PackedMesh& packed = {});
   void offer_frame(const Frame& frame);
   void set_frame_rate(double frame_rate);
   void set_most_frames(proto::ViewerId viewer, double hz);
   void want_forces(proto::ViewerId viewer, bool wanted);
+  /// Packs the viewer's frames from now on, the first one as a key.
+  /// @param error  bound [m]; 0: float32
+  void want_packed(proto::ViewerId viewer, double error);
 
   /// Sends what has become due, tells viewers of dropped frames, counts. Call every 10 to 50 ms.
   void poll();
@@ -48,6 +52,7 @@ class Hub {
   /// Whether any viewer takes contacts and reactions with its frames.
   bool wants_forces() const { return force_takers_.load(std::memory_order_relaxed) > 0; }
   std::size_t viewers() const { return viewers_.size(); }
+  const FramePacker& packer() const { return packer_; }
   const Clock& clock() const { return clock_; }
 
  private:
@@ -66,6 +71,7 @@ class Hub {
   double frame_rate_;
   ChannelLimits limits_;
   Metrics& metrics_;
+  FramePacker packer_;
   // Ordered, so that viewers are served in the same order in every run.
   std::map<proto::ViewerId, Viewer> viewers_;
   std::deque<std::pair<std::uint64_t, SharedBytes>> meshes_;

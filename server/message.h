@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "proto/codec/order.h"
 #include "proto/types.h"
 
 namespace weft::server {
@@ -45,6 +46,12 @@ enum class Topic : std::uint8_t {
   mesh,       ///< its announcement; drops waiting `mesh_data`, `state`, `pins`, `grabs` of the last
   mesh_data,  ///< of any size
   frame,      ///< one that must arrive; its sender bounds how many are in flight
+};
+
+/// What the codec `packed` has to know of a mesh.
+struct PackedMesh {
+  std::uint32_t epoch = 0;
+  std::shared_ptr<const proto::codec::CodingOrder> order = {};  ///< null: frames stay float32
 };
 
 /// One WebSocket message.

@@ -24,8 +24,10 @@ class NetworkOutput : public RoomOutput {
   void set_frame_rate(double frame_rate) override {
     post([frame_rate](Hub& hub) { hub.set_frame_rate(frame_rate); });
   }
-  void offer_mesh(std::uint64_t hash, SharedBytes bytes) override {
-    post([hash, bytes = std::move(bytes)](Hub& hub) { hub.offer_mesh(hash, bytes); });
+  void offer_mesh(std::uint64_t hash, SharedBytes bytes, PackedMesh packed) override {
+    post([hash, bytes = std::move(bytes), packed = std::move(packed)](Hub& hub) {
+      hub.offer_mesh(hash, bytes, packed);
+    });
   }
   void welcome_done(proto::ViewerId viewer) override {
     post([viewer](Hub& hub) { hub.welcome_done(viewer); });

@@ -62,7 +62,7 @@ void Room::start_world(BuiltScene&& scene) {
   mesh_ = std::move(scene.mesh);
   mesh_.epoch = epoch_;
   mesh_bytes_ = std::move(scene.mesh_bytes);
-  output_.offer_mesh(mesh_.hash, mesh_bytes_);
+  output_.offer_mesh(mesh_.hash, mesh_bytes_, {epoch_, std::move(scene.order)});
   wanted_softness_ = 1;
   budget_.restart(world_->def().budget, {});
   guarantee_.start(*world_, std::move(scene.bad_starts));

@@ -23,7 +23,7 @@ class RoomOutput {
 
   /// Makes a binary mesh message available under its content hash. Frames offered earlier belong to
   /// an older mesh and are no longer sent.
-  virtual void offer_mesh(std::uint64_t hash, SharedBytes bytes) = 0;
+  virtual void offer_mesh(std::uint64_t hash, SharedBytes bytes, PackedMesh packed) = 0;
 
   /// Tells that the viewer has been sent everything that precedes frames.
   virtual void welcome_done(proto::ViewerId viewer) = 0;

@@ -49,8 +49,11 @@ BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limi
   check_cost(built.world->cost_in(def.environment), "scene", def.name);
   built.notices = notices_of(*built.world, repairs);
   stop_point();
-  proto::Bytes bytes = proto::encode_mesh_data(scene_mesh(*built.world));
+  proto::SceneMesh mesh = scene_mesh(*built.world);
   built.mesh = mesh_announcement(*built.world);
+  built.order = give_order(mesh, built.mesh);
+  stop_point();
+  proto::Bytes bytes = proto::encode_mesh_data(mesh);
   built.mesh.hash = proto::content_hash(bytes);
   built.mesh.bytes = bytes.size();
   built.mesh_bytes = SharedBytes(std::move(bytes));

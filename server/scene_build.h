@@ -33,8 +33,9 @@ struct BuiltScene {
   std::unique_ptr<ServedWorld> world;
   proto::MeshAnnouncement mesh;  ///< without its epoch
   SharedBytes mesh_bytes;
-  ComingStarts bad_starts;           ///< found by its first tick
-  std::vector<SceneNotice> notices;  ///< of its start
+  std::shared_ptr<const proto::codec::CodingOrder> order;  ///< of packed frames
+  ComingStarts bad_starts;                                 ///< found by its first tick
+  std::vector<SceneNotice> notices;                        ///< of its start
 };
 
 /// All remarks on a world at its start, including the `repairs` of its objects.

@@ -83,6 +83,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void on_binary();
   void on_request(const proto::Request& request, double received);
   void on_view(const std::optional<proto::Id>& id, const proto::View& view);
+  void choose_codec(const proto::View& view);
   void on_excess(std::string_view text);
   void refuse(const proto::Error& error);
   void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
@@ -103,6 +104,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   proto::ViewerId viewer_;
   ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
   std::uint32_t number_ = 0;          // of the last text message
+  double packed_error_ = proto::kPackedErrors.back();  // that it wants, if packed [m]
   double alive_ = 0;
   bool pinging_ = false, finished_ = false, cutting_ = false;
 };
@@ -203,14 +205,28 @@ void Session::on_view(const std::optional<proto::Id>& id, const proto::View& vie
   const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
   if (view.hz) context_.hub.set_most_frames(viewer_, *view.hz);
   if (view.forces) context_.hub.want_forces(viewer_, *view.forces);
-  answer(id,
-         proto::ViewReply{channel_->most_frames(), proto::Codec::f32, channel_->asked_forces()});
-  // Anything not sent before is missing now; no other wish of a viewer makes a frame.
+  choose_codec(view);
+  const double error = channel_->packed_error();
+  answer(id, proto::ViewReply{channel_->most_frames(),
+                              error > 0 ? proto::Codec::packed : proto::Codec::f32,
+                              channel_->asked_forces(), error});
+  // Anything not sent before is missing now, such as a key; no other wish of a viewer makes a
+  // frame.
   Noted noted;
-  noted.wants_frame =
-      (channel_->wants_frames() && !had_frames) || (channel_->wants_forces() && !had_forces);
+  noted.wants_frame = (channel_->wants_frames() && !had_frames) ||
+                      (channel_->wants_forces() && !had_forces) ||
+                      (channel_->wants_frames() && view.codec == proto::Codec::packed);
   noted.forces = view.forces;
   context_.mailbox.put({viewer_, number_, noted});
+}
+
+void Session::choose_codec(const proto::View& view) {
+  for (const double error : proto::kPackedErrors)
+    if (view.error && error <= *view.error) packed_error_ = error;
+  const bool packed =
+      view.codec ? *view.codec == proto::Codec::packed : channel_->packed_error() > 0;
+  if (view.codec || (view.error && packed))
+    context_.hub.want_packed(viewer_, packed ? packed_error_ : 0);
 }
 
 /// A dropped message gets an answer too: its sender may wait for one.

@@ -367,6 +367,18 @@ proto::MeshAnnouncement mesh_announcement(const ServedWorld& world) {
   return announcement;
 }
 
+std::shared_ptr<const proto::codec::CodingOrder> give_order(
+    proto::SceneMesh& mesh, const proto::MeshAnnouncement& announcement) {
+  std::vector<proto::codec::ClothRange> ranges;
+  for (const proto::ClothInfo& cloth : announcement.cloths)
+    ranges.push_back({cloth.first_vertex, cloth.vertices, cloth.first_triangle, cloth.triangles,
+                      cloth.rows, cloth.columns});
+  auto order = std::make_shared<proto::codec::CodingOrder>(
+      proto::codec::make_order(mesh.rest_positions, mesh.triangles, ranges));
+  if (!proto::codec::all_grids(ranges)) mesh.order = proto::codec::order_words(*order);
+  return order;
+}
+
 proto::Error to_wire(const DefinitionError& error) {
   const bool cost = dynamic_cast<const CostError*>(&error) != nullptr;
   proto::Error out =

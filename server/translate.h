@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/world/world.h"
+#include "proto/codec/order.h"
 #include "proto/commands.h"
 #include "proto/data.h"
 #include "proto/events.h"
@@ -75,6 +77,10 @@ std::vector<proto::GripperInfo> grippers_of(const ServedWorld& world);
 proto::SceneMesh scene_mesh(const ServedWorld& world);
 /// Without epoch, hash and bytes.
 proto::MeshAnnouncement mesh_announcement(const ServedWorld& world);
+/// The order in which packed frames have the vertices of a mesh. Writes it into the mesh if clients
+/// cannot work it out by themselves.
+std::shared_ptr<const proto::codec::CodingOrder> give_order(
+    proto::SceneMesh& mesh, const proto::MeshAnnouncement& announcement);
 
 /// A refused definition as an error of the wire.
 proto::Error to_wire(const DefinitionError& error);

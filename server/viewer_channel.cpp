@@ -156,10 +156,10 @@ void ViewerChannel::count_frame(const Frame& frame, double now) {
 void ViewerChannel::pump() {
   if (writing_ || closed_) return;
   if (!queue_.empty()) {
-    const Message message = std::move(queue_.front());
+    Message message = std::move(queue_.front());
     queue_.pop_front();
     if (counts(message)) queued_bytes_ -= message.bytes.size();
-    start(message);
+    start(std::move(message));
     return;
   }
   if (closing_) {
@@ -174,8 +174,16 @@ void ViewerChannel::pump() {
   start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true, Topic::frame});
 }
 
-void ViewerChannel::start(const Message& message) {
+void ViewerChannel::pack_with(FramePacker& packer, double error) {
+  packer_ = &packer;
+  packed_ = {};
+  packed_.error = error;
+}
+
+void ViewerChannel::start(Message message) {
   writing_ = true;
+  if (message.topic == Topic::frame && packer_)
+    message.bytes = packer_->pack(message.bytes, packed_);
   stream_.write(message);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "server/clock.h"
+#include "server/frame_packer.h"
 #include "server/frame_window.h"
 #include "server/message.h"
 
@@ -74,6 +75,10 @@ class ViewerChannel {
   void want_forces(bool wanted) { with_forces_ = wanted; }
   bool wants_forces() const { return with_forces_ && wants_frames(); }
   bool asked_forces() const { return with_forces_; }
+  /// Frames are packed from now on when they are sent, the first one as a key.
+  /// @param error  bound [m]; 0: they go as they are
+  void pack_with(FramePacker& packer, double error);
+  double packed_error() const { return packed_.error; }
   bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
 
   /// The room's frame rate has changed [1/s].
@@ -99,7 +104,7 @@ class ViewerChannel {
   void pump();
   bool frame_is_due(double now) const;
   void count_frame(const Frame& frame, double now);
-  void start(const Message& message);
+  void start(Message message);
 
   ViewerStream& stream_;
   const Clock& clock_;
@@ -113,6 +118,8 @@ class ViewerChannel {
   bool closing_ = false, closed_ = false;
   std::uint16_t close_code_ = 0;
   std::string close_reason_;
+  FramePacker* packer_ = nullptr;
+  PackedStream packed_;
   std::deque<Message> queue_;
   std::size_t queued_bytes_ = 0;  // of the messages that count
   std::optional<Frame> waiting_frame_;

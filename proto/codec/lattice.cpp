@@ -17,6 +17,7 @@ constexpr double kInside = 0.999;
 constexpr double kSlack = 1 - 1e-9;
 // A new lattice has room to move, so that a cloth that travels changes it seldom.
 constexpr double kFilled = 0.75;
+constexpr double kRoomToGrow = 1.5;
 // Doubles of this size have their last bit at 1: adding it rounds to the nearest whole number, with
 // ties to even, in the same way on every machine.
 constexpr double kRounder = 0x1.8p52;
@@ -32,6 +33,17 @@ double largest_coordinate(const Bounds& bounds) {
     largest = std::max({largest, std::abs(static_cast<double>(bounds.low[c])),
                         std::abs(static_cast<double>(bounds.high[c]))});
   return largest;
+}
+
+double power_of_two_above(double value) {
+  int exponent = 0;
+  std::frexp(value, &exponent);
+  return std::ldexp(1.0, exponent);
+}
+
+/// How far rounding to float moves a point whose coordinates are below a power of two [m].
+double rounding_at(double reach) {
+  return std::sqrt(3.0) * kRounding * reach;
 }
 
 /// Most steps that a coordinate of these bounds is away from the origin.
@@ -67,15 +79,14 @@ Bounds bounds_of(std::span<const float> positions) {
 
 std::optional<Lattice> make_lattice(const Bounds& bounds, double error, double least_reach) {
   assert(error > 0);
-  // A power of two above the largest coordinate, so that it grows seldom.
-  const double largest = std::max({1.0, 1.5 * largest_coordinate(bounds), least_reach});
+  const double largest = std::max(1.0, largest_coordinate(bounds));
+  // With room to grow, or without where the rounding of large coordinates leaves none.
+  double reach = power_of_two_above(std::max(kRoomToGrow * largest, least_reach));
+  if (rounding_at(reach) >= error / 2) reach = power_of_two_above(largest / kInside);
+  if (!(rounding_at(reach) < error / 2)) return std::nullopt;
   Lattice lattice;
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  lattice.reach = std::ldexp(1.0, exponent);
-  const double rounding = std::sqrt(3.0) * kRounding * lattice.reach;
-  if (!(rounding < error / 2)) return std::nullopt;
-  lattice.step = rounded_down(kSlack * 2 * (error - rounding) / std::sqrt(3.0));
+  lattice.reach = reach;
+  lattice.step = rounded_down(kSlack * 2 * (error - rounding_at(reach)) / std::sqrt(3.0));
   for (std::size_t c = 0; c < 3; ++c)
     lattice.origin[c] =
         (static_cast<double>(bounds.low[c]) + static_cast<double>(bounds.high[c])) / 2;

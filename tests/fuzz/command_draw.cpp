@@ -128,6 +128,8 @@ class CommandDraw {
   void operator()(View& view) {
     view.hz = number(kFrameRateRange, 60);
     view.forces = some();
+    if (some()) view.codec = some() ? Codec::packed : Codec::f32;
+    if (some()) view.error = number(kPackedErrorRange, 1e-4);
   }
   void operator()(Halt&) {}  // of logs alone
 

@@ -65,7 +65,7 @@ class Listener : public server::RoomOutput {
   }
   void broadcast(server::Message message) override { hear(0, message); }
   void set_frame_rate(double) override {}
-  void offer_mesh(std::uint64_t, server::SharedBytes) override {}
+  void offer_mesh(std::uint64_t, server::SharedBytes, server::PackedMesh) override {}
   void welcome_done(proto::ViewerId) override {}
   bool wants_frames() const override { return true; }
   bool wants_forces() const override { return forces; }

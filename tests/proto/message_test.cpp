@@ -201,6 +201,7 @@ std::vector<std::string> replies() {
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),
       encode_reply(26, ViewReply{30, Codec::f32}),
+      encode_reply(28, ViewReply{240, Codec::packed, false, 1e-4}),
   };
 }
 

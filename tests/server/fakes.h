@@ -100,7 +100,7 @@ struct RecordingOutput : RoomOutput {
   }
   void broadcast(Message message) override { sent.emplace_back(0, text_of(message)); }
   void set_frame_rate(double) override {}
-  void offer_mesh(std::uint64_t, SharedBytes) override {}
+  void offer_mesh(std::uint64_t, SharedBytes, PackedMesh) override {}
   void welcome_done(proto::ViewerId) override {}
   bool wants_frames() const override { return viewers_want_frames; }
   bool wants_forces() const override { return viewers_want_forces; }

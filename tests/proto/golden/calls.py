@@ -52,4 +52,6 @@ CLIENT_CALLS = [
     call("query", "contacts", sends={"op": "query", "what": "contacts"}),
     call("view", hz=0, sends={"op": "view", "hz": 0}),
     call("view", forces=True, sends={"op": "view", "forces": True}),
+    call("view", codec="packed", error=1e-5,
+         sends={"op": "view", "codec": "packed", "error": 1e-5}),
 ]

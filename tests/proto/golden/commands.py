@@ -175,4 +175,6 @@ ACCEPTED = [
     accepted('{"op":"view","hz":0}', op="view", hz=0),
     accepted('{"op":"view","hz":59.94,"codec":"f32"}', op="view", hz=59.94, codec="f32"),
     accepted('{"op":"view","forces":true}', op="view", forces=True),
+    accepted('{"op":"view","codec":"packed"}', op="view", codec="packed"),
+    accepted('{"op":"view","error":0.00001}', op="view", error=0.00001),
 ]

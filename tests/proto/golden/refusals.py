@@ -253,7 +253,8 @@ def refused_fields():
     yield refuse('{"op":"view"}', "missing_field", field="hz")
     yield refuse('{"op":"view","hz":241}', "out_of_range", field="hz", limit=limits(0, 240))
     yield refuse('{"op":"view","codec":"zip"}', "unknown_value", field="codec",
-                 limit={"allowed": ["f32"]})
+                 limit={"allowed": ["f32", "packed"]})
+    yield refuse('{"op":"view","error":0}', "out_of_range", field="error", limit=limits(1e-5, 1))
 
 
 def refused():
