@@ -29,7 +29,7 @@ await writeFile(
 
 const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: ["src/main.ts", "styles/styles.css"],
+  entryPoints: ["src/main.ts", "src/wire/frame_worker.ts", "styles/styles.css"],
   entryNames: "[name]",
   outdir: output,
   bundle: true,

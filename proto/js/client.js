@@ -199,7 +199,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * @param {{hz?: number, codec?: string, forces?: boolean}} options  kept over reconnections
+   * @param {{hz?: number, codec?: 'f32' | 'packed', error?: number, forces?: boolean}} options  kept over reconnections
    * @param {Call} [call]
    */
   view(options, call) {

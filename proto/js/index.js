@@ -22,4 +22,5 @@ export {
   encodeAck,
 } from './codec.js';
 export { orderOf } from './order.js';
+export { FrameReader } from './frames.js';
 export { FrameDecoder } from './packed.js';

@@ -1,7 +1,9 @@
+import { socketAddress } from './address.js';
 import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
 import { Connection, SECOND_LOOK, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
 import { CallTimeout, CommandError, ConnectionLost } from './errors.js';
+import { FrameReader } from './frames.js';
 import { fetchMesh, matchMesh } from './mesh.js';
 import { Pace } from './pace.js';
 import { ClockEstimate, LatencyMeter } from './timing.js';
@@ -15,6 +17,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @property {string} [color]            `#rrggbb`
  * @property {'socket' | 'http'} [mesh]  source of the mesh; over HTTP it is cached
  * @property {boolean} [reconnect]       default true
+ * @property {import('./frames.js').FrameSource} [frames]  reads frames, in a worker perhaps
  * @property {number} [timeout]          for an answer [ms], default 30,000; Infinity: none
  * @property {any} [WebSocket]           the class; default that of the environment
  * @property {typeof fetch} [fetch]      for mesh: 'http'
@@ -45,29 +48,9 @@ const FIRST_PING_INTERVAL = 200; // [ms]
 const CALL_TIMEOUT = 30000; // for an answer [ms]
 const LONGEST_TIMER = 2 ** 31 - 1; // the most that timers take [ms]
 const SILENCE_LIMIT = 10000; // silence after which the connection counts as dead [ms]
+const FRAME = 1; // the type of a binary message
 const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
-const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], ['wss:', 'wss:']]);
-
-/**
- * The address of a server's socket; `given` may be that of its page.
- * @param {string} given
- */
-function socketAddress(given) {
-  const wanted = 'give one as ws://127.0.0.1:8080/ws, or that of its page';
-  let url;
-  try {
-    url = new URL(given);
-  } catch (cause) {
-    throw new TypeError(`'${given}' is no address: ${wanted}`, { cause });
-  }
-  const protocol = SOCKETS.get(url.protocol);
-  if (!protocol) throw new TypeError(`'${given}' is no address of a server: ${wanted}`);
-  url.protocol = protocol;
-  url.hash = '';
-  if (url.pathname === '/') url.pathname = '/ws';
-  return url;
-}
 
 /**
  * The conversation with a server: requests and answers, events, the mesh, frames and their acks,
@@ -92,6 +75,8 @@ export class Session extends Emitter {
   #heardAt = 0;
   #clock = new ClockEstimate();
   #meter = new LatencyMeter();
+  #frames;
+  #keyAsked = false;
 
   /** @type {import('./messages.js').Welcome | null} */
   welcome = null;
@@ -108,6 +93,7 @@ export class Session extends Emitter {
     super();
     this.options = options;
     this.timers = options.timers ?? systemTimers;
+    this.#frames = options.frames ?? new FrameReader();
     this.#pace = new Pace(this.timers);
     this.#url = socketAddress(url);
     if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
@@ -345,6 +331,7 @@ export class Session extends Emitter {
   /** @param {import('./messages.js').MeshData} data */
   #adoptMesh(data) {
     this.mesh = matchMesh(this.#announced, data);
+    this.#frames.begin(this.mesh.announcement.cloths, data);
     this.emit('mesh', this.mesh);
   }
 
@@ -380,16 +367,21 @@ export class Session extends Emitter {
 
   /** @param {ArrayBuffer} bytes */
   #readBinary(bytes) {
+    if (new Uint8Array(bytes)[0] === FRAME)
+      return this.#frames.read(bytes, (got) => this.#guard(() => this.#receive(got)), (error) => this.#fail(error));
     const message = decodeBinary(bytes);
     if (message.type === 'mesh') return this.#adoptMesh(message);
-    if (message.type === 'frame') return this.#readFrame(message);
+    if (message.type === 'frame') throw new ProtocolError('a frame of another type');
     this.#transfers.get(message.transfer)?.(message);
     this.#transfers.delete(message.transfer);
   }
 
-  /** @param {import('./messages.js').Frame} frame */
-  #readFrame(frame) {
-    this.#connection.send(encodeAck(frame.sequence));
+  /** @param {import('./frames.js').Received} received */
+  #receive({ sequence, frame }) {
+    this.#connection.send(encodeAck(sequence));
+    if (!frame && !this.#keyAsked) this.post('view', { codec: 'packed' });
+    this.#keyAsked = frame === null;
+    if (!frame) return;
     const own = frame.applied.find(({ viewer }) => viewer === this.viewer);
     if (own) this.#meter.applied(own.number, this.#now());
     if (frame.epoch !== this.mesh?.announcement.epoch) return;

@@ -1,9 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { CallTimeout, CommandError, ConnectionLost, WeftClient } from '../../../proto/js/index.js';
+import {
+  CallTimeout, CommandError, ConnectionLost, FrameReader, ProtocolError, WeftClient, decodeFrame, decodeMesh,
+} from '../../../proto/js/index.js';
 import { FakeTimers, fakeSockets, settle } from './fakes.mjs';
-import { readGolden, readGoldenJson, specificationExamples } from './golden.mjs';
+import { packedStreams, readGolden, readGoldenJson, specificationExamples } from './golden.mjs';
 
 const examples = specificationExamples();
 const example = (op, command) => examples.find((m) => m.op === op && (!command || m.command === command));
@@ -190,6 +192,64 @@ test('a message that cannot be read ends the connection and it is made anew', as
     await timers.pass(10000);
     assert.equal(sockets.length > 1, true);
   }
+});
+
+/** The announcement of a golden stream's mesh. */
+const announced = ({ cloths, order, mesh }) => ({
+  ...GRID,
+  epoch: 3,
+  cloths,
+  vertices: order.vertices.length,
+  triangles: decodeMesh(mesh).triangles.length / 3,
+});
+
+test('packed frames are told as float32 ones are, and acknowledged', async () => {
+  for (const stream of packedStreams()) {
+    const { client, socket } = await join();
+    const told = [];
+    client.on('frame', ({ positions }) => told.push(positions));
+    socket.say(announced(stream));
+    socket.sayBytes(stream.mesh);
+    for (const [packed] of stream.frames) socket.sayBytes(packed);
+    assert.equal(socket.acks.length, stream.frames.length);
+    assert.deepEqual(told, stream.frames.map(([, plain]) => decodeFrame(plain).positions));
+  }
+});
+
+test('packed frames before the mesh and without a key are acknowledged, and a key is asked for once', async () => {
+  const [stream] = packedStreams();
+  const { client, socket } = await join();
+  const told = [];
+  client.on('frame', ({ sequence }) => told.push(sequence));
+  socket.sayBytes(stream.frames[0][0]);
+  assert.deepEqual(socket.ops('view').map(({ codec }) => codec), ['packed']);
+  socket.say(announced(stream));
+  socket.sayBytes(stream.mesh);
+  const rest = stream.frames.slice(3).map(([packed]) => packed);
+  for (const packed of rest.slice(0, 4)) socket.sayBytes(packed);
+  assert.equal(told.length, 0);
+  assert.equal(socket.ops('view').length, 1);
+  socket.sayBytes(stream.frames[0][0]);
+  assert.equal(told.length, 1);
+  assert.equal(socket.acks.length, 6);
+});
+
+test('frames may be decoded elsewhere, and what goes wrong there ends the connection', async () => {
+  const waiting = [];
+  const frames = { begin() {}, read: (bytes, done, fail) => waiting.push({ bytes, done, fail }) };
+  const { client, socket } = await join({ frames });
+  socket.say(GRID);
+  socket.sayBytes(readGolden('mesh_grid.bin'));
+  socket.sayBytes(readGolden('frame_hands.bin'));
+  assert.equal(socket.acks.length, 0);
+  const told = client.next('frame');
+  new FrameReader().read(waiting[0].bytes, waiting[0].done);
+  assert.equal((await told).positions.length, 18);
+  assert.equal(socket.acks.length, 1);
+  const fault = client.next('fault');
+  waiting[0].fail(new ProtocolError('unreadable'));
+  assert.equal((await fault).message, 'unreadable');
+  assert.equal(socket.closedWith.code, 4002);
 });
 
 test('over HTTP the mesh is fetched from its address', async () => {

@@ -1,5 +1,7 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
+import { WorkerFrames } from './worker_frames.js';
 
+const SHOWN_ERROR = 1e-4; // how far off a vertex may be; below what a picture shows [m]
 const EVERY_TICK = 240; // frames per second; more than any display shows
 const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
 const PATIENCE = 3; // failed attempts before a proxy is suspected
@@ -20,10 +22,11 @@ export function connect_client(name: string): WeftClient {
   const url = new URL('ws', window.location.href);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
   url.search = url.hash = '';
-  const client = new WeftClient(url.href, name ? { name } : {});
+  const frames = new WorkerFrames(new Worker('frame_worker.js', { type: 'module' }));
+  const client = new WeftClient(url.href, { frames, ...(name ? { name } : {}) });
   const look = () => void client.view({ hz: document.hidden ? 0 : EVERY_TICK }).catch(() => {});
   document.addEventListener('visibilitychange', look);
-  if (document.hidden) client.wantedView = { hz: 0 };
+  client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
   window.addEventListener('pagehide', () => client.close());
   window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect());
   client.connect().catch(() => {}); // the status reports failures

@@ -1,0 +1,21 @@
+const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], ['wss:', 'wss:']]);
+
+/**
+ * The address of a server's socket; `given` may be that of its page.
+ * @param {string} given
+ */
+export function socketAddress(given) {
+  const wanted = 'give one as ws://127.0.0.1:8080/ws, or that of its page';
+  let url;
+  try {
+    url = new URL(given);
+  } catch (cause) {
+    throw new TypeError(`'${given}' is no address: ${wanted}`, { cause });
+  }
+  const protocol = SOCKETS.get(url.protocol);
+  if (!protocol) throw new TypeError(`'${given}' is no address of a server: ${wanted}`);
+  url.protocol = protocol;
+  url.hash = '';
+  if (url.pathname === '/') url.pathname = '/ws';
+  return url;
+}

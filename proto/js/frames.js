@@ -1,0 +1,60 @@
+import { readMessage } from './bytes.js';
+import { decodeFrame } from './codec.js';
+import { orderOf } from './order.js';
+import { FrameDecoder } from './packed.js';
+
+const PACKED = 2;
+const KEY = 1;
+const FRAME_BYTES = 64;
+
+/**
+ * What became of a frame: null if it builds on frames that this client has not got, so that it
+ * needs a key.
+ * @typedef {{sequence: number, frame: import('./messages.js').Frame | null}} Received
+ *
+ * @typedef {object} FrameSource  reads a connection's frames, here or in a worker
+ * @property {(cloths: import('./messages.js').Cloth[],
+ *   data: {restPositions: Float32Array, order: Uint32Array | null}) => void} begin  a mesh came
+ * @property {(bytes: ArrayBuffer, done: (received: Received) => void,
+ *   fail: (error: Error) => void) => void} read  calls one of both, in the order of the frames; may
+ *   throw ProtocolError instead
+ */
+
+/**
+ * Reads the frames of a connection in either codec, in the order in which they were sent.
+ * @implements {FrameSource}
+ */
+export class FrameReader {
+  /** @type {(() => FrameDecoder) | null} */
+  #make = null;
+  /** @type {FrameDecoder | null} */
+  #decoder = null;
+
+  /** @type {FrameSource['begin']} */
+  begin(cloths, data) {
+    this.#make = () => new FrameDecoder(orderOf(cloths, data)); // once packed frames come
+    this.#decoder = null;
+  }
+
+  /** @type {FrameSource['read']} */
+  read(bytes, done) {
+    done(this.take(bytes));
+  }
+
+  /**
+   * @param {ArrayBuffer | ArrayBufferView} bytes
+   * @returns {Received}
+   */
+  take(bytes) {
+    const { codec, flags, view } = readMessage(bytes);
+    if (codec !== PACKED || view.byteLength < FRAME_BYTES) {
+      const frame = decodeFrame(bytes);
+      return { sequence: frame.sequence, frame };
+    }
+    const sequence = view.getUint32(40, true);
+    const lost = !this.#make || (!this.#decoder && (flags & KEY) === 0);
+    if (lost) return { sequence, frame: null };
+    this.#decoder ??= /** @type {() => FrameDecoder} */ (this.#make)();
+    return { sequence, frame: this.#decoder.decode(bytes) };
+  }
+}
