@@ -27,6 +27,7 @@ export class EntropyDecoder {
   #shares = new Int32Array(CONTEXTS * 64);
   #used = new Uint8Array(CONTEXTS);
   #buffer = new Uint8Array(0);
+  #words = new DataView(this.#buffer.buffer);
   // Where reading stands.
   #now = 0;
   #next = 0;
@@ -59,7 +60,12 @@ export class EntropyDecoder {
     this.#bit = 8 * raw;
     const stride = order.vertices.length + 1;
     for (let plane = 0; plane < 3; ++plane)
-      this.#decodePlane(codedLength, 8 * (raw + rawLength), order, residuals, plane * stride);
+      this.#decodePlane(
+        codedLength,
+        8 * (raw + rawLength),
+        order,
+        residuals.subarray(plane * stride, (plane + 1) * stride),
+      );
     const rest = 8 * (raw + rawLength) - this.#bit;
     const empty = rest < 8 && (rest === 0 || this.#buffer[raw + rawLength - 1] >> (8 - rest) === 0);
     const ended = this.#now === STATE_LOW && this.#next === STATE_LOW && this.#coded === codedLength;
@@ -72,7 +78,10 @@ export class EntropyDecoder {
    */
   #fill(coded, raw) {
     const needed = coded.length + raw.length + 2 * PADDING;
-    if (this.#buffer.length < needed) this.#buffer = new Uint8Array(2 * needed);
+    if (this.#buffer.length < needed) {
+      this.#buffer = new Uint8Array(2 * needed);
+      this.#words = new DataView(this.#buffer.buffer);
+    }
     this.#buffer.set(coded);
     this.#buffer.fill(0, coded.length, coded.length + PADDING);
     this.#buffer.set(raw, coded.length + PADDING);
@@ -112,26 +121,26 @@ export class EntropyDecoder {
    * @param {number} bitEnd
    * @param {Order} order
    * @param {Int32Array} residuals
-   * @param {number} plane  where it begins
    */
-  #decodePlane(codedEnd, bitEnd, { vertices, a, b }, residuals, plane) {
+  #decodePlane(codedEnd, bitEnd, { vertices, a, b }, residuals) {
     const count = vertices.length;
     const tokens = this.#tokens;
     const shares = this.#shares;
     const used = this.#used;
     const buffer = this.#buffer;
+    const words = this.#words;
     let now = this.#now;
     let next = this.#next;
     let coded = this.#coded;
     let bit = this.#bit;
     let value = 0; // of the place before; most places follow their neighbour a
-    residuals[plane + count] = 0;
+    residuals[count] = 0;
     for (let begin = 0; begin < count; begin += CHECK_EVERY) {
       const end = Math.min(count, begin + CHECK_EVERY);
       for (let i = begin; i < end; ++i) {
         // Residuals stay below 2^25, so that their sum is a small integer.
-        const left = a[i] === i - 1 ? value : residuals[plane + a[i]];
-        const around = left + residuals[plane + b[i]];
+        const left = a[i] === i - 1 ? value : residuals[a[i]];
+        const around = left + residuals[b[i]];
         const context = around < LAST_CLASS ? CONTEXT_OF[around] : CONTEXTS - 1;
         demand(used[context] === 1, 'a context that does not occur');
         const slot = now & (SLOTS - 1);
@@ -147,13 +156,11 @@ export class EntropyDecoder {
         value = token;
         if (token >= 16) {
           const low = ((token - 16) >> 1) + 3;
-          const byte = bit >> 3;
-          const word =
-            buffer[byte] | (buffer[byte + 1] << 8) | (buffer[byte + 2] << 16) | (buffer[byte + 3] << 24);
-          value = ((2 + (token & 1)) << low) | ((word >>> (bit & 7)) & ((1 << low) - 1));
+          const word = words.getInt32(bit >> 3, true) >>> (bit & 7);
+          value = ((2 + (token & 1)) << low) | (word & ((1 << low) - 1));
           bit += low;
         }
-        residuals[plane + i] = value;
+        residuals[i] = value;
       }
       demand(coded <= codedEnd && bit <= bitEnd, 'the packed positions are cut off');
     }

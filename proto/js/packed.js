@@ -56,29 +56,28 @@ function readPayload(bytes, key) {
  * Residuals to differences, in place; arithmetic is modulo 2^32. Neighbours come before.
  * @param {number} neighbours
  * @param {Order} order
- * @param {Int32Array} values
- * @param {number} plane  where it begins
+ * @param {Int32Array} values  of one component
  */
-function addNeighbours(neighbours, { vertices, a, b, c }, values, plane) {
+function addNeighbours(neighbours, { vertices, a, b, c }, values) {
   const count = vertices.length;
   let before = 0; // the place before is neighbour a of most
   for (let i = 0; i < count; ++i) {
-    const v = values[plane + i];
+    const v = values[i];
     let d = (v >>> 1) ^ -(v & 1);
     if (neighbours !== 0) {
-      const atA = a[i] === i - 1 ? before : values[plane + a[i]];
+      const atA = a[i] === i - 1 ? before : values[a[i]];
       if (neighbours === CORNER) {
-        d = (d + atA + values[plane + b[i]] - values[plane + c[i]]) | 0;
+        d = (d + atA + values[b[i]] - values[c[i]]) | 0;
       } else {
-        let sum = (atA + values[plane + b[i]]) | 0;
+        let sum = (atA + values[b[i]]) | 0;
         if (b[i] !== count) {
           if (neighbours === MEAN) sum >>= 1;
-          else sum = (Math.imul(3, sum) - (values[plane + c[i]] << 1) + 2) >> 2;
+          else sum = (Math.imul(3, sum) - (values[c[i]] << 1) + 2) >> 2;
         }
         d = (d + sum) | 0;
       }
     }
-    values[plane + i] = d;
+    values[i] = d;
     before = d;
   }
 }
@@ -147,7 +146,7 @@ export class FrameDecoder {
     const numbers = this.#scratch;
     this.#entropy.decode(payload.coded, payload.rawLength, this.#order, numbers);
     for (let plane = 0; plane < 3; ++plane)
-      addNeighbours(payload.neighbours, this.#order, numbers, plane * this.#stride);
+      addNeighbours(payload.neighbours, this.#order, numbers.subarray(plane * this.#stride));
     if (last) addEarlier(payload.base, numbers, last.numbers, (before ?? last).numbers);
     const origin = payload.origin ?? this.#origin;
     const positions = this.#place(numbers, payload, origin, step);
@@ -171,21 +170,27 @@ export class FrameDecoder {
   #place(numbers, payload, origin, step) {
     const { vertices } = this.#order;
     const count = vertices.length;
+    const stride = this.#stride;
+    const [x, y, z] = origin;
     const positions = new Float32Array(3 * count);
     let sumA = 0;
     let sumB = 0;
     let outside = 0;
-    for (let component = 0; component < 3; ++component) {
-      const plane = component * this.#stride;
-      const place = component * count + 1;
-      const start = origin[component];
-      for (let i = 0; i < count; ++i) {
-        const k = numbers[plane + i];
-        sumA = (sumA + k) | 0;
-        sumB = (sumB + Math.imul(place + i, k)) | 0;
-        outside |= (k + MOST_STEPS - 1) | (MOST_STEPS - 1 - k);
-        positions[3 * vertices[i] + component] = start + k * step;
-      }
+    for (let i = 0; i < count; ++i) {
+      const kx = numbers[i];
+      const ky = numbers[stride + i];
+      const kz = numbers[2 * stride + i];
+      const sum = (kx + ky + kz) | 0;
+      sumA = (sumA + sum) | 0;
+      // Their places in the order of the sums are i + 1, and count and 2 count later.
+      sumB = (sumB + Math.imul(i + 1, sum) + Math.imul(count, (ky + kz + kz) | 0)) | 0;
+      outside |= (kx + MOST_STEPS - 1) | (MOST_STEPS - 1 - kx);
+      outside |= (ky + MOST_STEPS - 1) | (MOST_STEPS - 1 - ky);
+      outside |= (kz + MOST_STEPS - 1) | (MOST_STEPS - 1 - kz);
+      const at = 3 * vertices[i];
+      positions[at] = x + kx * step;
+      positions[at + 1] = y + ky * step;
+      positions[at + 2] = z + kz * step;
     }
     demand(outside >= 0, 'a number is out of range');
     const right = sumA >>> 0 === payload.sumA && sumB >>> 0 === payload.sumB;
