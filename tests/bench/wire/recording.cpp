@@ -18,14 +18,14 @@ WorldDef definition(const std::string& motion, int side) {
   WorldDef def;
   def.cloths[0] = hanging_cloth(side, side, 1.5, 1.5, 2.2, 0);
   for (int k = 0; k < 9; ++k) def.pins.push_back({MaterialPoint{k / 8.0, 0}, 0.02, {}});
-  def.environment.drag = 0.1;
+  def.environment.damping = 0.1;
   if (motion == "gusts") {
     def.environment.wind = Vec3d(0.2, 0, 0.9);
     def.environment.gust_speed = 1.0;
   } else {
     def.environment.wind = Vec3d(0, 0, 0.08);
     def.environment.gust_speed = 0.04;
-    def.environment.drag = 2;
+    def.environment.damping = 2;
   }
   return def;
 }
