@@ -133,10 +133,11 @@ void SpringGrid<Real>::set_bending(const QuadraticBending<Real>& form, const Gri
   bending.along_v *= size;
   bending.twist *= size;
   bending_counts = form.along_u != 0 || form.along_v != 0 || form.twist != 0;
-  static const std::vector<double> kNone;
-  row_bending = bending_lines<Real>(rows_at, unit, unit == 1 ? cells.row_stiffening : kNone);
+  static const std::vector<double> kNoStiffening;
+  row_bending =
+      bending_lines<Real>(rows_at, unit, unit == 1 ? cells.row_stiffening : kNoStiffening);
   const std::vector<BendingLine<Real>> columns =
-      bending_lines<Real>(columns_at, unit, unit == 1 ? cells.column_stiffening : kNone);
+      bending_lines<Real>(columns_at, unit, unit == 1 ? cells.column_stiffening : kNoStiffening);
   column_bending.assign(static_cast<std::size_t>(9 * bending_pitch()), Real(0));
   bending_bound.assign(static_cast<std::size_t>(layout.plane), Real(0));
   for (int c = 0; c < layout.columns; ++c) {
