@@ -17,7 +17,7 @@ inline constexpr double kSmallestSquaredLength = 1e-14;
 
 /// The same for a triangle's threads, whose length is 1 at rest [1]: added to its square. Larger: a
 /// nearly collapsed triangle pulls more weakly. Smaller: too small for float beside the dashpot.
-inline constexpr double kSmallestSquaredStretch = 1e-10;
+inline constexpr double kSmallestSquaredStretch = 1e-12;
 
 /// Added to the determinant of a triangle's gradients, the inverse of twice its area, times the
 /// lengths of its threads [1/m^2]: lanes without a triangle stay finite. Larger: triangles of many
