@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/membrane_gradient.h"
 #include "core/error.h"
-#include "core/forces/membrane.h"
 
 namespace weft {
 

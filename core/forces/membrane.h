@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/cloth/membrane_gradient.h"
 #include "core/cloth/membrane_triangle.h"
 #include "core/forces/constants.h"
 #include "core/types.h"
@@ -22,17 +23,6 @@ struct MembraneStrain {
   Real per_u = 0, per_v = 0;     ///< 1 / |w_u|, 1 / |w_v|
   Real u = 0, v = 0, shear = 0;  ///< |w_u| - 1, |w_v| - 1, w_u . w_v
 };
-
-/// The same gradients of any vectors of the corners.
-/// @param d1,d2  vectors of corners 1 and 2 minus that of corner 0
-template <class Real>
-Vec3<Real> gradient_u(const MembraneTriangle<Real>& t, const Vec3<Real>& d1, const Vec3<Real>& d2) {
-  return d1 * t.u1 + d2 * t.u2;
-}
-template <class Real>
-Vec3<Real> gradient_v(const MembraneTriangle<Real>& t, const Vec3<Real>& d1, const Vec3<Real>& d2) {
-  return d1 * t.v1 + d2 * t.v2;
-}
 
 template <class Real>
 MembraneStrain<Real> membrane_strain(const MembraneTriangle<Real>& t, const Vec3<Real>& d1,
