@@ -84,7 +84,7 @@ TEST_CASE("each scene has the same hash with one and two threads, and the golden
       {"flag", 0xdb51bdd00d585de5},
       {"drape-sphere", 0xf54a609e43b583c7},
       {"wall", 0xa34f12525f405789},
-      {"mesh", 0x21bb83a175b72f7a},
+      {"mesh", 0x43ac7223b516bf1f},
       {"XPBD", 0x5ad6b9292091024b},
       {"seed's relaxation", 0x070cc9cefff5b537},
       {"implicit", 0x2adf8d80aba1f556},
