@@ -10,6 +10,7 @@ import { draws_in_software, Quality } from './quality.js';
 import { sample_of } from './samples.js';
 import { soften_shadows } from './soft_shadow.js';
 
+const LINKING_LOOK = 10; // between looks at programs that are being linked [ms]
 const EXPOSURES = { hardware: 24, software: 10 }; // whose mean is the finest picture
 
 /** What the stage tells. */
@@ -143,12 +144,23 @@ export class Stage {
     await next_task();
     // Programs depend on the lights; they are linked while the simple ones go on drawing.
     this.light_up(true);
-    const linked = this.renderer.compileAsync(this.scene, camera);
+    this.renderer.compile(this.scene, camera);
     this.light_up(false);
-    await linked;
+    await this.linked();
     this.light_up(true);
     this.lit = true;
     this.heard.changed();
+  }
+
+  /**
+   * Waits until all programs are linked. The renderer's own wait for this, `compileAsync`, fails if
+   * a material is disposed of meanwhile, as by another scene.
+   */
+  private async linked(): Promise<void> {
+    type Linking = { isReady(): boolean };
+    const programs = () => (this.renderer.info.programs ?? []) as unknown as Linking[];
+    do await new Promise((done) => setTimeout(done, LINKING_LOOK));
+    while (programs().some((program) => !program.isReady()));
   }
 
   private make_room(): void {
