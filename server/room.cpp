@@ -50,7 +50,8 @@ void Room::start_world(BuiltScene&& scene) {
   world_ = std::move(scene.world);
   scene_notices_ = std::move(scene.notices);
   for (const SceneNotice& notice : scene_notices_)
-    spdlog::warn("scene {}: {}", world_->def().name, notice.message);
+    spdlog::log(notice.warns ? spdlog::level::warn : spdlog::level::info, "scene {}: {}",
+                world_->def().name, notice.message);
   measures_forces_ = false;
   hands_.clear();
   pin_owners_.clear();
