@@ -132,7 +132,7 @@ test('each leg of a table moves by itself, by a plain drag where objects are mov
     assert.equal((await legs()).length, 4);
     const moved = new Set();
     for (const place of await legs()) {
-      const { x, y } = await pixel_of(page, [place[0], 0.1, place[2]]);
+      const { x, y } = await pixel_of(page, [place[0], 0.3, place[2]]);
       await page.mouse.move(x, y);
       await page.mouse.down();
       await until(async () => (await read(page, 'input')) !== 'idle');

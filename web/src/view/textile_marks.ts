@@ -56,11 +56,9 @@ export function overhang({ positions, cloth, pin }: Specimen): { clamp: Point; t
     }
     return sum;
   };
-  // The clamp acts half a cell behind the last column that is held.
+  // The specimen is clamped at the last column that is held.
   const held = Math.max(1, Math.round(pin.count / rows));
-  const [last, behind] = [middle(held - 1), middle(Math.max(0, held - 2))];
-  const clamp = last.map((value, axis) => (value + behind[axis]) / 2) as Point;
-  return { clamp, tip: middle(columns - 1) };
+  return { clamp: middle(held - 1), tip: middle(columns - 1) };
 }
 
 function drape_marks(specimen: Specimen): number[] {
