@@ -25,15 +25,15 @@ struct FabricDef {
   double shear = 40;                ///< G [N/m]
   double poisson = kPoissonOfGrid;  ///< nu: what it narrows along v when pulled along u, per
                                     ///< strain; of a mesh, below the root of Y_w / Y_f
-  double bending_warp = 1e-5;    ///< B_w [N m], curvature along u
-  double bending_weft = 1e-5;    ///< B_f [N m], curvature along v
-  double damping_ratio = 0.05;   ///< dashpot along each spring, as a ratio of the highest mode
-  double bending_damping = 0;    ///< hinge damping per elastic stiffness [s]
-  double thickness = 0.004;      ///< contact distance of the mid-surface from objects [m]
-  double friction = 0.4;         ///< Coulomb coefficient against objects
-  double restitution = 0;        ///< k_diss of the seed's eq. (10), 0 <= k < 1
-  double air_normal = 1.28;      ///< C_n, drag coefficient of a plate across the wind
-  double air_tangential = 0.01;  ///< c_t, skin friction per area and speed [kg/(m^2 s)]
+  double bending_warp = 1e-5;       ///< B_w [N m], curvature along u
+  double bending_weft = 1e-5;       ///< B_f [N m], curvature along v
+  double damping_ratio = 0.05;      ///< dashpot along each spring, as a ratio of the highest mode
+  double bending_damping = 0;       ///< hinge damping per elastic stiffness [s]
+  double thickness = 0.004;         ///< contact distance of the mid-surface from objects [m]
+  double friction = 0.4;            ///< Coulomb coefficient against objects
+  double restitution = 0;           ///< k_diss of the seed's eq. (10), 0 <= k < 1
+  double air_normal = 1.28;         ///< C_n, drag coefficient of a plate across the wind
+  double air_tangential = 0.01;     ///< c_t, skin friction per area and speed [kg/(m^2 s)]
   std::string preset;  ///< name of the preset that its values began as; no physics reads it
 };
 

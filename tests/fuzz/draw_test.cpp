@@ -58,7 +58,8 @@ void collect_values(const Json& value, const std::string& path, std::map<std::st
 
 /// Fields whose ends are not drawn: they would cost too much, or the scene would not be legal.
 bool is_bounded_otherwise(const std::string& path) {
-  for (const char* end : {".rows", ".columns", ".particle", ".time", ".u", ".v", ".lift", ".poisson"})
+  for (const char* end :
+       {".rows", ".columns", ".particle", ".time", ".u", ".v", ".lift", ".poisson"})
     if (path.ends_with(end)) return true;
   return false;
 }
