@@ -104,14 +104,7 @@ void stiffen_hinges(ClothModel<Real>& model) {
 template <class Real>
 void renew_bending_bounds(ClothModel<Real>& model) {
   for (ClothPart<Real>& part : model.parts) {
-    if (part.hinges.count == 0) {
-      bound_quadratic_bending(model, part);
-      continue;
-    }
-    const FrequencyBounds woven = part.bounds;
-    bound_frequencies(model, part);
-    part.bounds.membrane_omega2 = woven.membrane_omega2;
-    part.bounds.membrane_damping_rate = woven.membrane_damping_rate;
+    part.hinges.count == 0 ? bound_quadratic_bending(model, part) : bound_hinges(model, part);
   }
 }
 

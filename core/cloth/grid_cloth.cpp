@@ -107,7 +107,8 @@ template <class Real>
 void finish_grid(const ClothDef& def, ClothModel<Real>& model) {
   assert(model.parts.size() == 1);
   ClothPart<Real>& part = model.parts.front();
-  bound_frequencies(model, part);
+  bound_springs(model, part);
+  bound_hinges(model, part);
   if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
   summarise_springs(def, part);
   choose_bending(def, model);

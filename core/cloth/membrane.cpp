@@ -76,16 +76,6 @@ struct Mobility {
   double uu = 0, vv = 0, uv = 0;
 };
 
-template <class Real>
-struct Gradients {
-  std::array<double, 3> u, v;
-  explicit Gradients(const MembraneTriangle<Real>& t) {
-    u[1] = static_cast<double>(t.u1), u[2] = static_cast<double>(t.u2);
-    v[1] = static_cast<double>(t.v1), v[2] = static_cast<double>(t.v2);
-    u[0] = -u[1] - u[2], v[0] = -v[1] - v[2];
-  }
-};
-
 /// The tensor as R R^T, with R lower triangular.
 struct TensorRoot {
   double r11 = 0, r21 = 0, r22 = 0, shear = 0;
@@ -154,7 +144,7 @@ class MassShares {
     const double base = static_cast<double>(c.shear) +
                         kLeastCornerWeight * static_cast<double>(c.warp + c.weft + c.shear);
     for (std::size_t n = 0; n < shares_.size(); ++n) {
-      const Gradients<Real> b(triangle(n));
+      const CornerGradients<double> b = corner_gradients<double>(triangle(n));
       const auto area = static_cast<double>(triangle(n).area);
       for (std::size_t k = 0; k < 3; ++k)
         shares_[n][k] = area * ((base + static_cast<double>(c.warp)) * b.u[k] * b.u[k] +
@@ -170,7 +160,7 @@ class MassShares {
   }
 
   Mobility mobility(std::size_t n) const {
-    const Gradients<Real> b(triangle(n));
+    const CornerGradients<double> b = corner_gradients<double>(triangle(n));
     Mobility g;
     for (std::size_t k = 0; k < 3; ++k) {
       const double weight = static_cast<double>(triangle(n).area) / shares_[n][k];

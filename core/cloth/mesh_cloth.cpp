@@ -336,7 +336,8 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   else
     add_edge_springs(fabric, model);
   complete_part(def, model);
-  bound_frequencies(model, part);
+  bound_springs(model, part);
+  bound_hinges(model, part);
   if (triangles)
     bound_membrane(model, part);
   else

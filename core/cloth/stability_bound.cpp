@@ -29,19 +29,39 @@ long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest) 
   return std::max(static_cast<long>(count), static_cast<long>(fewest));
 }
 
+namespace {
+
+/// The largest row of a matrix, by the particles' masses.
 template <class Real>
-void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
+double largest(const std::vector<double>& rows, const ClothModel<Real>& model) {
+  assert(rows.size() == model.mass.size());
+  double most = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
+  return most;
+}
+
+}  // namespace
+
+template <class Real>
+void bound_springs(const ClothModel<Real>& model, ClothPart<Real>& part) {
   assert(part.springs.end() <= static_cast<Index>(model.springs.size()));
-  assert(part.hinges.end() <= static_cast<Index>(model.hinges.size()));
-  const std::size_t n = model.mass.size();
-  std::vector<double> stretch(n, 0), stretch_damping(n, 0), bend(n, 0), bend_damping(n, 0);
+  std::vector<double> stretch(model.mass.size(), 0), damping(model.mass.size(), 0);
   for (Index k = part.springs.first; k < part.springs.end(); ++k) {
     const Spring<Real>& s = model.springs[static_cast<std::size_t>(k)];
     for (const Index end : {s.i, s.j}) {
       stretch[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.stiffness);
-      stretch_damping[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.damping);
+      damping[static_cast<std::size_t>(end)] += 2 * static_cast<double>(s.damping);
     }
   }
+  part.bounds.membrane_omega2 = kShakenMargin * largest(stretch, model);
+  part.bounds.membrane_damping_rate = largest(damping, model);
+}
+
+template <class Real>
+void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part) {
+  assert(part.hinges.end() <= static_cast<Index>(model.hinges.size()));
+  std::vector<double> bend(model.mass.size(), 0), damping(model.mass.size(), 0);
   for (Index k = part.hinges.first; k < part.hinges.end(); ++k) {
     const Hinge<Real>& h = model.hinges[static_cast<std::size_t>(k)];
     const auto at = [&](int corner) {
@@ -56,19 +76,11 @@ void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part) {
       const auto i = static_cast<std::size_t>(h.x[corner]);
       const double row = angle.gradient[static_cast<std::size_t>(corner)].norm() * sum;
       bend[i] += static_cast<double>(h.stiffness) * row;
-      bend_damping[i] += static_cast<double>(h.damping) * row;
+      damping[i] += static_cast<double>(h.damping) * row;
     }
   }
-  const auto largest = [&](const std::vector<double>& rows) {
-    double most = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      most = std::max(most, rows[i] / static_cast<double>(model.mass[i]));
-    return most;
-  };
-  part.bounds.membrane_omega2 = kShakenMargin * largest(stretch);
-  part.bounds.membrane_damping_rate = largest(stretch_damping);
-  part.bounds.bending_omega2 = largest(bend);
-  part.bounds.bending_damping_rate = largest(bend_damping);
+  part.bounds.bending_omega2 = largest(bend, model);
+  part.bounds.bending_damping_rate = largest(damping, model);
 }
 
 template <class Real>
@@ -82,11 +94,8 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
       row_sum[static_cast<std::size_t>(corners[n])] +=
           static_cast<double>(k) * std::abs(weights[n]) * sum;
   });
-  part.bounds.bending_omega2 = 0;
+  part.bounds.bending_omega2 = largest(row_sum, model);
   part.bounds.bending_damping_rate = 0;
-  for (std::size_t i = 0; i < row_sum.size(); ++i)
-    part.bounds.bending_omega2 =
-        std::max(part.bounds.bending_omega2, row_sum[i] / static_cast<double>(model.mass[i]));
 }
 
 template void bound_quadratic_bending(const ClothModel<float>&, ClothPart<float>&);
@@ -104,8 +113,10 @@ void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double d
   part.bounds.membrane_damping_rate = beta * part.bounds.membrane_omega2;
 }
 
-template void bound_frequencies(const ClothModel<float>&, ClothPart<float>&);
-template void bound_frequencies(const ClothModel<double>&, ClothPart<double>&);
+template void bound_springs(const ClothModel<float>&, ClothPart<float>&);
+template void bound_springs(const ClothModel<double>&, ClothPart<double>&);
+template void bound_hinges(const ClothModel<float>&, ClothPart<float>&);
+template void bound_hinges(const ClothModel<double>&, ClothPart<double>&);
 template void add_spring_damping(ClothModel<float>&, ClothPart<float>&, double);
 template void add_spring_damping(ClothModel<double>&, ClothPart<double>&, double);
 

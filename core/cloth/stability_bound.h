@@ -22,13 +22,16 @@ double largest_stable_substep(const StabilityBound& bound);
 /// `kMostSubsteps` if the cloth is too stiff for the explicit solver.
 long substeps_for(const StabilityBound& bound, double tick_seconds, int fewest);
 
-/// Computes a part's bounds: membrane omega^2 = max_i 2 sum_j k_ij / m_i over all springs
-/// (Gershgorin rows of the spring matrix), bending by the Gershgorin rows of the hinges' rest-state
-/// matrix k g g^T, and the damping rates of the elements.
+/// Computes the bounds of a part's springs: omega^2 = max_i 2 sum_j k_ij / m_i (Gershgorin rows of
+/// the spring matrix), and the rate of their dashpots.
 template <class Real>
-void bound_frequencies(const ClothModel<Real>& model, ClothPart<Real>& part);
+void bound_springs(const ClothModel<Real>& model, ClothPart<Real>& part);
 
-/// Replaces the bending bound by that of the quadratic form: each stencil w with energy k/2 |w x|^2
+/// The same of its hinges, by the Gershgorin rows of their rest-state matrix k g g^T.
+template <class Real>
+void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part);
+
+/// The same of its quadratic form, in place of hinges: each stencil w with energy k/2 |w x|^2
 /// adds k |w_i| sum|w| to the Gershgorin rows of its particles.
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);

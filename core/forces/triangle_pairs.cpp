@@ -6,6 +6,8 @@
 #include <cassert>
 #include <map>
 
+#include "core/cloth/membrane_gradient.h"
+
 namespace weft {
 namespace {
 
@@ -65,12 +67,12 @@ class Singles {
 /// u1, u2, v1 and v2 with the corners in the given order.
 template <class Real>
 void write_shape(const MembraneTriangle<Real>& t, Index second, Index third, Real* to) {
-  const std::array<Real, 3> u{-(t.u1 + t.u2), t.u1, t.u2}, v{-(t.v1 + t.v2), t.v1, t.v2};
+  const CornerGradients<Real> b = corner_gradients<Real>(t);
   const auto place = [&](Index particle) {
     return static_cast<std::size_t>(std::find(t.x.begin(), t.x.end(), particle) - t.x.begin());
   };
-  to[0] = u[place(second)], to[1] = u[place(third)];
-  to[2] = v[place(second)], to[3] = v[place(third)];
+  to[0] = b.u[place(second)], to[1] = b.u[place(third)];
+  to[2] = b.v[place(second)], to[3] = b.v[place(third)];
 }
 
 template <class Real>

@@ -18,11 +18,11 @@ struct StrainGradient {
 template <class Real>
 std::array<StrainGradient<Real>, 3> strain_gradients(const MembraneTriangle<Real>& t,
                                                      const MembraneStrain<Real>& e) {
-  const std::array<Real, 3> b_u{-(t.u1 + t.u2), t.u1, t.u2}, b_v{-(t.v1 + t.v2), t.v1, t.v2};
+  const CornerGradients<Real> b = corner_gradients<Real>(t);
   std::array<StrainGradient<Real>, 3> g;
   for (std::size_t k = 0; k < 3; ++k)
-    g[k] = {e.w_u * (b_u[k] * e.per_u), e.w_v * (b_v[k] * e.per_v),
-            e.w_v * b_u[k] + e.w_u * b_v[k]};
+    g[k] = {e.w_u * (b.u[k] * e.per_u), e.w_v * (b.v[k] * e.per_v),
+            e.w_v * b.u[k] + e.w_u * b.v[k]};
   return g;
 }
 

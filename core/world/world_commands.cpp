@@ -47,7 +47,7 @@ template <class Real>
 void World<Real>::renew_clamps() {
   if (!set_clamps(clamps_of(pins_), model_)) return;
   if (!model_.hinges.empty()) {
-    model_.hinges = build_cloths<Real>(def_.cloths).hinges;
+    model_.hinges = build_cloths<Real>(cloths_to_build(def_)).hinges;
     stiffen_hinges(model_);
   }
   renew_bending_bounds(model_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "core/forces/membrane.h"
@@ -57,8 +58,9 @@ class MembraneTerm {
 
   /// The matrix of a corner with itself.
   SymmetricBlock<Real> own(const MembraneTriangle<Real>& t, std::size_t corner) const {
-    const Real b_u = corner == 0 ? -(t.u1 + t.u2) : corner == 1 ? t.u1 : t.u2;
-    const Real b_v = corner == 0 ? -(t.v1 + t.v2) : corner == 1 ? t.v1 : t.v2;
+    assert(corner < 3);
+    const CornerGradients<Real> b = corner_gradients<Real>(t);
+    const Real b_u = b.u[corner], b_v = b.v[corner];
     const Matrix a = uu_ * (b_u * b_u) + vv_ * (b_v * b_v) + (uv_ + uv_.transpose()) * (b_u * b_v);
     return {a(0, 0), a(0, 1), a(0, 2), a(1, 1), a(1, 2), a(2, 2)};
   }
