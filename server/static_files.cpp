@@ -71,9 +71,10 @@ bool accepts(std::string_view list, std::string_view coding) {
 }  // namespace
 
 const FileContent& StaticFile::content_for(std::string_view accepted) const {
-  return *std::find_if(contents.begin(), contents.end(), [&](const FileContent& form) {
-    return form.encoding.empty() || accepts(accepted, form.encoding);
-  });
+  const FileContent* best = &plain;
+  for (const FileContent& form : compressed)
+    if (form.bytes.size() < best->bytes.size() && accepts(accepted, form.encoding)) best = &form;
+  return *best;
 }
 
 StaticFiles::StaticFiles(const std::string& directory) {
@@ -88,8 +89,7 @@ StaticFiles::StaticFiles(const std::string& directory) {
     if (entry->file_size(error) > kLargestFile) continue;
     std::ifstream in(entry->path(), std::ios::binary);
     std::string bytes(std::istreambuf_iterator<char>(in), {});
-    StaticFile file{content_type_of(entry->path()), {}};
-    file.contents.push_back(content("", std::move(bytes)));
+    StaticFile file{content_type_of(entry->path()), content("", std::move(bytes)), {}};
     std::string name = entry->path().lexically_relative(directory).generic_string();
     name.insert(name.begin(), '/');
     files_[name] = std::move(file);
@@ -98,25 +98,21 @@ StaticFiles::StaticFiles(const std::string& directory) {
 }
 
 void StaticFiles::add_compressed_forms() {
-  for (const auto& [extension, encoding] : kCompressions) {
-    for (auto file = files_.begin(); file != files_.end();) {
-      const std::string& name = file->first;
-      const auto whole =
-          name.ends_with(extension) ? files_.find(name.substr(0, name.size() - 3)) : files_.end();
-      if (whole == files_.end()) {
-        ++file;
-        continue;
-      }
-      whole->second.contents.push_back(content(encoding, file->second.contents.front().bytes));
-      file = files_.erase(file);
+  for (auto file = files_.begin(); file != files_.end();) {
+    fs::path name = file->first;
+    const auto form =
+        std::find_if(kCompressions.begin(), kCompressions.end(),
+                     [&](const auto& each) { return name.extension() == each.extension; });
+    const auto whole =
+        form == kCompressions.end() ? files_.end() : files_.find(name.replace_extension().string());
+    if (whole == files_.end()) {
+      ++file;
+      continue;
     }
+    whole->second.compressed.push_back(
+        content(form->encoding, std::move(file->second.plain.bytes)));
+    file = files_.erase(file);
   }
-  for (auto& [name, file] : files_)
-    std::stable_sort(file.contents.begin(), file.contents.end(),
-                     [](const FileContent& a, const FileContent& b) {
-                       if (a.encoding.empty() || b.encoding.empty()) return !a.encoding.empty();
-                       return a.bytes.size() < b.bytes.size();
-                     });
 }
 
 const StaticFile* StaticFiles::find(const std::string& path) const {

@@ -17,7 +17,8 @@ struct FileContent {
 /// A file of the page.
 struct StaticFile {
   std::string content_type;
-  std::vector<FileContent> contents;  ///< the smallest first; the file as it is comes last
+  FileContent plain;                    ///< the file as it is
+  std::vector<FileContent> compressed;  ///< the same, each by another encoding
 
   /// The smallest form that a client takes.
   /// @param accepted  the request's Accept-Encoding (RFC 9110 section 12.5.3); may be empty

@@ -37,7 +37,7 @@ test('a viewer types a name, which others see and the browser remembers', bounde
     await input.fill('  Ada Lovelace  ');
     await page.keyboard.press('Enter');
     await until(() => dialog.isHidden());
-    const names = async (shown) => shown.locator('#viewers .who').allTextContents();
+    const names = async (shown) => shown.locator('#viewers .viewer-name').allTextContents();
     await until(async () => (await names(other)).includes('Ada Lovelace'), 'the other sees it');
     assert.equal((await names(page))[0], 'Ada Lovelace', 'the own name comes first');
     await page.reload();

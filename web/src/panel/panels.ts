@@ -130,7 +130,7 @@ export class Panels {
     const own_first = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
     const items = own_first.slice(0, MOST_NAMES).map(({ id, name, color }) => {
       const item = document.createElement('li');
-      item.append(span('swatch', ''), id === own ? own_entry(name) : span('who', name));
+      item.append(span('swatch', ''), id === own ? own_entry(name) : span('viewer-name', name));
       item.style.setProperty('--color', color);
       return item;
     });
@@ -156,7 +156,7 @@ function own_entry(name: string): HTMLElement {
   const entry = document.createElement('button');
   entry.type = 'button';
   entry.title = 'Change your name';
-  entry.append(span('who', name), span('', ' (you)'));
+  entry.append(span('viewer-name', name), span('', ' (you)'));
   return entry;
 }
 

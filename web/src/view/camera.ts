@@ -4,7 +4,7 @@ import type { Pose, Window } from './framing.js';
 
 const FIELD_OF_VIEW = 32; // vertical [degrees]
 const SMOOTHING_TIME = 0.07; // in which the rest of a movement by hand decays to 1/e [s]
-const LED_SMOOTHING_TIME = 0.35; // of a movement that nobody's hand makes [s]
+const LED_SMOOTHING_TIME = 0.35; // of a movement without a hand [s]
 const NEAREST = 0.1; // [m]
 const FARTHEST = 30; // [m]
 const LEAST_HEIGHT = 0.04; // above the ground [m]

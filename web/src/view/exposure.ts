@@ -1,10 +1,6 @@
 import {
-  BufferAttribute,
-  BufferGeometry,
-  Camera,
   FramebufferTexture,
   HalfFloatType,
-  Mesh,
   NoBlending,
   NormalBlending,
   RawShaderMaterial,
@@ -13,6 +9,7 @@ import {
   WebGLRenderTarget,
 } from 'three';
 import type { WebGLRenderer } from 'three';
+import { FullScreenQuad } from 'three/examples/jsm/postprocessing/Pass.js';
 
 const FIRST_WEIGHT = 0.3; // of the first ones in the mean so far, which would flicker otherwise
 
@@ -24,8 +21,7 @@ export class Exposure {
   private frame: FramebufferTexture | null = null;
   private mean: WebGLRenderTarget | null = null;
   private size = new Vector2();
-  private geometry = new BufferGeometry();
-  private camera = new Camera();
+  private quad = new FullScreenQuad();
   private source = { frame: { value: null as unknown }, weight: { value: 1 } };
   private smoothing = pass(this.source, SMOOTHED);
   private adding = pass(this.source, SQUARED);
@@ -38,9 +34,6 @@ export class Exposure {
     this.averages = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float'].some((name) =>
       renderer.extensions.has(name),
     );
-    // One triangle that covers the picture.
-    const corners = new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]);
-    this.geometry.setAttribute('position', new BufferAttribute(corners, 3));
     this.adding.blending = NormalBlending;
     this.adding.transparent = true;
   }
@@ -80,9 +73,8 @@ export class Exposure {
     const clears = renderer.autoClear;
     renderer.autoClear = false;
     renderer.setRenderTarget(target);
-    const mesh = new Mesh(this.geometry, material);
-    mesh.frustumCulled = false;
-    renderer.render(mesh, this.camera);
+    this.quad.material = material;
+    this.quad.render(renderer);
     renderer.setRenderTarget(null);
     renderer.autoClear = clears;
   }

@@ -40,7 +40,7 @@ export interface FanHit {
 }
 
 /** The position of a handle. */
-export function handle_of(fan: Fan, part: FanPart): Vec3 {
+function handle_of(fan: Fan, part: FanPart): Vec3 {
   if (part === 'place') return [...fan.position];
   const direction = new Vector3(...fan.direction).setLength(SHOWN_LENGTH);
   return new Vector3(...fan.position).add(direction).toArray();

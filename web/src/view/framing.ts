@@ -30,7 +30,7 @@ export function axes_of({ azimuth, elevation }: { azimuth: number; elevation: nu
 }
 
 /** Azimuth and elevation of a direction towards the eye [rad]. */
-export function angles_of([x, y, z]: Vec3): { azimuth: number; elevation: number } {
+function angles_of([x, y, z]: Vec3): { azimuth: number; elevation: number } {
   return { azimuth: Math.atan2(x, z), elevation: Math.atan2(y, Math.hypot(x, z)) };
 }
 

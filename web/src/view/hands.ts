@@ -117,7 +117,7 @@ class HandMark {
 }
 
 /** @param force [N] */
-export function force_text(force: number): string {
+function force_text(force: number): string {
   return `${force.toFixed(force < 9.95 ? 1 : 0)} N`;
 }
 

@@ -117,7 +117,7 @@ function seen_and_hidden<Kind extends Material>(make: () => Kind): [Kind, Kind] 
 }
 
 /** Positions an object and scales it to a size in pixels. */
-export function scale_to_pixels(
+function scale_to_pixels(
   object: { position: Vector3; scale: Vector3 },
   place: Vec3,
   pixels: number,

@@ -2,7 +2,7 @@ import type { Frame, GrabSample, PoseSample } from '../../../proto/js/messages.j
 import { HoldingPace } from './holding_pace.js';
 
 const LONGEST_DELAY = 0.25; // [s]
-const LONGEST_WAY = 1; // that a holder's picture goes instead of jumping [s]
+const LONGEST_CATCH_UP = 1; // that a holder's picture makes up for instead of jumping [s]
 const KEPT_FRAMES = 24;
 const OFFSET_LEAK = 0.0005; // an early packet is forgotten within minutes, not seconds
 
@@ -67,7 +67,7 @@ export class Playback {
     const behind = newest.serverTime - before;
     if (Number.isFinite(behind)) this.pace.look(elapsed, now - this.offset - newest.serverTime, behind);
     const follow = () =>
-      holds && behind < LONGEST_WAY
+      holds && behind < LONGEST_CATCH_UP
         ? before + this.pace.step(elapsed, behind)
         : this.follow(now, elapsed, newest);
     this.shown_time = Math.max(before, newest.paused ? newest.serverTime : follow());
