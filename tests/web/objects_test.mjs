@@ -132,7 +132,13 @@ test('each leg of a table moves by itself, by a plain drag where objects are mov
     assert.equal((await legs()).length, 4);
     const moved = new Set();
     for (const place of await legs()) {
-      const { x, y } = await pixel_of(page, [place[0], 0.3, place[2]]);
+      const free = async ({ x, y }) =>
+        (await page.evaluate(([a, b]) => document.elementFromPoint(a, b)?.id, [x, y])) === 'view';
+      let at = await pixel_of(page, [place[0], 0.1, place[2]]);
+      // The toolbar may be before a foot.
+      for (let height = 0.2; !(await free(at)); height += 0.1)
+        at = await pixel_of(page, [place[0], height, place[2]]);
+      const { x, y } = at;
       await page.mouse.move(x, y);
       await page.mouse.down();
       await until(async () => (await read(page, 'input')) !== 'idle');
@@ -212,7 +218,7 @@ test('the head of a pin that a script moves goes with its cloth', bounded, () =>
     const half = await place();
     const head_is_at = async (point) => {
       const [head] = await read(page, 'pin_heads');
-      return head && Math.hypot(...head.map((value, axis) => value - point[axis])) < 1e-5;
+      return head && Math.hypot(...head.map((value, axis) => value - point[axis])) < 2e-4; // the page's frames are rounded
     };
     await until(() => head_is_at(half), 'half way');
     assert.ok(half[2] - pin.position[2] > 0.1 && target[2] - half[2] > 0.1, `${half}`);
