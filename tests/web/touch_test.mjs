@@ -173,7 +173,7 @@ test('a long press frees the pin at each corner, on it and beside it', bounded, 
       const middle = await pixel_of(page, await middle_of(script));
       for (const beside of [0, 20]) {
         await script.reset();
-        await until(() => script.last.pins.length === corners.length);
+        await until(async () => (await read(page, 'pins')).length === corners.length);
         for (const particle of corners) {
           const pixel = await pixel_of(page, await position(script, particle));
           const [dx, dy] = [pixel.x - middle.x, pixel.y - middle.y];

@@ -15,8 +15,7 @@ import { listen_to_keys } from './hold/keys.js';
 import { Laboratory } from './view/laboratory.js';
 import { loss_text, notice_text } from './panel/events.js';
 import { element } from './panel/element.js';
-import { Panels } from './panel/panels.js';
-import type { Phase } from './panel/panels.js';
+import { Panels, type Phase } from './panel/panels.js';
 import { covered } from './panel/free_part.js';
 import { Hint } from './panel/hint.js';
 import { LaboratoryPanel } from './panel/laboratory_panel.js';
@@ -337,7 +336,8 @@ export class Page {
       this.pins.follow(this.world.playback.positions);
       // A viewer that joins late finds the cloth moved from its start.
       if (this.unframed) this.frame(true);
-      else this.director.follow(this.world.playback.positions, now);
+      // A hand's target is where it is in the picture, so the picture stays while one holds.
+      else if (!this.holding.holds_cloth) this.director.follow(this.world.playback.positions, now);
       this.unframed = false;
     }
     this.tell_camera(now);
