@@ -22,17 +22,16 @@ import { LaboratoryPanel } from './panel/laboratory_panel.js';
 import { NameDialog, own_name } from './panel/own_name.js';
 import { frame_focus } from './panel/focus_frame.js';
 import { title_of } from './panel/scene_title.js';
+import { PictureClock } from './view/picture_clock.js';
 import { Pins } from './view/pins.js';
-import { Rest } from './view/rest.js';
 import { Reticle } from './view/reticle.js';
 import { Stage } from './view/stage.js';
 import { ThemeSwitch } from './panel/theme.js';
 import type { Theme } from './panel/theme.js';
+import { ToldCamera } from './wire/told_camera.js';
 import { Toolbar } from './panel/toolbar.js';
 import { WindowTools } from './panel/window_tools.js';
 import { WorldView } from './view/world_view.js';
-
-const CAMERA_INTERVAL = 0.25; // between updates of this viewer's camera [s]
 
 /**
  * Connects input, camera, picture and panels to the client; each of them knows only its own task.
@@ -68,18 +67,16 @@ export class Page {
   private toolbar: Toolbar;
   readonly reticle = new Reticle();
   private viewers: Viewer[] = [];
-  private last_time = performance.now() / 1000;
-  private camera_told_at = 0;
-  private camera_moved = true;
+  private told_camera: ToldCamera;
+  private clock = new PictureClock();
   private dirty = true;
   private unframed = false; // no frame of this scene has been shown
-  private drawn_last_time = false;
-  private rest = new Rest();
   private latency = new HandLatency();
 
   constructor() {
     this.stage.scene.add(this.hands.group, this.pins.group, this.fans.group, this.reticle.group);
     this.client = connect_client(own_name());
+    this.told_camera = new ToldCamera(this.client);
     this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), {
       frame: () => this.frame(),
       fan: () => fan_of_view(this.orbit),
@@ -216,7 +213,7 @@ export class Page {
     this.phase = phase;
     this.panels.connection(phase);
     this.toolbar.enable(phase === 'open');
-    this.camera_moved = true;
+    this.told_camera.renew();
     if (phase === 'open') return;
     this.input.cancel();
     this.key_hand.cancel();
@@ -325,9 +322,10 @@ export class Page {
   private draw(): void {
     requestAnimationFrame(() => this.draw());
     const now = performance.now() / 1000;
-    const elapsed = Math.min(0.1, now - this.last_time);
-    this.last_time = now;
-    if (this.orbit.update(elapsed)) this.camera_moved = this.dirty = true;
+    if (this.orbit.update(this.clock.step(now))) {
+      this.told_camera.renew();
+      this.dirty = true;
+    }
     this.watch_latency(now);
     if (this.holding.holds_cloth) this.hint.done();
     const moved = this.world?.show(now, this.holding.holds_cloth) ?? false;
@@ -340,13 +338,11 @@ export class Page {
       else if (!this.holding.holds_cloth) this.director.follow(this.world.playback.positions, now);
       this.unframed = false;
     }
-    this.tell_camera(now);
+    if (this.world) this.told_camera.tell(this.orbit.description(), now);
     this.box_view.follow(this.world?.playback.tick ?? -1);
     this.laboratory_panel.follow(now);
-    const again = this.drawn_last_time;
-    this.drawn_last_time = this.dirty;
-    const still = this.rest.update(now, this.dirty, moved && !this.state?.paused);
-    if (this.stage.refine(still, this.dirty && again ? elapsed : null)) this.resize();
+    const { still, interval } = this.clock.judge(this.dirty, moved && !this.state?.paused);
+    if (this.stage.refine(still, interval)) this.resize();
     if (this.dirty) this.draw_picture();
     else if (still) this.stage.expose(this.orbit.camera);
   }
@@ -387,14 +383,5 @@ export class Page {
     if (!this.world) return;
     const { announcement, triangles, playback } = this.world;
     this.laboratory.update(announcement, triangles, playback.positions, this.pins.list);
-  }
-
-  private tell_camera(now: number): void {
-    if (!this.camera_moved || !this.client.connected || !this.world) return;
-    if (now - this.camera_told_at < CAMERA_INTERVAL) return;
-    this.camera_moved = false;
-    this.camera_told_at = now;
-    const { position, target, fov } = this.orbit.description();
-    this.client.post('camera', { position, target, fov });
   }
 }
