@@ -64,6 +64,58 @@ test('on screens wide and narrow every control is within reach and has a name', 
   }),
 );
 
+test('pause, step, reset, gravity and the view’s keys and buttons do what they say', bounded, () =>
+  with_page({}, async (page, script) => {
+    const state = () => script.query('state');
+    const becomes = (what, told) => until(async () => told(await state()), what);
+    const press = async (name) => {
+      await show_controls(page);
+      await page.getByRole('button', { name, exact: true }).click();
+    };
+    const key = async (name) => {
+      await page.locator('#view').focus();
+      await page.keyboard.press(name);
+    };
+    await press('Pause');
+    await becomes('the button pauses', ({ paused }) => paused);
+    await key(' ');
+    await becomes('the key goes on', ({ paused }) => !paused);
+    await key(' ');
+    await becomes('and pauses again', ({ paused }) => paused);
+    const { tick: before } = await state();
+    await press('One step');
+    await becomes('the button makes a step', ({ tick }) => tick === before + 1);
+    await key('.');
+    await becomes('the key makes one too', ({ tick }) => tick === before + 2);
+    await press('Reset');
+    await becomes('the scene is at its start', ({ tick }) => tick === 0);
+    await page.getByRole('slider', { name: 'Gravity' }).focus();
+    await page.keyboard.press('Home');
+    await becomes('there is no gravity', ({ gravity }) => Math.hypot(...gravity) === 0);
+    await until(async () => (await read(page, 'tick')) === 0, 'the page shows the start');
+    await key('f');
+    const eye = async () => (await camera_at_rest(page)).position;
+    const away = (one, other) => Math.hypot(...one.map((part, axis) => part - other[axis]));
+    const home = await eye();
+    for (const [act, back] of [['ArrowLeft', () => key('f')], ['+', () => press('Frame the cloth')]]) {
+      await key(act);
+      assert.ok(away(await eye(), home) > 0.05, `${act} moves the view`);
+      await back();
+      await until(async () => away(await eye(), home) < 0.002, 'it is framed again');
+    }
+    await script.set({ gravity: [0, -9.81, 0] });
+  }),
+);
+
+test('a frame is around what is typed into, and not around sliders', bounded, () =>
+  with_page({ width: 1280, height: 700 }, async (page) => {
+    const borders = (selector) =>
+      page.locator(selector).evaluateAll((all) => all.map((one) => getComputedStyle(one).borderTopWidth));
+    assert.deepEqual(new Set(await borders('label.field')), new Set(['0px']));
+    assert.deepEqual(new Set(await borders('input.field')), new Set(['1px']));
+  }),
+);
+
 const scene_title = (page) => page.locator('#scene-title').textContent();
 
 test('another scene is shown when one is chosen, and R starts it anew', bounded, () =>
