@@ -11,6 +11,7 @@ import {
   picture_of_cloths,
   weave_spacing,
 } from './support/figures.mjs';
+import { first_view, scene_names } from './support/first_views.mjs';
 import { start_server } from './support/server.mjs';
 
 const FABRICS = ['cotton', 'silk', 'denim', 'wool', 'leather', 'nylon'];
@@ -42,7 +43,8 @@ export async function figures_of(folder, only = {}) {
     const scenes = await scenes_in(studio, only.scenes ?? SEVERAL);
     const behind = await lumas_behind(studio);
     studio.end();
-    return { fabrics, scenes, behind, complaints };
+    const fills = await fills_in(browser, only.views ?? scene_names());
+    return { fabrics, scenes, behind, fills, complaints };
   } finally {
     script.close();
     await browser.close();
@@ -125,7 +127,17 @@ async function lumas_behind(studio) {
   return { dark, bright, span: bright - dark };
 }
 
-export function print_figures({ fabrics, scenes, behind }) {
+/** Parts of first views that are cloth, of scenes of one cloth. */
+async function fills_in(browser, names) {
+  const found = new Map();
+  for (const name of names) {
+    const { cloths, fill } = await first_view(browser, name);
+    if (cloths === 1) found.set(name, fill);
+  }
+  return found;
+}
+
+export function print_figures({ fabrics, scenes, behind, fills }) {
   console.log('fabric    CIELAB of a patch       highlight   threads [mm]');
   for (const [name, { lab, highlight, spacing }] of fabrics) {
     const color = lab.map((value) => value.toFixed(0).padStart(6)).join('');
@@ -140,4 +152,6 @@ export function print_figures({ fabrics, scenes, behind }) {
   }
   const { dark, bright, span } = behind;
   console.log(`default from behind, without weave: luma ${dark} to ${bright} (p5 to p95), ${span} of 255`);
+  const percent = ([name, fill]) => `${name} ${(fill * 100).toFixed(0)} %`;
+  console.log(`cloth in first views: ${[...fills].map(percent).join(', ')}`);
 }

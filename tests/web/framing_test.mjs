@@ -136,6 +136,24 @@ test('a view comes nearer to a cloth that leaves room, by no more than a part of
   }
 });
 
+test('who joins while the cloth is away from the scene’s view sees the cloth, and later the view', () => {
+  const orbit = new OrbitCamera();
+  orbit.resize(1600, 1000);
+  const window = () => orbit.window({ above: 0.1, below: 0.1 });
+  const director = new Director(orbit, window);
+  const view = { target: [0, 1, 0], direction: [0, 0, 1], radius: 0.5 };
+  const { points, triangles } = sheet([0, 1, 0], [1, 0, 0], [0, 1, 0], 0.6);
+  const begin = (cloth) => director.begin({ cloth, triangles, boxes: [], ground: null }, view, true);
+  begin(points);
+  const home = orbit.heading;
+  const far = moved(points, [0.9, 0.4, 0]);
+  begin(far);
+  assert.ok(part_outside(far, orbit.heading, window()) <= 0.1);
+  director.follow(points, 1);
+  assert.deepEqual(orbit.heading.azimuth, home.azimuth);
+  assert.ok(part_outside(points, orbit.heading, window()) <= 0.1, 'it follows the cloth home');
+});
+
 test('an address may ask for a view; what is none is left', () => {
   const view = { target: [1, 2, 3], direction: [0, 0.5, 1], radius: 0.4 };
   assert.deepEqual(view_of_address('?name=A&view=1,2,3,0,0.5,1,0.4'), view);

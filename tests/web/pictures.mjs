@@ -7,6 +7,7 @@ import { mkdir, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
 import { figures_of, print_figures } from './figures.mjs';
+import { fill_of } from './support/figures.mjs';
 import { take_small } from './small_pictures.mjs';
 import { server_at, tick_of } from './support/moments.mjs';
 
@@ -74,9 +75,9 @@ async function draw(scene) {
     const file = `${scene.name}-${scene.tick}-${view}.png`;
     await page.screenshot({ path: join(folder, file) });
     if (page.complaints.length) throw new Error(`${file}: ${page.complaints.join('; ')}`);
+    console.log(`${file}: ${Math.round((await fill_of(page)) * 100)} % is cloth`);
     await page.context().close();
     pictures.push({ ...scene, view, title, file, ...options });
-    console.log(file);
   }
   await server.stop();
   return pictures;

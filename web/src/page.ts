@@ -289,7 +289,8 @@ export class Page {
 
   /** The part of the picture that no panel covers. */
   private window(): Window {
-    return this.orbit.window(covered(this.size().height));
+    const { width, height } = this.size();
+    return this.orbit.window(covered(width, height));
   }
 
   // ---- the picture --------------------------------------------------------------------------

@@ -15,6 +15,10 @@ export function expose_probe(page: Page): void {
     get scene() {
       return page.world?.announcement.scene ?? null;
     },
+    /** The number of the scene's cloths. */
+    get cloths() {
+      return page.world?.announcement.cloths.length ?? 0;
+    },
     get tick() {
       return page.world?.playback.tick ?? -1;
     },

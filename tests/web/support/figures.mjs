@@ -1,5 +1,5 @@
 import { camera_at_rest, read, until } from './browser.mjs';
-import { cloths_in_pixels, picture_of } from './silhouette.mjs';
+import { cloths_in_pixels, drawn_cloth, picture_of } from './silhouette.mjs';
 
 // What can be measured on the page's picture of cloth: colours, highlights, folds and weaves.
 
@@ -23,6 +23,12 @@ export function lab_of([r, g, b]) {
 
 /** Distance in CIELAB (CIE 1976). */
 export const difference = (one, other) => Math.hypot(...one.map((value, k) => value - other[k]));
+
+/** Part of the page's picture that is cloth, 0 to 1. */
+export async function fill_of(page) {
+  const pixels = await drawn_cloth(page);
+  return pixels.reduce((sum, pixel) => sum + pixel, 0) / pixels.length;
+}
 
 /** A fine picture of the page at rest, and the number of the cloth in each of its pixels. */
 export async function picture_of_cloths(page) {

@@ -7,6 +7,10 @@ const USUAL_TICK = 240;
 const TICKS = {
   default: 600,
   'drape-sphere': 150,
+  // Four seconds, as of the others.
+  'hard-step-30th': 120,
+  'hard-step-10th': 40,
+  'hard-step-second': 4,
   'seed-fig4-no-bending': 100,
   'seed-fig4-rest-angle': 100,
   'seed-fig8-projection': 70,

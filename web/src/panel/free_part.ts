@@ -1,17 +1,20 @@
 import { element } from './element.js';
 
 const MARGIN = 12; // between panels and what is framed [pixels]
+const MIDDLE = 0.5; // of the width, where what is framed is; a corner beside it covers nothing
 const MOST_ABOVE = 0.25;
 const MOST_BELOW = 0.4;
 
-/** Fractions of the view's height [pixels] that panels cover, above and below what they leave free. */
-export function covered(height: number): { above: number; below: number } {
-  const corners = [...document.querySelectorAll('.corner')];
-  const lowest = Math.max(0, ...corners.map((corner) => corner.getBoundingClientRect().bottom));
+/** Fractions of the view's height that panels cover, above and below what they leave free; sizes [pixels]. */
+export function covered(width: number, height: number): { above: number; below: number } {
+  const [left, right] = [(width * (1 - MIDDLE)) / 2, (width * (1 + MIDDLE)) / 2];
+  const corners = [...document.querySelectorAll('.corner')].map((corner) => corner.getBoundingClientRect());
+  const between = corners.filter((corner) => corner.right > left && corner.left < right);
+  const lowest = Math.max(0, ...between.map(({ bottom }) => bottom));
   const toolbar = element('toolbar').getBoundingClientRect();
   const shown = toolbar.height > 0;
   return {
-    above: lowest > 0 ? Math.min(MOST_ABOVE, (lowest + MARGIN) / height) : 0,
+    above: Math.min(MOST_ABOVE, (lowest + MARGIN) / height),
     below: shown ? Math.min(MOST_BELOW, (height - toolbar.top) / height) : 0,
   };
 }

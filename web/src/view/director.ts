@@ -6,6 +6,7 @@ import type { Pose, Window } from './framing.js';
 
 const MARGIN = 1.06; // of the picture around what is framed
 const MOST_OUTSIDE = 0.1; // part of the cloth that may leave the picture before the camera follows
+const MOST_LEFT_OUT = 0.25; // of the cloth, by a first view; else the cloth has gone away from it
 const HOME_OUTSIDE = 0.02; // part outside of the first view at which the camera returns to it
 const LEAST_FOLLOWED = 0.7; // of the first view's distance, however small the cloth gets
 const MOST_APPROACH = 0.72; // of a view's distance, to a cloth that leaves room
@@ -48,10 +49,12 @@ export class Director {
   begin(subject: Subject, view: View | null, at_once: boolean): void {
     const window = this.window();
     const { cloth } = subject;
-    this.home = view ? approached(pose_of_view(view, window), cloth, window) : framed(subject, window);
-    this.tolerated = Math.max(MOST_OUTSIDE, 1.5 * part_outside(cloth, this.home, window));
-    this.away = false;
-    this.orbit.look(this.home, at_once);
+    const whole = view ? pose_of_view(view, window) : framed(subject, window);
+    this.away = part_outside(cloth, whole, window) > MOST_LEFT_OUT;
+    this.home = view && !this.away ? approached(whole, cloth, window) : whole;
+    const outside = part_outside(cloth, this.home, window);
+    this.tolerated = this.away ? MOST_OUTSIDE : Math.max(MOST_OUTSIDE, 1.5 * outside);
+    this.orbit.look(this.away ? pose_after(cloth, this.home, window) : this.home, at_once);
   }
 
   /** The viewer has moved the camera, and keeps it. */
@@ -72,10 +75,14 @@ export class Director {
     const most = this.away ? MOST_OUTSIDE : this.tolerated;
     if (part_outside(cloth, this.orbit.heading, window) <= most) return;
     this.away = true;
-    const pose = pose_around(cloth, home, narrowed(window));
-    pose.distance = Math.max(pose.distance, LEAST_FOLLOWED * home.distance);
-    this.orbit.look(pose, false);
+    this.orbit.look(pose_after(cloth, home, window), false);
   }
+}
+
+/** Where a cloth is seen that has left its first view, from the same side. */
+function pose_after(cloth: ArrayLike<number>, home: Pose, window: Window): Pose {
+  const pose = pose_around(cloth, home, narrowed(window));
+  return { ...pose, distance: Math.max(pose.distance, LEAST_FOLLOWED * home.distance) };
 }
 
 function framed({ cloth, triangles, boxes, ground }: Subject, window: Window): Pose {
