@@ -1,12 +1,10 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, browser, server, with_page, with_server } from './support/default_page.mjs';
+import { bounded, with_page, with_server } from './support/default_page.mjs';
 import { mean_color } from './support/silhouette.mjs';
-import { slow_start } from './support/starts.mjs';
 
-// The picture's start, its light, and its canvas: what becomes of it when the graphics fail, and how
-// often it is made anew.
+// What becomes of the picture when the graphics fail, and how often its canvas is made anew.
 
 const fine = (page) => until(() => read(page, 'fine'), 'the picture is a fine one');
 
@@ -56,12 +54,3 @@ test('a room of one tick a second does not change the size of the canvas at each
     assert.ok(sizes <= 4, `${sizes} sizes in eight ticks`);
   }),
 );
-
-test('a slow start keeps its first connection, and first draws a simply lit cloth', bounded, async () => {
-  for (let i = 0; i < 2; i++) {
-    const { sockets, phases, simple } = await slow_start(browser, server.url);
-    assert.equal(sockets, 1, `${phases}`);
-    assert.ok(!phases.includes('waiting'), `${phases}`);
-    assert.ok(simple, 'a cloth was drawn before its light was whole');
-  }
-});

@@ -30,12 +30,13 @@ export function launch_browser() {
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[], visited?: boolean}} [options]
- *     view: target, direction and radius of the first view; visited: not for the first time
+ *   view?: number[], visited?: boolean, before?: () => void}} [options]
+ *     view: target, direction and radius of the first view; visited: not for the first time;
+ *     before: runs in the page before its own scripts
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
-  const { view, visited = false } = options;
+  const { view, visited = false, before } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
@@ -44,6 +45,7 @@ export async function open_page(browser, url, options = {}) {
   });
   context.setDefaultTimeout(LONGEST_WAIT);
   if (visited) await context.addInitScript(() => localStorage.setItem('weft-taken', 'yes'));
+  if (before) await context.addInitScript(before);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {

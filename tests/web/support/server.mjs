@@ -8,17 +8,18 @@ const { WebSocket } = require_package('ws');
 const program = process.env.WEFT_PROGRAM;
 if (!program) throw new Error('WEFT_PROGRAM must name the program to test');
 
-const LONGEST_LIFE = 600; // [s]
+const LONGEST_LIFE = 600; // of a server that is given none [s]
 
 /**
  * Starts a server on loopback that ends by itself.
  * @param {string[]} [options] of `weft serve`
  */
 export async function start_server(options = [], port = 0) {
+  const life = options.includes('--max-seconds') ? [] : ['--max-seconds', String(LONGEST_LIFE)];
   const process_ = spawn(
     program,
     ['serve', '--bind', '127.0.0.1', '--port', String(port), '--log-level', 'warning']
-      .concat('--max-seconds', String(LONGEST_LIFE), options),
+      .concat(life, options),
     { stdio: ['ignore', 'pipe', 'inherit'] },
   );
   const ended = once(process_, 'exit');
