@@ -68,9 +68,9 @@ export function luma_at(picture, part) {
   return lumas[Math.floor(part * (lumas.length - 1))];
 }
 
-/** How much more light comes from the brightest 2 % of the cloth than from its middle: a ratio. */
+/** How much more light comes from the brightest 0.5 % of the cloth than from its middle: a ratio. */
 export function highlight_in(picture) {
-  const [middle, bright] = [0.5, 0.98].map((part) => linear[Math.round(luma_at(picture, part))]);
+  const [middle, bright] = [0.5, 0.995].map((part) => linear[Math.round(luma_at(picture, part))]);
   return bright / middle;
 }
 

@@ -6,7 +6,7 @@ import type { Pose, Window } from './framing.js';
 
 const MARGIN = 1.06; // of the picture around what is framed
 const MOST_OUTSIDE = 0.1; // part of the cloth that may leave the picture before the camera follows
-const MOST_LEFT_OUT = 0.25; // of the cloth, by a first view; else the cloth has gone away from it
+const MOST_GONE = 0.25; // part of the cloth that has left a first view; else it is followed at once
 const HOME_OUTSIDE = 0.02; // part outside of the first view at which the camera returns to it
 const LEAST_FOLLOWED = 0.7; // of the first view's distance, however small the cloth gets
 const MOST_APPROACH = 0.72; // of a view's distance, to a cloth that leaves room
@@ -22,8 +22,9 @@ const ELEVATIONS = [0.1, 0.24, 0.4, 0.6, 0.9]; // [rad]
 
 /** What there is to look at. */
 export interface Subject {
-  /** Of the cloths' vertices, xyz [m]. */
+  /** Of the cloths' vertices, xyz [m], now and at the scene's start. */
   cloth: ArrayLike<number>;
+  start: ArrayLike<number>;
   triangles: ArrayLike<number>;
   /** Around the objects. */
   boxes: Box3[];
@@ -48,9 +49,10 @@ export class Director {
   /** Shows a scene as one sees it first, from its own view if it has one, and follows it from there. */
   begin(subject: Subject, view: View | null, at_once: boolean): void {
     const window = this.window();
-    const { cloth } = subject;
+    const { cloth, start } = subject;
     const whole = view ? pose_of_view(view, window) : framed(subject, window);
-    this.away = part_outside(cloth, whole, window) > MOST_LEFT_OUT;
+    const gone = part_outside(cloth, whole, window) - part_outside(start, whole, window);
+    this.away = gone > MOST_GONE;
     this.home = view && !this.away ? approached(whole, cloth, window) : whole;
     const outside = part_outside(cloth, this.home, window);
     this.tolerated = this.away ? MOST_OUTSIDE : Math.max(MOST_OUTSIDE, 1.5 * outside);

@@ -15,16 +15,16 @@ import type { Box3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import type { Sample } from './samples.js';
 
 const KEY = new Vector3(-0.42, 1, 0.8).normalize(); // towards the key light, front left and above
-const BACK = new Vector3(0.62, 0.42, -0.85).normalize(); // towards the fill from behind
+const BACK = new Vector3(0.85, 0.55, -0.45).normalize(); // towards the fill, aside, for dark sides of folds
 const KEY_SPREAD = 0.07; // tangent of half the angle under which the key light is seen
 const SKY_SPREAD = 0.9; // the same for the light from above
 const KEY_BLUR = 0.012; // of the shadow's edge where the light does not move [m]
 const SKY_BLUR = 0.05; // [m]
 const SKY_STEP = 9; // between the shadows of neighbouring exposures, which has to be bridged [texels]
 const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
-const HEMISPHERE = { alone: 1.1, with_environment: 0.25 };
+const HEMISPHERE = { alone: 1.1, with_environment: 0.12 };
 const CONTACT = 0.85; // part of the light from above that its shadows take
-export const REFLECTED = 0.62; // part of the reflections' light that is used
+export const REFLECTED = 0.5; // part of the reflections' light that is used
 
 /**
  * Light of a studio: a key light with shadows, a wide one from above whose shadows are those of
@@ -33,9 +33,9 @@ export const REFLECTED = 0.62; // part of the reflections' light that is used
  */
 export class Light {
   readonly group = new Group();
-  private key = new DirectionalLight('#fff3e4', 1.75);
+  private key = new DirectionalLight('#fff3e4', 2.1);
   private sky = new DirectionalLight('#f2f5ff', 0.75);
-  private back = new DirectionalLight('#e3ebff', 1.15);
+  private back = new DirectionalLight('#e3ebff', 4.2);
   private hemisphere = new HemisphereLight('#ffffff', '#b9b2a8', HEMISPHERE.alone);
   private center = new Vector3();
   private radius = 1; // of what is lit [m]

@@ -113,7 +113,8 @@ export class WorldView {
   subject(): Subject {
     const cloth = this.playback.positions;
     const { objects, triangles } = this;
-    return { cloth, triangles, boxes: objects.boxes(), ground: objects.ground };
+    const start = this.data.restPositions;
+    return { cloth, start, triangles, boxes: objects.boxes(), ground: objects.ground };
   }
 
   /** Bounds of the cloth and of the objects, with the ground below [m]. */
