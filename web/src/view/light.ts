@@ -18,7 +18,7 @@ const KEY = new Vector3(-0.42, 1, 0.8).normalize(); // towards the key light, fr
 const BACK = new Vector3(0.85, 0.55, -0.45).normalize(); // towards the fill, aside, for dark sides of folds
 const KEY_SPREAD = 0.07; // tangent of half the angle under which the key light is seen
 const SKY_SPREAD = 0.9; // the same for the light from above
-const KEY_BLUR = 0.012; // of the shadow's edge where the light does not move [m]
+const KEY_BLUR = 0.012; // of the shadow's edge, also where its light moves from exposure to exposure [m]
 const SKY_BLUR = 0.05; // [m]
 const SKY_STEP = 9; // between the shadows of neighbouring exposures, which has to be bridged [texels]
 const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
@@ -86,7 +86,7 @@ export class Light {
   show(sample: Sample | null): void {
     const texel = (size: number) => (2 * this.radius) / size;
     const blur = (metres: number, size: number) => Math.min(14, Math.max(1, metres / texel(size)));
-    this.key.shadow.radius = sample ? 1 : blur(KEY_BLUR, MAP_SIZES.key);
+    this.key.shadow.radius = blur(KEY_BLUR, MAP_SIZES.key);
     this.sky.shadow.radius = sample ? SKY_STEP : blur(SKY_BLUR, MAP_SIZES.sky);
     this.place(this.key, KEY, KEY_SPREAD, sample?.key);
     this.place(this.sky, new Vector3(0, 1, 0.02), SKY_SPREAD, sample?.sky);
