@@ -158,6 +158,11 @@ test('each leg of a table moves by itself, by a plain drag where objects are mov
       assert.equal(which.length, 1, 'one leg alone moves');
       moved.add(which[0]);
       await until(async () => {
+        const now = JSON.stringify(await legs());
+        await script.advance(5);
+        return JSON.stringify(await legs()) === now;
+      }, 'it arrives');
+      await until(async () => {
         const { tick } = await script.query('state');
         return (await read(page, 'tick')) === tick;
       });
