@@ -5,6 +5,8 @@
 
 #include "core/world/view_def.h"
 
+// First views of built-in scenes.
+
 namespace weft {
 
 /// Where a built-in scene is best looked at from; nothing if the viewer had better choose.

@@ -52,6 +52,8 @@ SCRIPT_ROOMS = {
     "proto/js": (("proto/js/",), re.compile(r"(ws|node:.*)$")),
 }
 
+# The first line of a source that is neither empty nor scaffolding.
+FIRST_WORDS = re.compile(r"^(?!\s*$|#|namespace\b|HWY_)\s*(.*)$", re.MULTILINE)
 UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|XX" r"X|HA" r"CK)\b")
 MACHINE_PATH = re.compile(r"(?<![\w./-])/(?:work|root|home|Users|farm)/\w|/tmp/\w")
 DOWNLOAD_ADDRESS = re.compile(r'"resolved"\s*:')
@@ -84,6 +86,8 @@ def cpp_problems(name, text):
             yield f"{header} is not included from the root"
         if header.startswith("assimp/") and room != "server" and str(name) != ONLY_WITH_ASSIMP:
             yield f"only {ONLY_WITH_ASSIMP} may include assimp"
+    if room == "core" and "namespace weft" in text and not opens_with_its_purpose(text):
+        yield "does not open with a line on what it does"
     if room == "core" and CLOCK_USE.search(text):
         yield "core must not read a clock"
     if room == "server" and not name.name.startswith("translate"):
@@ -92,6 +96,11 @@ def cpp_problems(name, text):
             yield "only server/translate joins core and proto"
     if name.suffix == ".h" and not name.stem.endswith("-inl") and "#pragma once" not in text:
         yield "has no #pragma once"
+
+
+def opens_with_its_purpose(text):
+    """Whether a comment on the whole file, not on its first entity, stands before all code."""
+    return FIRST_WORDS.search(text)[1].startswith("// ")
 
 
 def floor_of(name):

@@ -1,3 +1,5 @@
+// Sets up the guard for the cloths of a model, and lets it forget where they were.
+
 #include "core/contact/guard/cloth_guard.h"
 
 #include <algorithm>

@@ -21,11 +21,11 @@
 #include "core/executor.h"
 #include "core/profile.h"
 
+// Contact of cloths with themselves and each other; section 4 of core/README.md is an overview.
+
 namespace weft {
 
-/// Contact of cloths with themselves and each other, with the promise that no particle passes a
-/// triangle and no edge another one; section 4 of core/README.md is an overview.
-///
+/// Keeps particles from passing triangles, and edges from passing edges.
 /// Two nested regions keep the work small. All particles stay in balls of `reach` around a
 /// predicted straight path: pairs of features whose balls never meet are not looked at. Of the
 /// others each pair has a certified gap between the places where its particles were anchored, which

@@ -1,3 +1,5 @@
+// Reads contacts out of the guard's rows.
+
 #include "core/contact/guard/guard_contacts.h"
 
 namespace weft {

@@ -5,6 +5,8 @@
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/contact_log.h"
 
+// Contacts of cloth with cloth as read-outs and the wire report them.
+
 namespace weft {
 
 /// Contacts of cloths with themselves and each other: the guard's rows that push, and those whose

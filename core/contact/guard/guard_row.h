@@ -7,6 +7,8 @@
 #include "core/math/quad.h"
 #include "core/types.h"
 
+// One row of the guard's velocity problem, and what is computed from it.
+
 namespace weft {
 
 /// A contact of two features of cloths, frozen for a few substeps: gap = n . sum w x.

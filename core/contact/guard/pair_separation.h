@@ -9,6 +9,8 @@
 #include "core/math/quad.h"
 #include "core/types.h"
 
+// Certified gaps of many pairs at once, in vector code.
+
 namespace weft {
 
 /// Pairs are separated in vectors of at most so many.

@@ -7,6 +7,8 @@
 
 #include "core/contact/guard/patch_tree.h"
 
+// Boxes of the features of two patches, compared in vector code.
+
 namespace weft {
 
 /// A patch has at most so many features of a kind: each is a bit of a number.

@@ -1,3 +1,5 @@
+// Builds the tree of patches, refits it, and finds pairs of patches that may meet.
+
 #include "core/contact/guard/patch_tree.h"
 
 #include <algorithm>

@@ -5,6 +5,8 @@
 #include "core/cloth/cloth_model.h"
 #include "core/geometry/quad_box.h"
 
+// Broad phase of cloth against cloth: a tree of patches, and the cull of those that are spread out.
+
 namespace weft {
 
 /// Linear motion of all particles over a stretch of time, each in a ball around its predicted path.

@@ -6,6 +6,8 @@
 
 #include "core/contact/guard/guard_row.h"
 
+// The guard's response in vector code: eight rows without a common particle at a time.
+
 namespace weft {
 
 /// Rows that push nobody forget what they slipped where their room is more than this part of the

@@ -1,3 +1,5 @@
+// Puts rows into blocks, and sweeps those.
+
 #include "core/contact/guard/row_deals.h"
 
 #include <limits>

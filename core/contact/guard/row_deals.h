@@ -12,6 +12,8 @@
 #include "core/executor.h"
 #include "core/types.h"
 
+// Batches of rows that threads sweep at the same time.
+
 namespace weft {
 
 /// The busy rows of slabs, dealt into blocks: two slabs that have no particle in common together,

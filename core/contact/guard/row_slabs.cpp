@@ -1,3 +1,5 @@
+// Cuts space into slabs and sorts rows into them.
+
 #include "core/contact/guard/row_slabs.h"
 
 #include <cmath>

@@ -9,6 +9,8 @@
 #include "core/math/quad.h"
 #include "core/types.h"
 
+// Slices of space, so that several threads sweep rows with the bits of one.
+
 namespace weft {
 
 /// Calls work(k) for k from 0 on below Parts, of which every second one has nothing in common with

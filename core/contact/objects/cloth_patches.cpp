@@ -1,3 +1,5 @@
+// Groups the triangles of cloths into patches.
+
 #include "core/contact/objects/cloth_patches.h"
 
 #include <algorithm>

@@ -6,6 +6,8 @@
 #include "core/cloth/neighbours.h"
 #include "core/types.h"
 
+// Patches of cloth in the search for objects.
+
 namespace weft {
 
 /// Neighbouring features of a cloth that are looked up together; each feature is in one patch. The

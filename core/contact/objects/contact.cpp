@@ -1,3 +1,5 @@
+// The stages of contact with objects in a substep.
+
 #include "core/contact/objects/contact.h"
 
 #include <algorithm>

@@ -22,13 +22,13 @@
 #include "core/executor.h"
 #include "core/profile.h"
 
+// Contact of cloths with objects, at rest or moving; section 4 of core/README.md is an overview.
+
 namespace weft {
 
 template <class Real>
 class ClothGuard;
 
-/// Contact of cloths with objects, at rest or moving; section 4 of core/README.md is an overview.
-///
 /// Three nested lists keep the work small, each valid while no particle has moved farther than its
 /// allowance, which is checked with the coming motion before every drift:
 /// clearances (nothing near), candidates (pairs within reach for about a tick), rows (planes frozen

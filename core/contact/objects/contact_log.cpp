@@ -1,3 +1,5 @@
+// Adds up the impulses of contacts over a tick.
+
 #include "core/contact/objects/contact_log.h"
 
 #include <algorithm>

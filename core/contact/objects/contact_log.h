@@ -7,6 +7,8 @@
 #include "core/cloth/cloth_state.h"
 #include "core/types.h"
 
+// Contacts and their mean forces over a tick.
+
 namespace weft {
 
 /// A contact as it is told to others: one of the cloth with an object, or of cloths with each

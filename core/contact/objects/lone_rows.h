@@ -10,6 +10,8 @@
 #include "core/executor.h"
 #include "core/types.h"
 
+// Contacts of single particles with objects, many at a time in vector code.
+
 namespace weft {
 
 /// What a step of the contact solver does to lone rows: where their particles are and what they

@@ -1,3 +1,5 @@
+// Prepares a triangle mesh for contact.
+
 #include "core/contact/objects/mesh_shape.h"
 
 #include <algorithm>

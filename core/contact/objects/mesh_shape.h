@@ -9,6 +9,8 @@
 #include "core/geometry/distance.h"
 #include "core/geometry/triangle_mesh.h"
 
+// A triangle mesh as an object: normals, tree, and which features are sharp.
+
 namespace weft {
 
 /// For each triangle of a mesh some of its edges or vertices, each of which is with one triangle.

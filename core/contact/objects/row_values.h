@@ -5,6 +5,8 @@
 #include "core/contact/objects/contact_row.h"
 #include "core/types.h"
 
+// Means over the particles of a row of contact, and changes shared among them.
+
 namespace weft {
 
 /// sum w values: a position or velocity of the row's point of the cloth. Most rows have one
