@@ -9,6 +9,7 @@
 #include "core/cloth/cut_grid.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
+#include "core/cloth/stability_bound.h"
 #include "core/error.h"
 #include "core/geometry/aabb.h"
 
@@ -72,6 +73,7 @@ ClothModel<Real> build_cloth(const ClothDef& def) {
   ClothModel<Real> model = build_by_kind<Real>(def);
   Aabb<Real> box;
   for (const Vec3<Real>& x : model.rest_positions) box.add(x);
+  bound_damped_area(model, model.parts.front());
   model.parts.front().rest_diagonal = (box.upper - box.lower).norm();
   return model;
 }

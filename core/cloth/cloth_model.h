@@ -122,6 +122,7 @@ struct FrequencyBounds {
   double membrane_shear_omega2 = 0;  ///< of it what goes with the square of the stretch; see
                                      ///< membrane.h
   double membrane_damping_rate = 0, bending_damping_rate = 0;
+  double area_per_mass = 0;  ///< that the air damps, in the worst motion [m^2/kg]
 };
 
 /// One cloth of a model: its range of every list, and its own data.

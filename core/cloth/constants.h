@@ -13,6 +13,10 @@ namespace weft {
 /// throughout (tests/laws/shaking_test.cpp); at the highest frequency itself it always does.
 inline constexpr double kShakenMargin = 1.15;
 
+/// Rounds in which the bound of the area that the air damps is lowered. More: a longer build.
+/// Fewer: a higher bound, of one round by a fifth on grids.
+inline constexpr int kDampedAreaRounds = 4;
+
 /// Rounds in which triangles of a mesh find the shares of their corners' masses that make the bound
 /// of their frequency low [1]. Larger: loading takes longer, for a bound that is hardly lower.
 /// Smaller: more substeps on meshes with some bad triangles.

@@ -101,6 +101,35 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
 template void bound_quadratic_bending(const ClothModel<float>&, ClothPart<float>&);
 template void bound_quadratic_bending(const ClothModel<double>&, ClothPart<double>&);
 
+/// By Collatz and Wielandt: for whatever positive v the largest quotient (D v)_i / (m_i v_i) is a
+/// bound, and it falls with each v <- M^-1 D v.
+template <class Real>
+void bound_damped_area(const ClothModel<Real>& model, ClothPart<Real>& part) {
+  assert(part.particles.end() <= model.particle_count());
+  std::vector<double> v(model.mass.size(), 1), next(model.mass.size());
+  for (int round = 0; round < kDampedAreaRounds; ++round) {
+    std::fill(next.begin(), next.end(), 0);
+    for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
+      const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+      double sum = 0;
+      for (const Index i : corners) sum += v[static_cast<std::size_t>(i)];
+      sum *= static_cast<double>(model.triangle_area[static_cast<std::size_t>(t)]) / 9;
+      for (const Index i : corners) next[static_cast<std::size_t>(i)] += sum;
+    }
+    double largest = 0;
+    for (Index k = part.particles.first; k < part.particles.end(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      next[i] /= static_cast<double>(model.mass[i]);
+      largest = std::max(largest, next[i] / v[i]);
+    }
+    part.bounds.area_per_mass = largest;
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = next[i] / largest;
+  }
+}
+
+template void bound_damped_area(const ClothModel<float>&, ClothPart<float>&);
+template void bound_damped_area(const ClothModel<double>&, ClothPart<double>&);
+
 template <class Real>
 void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio) {
   assert(damping_ratio >= 0);

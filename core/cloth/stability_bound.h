@@ -36,6 +36,14 @@ void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part);
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);
 
+/// Bounds how fast the air damps a part, per unit of its force on an area: the largest eigenvalue
+/// of D v = lambda M v, where D has a ninth of each triangle's area for each two of its corners,
+/// because the mean of their velocities counts and each gets a third of the force. It is 1 / sigma
+/// where a triangle's thirds are the masses, 10/9 of that on a grid, whose diagonals alternate and
+/// whose masses do not, and more with equal masses.
+template <class Real>
+void bound_damped_area(const ClothModel<Real>& model, ClothPart<Real>& part);
+
 /// Gives every spring of a part the dashpot c = beta k with beta = 2 zeta / omega of the membrane's
 /// highest mode. Without it a shaken cloth keeps the energy of its high modes forever
 /// (tests/laws/shaking_test.cpp).

@@ -72,7 +72,8 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
     speed2 =
         std::max(speed2, static_cast<double>(state_.v[static_cast<std::size_t>(i)].squaredNorm()));
-  bound.damping_rate += air_damping_rate(environment, part.fabric, std::sqrt(speed2));
+  bound.damping_rate +=
+      air_damping_rate(environment, part.fabric, part.bounds.area_per_mass, std::sqrt(speed2));
   return bound;
 }
 

@@ -48,12 +48,12 @@ double fastest_air(const EnvironmentDef& environment) {
 }
 
 double air_damping_rate(const EnvironmentDef& environment, const FabricDef& fabric,
-                        double fastest_particle) {
-  assert(fastest_particle >= 0 && fabric.areal_density > 0);
+                        double area_per_mass, double fastest_particle) {
+  assert(fastest_particle >= 0 && area_per_mass > 0);
   if (is_calm(environment)) return 0;
   const double fastest = fastest_air(environment) + fastest_particle;
-  return (environment.air_density * fabric.air_normal * fastest + fabric.air_tangential) /
-         fabric.areal_density;
+  return (environment.air_density * fabric.air_normal * fastest + fabric.air_tangential) *
+         area_per_mass;
 }
 
 template <class Real>

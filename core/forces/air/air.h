@@ -19,11 +19,12 @@ bool changes_by_itself(const EnvironmentDef& environment);
 double fastest_air(const EnvironmentDef& environment);
 
 /// Bound of the rate at which the air damps the velocity of cloth [1/s]: the derivative of
-/// air_force by the velocity per unit of mass, (rho C_n |u| + c_t) / sigma, with |u| bounded by the
-/// sum of the speeds of air and cloth; 0 in calm air.
+/// air_force by the velocity per unit of area, rho C_n |u| + c_t, with |u| bounded by the sum of
+/// the speeds of air and cloth, times the area per mass; 0 in calm air.
+/// @param area_per_mass     see bound_damped_area [m^2/kg]
 /// @param fastest_particle  [m/s]
 double air_damping_rate(const EnvironmentDef& environment, const FabricDef& fabric,
-                        double fastest_particle);
+                        double area_per_mass, double fastest_particle);
 
 /// Velocity of the air at each particle [m/s]: the mean wind plus gusts, smooth spatial noise that
 /// the mean wind carries along (frozen turbulence, Taylor 1938), so that it is smooth in time too,
