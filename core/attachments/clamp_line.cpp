@@ -24,12 +24,9 @@ void put(const ClampLine& clamp, int lines, std::vector<double>& factors) {
   factors[static_cast<std::size_t>(clamp.line)] = clamp.stiffening;
 }
 
-/// The row that both ends of a hinge's edge lie on, or else the column; the factor there.
-template <class Real>
-double stiffening_of(const Hinge<Real>& hinge, const GridCells& cells,
-                     const std::vector<int>& site_of) {
-  const int a = site_of[static_cast<std::size_t>(hinge.x[0])],
-            b = site_of[static_cast<std::size_t>(hinge.x[1])];
+/// The factor of the row that both ends of a hinge's edge lie on, or else of the column.
+/// @param a,b  numbers of the ends' places in the grid
+double stiffening_between(int a, int b, const GridCells& cells) {
   if (a / cells.columns == b / cells.columns) return cells.stiffening_of_row(a / cells.columns);
   if (a % cells.columns == b % cells.columns) return cells.stiffening_of_column(a % cells.columns);
   return 1;
@@ -58,7 +55,7 @@ bool ClampLine::is_within(const ClampLine& other) const {
 }
 
 template <class Real>
-bool set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
+std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
   std::vector<LineFactors> factors(model.parts.size());
   for (const ClampLine& clamp : clamps) {
     assert(clamp.part < model.parts.size());
@@ -68,50 +65,51 @@ bool set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
     LineFactors& of = factors[clamp.part];
     clamp.is_row() ? put(clamp, cells.rows, of.rows) : put(clamp, cells.columns, of.columns);
   }
-  bool changed = false;
+  std::vector<std::size_t> changed;
   for (std::size_t p = 0; p < factors.size(); ++p) {
     GridCells& cells = model.parts[p].cells;
     if (cells.row_stiffening == factors[p].rows && cells.column_stiffening == factors[p].columns)
       continue;
     cells.row_stiffening = std::move(factors[p].rows);
     cells.column_stiffening = std::move(factors[p].columns);
-    changed = true;
+    changed.push_back(p);
   }
   return changed;
 }
 
 template <class Real>
-void stiffen_hinges(ClothModel<Real>& model) {
-  std::vector<int> site_of;
-  for (const ClothPart<Real>& part : model.parts) {
-    const GridCells& cells = part.cells;
-    if (cells.row_stiffening.empty() && cells.column_stiffening.empty()) continue;
-    site_of.assign(model.mass.size(), 0);
-    for (std::size_t site = 0; site < cells.particles.size(); ++site) {
-      if (cells.particles[site] != kNone)
-        site_of[static_cast<std::size_t>(part.particles.first + cells.particles[site])] =
-            static_cast<int>(site);
-    }
-    for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
-      Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(n)];
-      const auto factor = static_cast<Real>(stiffening_of(hinge, cells, site_of));
-      hinge.stiffness *= factor;
-      hinge.damping *= factor;
-    }
+void stiffen_hinges(std::size_t number, ClothModel<Real>& model) {
+  assert(number < model.parts.size());
+  const ClothPart<Real>& part = model.parts[number];
+  const GridCells& cells = part.cells;
+  if (cells.row_stiffening.empty() && cells.column_stiffening.empty()) return;
+  std::vector<int> site_of(static_cast<std::size_t>(part.particles.count), 0);
+  for (std::size_t site = 0; site < cells.particles.size(); ++site) {
+    if (cells.particles[site] != kNone)
+      site_of[static_cast<std::size_t>(cells.particles[site])] = static_cast<int>(site);
+  }
+  for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
+    Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(n)];
+    const auto site = [&](int end) {
+      return site_of[static_cast<std::size_t>(hinge.x[end] - part.particles.first)];
+    };
+    const auto factor = static_cast<Real>(stiffening_between(site(0), site(1), cells));
+    hinge.stiffness *= factor;
+    hinge.damping *= factor;
   }
 }
 
 template <class Real>
-void renew_bending_bounds(ClothModel<Real>& model) {
-  for (ClothPart<Real>& part : model.parts) {
-    part.hinges.count == 0 ? bound_quadratic_bending(model, part) : bound_hinges(model, part);
-  }
+void renew_bending_bounds(std::size_t number, ClothModel<Real>& model) {
+  assert(number < model.parts.size());
+  ClothPart<Real>& part = model.parts[number];
+  part.hinges.count == 0 ? bound_quadratic_bending(model, part) : bound_hinges(model, part);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                \
-  template bool set_clamps(const std::vector<ClampLine>&, ClothModel<Real>&); \
-  template void stiffen_hinges(ClothModel<Real>&);                            \
-  template void renew_bending_bounds(ClothModel<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                                    \
+  template std::vector<std::size_t> set_clamps(const std::vector<ClampLine>&, ClothModel<Real>&); \
+  template void stiffen_hinges(std::size_t, ClothModel<Real>&);                                   \
+  template void renew_bending_bounds(std::size_t, ClothModel<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -44,18 +44,18 @@ struct ClampLine {
 };
 
 /// Gives the grids of a model the factors of these clamps, and of no others.
-/// @returns whether any changed; what follows from them is then to be made anew: `stiffen_hinges`,
-///          `renew_bending_bounds`, and whatever else was prepared from the model
+/// @returns the parts whose factors changed; what follows from them is then to be made anew:
+///          `stiffen_hinges`, `renew_bending_bounds`, and whatever else was prepared from the model
 template <class Real>
-bool set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model);
+std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model);
 
-/// Multiplies hinges along the clamped lines by the factors.
-/// @param model  with its hinges as woven
+/// Multiplies a part's hinges along the clamped lines by the factors.
+/// @param model  with the hinges of this part as woven
 template <class Real>
-void stiffen_hinges(ClothModel<Real>& model);
+void stiffen_hinges(std::size_t part, ClothModel<Real>& model);
 
-/// Bounds the frequencies of bending anew, and leaves those of the membrane.
+/// Bounds the frequencies of a part's bending anew, and leaves those of the membrane.
 template <class Real>
-void renew_bending_bounds(ClothModel<Real>& model);
+void renew_bending_bounds(std::size_t part, ClothModel<Real>& model);
 
 }  // namespace weft

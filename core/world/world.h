@@ -239,6 +239,7 @@ class World {
   void finish_pins();
   PinId hold(const PinDef& def);
   void renew_clamps();
+  void weave_hinges(std::size_t part);
   void refuse_jaw(std::size_t collider) const;
   void masses_changed();
   void sleep_changed();
