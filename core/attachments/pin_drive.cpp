@@ -68,6 +68,26 @@ double speed_within(double distance, double seconds, double tick_seconds) {
   return std::clamp(2 * distance / (moving + root), kLeastPinSpeed, kMostPinSpeed);
 }
 
+void take_back_velocities(const Pins& before, Pins& pins) {
+  for (Pin& pin : pins.list) {
+    if (!pin.path) continue;
+    const auto known = std::find_if(before.list.begin(), before.list.end(),
+                                    [&pin](const Pin& other) { return other.id == pin.id; });
+    if (known != before.list.end() && known->path)
+      pin.path->velocity = known->path->velocity;
+    else
+      std::fill(pin.path->velocity.begin(), pin.path->velocity.end(), Vec3d::Zero());
+  }
+}
+
+void bring_to_rest(Pins& pins) {
+  for (Pin& pin : pins.list) {
+    if (!pin.path) continue;
+    std::fill(pin.path->velocity.begin(), pin.path->velocity.end(), Vec3d::Zero());
+    pin.path->pace = 0;
+  }
+}
+
 template <class Real>
 double remaining_distance(const Pin& pin, const ClothState<Real>& state, const Vec3d& target) {
   const Vec3d here = state.x[static_cast<std::size_t>(pin.centre)].template cast<double>();

@@ -20,6 +20,14 @@ double least_seconds(double distance, double tick_seconds);
 /// @param seconds  at least least_seconds
 double speed_within(double distance, double seconds, double tick_seconds);
 
+/// Gives moving pins the velocities that their particles had before a tick that failed. A pin that
+/// was sent in that tick had none.
+/// @param before  at the start of the tick
+void take_back_velocities(const Pins& before, Pins& pins);
+
+/// Brings moving pins to rest where they are; from there they start anew.
+void bring_to_rest(Pins& pins);
+
 /// Moves pins with bounded speed and force. Between kick and drift their particles get the impulse
 /// that brings each to its place at the end of the substep, but together no more than the pin's
 /// force allows; contact then stops them like any others. If they do not follow, the pin continues

@@ -53,9 +53,10 @@ inline constexpr int kMostTickRetries = 2;
 /// stability limit counts as one.
 inline constexpr double kRunawayFactor = 20;
 
-/// Fraction of the unexplained credit kept per tick [1]. Larger: energy that was lost long ago
-/// excuses a runaway. Smaller: energy that is only hidden by the instant of a sum is forgotten.
-inline constexpr double kCreditKept = 0.95;
+/// Time in which unexplained credit decays, as by a first-order lag [s]; a sixtieth of a second
+/// keeps 0.95 of it. Larger: energy that was lost long ago excuses a runaway. Smaller: energy that
+/// is only hidden by the instant of a sum is forgotten.
+inline constexpr double kCreditSeconds = 19.0 / 60;
 
 /// Energy at this speed is never suspicious [m/s]. Larger: slow runaways are missed. Smaller: a
 /// resting cloth that begins to move may count as one.

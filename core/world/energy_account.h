@@ -38,9 +38,11 @@ class EnergyAccount {
   }
 
   /// Accounts for an accepted tick.
-  void accept(const AdvanceResult& tick) {
+  /// @param seconds  its length
+  void accept(const AdvanceResult& tick, double seconds) {
+    assert(seconds > 0);
     const double now = mechanical(tick.after), have = booked(tick);
-    credit_ = have > now ? now + (have - now) * kCreditKept : have;
+    credit_ = have > now ? now + (have - now) / (1 + seconds / kCreditSeconds) : have;
   }
 
  private:

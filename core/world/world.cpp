@@ -39,7 +39,8 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
 /// from an invalid one.
 WorldDef validated(WorldDef def) {
   validate(def);
-  for (const GripperDef& gripper : def.grippers) {
+  for (GripperDef& gripper : def.grippers) {
+    gripper.orientation.normalize();  // which it need only nearly be
     for (const ColliderDef& jaw : jaws_of(gripper)) def.colliders.push_back(jaw);
   }
   return def;
@@ -277,7 +278,7 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.violent = implicit_.violent;
     report_.touching = kind != solver_of(def_) && !implicit_.violent;
     if (!divergence) {
-      account_.accept(result);
+      account_.accept(result, tick_seconds());
       last_good_.x = state_.x;
       last_good_.v = state_.v;
       touching_ = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
@@ -289,6 +290,7 @@ void World<Real>::advance_or_recover(int substeps) {
     if (attempt == kMostTickRetries || substeps > kMostSubsteps / 2) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
+      bring_to_rest(pins_);
       accept_state();
       return;
     }
@@ -339,6 +341,7 @@ void World<Real>::restore_last_good() {
   state_.x = last_good_.x;
   state_.v = last_good_.v;
   take_back_motion(colliders_);
+  take_back_velocities(checkpoint_.pins, pins_);
   forget_motion();
   for (std::size_t i = 0; i < state_.v.size(); ++i) {
     if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was saved

@@ -232,6 +232,26 @@ TEST_CASE("a gripper turns with its jaws, and a world with one is repeated bit f
   CHECK(first.grippers()[0].opening == def.grippers[0].opening);
 }
 
+TEST_CASE("a gripper whose orientation is not quite of unit norm is where the turned one is") {
+  WorldDef def = hung_between_jaws();
+  World<float> exact(def);
+  def.grippers[0].orientation.coeffs() *= 1.0009;
+  World<float> nearly(def);
+  for (World<float>* world : {&exact, &nearly}) {
+    command(*world, 0, 5);
+    test::advance(*world, 1);
+    free_pins(*world);
+    test::advance(*world, 0.1);
+  }
+  REQUIRE(exact.grippers()[0].gripping);
+  CHECK(nearly.grippers()[0].opening == Approx(exact.grippers()[0].opening).margin(1e-9));
+  CHECK(nearly.grippers()[0].gripping);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Pose &a = exact.colliders()[k].pose, &b = nearly.colliders()[k].pose;
+    CHECK((a.position - b.position).norm() < 1e-9);
+  }
+}
+
 TEST_CASE("the steps of a scene turn a gripper the short way, at its rate, with what it holds") {
   constexpr double kAngle = 2, kRate = 0.8;
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(kAngle, Vec3d::UnitY()));

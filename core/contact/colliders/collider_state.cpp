@@ -172,9 +172,9 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
         state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);
     const double resistance = work / (seconds * surface_speed(state));
     if (resistance > most)
-      state.pace *= most / resistance;
+      state.pace /= 1 + (resistance / most - 1) * std::min(seconds / kPaceSeconds, 1.0);
     else
-      state.pace += kPaceGain * (1 - std::max(0.0, resistance) / most);
+      state.pace += kPaceGain * seconds * (1 - std::max(0.0, resistance) / most);
     state.pace =
         state.pace < kLeastColliderPace && resistance > most ? 0 : std::min(state.pace, 1.0);
   }

@@ -30,10 +30,15 @@ inline constexpr double kColliderCatchUp = 1.25;
 
 // Resistance of cloth.
 
-/// Fraction of its speed that a collider regains in a tick without resistance [1]. Larger: it
+/// Fraction of its speed that a collider regains in a second without resistance [1/s]. Larger: it
 /// starts sooner, and a collider at its limit varies its speed more. Smaller: it yields for longer
 /// after the resistance has ended.
-inline constexpr double kPaceGain = 0.1;
+inline constexpr double kPaceGain = 6;
+
+/// Time in which resistance beyond its force slows a collider to where the force would do, if
+/// resistance goes with speed [s]. Larger: it presses beyond its force for longer. Smaller: one
+/// impact stops it.
+inline constexpr double kPaceSeconds = 1.0 / 60;
 
 /// Below this fraction of its speed a collider that is resisted stands [1]. Larger: it stops sooner
 /// before cloth that resists. Smaller: it creeps on.

@@ -104,7 +104,6 @@ void ClothGuard<Real>::reset() {
   kicked_ = 0;
   closed_ = true;
   upwards_ = false;
-  counts_ = {};
 }
 
 template <class Real>

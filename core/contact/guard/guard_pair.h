@@ -31,7 +31,7 @@ std::uint64_t key_of(const GuardedPair<Real>& pair) {
          (static_cast<std::uint64_t>(pair.a) << 31) | static_cast<std::uint64_t>(pair.b);
 }
 
-/// What the guard did since it was reset; sums of lengths of single particles' motions.
+/// What the guard did since it was built; sums of lengths of single particles' motions.
 struct GuardCounts {
   double wanted = 0;              ///< motion that particles in pairs wanted [m]
   double truncated = 0;           ///< part of it that was not allowed [m]

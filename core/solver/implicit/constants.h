@@ -35,10 +35,10 @@ inline constexpr double kFarDisplacement = 1;
 /// Larger: a gain is seen late. Smaller: float's rounding is taken for one.
 inline constexpr double kRoundingEnergy = 1e-4;
 
-/// Fraction of the lost energy that may return, kept from tick to tick [1]: the scheme loses for a
-/// moment the energy that a wave returns in the next tick. Larger: an old loss excuses a new gain.
-/// Smaller: waves that return are damped.
-inline constexpr double kKeptCredit = 0.9;
+/// Time in which the lost energy that may return decays, as by a first-order lag [s]; a sixtieth of
+/// a second keeps 0.9 of it. The scheme loses for a moment the energy that a wave returns later.
+/// Larger: an old loss excuses a new gain. Smaller: waves that return are damped.
+inline constexpr double kKeptCreditSeconds = 9.0 / 60;
 
 /// Largest number of pieces of a divided substep [1]. Larger: longer ticks where energy appears.
 /// Smaller: more of it stays.

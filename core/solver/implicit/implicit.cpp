@@ -14,8 +14,10 @@ namespace weft {
 namespace {
 
 /// Discards the history of particles that were moved between ticks.
+/// @param dt,tick  lengths of a substep and of the tick [s]
 template <class Real>
-void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<Real>& work) {
+void check_history(const ClothState<Real>& state, double dt, double tick,
+                   ImplicitWorkspace<Real>& work) {
   assert(work.history.size() == state.x.size() && work.end_x.size() == state.x.size());
   const bool same_step = work.last_dt == dt;
   bool all_same = same_step;
@@ -24,7 +26,7 @@ void check_history(const ClothState<Real>& state, double dt, ImplicitWorkspace<R
     if (!same_step || !same || !(state.inverse_mass[i] > 0)) work.history[i] = 0;
     all_same = all_same && same;
   }
-  work.credit = all_same ? work.credit * kKeptCredit : 0;
+  work.credit = all_same ? work.credit / (1 + tick / kKeptCreditSeconds) : 0;
   work.last_dt = dt;
 }
 
@@ -251,7 +253,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   AdvanceResult result;
   EnergyReading reading = energies_at(step, state.x, state.v);
   result.before = reading.energies;
-  check_history(state, dt, work);
+  check_history(state, dt, dt * substeps, work);
   take_hands(step);
   for (typename ImplicitWorkspace<Real>::System& system : work.systems)
     std::visit([&](auto& s) { s.set_pinned(state.inverse_mass); }, system);

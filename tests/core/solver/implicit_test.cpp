@@ -5,6 +5,7 @@
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
 #include "tests/support/allocations.h"
+#include "tests/support/cloths.h"
 
 // What the solver implicit promises besides its accuracy, which tests/laws/implicit_test.cpp tests.
 
@@ -27,4 +28,26 @@ TEST_CASE("with implicit a tick allocates nothing, and a world that is reset rep
   };
   const std::uint64_t once = run();
   CHECK(run() == once);
+}
+
+TEST_CASE("energy that implicit may give back is forgotten by time, not by ticks: alike to 10 %") {
+  const ClothModel<double> model = build_cloth<double>(flat_cloth(4, 4));
+  const auto left = [&model](int ticks) {
+    ImplicitWorkspace<double> work;
+    work.prepare(model);
+    ClothState<double> state = initial_state(model);
+    Grabs<double> grabs;
+    Profile profile;
+    const auto step = [&] {
+      advance_implicit(model, Surroundings<double>{}, ImplicitDef{}, 0.1 / ticks, 1, grabs,
+                       Collision<double>{}, state, work, profile);
+    };
+    step();  // has no past
+    work.credit = 1;
+    for (int k = 0; k < ticks; ++k) step();
+    return work.credit;
+  };
+  CHECK(left(6) == Approx(0.53).epsilon(0.02));  // 0.9 in each sixtieth of a second
+  CHECK(left(100) == Approx(left(6)).epsilon(0.1));
+  CHECK(left(3) == Approx(left(6)).epsilon(0.1));
 }

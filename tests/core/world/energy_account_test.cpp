@@ -1,5 +1,6 @@
 #include "core/world/energy_account.h"
 
+#include <cmath>
 #include <limits>
 
 #include <catch2/catch.hpp>
@@ -9,6 +10,7 @@ using namespace weft;
 namespace {
 
 constexpr double kMass = 0.2;  // [kg]
+constexpr double kTick = 1.0 / 60;
 
 AdvanceResult tick(double kinetic_before, double kinetic_after, double fallen = 0,
                    double work = 0) {
@@ -44,11 +46,23 @@ TEST_CASE(
 
 TEST_CASE("energy that went into the highest modes may come back soon, but not seconds later") {
   EnergyAccount account(kMass);
-  account.accept(tick(100, 1));
+  account.accept(tick(100, 1), kTick);
   CHECK_FALSE(account.is_runaway(tick(1, 100)));
-  for (int i = 0; i < 300; ++i) account.accept(tick(1, 1));
+  for (int i = 0; i < 300; ++i) account.accept(tick(1, 1), kTick);
   CHECK(account.is_runaway(tick(1, 100)));
-  account.accept(tick(100, 1));
+  account.accept(tick(100, 1), kTick);
   account.clear();
   CHECK(account.is_runaway(tick(1, 100)));
+}
+
+TEST_CASE("energy that has gone is forgotten by time, not by ticks: after 0.5 s alike to 15 %") {
+  const auto left = [](int ticks) {
+    EnergyAccount account(kMass);
+    account.accept(tick(1000, 0), 1e-9);
+    for (int i = 0; i < ticks; ++i) account.accept(tick(0, 0), 0.5 / ticks);
+    return -account.unexplained(tick(0, 0));
+  };
+  CHECK(left(30) == Approx(1000 * std::exp(-0.5 / 0.325)).epsilon(0.05));
+  CHECK(left(500) == Approx(left(30)).epsilon(0.15));
+  CHECK(left(15) == Approx(left(30)).epsilon(0.15));
 }

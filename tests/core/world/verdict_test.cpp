@@ -7,6 +7,7 @@
 
 #include "core/geometry/distance.h"
 #include "tests/support/cloths.h"
+#include "tests/support/sheets.h"
 
 using namespace weft;
 
@@ -66,4 +67,22 @@ TEST_CASE("a verdict's smallest gap is that of the nearest features where they a
     REQUIRE(verdict.smallest_gap == Approx(gap).margin(1e-6));
   }
   CHECK(met > 20);
+}
+
+TEST_CASE("what the guard took before a tick was taken back is counted in the verdict still") {
+  World<float> world(test::upright_sheet(14, 0.6, 0.75, 0.25, 0.2));
+  test::jolt(world, 5, 3);
+  Verdict<float> verdict;
+  for (int tick = 0; tick < 40; ++tick) {
+    world.step();
+    verdict.look(world);
+  }
+  const double wanted = world.guard()->counts().wanted, lost = verdict.lost_motion * wanted;
+  REQUIRE(wanted > 0);
+  world.state().v[5][1] = std::numeric_limits<float>::quiet_NaN();
+  world.step();
+  REQUIRE(world.report().divergence);
+  verdict.look(world);
+  CHECK(world.guard()->counts().wanted >= wanted);
+  CHECK(verdict.lost_motion * world.guard()->counts().wanted >= lost * (1 - 1e-12));
 }

@@ -162,3 +162,34 @@ TEST_CASE("a plane may be moved and not turned, and a command is refused out of 
         MoveDef{pose(kOrigin), 1, 61}, MoveDef{{Vec3d::Zero(), {0, 0, 0, 0}}, 1, 1}})
     CHECK_THROWS_AS(validate(move, "move."), DefinitionError);
 }
+
+TEST_CASE(
+    "how resistance slows an object, and how it speeds up again, does not depend on the tick") {
+  MotionDef motion;
+  motion.keyframes = {key(0, {0, 0, 0}), key(10, {10, 0, 0})};
+  ColliderDef def = ball(motion);
+  def.max_force = 5;
+  // Drag in proportion to the speed of the object, until it is gone.
+  const auto paces = [&def](int rate) {
+    ColliderStates states = initial_states({def});
+    const double tick = 1.0 / rate;
+    std::vector<double> seen;
+    for (int k = 0; k < rate; ++k) {
+      plan_motion({def}, k * tick, tick, states);
+      const bool resisted = k < rate / 2;
+      if (resisted) states[0].impulse = states[0].twist.linear * (8 * tick);
+      advance_collider(tick, tick, states[0]);
+      finish_motion({def}, tick, states);
+      if ((k + 1) % (rate / 20) == 0) seen.push_back(states[0].pace);
+    }
+    return seen;
+  };
+  const std::vector<double> usual = paces(60);
+  CHECK(usual[9] < 0.8);
+  CHECK(usual[14] > usual[9]);
+  for (const int rate : {120, 240, 1000}) {
+    CAPTURE(rate);
+    const std::vector<double> other = paces(rate);
+    for (std::size_t k = 0; k < usual.size(); ++k) CHECK(other[k] == Approx(usual[k]).margin(0.03));
+  }
+}
