@@ -172,6 +172,21 @@ TEST_CASE("halving the substep quarters the error with two damping sweeps and ha
   CHECK(error_with(40, 1) / error_with(80, 1) == Approx(2).epsilon(0.05));
 }
 
+TEST_CASE("halving the tick quarters the error with two damping sweeps, at one substep a tick") {
+  // Half of all kicks then open or close a tick, and see the forces of its start or end.
+  const auto error_with = [](int rate) {
+    WorldDef def = reference_world();
+    def.tick_rate = rate;
+    def.solver.min_substeps = 1;
+    def.solver.damping_sweeps = 2;
+    World<double> world(def);
+    test::advance(world, 0.5);
+    REQUIRE(world.report().substeps == 1);
+    return largest_error(world, test::kReference5x5[2]);
+  };
+  CHECK(error_with(500) / error_with(1000) == Approx(4).epsilon(0.03));
+}
+
 TEST_CASE("without damping the energy of a swinging cloth stays within 0.1 % of its fall") {
   ClothDef cloth = test::flat_cloth(9, 9);
   cloth.fabric.damping_ratio = 0;
