@@ -117,6 +117,19 @@ class Readme(unittest.TestCase):
         for condition in (r"drag of 5/s", r"no contact", r"from 0\.083 to 0\.5 s", r"Strains .* XPBD \d+"):
             self.assertRegex(caption, condition)
 
+    def test_the_script_that_measures_frames_lists_its_options_and_measures_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = Path(folder, "tests/bench/wire/measure.sh")
+            bench = Path(folder, "build/weft_wire_bench")
+            for path, text in ((script, (ROOT / "tests/bench/wire/measure.sh").read_text(encoding="utf-8")),
+                               (bench, "#!/bin/sh\necho options\n")):
+                path.parent.mkdir(parents=True)
+                path.write_text(text, encoding="utf-8")
+                path.chmod(0o755)
+            result = subprocess.run([script, "--help"], capture_output=True, text=True, timeout=60,
+                                    env={"PATH": "/usr/bin:/bin", "npm_config_offline": "true"})
+        self.assertEqual((result.returncode, result.stdout), (0, "options\n"), result.stderr)
+
     def test_it_is_short(self):
         self.assertLessEqual(len(README.splitlines()), 180)
 

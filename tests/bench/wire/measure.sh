@@ -11,6 +11,7 @@ module=''
 
 mkdir -p "$into/npm"
 "$build/weft_wire_bench" --out "$into" "$@"
+[[ " $* " != *" --help "* ]] || exit 0
 if npm install --no-save --no-audit --no-fund --prefix "$into/npm" meshoptimizer@1.3.0 >&2; then
   module="$into/npm/node_modules/meshoptimizer/meshopt_encoder.js"
 fi
