@@ -69,7 +69,10 @@ test('thirty scenes and ten minutes leave memory, buffers and vertex arrays as t
     const after_round = [];
     for (let round = 0; round < ROUNDS; round++) {
       for (const scene of SCENES) await show(scene);
+      await script.pause(); // for a fine picture, which has programs and a buffer of its own
+      await until(() => read(page, 'fine'), 'the picture is a fine one');
       after_round.push(await held(page));
+      await script.resume();
     }
     console.log(after_round.map((each) => JSON.stringify(each)).join('\n'));
     const { graphics } = after_round[0];
