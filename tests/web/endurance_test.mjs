@@ -66,13 +66,17 @@ test('thirty scenes and ten minutes leave memory, buffers and vertex arrays as t
       await until(async () => (await read(page, 'tick')) >= 10, 'it moves');
       await until(() => read(page, 'lit'), 'its light is whole');
     };
+    const held_at_rest = async () => {
+      await script.pause(); // for a fine picture, which has programs and a buffer of its own
+      await until(() => read(page, 'fine'), 'the picture is a fine one');
+      const now = await held(page);
+      await script.resume();
+      return now;
+    };
     const after_round = [];
     for (let round = 0; round < ROUNDS; round++) {
       for (const scene of SCENES) await show(scene);
-      await script.pause(); // for a fine picture, which has programs and a buffer of its own
-      await until(() => read(page, 'fine'), 'the picture is a fine one');
-      after_round.push(await held(page));
-      await script.resume();
+      after_round.push(await held_at_rest());
     }
     console.log(after_round.map((each) => JSON.stringify(each)).join('\n'));
     const { graphics } = after_round[0];
@@ -87,7 +91,7 @@ test('thirty scenes and ten minutes leave memory, buffers and vertex arrays as t
       for (const end = Date.now() + minutes * 60_000; Date.now() < end; await sleep(5000)) await drag(page);
       await page.mouse.move(2, 298); // beside the cloth, where there is no ring
       await until(async () => !(await read(page, 'hovering')) && (await read(page, 'hands')).length === 0);
-      const now = await held(page);
+      const now = await held_at_rest();
       console.log(`${(await read(page, 'tick')) - begun} ticks: ${JSON.stringify(now)}`);
       return now;
     };
