@@ -122,6 +122,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   add_number(simulate, "--ticks", o.ticks, kTickCounts, "Ticks (600)");
   simulate.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
+  add_switch(simulate, "--balance", o.balance,
+             "Measure what each cause did to the cloth's energy, at several times the cost");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,

@@ -150,6 +150,21 @@ Json guard_summary(const World<float>& world) {
           {"open_pairs", world.guard()->open_pairs()}};
 }
 
+/// What each cause did to the cloth's energy over the run [J].
+Json balance_summary(const World<float>& world) {
+  const EnergyBalance* balance = world.energy_balance();
+  if (!balance) return "not measured";
+  Json work = Json::object(), losses = Json::object();
+  visit_work(balance->flows, [&](const char* name, double value) { work[name] = value; });
+  work["disturbances"] = balance->disturbances;
+  visit_losses(balance->flows, [&](const char* name, double value) { losses[name] = value; });
+  losses["sleep"] = balance->sleep;
+  losses["recovery"] = balance->recovery;
+  losses["solver"] = balance->lost();
+  return {
+      {"start", balance->start}, {"work", work}, {"losses", losses}, {"now", balance->now.total()}};
+}
+
 /// Result of a hard case; null for other scenes.
 Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
   if (!(world.def().verdict.strain > 0)) return nullptr;
@@ -213,6 +228,8 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
         {"bending", energy.bending},
         {"gravity", energy.gravity},
         {"total", energy.total()}}},
+      {"balance", balance_summary(world)},
+      {"error", "not measured"},
       {"strain",
        {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
       {"measurements", measured},
@@ -303,6 +320,7 @@ int simulate(const SimulateOptions& options) {
   const std::vector<std::string> repairs = repair_objects(def);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  world.measure_energy(options.balance);
   std::vector<std::string> notices;
   for (const SceneNotice& notice : notices_of(world, repairs)) {
     notices.push_back(notice.message);

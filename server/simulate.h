@@ -14,9 +14,10 @@ struct SimulateOptions {
   std::string scenes;             ///< directory with further scenes and meshes; empty: none
   int ticks = 600;                ///< 1 to 10,000,000
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
-  std::string out;    ///< file for the cloth at the end, .obj or .ply; empty: none
-  bool json = false;  ///< summary as one JSON object instead of a table
-  int threads = 1;    ///< 1 to 64
+  std::string out;       ///< file for the cloth at the end, .obj or .ply; empty: none
+  bool balance = false;  ///< measures the work of all that acts; a run then takes much longer
+  bool json = false;     ///< summary as one JSON object instead of a table
+  int threads = 1;       ///< 1 to 64
   /// Crossings and penetrations are checked every so many ticks, and after the last, 1 to
   /// 10,000,000. The times exclude the checks, but a check evicts the next step's data from the
   /// caches.

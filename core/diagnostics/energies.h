@@ -24,6 +24,10 @@ struct EnergyReading {
   double largest_strain = 0;  ///< see ElasticEnergy
 };
 
+/// Kinetic energy of the present state, summed in double [J].
+template <class Real>
+double kinetic_energy(const ClothModel<Real>& model, const ClothState<Real>& state);
+
 /// Energies of the present state, summed in double. NaN propagates.
 /// @param gravity  [m/s^2]
 template <class Real>

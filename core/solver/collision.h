@@ -8,6 +8,7 @@
 #include "core/contact/objects/contact.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/profile.h"
+#include "core/solver/work_meter.h"
 
 // Interface of contact to the solvers.
 
@@ -15,13 +16,14 @@ namespace weft {
 
 /// Contact and moving pins, as a solver calls them. Of the two contact models at most one is set:
 /// the certified one with `objects`, `guard` or both, or `seed`. Moving pins are included because
-/// they too act between kick and drift.
+/// they too act between kick and drift, and the meter because it looks on between them.
 template <class Real>
 struct Collision {
   Contact<Real>* objects = nullptr;
   SeedContact<Real>* seed = nullptr;
   ClothGuard<Real>* guard = nullptr;
   PinDrive<Real>* pins = nullptr;
+  WorkMeter<Real>* meter = nullptr;  ///< if the work of all causes is wanted
 
   bool empty() const { return !objects && !seed && !guard && !pins; }
 
@@ -40,6 +42,7 @@ struct Collision {
     assert(dt > 0);
     assert(!(objects && seed) && !(guard && seed) && "one model of contact");
     if (pins) pins->before_drift(state, dt);
+    if (meter) meter->driven(state.v);
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state);
     if (guard) guard->solve(state, dt, profile);
@@ -66,6 +69,7 @@ struct Collision {
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     assert(dt > 0);
     if (pins) pins->settle(state, dt);
+    if (meter) meter->driven(state.v);
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state);
     if (guard) guard->settle(state, dt, profile);

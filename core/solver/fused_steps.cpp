@@ -55,6 +55,22 @@ double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   return work;
 }
 
+/// As above, shown to the meter.
+template <class Real>
+double advance_metered(Tick<Real>& tick, const Kick<Real>& kick) {
+  WorkMeter<Real>& meter = *tick.collision.meter;
+  meter.begin(tick.state);
+  const double work = advance_grids(tick, kick);
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (tick.has_external_forces) tick.grid(p).store_external(tick.work.external);
+    tick.grid(p).store_positions(tick.state.x);
+    tick.grid(p).store_velocities(tick.state.v);
+  }
+  meter_kick(tick, kick);
+  meter.finish(tick.model, tick.state, nullptr, true, static_cast<double>(tick.dt));
+  return work;
+}
+
 /// Whether a run may begin: only grids, the guard and objects take part, and all cloths are awake.
 template <class Real>
 bool may_be_calm(const Tick<Real>& tick) {
@@ -142,13 +158,16 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   int kept = s;
   double work = 0, kept_work = 0;
   bool renew = false;
+  WorkMeter<Real>* const meter = tick.collision.meter;
   for (; s < substeps && !renew && time + tick.dt <= paths->horizon; ++s) {
     stop_point();
     if ((s - first) % kCalmKeptSteps == 0) {
       for (GridPass<Real>& grid : tick.work.grids) grid.keep();
+      if (meter) meter->keep();
       kept = s, kept_time = time, kept_box = box, kept_work = work;
     }
-    work += advance_grids(tick, s == 0 ? kicks.opening : kicks.full);
+    const Kick<Real>& kick = s == 0 ? kicks.opening : kicks.full;
+    work += meter ? advance_metered(tick, kick) : advance_grids(tick, kick);
     time += tick.dt;
     box = box_off_paths(tick, time);
     const Real off = half_diagonal(box);
@@ -156,6 +175,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
       // Particles may have touched: return to the saved positions, and repeat the steps with
       // contact.
       for (GridPass<Real>& grid : tick.work.grids) grid.take_back();
+      if (meter) meter->take_back();
       next.substep = s + 1;
       s = kept, time = kept_time, box = kept_box, work = kept_work;
       break;

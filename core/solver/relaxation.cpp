@@ -242,6 +242,17 @@ void relax(Tick<Real>& tick, int substep) {
   }
 }
 
+/// Shows the meter, if there is one, what forces and sweeps together made of the velocities.
+template <class Real>
+void meter_sweeps(const Tick<Real>& tick) {
+  if (!tick.collision.meter) return;
+  const double dt = tick.dt;
+  const Vec3Array<Real>* external = tick.has_external_forces() ? &tick.work.external : nullptr;
+  tick.collision.meter->kicked(
+      {kept(tick), dt, dt}, {&tick.surroundings, external, &tick.grabs, nullptr, Dashpots::hinges},
+      tick.state.v);
+}
+
 /// Moves to the wanted positions, as far as contact allows.
 /// @returns the motion that contact must not see, if there is one; nothing has moved then
 template <class Real>
@@ -251,6 +262,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
   const bool compliant = tick.compliant();
   for (std::size_t i = 0; i < state.x.size(); ++i)
     state.v[i] = (compliant ? wanted[i] : (wanted[i] - state.x[i]).eval()) / tick.dt;
+  meter_sweeps(tick);
   if (tick.collision.empty()) {
     if (!compliant) std::swap(state.x, wanted);
     for (std::size_t i = 0; compliant && i < state.x.size(); ++i) state.x[i] += wanted[i];
@@ -282,7 +294,9 @@ void advance_rows(Tick<Real>& tick, int substeps) {
   for (const ClothPart<Real>& part : tick.model.parts) stencils += quadratic_stencil_count(part);
   tick.profile[Stage::bending].work += stencils * times;  // their time is part of integration
   const Prediction<Real> step = prediction(tick);
-  for (GridRelaxation<Real>& grid : tick.work.grids) {
+  WorkMeter<Real>* const meter = tick.collision.meter;
+  for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
+    GridRelaxation<Real>& grid = tick.work.grids[p];
     grid.load(tick.state.x, tick.state.v, tick.dt);
     for (int s = 0; s < substeps; ++s) {
       {
@@ -295,6 +309,10 @@ void advance_rows(Tick<Real>& tick, int substeps) {
       }
       const StageTimer timer(tick.profile, Stage::integration, 0);
       move_grid(grid.view());
+      if (!meter) continue;
+      meter->begin(tick.state);
+      grid.store(tick.state.x, tick.state.v, tick.dt);
+      meter->dragged(tick.model, tick.model.parts[p].particles, kept(tick), tick.state.v);
     }
     grid.store(tick.state.x, tick.state.v, tick.dt);
   }
@@ -320,17 +338,6 @@ EnergyReading timed_energies(Tick<Real>& tick) {
 }
 
 }  // namespace
-
-template <class Real>
-void RelaxationWorkspace<Real>::prepare(const ClothModel<Real>& model) {
-  for (Vec3Array<Real>* array : {&force, &external, &wanted})
-    array->assign(model.mass.size(), Vec3<Real>::Zero());
-  multiplier.assign(model.springs.size(), Real(0));
-  membrane_multiplier.assign(model.membrane.size(), Vec3<Real>::Zero());
-  energy.prepare(model);
-  grids.assign(model.parts.size(), {});
-  for (std::size_t p = 0; p < grids.size(); ++p) grids[p].prepare(model.parts[p]);
-}
 
 template <class Real>
 AdvanceResult advance_relaxation(const ClothModel<Real>& model,
@@ -363,12 +370,17 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     const auto count = static_cast<Real>(substeps);
     stop_point();
     collision.before_kick(state);
+    if (collision.meter) collision.meter->begin(state);
     evaluate_forces<Real>(tick, {static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt});
     predict(tick);
     relax(tick, s);
     result.blow_up = move(tick);
     if (result.blow_up) return result;
-    result.work += external_work(tick) + work_of_hands(state.v, grabs);
+    const double pulled = work_of_hands(state.v, grabs);
+    result.work += external_work(tick) + pulled;
+    if (!collision.meter) continue;
+    collision.meter->finish(model, state, collision.objects, collision.guard != nullptr, tick.dt);
+    collision.meter->add({.hands = pulled});
   }
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;
@@ -377,7 +389,6 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                  \
-  template struct RelaxationWorkspace<Real>;                                                    \
   template AdvanceResult advance_relaxation(const ClothModel<Real>&, const Surroundings<Real>&, \
                                             const RelaxationDef&, double, int, Grabs<Real>&,    \
                                             const Collision<Real>&, ClothState<Real>&,          \

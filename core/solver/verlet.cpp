@@ -118,7 +118,7 @@ void kick_mesh(Tick<Real>& tick, std::size_t p, const Kick<Real>& k, bool again)
 template <class Real>
 void advance_kick(Tick<Real>& tick, const Kick<Real>& k, bool again) {
   Vec3Array<Real>& v = tick.state.v;
-  evaluate_external_forces(tick, v, tick.has_impulses);
+  evaluate_external_forces(tick, v, tick.has_impulses || tick.collision.meter);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p)) {
@@ -167,6 +167,7 @@ template <class Real>
 void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   if (tick.solver.damping_sweeps == 1) {
     advance_kick(tick, k, true);
+    meter_kick(tick, k);
     return;
   }
   Vec3Array<Real>&v = tick.state.v, &estimate = tick.work.velocity;
@@ -179,6 +180,7 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
       estimate[i] = v[i] * (Real(1) - share) + estimate[i] * share;
   }
   kick_awake(tick, k, v, v);
+  meter_kick(tick, k, &estimate);
 }
 
 /// Work of the external forces on a range of particles over the coming drift [J].
@@ -229,10 +231,11 @@ template <class Real>
 void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
   if (tick.solver.damping_sweeps == 1) {
     advance_kick(tick, k, false);
-    return;
+  } else {
+    evaluate_forces(tick, tick.state.v);
+    kick_awake(tick, k, tick.state.v, tick.state.v);
   }
-  evaluate_forces(tick, tick.state.v);
-  kick_awake(tick, k, tick.state.v, tick.state.v);
+  meter_kick(tick, k);
 }
 
 /// Pulls of the hands, after the kick before substep `s` of `substeps`.
@@ -244,9 +247,19 @@ void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
   const auto count = static_cast<Real>(substeps);
   pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.scaled_dt,
                tick.state, tick.grabs);
+  if (tick.collision.meter) tick.collision.meter->pulled(tick.state.v);
 }
 
-/// The substeps of a tick in which hands or contact act between kick and drift.
+/// Shows the meter, if there is one, the end of a drift [s], or of the tick.
+template <class Real>
+void meter_drift(const Tick<Real>& tick, Real seconds) {
+  const Collision<Real>& c = tick.collision;
+  if (c.meter)
+    c.meter->finish(tick.model, tick.state, c.objects, c.guard != nullptr,
+                    static_cast<double>(seconds));
+}
+
+/// The substeps of a tick in which hands or contact act between kick and drift, or work is metered.
 /// @param blow_up  receives the motion that ended the tick before contact saw it
 /// @returns work of hands and air [J]
 template <class Real>
@@ -262,6 +275,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     work += advance_calm(tick, kicks, substeps, s, next);
     if (s == substeps) break;
     collision.before_kick(state);
+    if (collision.meter) collision.meter->begin(state);
     if (s == 0)
       opening_kick(tick, kicks.opening);
     else
@@ -274,12 +288,15 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     work += drift(tick);
     work += work_of_hands(state.v, tick.grabs);
     collision.after_drift(state, tick.dt, tick.profile);
+    meter_drift(tick, tick.dt);
     if (takes_over(collision)) load_grids(tick);
   }
   collision.before_kick(state);
+  if (collision.meter) collision.meter->begin(state);
   swept_kick(tick, kicks.closing, Real(1));
   pull(tick, kicks.closing, substeps, substeps);
   collision.settle(state, tick.dt, tick.profile);
+  meter_drift(tick, Real(0));
   work += work_of_hands(state.v, tick.grabs);
   return work;
 }
@@ -340,7 +357,8 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   }
   load_grids(tick);
   result.before = timed_energies(tick).energies;
-  if (collision.empty() && !has_hands && work.all_grids && solver.damping_sweeps == 1) {
+  if (collision.empty() && !collision.meter && !has_hands && work.all_grids &&
+      solver.damping_sweeps == 1) {
     for (std::size_t p = 0; p < tick.parts(); ++p) {
       if (!tick.sleeps(p)) result.work += advance_alone(tick, p, kicks, substeps);
     }

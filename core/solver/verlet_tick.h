@@ -12,6 +12,7 @@ namespace weft {
 template <class Real>
 struct Kick {
   Real keep, scaled_dt;
+  double seconds;  ///< for which the forces act [s]
 };
 
 /// The three kicks of a tick. Opening and closing together make one full kick.
@@ -22,9 +23,9 @@ struct Kicks {
   Kicks(double dt, double damping) {
     assert(dt > 0 && damping >= 0);
     const double lost = 0.5 * damping * dt;
-    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost))};
-    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost))};
-    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt)};
+    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost)), dt / 2};
+    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost)), dt};
+    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt), dt / 2};
   }
 };
 
@@ -52,6 +53,17 @@ struct Tick {
   /// It sleeps, and its energy is known.
   bool rests(std::size_t p) const { return sleeps(p) && work.at_rest[p]; }
 };
+
+/// Shows the meter, if there is one, what a kick did.
+template <class Real>
+void meter_kick(const Tick<Real>& tick, const Kick<Real>& k,
+                const Vec3Array<Real>* seen = nullptr) {
+  if (!tick.collision.meter) return;
+  const MeteredKick kick{static_cast<double>(k.keep), static_cast<double>(k.scaled_dt), k.seconds};
+  const Vec3Array<Real>* external = tick.has_external_forces ? &tick.work.external : nullptr;
+  tick.collision.meter->kicked(kick, {&tick.surroundings, external, &tick.grabs, seen},
+                               tick.state.v);
+}
 
 inline std::size_t size_of(const IndexRange& range) {
   assert(range.count >= 0);

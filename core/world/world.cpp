@@ -128,6 +128,7 @@ void World<Real>::reset() {
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;
   accept_state();
+  begin_balance();
 }
 
 template <class Real>
@@ -219,7 +220,7 @@ void World<Real>::allocate_external() {
   const bool air = !is_calm(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
   if (solver_of(def_) != SolverKind::relaxation)
-    verlet_.allocate_external(model_, air, !grabs_.impulses.empty());
+    verlet_.allocate_external(model_, air, !grabs_.impulses.empty() || (air && energy_));
 }
 
 template <class Real>
@@ -279,6 +280,7 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.touching = kind != solver_of(def_) && !implicit_.violent;
     if (!divergence) {
       account_.accept(result, tick_seconds());
+      if (energy_) energy_->book(result, report_.brought);
       last_good_.x = state_.x;
       last_good_.v = state_.v;
       touching_ = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
@@ -292,6 +294,7 @@ void World<Real>::advance_or_recover(int substeps) {
       for (Vec3<Real>& v : state_.v) v.setZero();
       bring_to_rest(pins_);
       accept_state();
+      if (energy_) energy_->book_loss(report_.energies, energy_->balance.recovery);
       return;
     }
     report_.divergence->remedy = DivergenceRemedy::more_substeps;
@@ -303,9 +306,10 @@ void World<Real>::advance_or_recover(int substeps) {
 template <class Real>
 Collision<Real> World<Real>::collision() {
   PinDrive<Real>* pins = pins_.any_moving() ? &pin_drive_ : nullptr;
-  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins};
+  WorkMeter<Real>* meter = energy_ ? &energy_->meter : nullptr;
+  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins, meter};
   const bool objects = contact_of(def_) == ContactModel::certified && !def_.colliders.empty();
-  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins};
+  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins, meter};
 }
 
 /// One tick of the chosen solver.
@@ -318,6 +322,7 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
   if (guard_) guard_->begin_tick();
+  if (energy_) energy_->meter.begin_tick();
   AdvanceResult result =
       kind == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),

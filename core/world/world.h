@@ -20,6 +20,7 @@
 #include "core/world/cost.h"
 #include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
+#include "core/world/energy_balance.h"
 #include "core/world/reactions.h"
 #include "core/world/sleep.h"
 #include "core/world/world_def.h"
@@ -184,6 +185,12 @@ class World {
   /// ended from outside, as do its two callers.
   Reactions coming_reactions() const;
 
+  /// Switches measuring the work of everything that acts, from the present state on; changes no
+  /// result. A tick then takes about three times as long. A reset begins anew.
+  void measure_energy(bool wanted);
+  /// Null if it is not measured.
+  const EnergyBalance* energy_balance() const { return energy_ ? &energy_->balance : nullptr; }
+
   /// Size of the cloth's state, its checkpoint and the arrays of `verlet` [B]. Arrays for air and
   /// hands count from their first use on.
   std::size_t solver_bytes() const;
@@ -275,6 +282,7 @@ class World {
   void forget_motion();
   void report_present_state();
   void report_motion();
+  void begin_balance();
 
   WorldDef def_;
   EnvironmentDef environment_;
@@ -313,6 +321,7 @@ class World {
     std::vector<SceneHand> scene_hands;
     Vec3d wind = Vec3d::Zero();
     EnergyAccount account{0};
+    EnergyBalance balance;             ///< if it is measured
     std::optional<Sleep<Real>> sleep;  ///< if the scene lets cloth sleep
     TickReport report;
   };
@@ -323,6 +332,7 @@ class World {
   std::uint64_t tick_ = 0;
   bool measures_forces_ = false;
   std::optional<Reactions> reactions_;
+  std::optional<EnergyLedger<Real>> energy_;  ///< if it is measured
 };
 
 extern template class World<float>;

@@ -89,7 +89,14 @@ bool World<Real>::stop_pin(PinId id) {
 /// Fixes pins that have arrived.
 template <class Real>
 void World<Real>::finish_pins() {
-  if (PinDrive<Real>::finish(tick_seconds(), state_, pins_)) masses_changed();
+  if (!PinDrive<Real>::finish(tick_seconds(), state_, pins_)) return;
+  masses_changed();
+  if (!energy_) return;
+  Energies now = energy_->balance.now;
+  now.kinetic = kinetic_energy(model_, state_);
+  double taken = 0;
+  energy_->book_loss(now, taken);
+  energy_->balance.flows.pins -= taken;
 }
 
 template <class Real>

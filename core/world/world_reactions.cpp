@@ -1,4 +1,4 @@
-// Measures contacts and reaction forces of a world, on request only.
+// Measures contacts, reaction forces and the work of all causes in a world, on request only.
 
 #include <algorithm>
 #include <cassert>
@@ -13,7 +13,7 @@ namespace weft {
 template <class Real>
 void World<Real>::measure_forces(bool wanted) {
   measures_forces_ = wanted;
-  contact_.log_impulses(wanted);
+  contact_.log_impulses(wanted || energy_);
   if (!wanted) reactions_.reset();
   if (wanted && rests()) reactions_ = coming_reactions();  // no tick will measure them
 }
@@ -21,6 +21,23 @@ void World<Real>::measure_forces(bool wanted) {
 template <class Real>
 void World<Real>::measure_present_forces() {
   if (measures_forces_ && !reactions_) reactions_ = coming_reactions();
+}
+
+template <class Real>
+void World<Real>::measure_energy(bool wanted) {
+  energy_.reset();
+  if (wanted) {
+    const std::size_t first_jaw = def_.colliders.size() - 2 * def_.grippers.size();
+    energy_.emplace(EnergyLedger<Real>{WorkMeter<Real>(model_.mass.size(), first_jaw), {}});
+  }
+  contact_.log_impulses(wanted || measures_forces_);
+  allocate_external();
+  begin_balance();
+}
+
+template <class Real>
+void World<Real>::begin_balance() {
+  if (energy_) energy_->begin(tick_, report_.energies);
 }
 
 template <class Real>
@@ -55,6 +72,7 @@ void World<Real>::take_reactions() {
 template <class Real>
 World<Real> World<Real>::copy() const {
   World other(*this);
+  other.energy_.reset();
   other.debug_trees_.reset();
   other.verlet_ = {};
   other.relaxation_ = {};
@@ -99,6 +117,8 @@ ComingStarts World<Real>::coming_bad_starts() const {
 #define WEFT_INSTANTIATE(Real)                              \
   template void World<Real>::measure_forces(bool);          \
   template void World<Real>::measure_present_forces();      \
+  template void World<Real>::measure_energy(bool);          \
+  template void World<Real>::begin_balance();               \
   template void World<Real>::take_reactions();              \
   template World<Real> World<Real>::copy() const;           \
   template Reactions World<Real>::coming_reactions() const; \

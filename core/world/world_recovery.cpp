@@ -109,6 +109,7 @@ void World<Real>::keep_checkpoint() {
   checkpoint_.scene_hands = scene_hands_;
   checkpoint_.wind = environment_.wind;
   checkpoint_.account = account_;
+  if (energy_) checkpoint_.balance = energy_->balance;
   if (sleep_.wanted()) checkpoint_.sleep = sleep_;
   checkpoint_.report = report_;
 }
@@ -124,6 +125,7 @@ void World<Real>::go_back() {
   scene_hands_ = checkpoint_.scene_hands;
   environment_.wind = checkpoint_.wind;
   account_ = checkpoint_.account;
+  if (energy_) energy_->balance = checkpoint_.balance;
   assert(!sleep_.wanted() || checkpoint_.sleep);
   if (sleep_.wanted()) sleep_ = *checkpoint_.sleep;
   report_ = checkpoint_.report;

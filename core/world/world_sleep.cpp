@@ -102,6 +102,7 @@ void World<Real>::put_to_sleep() {
   sleep_changed();
   last_good_.v = state_.v;
   report_motion();
+  if (energy_) energy_->book_loss(report_.energies, energy_->balance.sleep);
 }
 
 #define WEFT_INSTANTIATE(Real)                    \

@@ -29,16 +29,12 @@ namespace weft {
 template <class Real>
 class ClothGuard;
 
-/// Three nested lists keep the work small, each valid while no particle has moved farther than its
-/// allowance, which is checked with the coming motion before every drift:
+/// Three nested lists, each valid while no particle has moved farther than its allowance:
 /// clearances (nothing near), candidates (pairs within reach for about a tick), rows (planes frozen
 /// for a few substeps). Rows are solved on velocities between kick and drift, with Coulomb friction
-/// that sticks truly, and at last every particle is certified against its planes: one that would
-/// cross does not move. So no particle passes through an object, whatever pulls at it.
-///
-/// The planes of an object that moves go with it, and its way is added to the particles' own where
-/// lists are said to hold. What it meets gives way or is carried along; where it cannot, the object
-/// stands still for some substeps: not moving is allowed to all who do not follow it too closely.
+/// that sticks; a particle that would still cross a plane does not move, whatever pulls at it.
+/// The planes of a moving object go with it. What it meets gives way or is carried along; where it
+/// cannot, the object stands still for some substeps.
 template <class Real>
 class Contact {
  public:
@@ -118,6 +114,10 @@ class Contact {
 
   /// Notes the impulses of each tick from now on, or no longer.
   void log_impulses(bool wanted) { log_.want(wanted); }
+
+  /// Impulses of the present tick, if noted, and a collider's motion in the present substep.
+  const ContactLog& log() const { return log_; }
+  const ColliderFrame<Real>& frame(std::size_t collider) const { return frames_[collider]; }
 
   /// Contacts of the last tick with their mean forces over it, if impulses are noted [N]; without
   /// forces if not. Those that pushed, and those that touch now.

@@ -56,6 +56,14 @@ class ContactLog {
     note(row, impulse);
   }
 
+  /// Calls visit(contact, impulse) for what was noted from `first` on, which then is the next [N
+  /// s].
+  template <class Visit>
+  void visit_from(std::size_t& first, Visit&& visit) const {
+    for (; first < entries_.size(); ++first)
+      visit(entries_[first].contact, entries_[first].impulse);
+  }
+
   /// Contacts of the tick: those that pushed, and those of `rows` that touch now.
   /// @param x        positions now [m]
   /// @param reach    touching is what is nearer than this part of the thickness

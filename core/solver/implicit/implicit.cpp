@@ -109,10 +109,12 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
   step.damped = true;
   bool solved = true;
   brought = 0;
+  step.flows = {};
   for (int k = 1; k <= pieces; ++k) {
     const Real passed = static_cast<Real>(k) / static_cast<Real>(pieces);
     solved = solve_displacements(step, begin + (end - begin) * passed) && solved;
     brought += outer_work(step);
+    meter_displacements(step);
     state.x = work.x;
     state.v = work.v;
   }
@@ -135,6 +137,8 @@ bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& 
   step.damped = false;
   bool solved = solve_displacements(step, end);
   brought = outer_work(step);
+  step.flows = {};
+  meter_displacements(step);
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
     const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
@@ -182,9 +186,12 @@ std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
   }
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.displacement[i] / step.dt;
   if (const auto found = find_blow_up(step.model, state, step.dt)) return found;
+  if (collision.meter) collision.meter->pulled(state.v);
   collision.before_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * step.dt;
   collision.after_drift(state, step.dt, step.profile);
+  if (collision.meter)
+    collision.meter->add_contact(step.model, state, collision.objects, collision.guard != nullptr);
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const bool free = state.v[i] == (work.displacement[i] / step.dt).eval();
     work.history[i] = free && !step.damped && step.movable(i);
@@ -250,6 +257,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   assert(work.systems.size() == model.parts.size() && "prepared for this model");
   assert(!surroundings.air || surroundings.wind.size() == model.mass.size());
   Step<Real> step{model, surroundings, solver, static_cast<Real>(dt), grabs, state, work, profile};
+  step.metered = collision.meter != nullptr;
   AdvanceResult result;
   EnergyReading reading = energies_at(step, state.x, state.v);
   result.before = reading.energies;
@@ -269,6 +277,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     if (work.violent) return result;
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
+    if (step.metered) collision.meter->add(step.flows);
     work.touching = work.refuses && moves_far(step, collision);
     if (work.touching) return result;
     result.blow_up = move(step, collision);

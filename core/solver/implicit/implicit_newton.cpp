@@ -262,10 +262,44 @@ double outer_work(const Step<Real>& step) {
   return sum;
 }
 
+template <class Real>
+void meter_displacements(Step<Real>& step) {
+  if (!step.metered) return;
+  const ImplicitWorkspace<Real>& work = step.work;
+  EnergyFlows& flows = step.flows;
+  Vec3Array<double> moved(work.displacement.size());
+  const auto dt = static_cast<double>(step.dt);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    moved[i] = work.displacement[i].template cast<double>();
+    flows.drag += step.surroundings.damping * static_cast<double>(step.model.mass[i]) *
+                  work.v[i].template cast<double>().dot(moved[i]);
+    if (!step.surroundings.air) continue;
+    const Vec3d air = work.air[i].template cast<double>();
+    const Vec3d wind = step.surroundings.wind[i].template cast<double>() * dt;
+    flows.wind += air.dot(wind);
+    flows.air += air.dot(wind - moved[i]);
+  }
+  const auto work_of = [&moved](const auto& held, const Vec3<Real>& force) {
+    double sum = 0;
+    for (std::size_t n = 0; n < held.particles.size(); ++n)
+      sum += force.template cast<double>().dot(moved[static_cast<std::size_t>(held.particles[n])]) *
+             static_cast<double>(held.weights[n]);
+    return sum;
+  };
+  for (const SlingImpulse<Real>& impulse : step.grabs.impulses)
+    flows.slings += work_of(impulse, impulse.force);
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    const Grab<Real>& grab = step.grabs.list[work.hands[h].grab];
+    flows.hands += work_of(grab, grab.force);
+  }
+  flows.damping += dashpot_loss(step.model, work.x, work.v, moved);
+}
+
 #define WEFT_INSTANTIATE(Real)                          \
   template void take_hands(Step<Real>&);                \
   template bool solve_displacements(Step<Real>&, Real); \
-  template double outer_work(const Step<Real>&);
+  template double outer_work(const Step<Real>&);        \
+  template void meter_displacements(Step<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -17,7 +17,9 @@ struct Step {
   ClothState<Real>& state;
   ImplicitWorkspace<Real>& work;
   Profile& profile;
-  bool damped = false;  ///< by backward Euler
+  bool metered = false;    ///< `flows` are wanted
+  bool damped = false;     ///< by backward Euler
+  EnergyFlows flows = {};  ///< of this substep so far, without contact
 
   bool movable(std::size_t i) const { return state.inverse_mass[i] > 0; }
 };
@@ -59,5 +61,10 @@ bool solve_displacements(Step<Real>& step, Real progress);
 /// Work of air, impulses and hands over the present displacements [J].
 template <class Real>
 double outer_work(const Step<Real>& step);
+
+/// Adds the present displacements' share to the flows, if they are wanted: each force acts as it
+/// is at the substep's end.
+template <class Real>
+void meter_displacements(Step<Real>& step);
 
 }  // namespace weft
