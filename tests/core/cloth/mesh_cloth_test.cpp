@@ -1,6 +1,7 @@
 #include "core/cloth/mesh_cloth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -139,9 +140,11 @@ void visit_bending_energies(const ClothModel<double>& model, const Vec3Array<dou
   visit_bending_stencils(model.parts[0],
                          [&](double k, const Index* corners, const double* weights, int count) {
                            REQUIRE(count == 4);
+                           std::array<Index, 4> four{};
+                           std::copy_n(corners, count, four.begin());
                            Vec3d sum = Vec3d::Zero();
-                           for (int n = 0; n < 4; ++n) sum += weights[n] * at(corners[n]);
-                           visit(corners, 0.5 * k * sum.squaredNorm());
+                           for (int n = 0; n < count; ++n) sum += weights[n] * at(corners[n]);
+                           visit(four.data(), 0.5 * k * sum.squaredNorm());
                          });
 }
 
