@@ -74,7 +74,8 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
       contact_(make_contact(def_, model_, runtime)), account_(total_mass(model_)),
       sleep_(model_, def.sleep, tick_seconds(),
              solver_of(def) == SolverKind::relaxation || contact_of(def) == ContactModel::seed) {
-  state_ = initial_state(model_);
+  if (def_.start) validate(*def_.start, model_.mass.size());
+  state_ = state_at(def_.start, model_);
   for (const ClothPart<Real>& part : model_.parts)
     thickest_ = std::max(thickest_, part.fabric.thickness);
   refuse_too_stiff();
@@ -101,7 +102,7 @@ void World<Real>::refuse_too_stiff() const {
 
 template <class Real>
 void World<Real>::reset() {
-  state_ = initial_state(model_);
+  state_ = state_at(def_.start, model_);
   const PinId next_pin = pins_.next_id;
   pins_ = make_pins(model_);
   pins_.next_id = next_pin;

@@ -17,6 +17,7 @@
 #include "core/world/budget.h"
 #include "core/world/script.h"
 #include "core/world/sleep.h"
+#include "core/world/start.h"
 #include "core/world/view_def.h"
 
 // Definition of a world: a scene.
@@ -60,6 +61,7 @@ struct WorldDef {
   BudgetDef budget;
   SleepDef sleep;
   std::vector<ClothDef> cloths = {ClothDef{}};  ///< 1 to kMostCloths
+  std::optional<StartDef> start;  ///< of all their particles; absent: at rest as defined
   std::vector<ColliderDef> colliders;
   std::vector<PinDef> pins;                  ///< present at the start
   std::vector<HandDef> hands;                ///< of the scene itself, at most kMostSceneHands
