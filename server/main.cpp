@@ -122,6 +122,12 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   add_number(simulate, "--ticks", o.ticks, kTickCounts, "Ticks (600)");
   simulate.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
   simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
+  simulate.add_option("--start", o.start,
+                      "Begin where FILE.npy says: a series, or an array of particles x 3 or 6");
+  simulate.add_option("--series", o.series,
+                      "Write time, energies, forces, positions and velocities into FILE.npy");
+  add_number(simulate, "--series-every", o.series_every, kTickCounts,
+             "Ticks between two records of it (1)");
   add_switch(simulate, "--balance", o.balance,
              "Measure what each cause did to the cloth's energy, at several times the cost");
   add_switch(simulate, "--json", o.json, "Print JSON");

@@ -17,8 +17,36 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kPrintedBytes = 1 << 20;
 
+OutputError failed(const std::string& path) {
+  return {path, std::strerror(errno)};
+}
+
+}  // namespace
+
+void prepare_standard_streams() {
+  // All output of a command is written at once, so that errno of a failure is known.
+  static std::array<char, kPrintedBytes> printed;
+  std::setvbuf(stdout, printed.data(), _IOFBF, printed.size());
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free number is this one. Opened in the wrong direction, it fails every use.
+    if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+void flush_standard_output() {
+  errno = 0;
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written) return;
+  const std::string reason = errno != 0 ? std::strerror(errno) : "a part of it was lost";
+  std::clearerr(stdout);
+  throw OutputError("standard output", reason);
+}
+
 /// Owns a file descriptor, and deletes an unfinished file.
-class OpenFile {
+class NewFile::OpenFile {
  public:
   /// @param flags  of open(2), besides those for writing
   OpenFile(std::string path, int flags, mode_t mode)
@@ -59,59 +87,43 @@ class OpenFile {
   bool unfinished_ = false;
 };
 
-OutputError failed(const std::string& path) {
-  return {path, std::strerror(errno)};
-}
-
-void write_in_place(const std::string& path, std::string_view bytes) {
-  OpenFile file(path, 0, 0);
-  if (!file.is_open() || !file.write(bytes)) throw failed(path);
-}
-
-/// @param target  the file to replace, with symbolic links resolved
-void replace(const std::string& path, const fs::path& target, std::string_view bytes) {
-  OpenFile file(target.string() + "." + std::to_string(::getpid()) + ".part", O_CREAT | O_EXCL,
-                0666);
-  if (!file.is_open()) throw failed(path);
-  file.remove_unless_kept();
-  struct stat old {};
-  const bool had_mode = ::stat(target.c_str(), &old) == 0;
-  if (!file.write(bytes) || (had_mode && !file.set_mode(old.st_mode & 07777)) || !file.finish() ||
-      ::rename(file.path().c_str(), target.c_str()) != 0)
-    throw failed(path);
-  file.keep();
-}
-
-}  // namespace
-
-void prepare_standard_streams() {
-  // All output of a command is written at once, so that errno of a failure is known.
-  static std::array<char, kPrintedBytes> printed;
-  std::setvbuf(stdout, printed.data(), _IOFBF, printed.size());
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // The lowest free number is this one. Opened in the wrong direction, it fails every use.
-    if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+NewFile::NewFile(const std::string& path) : path_(path), target_(path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  in_place_ = fs::exists(status) && !fs::is_regular_file(status);
+  if (in_place_) {
+    file_ = std::make_unique<OpenFile>(path, 0, 0);
+    if (!file_->is_open()) throw failed(path_);
+    return;
   }
+  const fs::path resolved = fs::exists(status) ? fs::canonical(path, error) : fs::path(path);
+  if (!error) target_ = resolved.string();
+  file_ = std::make_unique<OpenFile>(target_ + "." + std::to_string(::getpid()) + ".part",
+                                     O_CREAT | O_EXCL, 0666);
+  if (!file_->is_open()) throw failed(path_);
+  file_->remove_unless_kept();
 }
 
-void flush_standard_output() {
-  errno = 0;
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written) return;
-  const std::string reason = errno != 0 ? std::strerror(errno) : "a part of it was lost";
-  std::clearerr(stdout);
-  throw OutputError("standard output", reason);
+NewFile::~NewFile() = default;
+
+void NewFile::write(std::string_view bytes) {
+  if (!file_->write(bytes)) throw failed(path_);
+}
+
+void NewFile::finish() {
+  if (in_place_) return;
+  struct stat old {};
+  const bool had_mode = ::stat(target_.c_str(), &old) == 0;
+  if ((had_mode && !file_->set_mode(old.st_mode & 07777)) || !file_->finish() ||
+      ::rename(file_->path().c_str(), target_.c_str()) != 0)
+    throw failed(path_);
+  file_->keep();
 }
 
 void write_file(const std::string& path, std::string_view bytes) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_in_place(path, bytes);
-  const fs::path target = fs::exists(status) ? fs::canonical(path, error) : fs::path(path);
-  replace(path, error ? fs::path(path) : target, bytes);
+  NewFile file(path);
+  file.write(bytes);
+  file.finish();
 }
 
 }  // namespace weft::server

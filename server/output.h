@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -23,9 +24,28 @@ void prepare_standard_streams();
 /// Flushes standard output. Throws OutputError if any output since the last call was lost.
 void flush_standard_output();
 
-/// Writes a file atomically: into a new one beside it, which then replaces it. On failure the file
-/// stays as it was. Anything but a regular file, such as a named pipe, is written directly. Throws
-/// OutputError.
+/// A file that grows beside the one that it replaces when it is finished; that one stays as it was
+/// if this one is destroyed before. Anything but a regular file, such as a named pipe, is written
+/// directly. All throw OutputError.
+class NewFile {
+ public:
+  explicit NewFile(const std::string& path);
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+  ~NewFile();
+
+  void write(std::string_view bytes);
+  /// Once, at the end.
+  void finish();
+
+ private:
+  class OpenFile;
+  std::string path_, target_;  ///< as given, and with symbolic links resolved
+  bool in_place_ = false;
+  std::unique_ptr<OpenFile> file_;
+};
+
+/// Writes a whole NewFile. Throws OutputError.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace weft::server

@@ -25,6 +25,8 @@
 #include "server/scene_build.h"
 #include "server/scene_library.h"
 #include "server/scene_schema.h"
+#include "server/series.h"
+#include "server/start_file.h"
 #include "server/thread_pool.h"
 #include "server/translate.h"
 #include "server/work_limit.h"
@@ -120,12 +122,17 @@ std::optional<Measurement> run(World<float>& world, const SimulateOptions& optio
   const bool judged = world.def().verdict.strain > 0;
   GuaranteeWatch promise(0, &process_seconds);
   promise.start(world, look_ahead(world, options.tick_limit));
+  std::optional<Series<float>> series;
+  if (!options.series.empty())
+    series.emplace(options.series, world, options.series_every, options.ticks);
   for (int i = 1; i <= options.ticks; ++i) {
     if (!measure_tick(world, limit, m)) return std::nullopt;
     promise.note_tick(world);
+    if (series) series->note_tick(world);
     if (judged) m.verdict.look(world);
     if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
+  if (series) series->finish();
   promise.count(world);
   m.guarantee = promise.guarantee(world);
   std::sort(m.ticks.begin(), m.ticks.end());
@@ -294,29 +301,36 @@ int warn_of_crossings(const Measurement& m) {
   return m.broken_promises > 0 ? kCrossed : 0;
 }
 
-/// Checks the output path before minutes are spent.
-void check_out(const std::string& out) {
-  if (out.empty()) return;
-  if (!out.ends_with(".obj") && !out.ends_with(".ply"))
-    throw OptionError("--out", out, "a file that ends in .obj or .ply");
-  const std::filesystem::path folder = std::filesystem::path(out).parent_path();
+/// Checks the path of an output before minutes are spent.
+/// @param name  of the option
+void check_out(const char* name, const std::string& path, bool ending, const char* endings) {
+  if (path.empty()) return;
+  if (!ending) throw OptionError(name, path, std::string("a file that ends in ") + endings);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code error;
   if (!folder.empty() && !std::filesystem::is_directory(folder, error))
-    throw OptionError("--out", out, "a file in a folder that exists");
+    throw OptionError(name, path, "a file in a folder that exists");
   if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
-    throw OptionError("--out", out, "a file in a folder that may be written to");
+    throw OptionError(name, path, "a file in a folder that may be written to");
+}
+
+void check_options(const SimulateOptions& o) {
+  check_range("--ticks", o.ticks, kTickCounts);
+  check_range("--threads", o.threads, kThreadCounts);
+  check_range("--check-every", o.check_every, kTickCounts);
+  check_range("--series-every", o.series_every, kTickCounts);
+  check_range("--tick-limit", o.tick_limit, kTickLimits);
+  check_out("--out", o.out, o.out.ends_with(".obj") || o.out.ends_with(".ply"), ".obj or .ply");
+  check_out("--series", o.series, o.series.ends_with(".npy"), ".npy");
 }
 
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
-  check_range("--ticks", options.ticks, kTickCounts);
-  check_range("--threads", options.threads, kThreadCounts);
-  check_range("--check-every", options.check_every, kTickCounts);
-  check_range("--tick-limit", options.tick_limit, kTickLimits);
-  check_out(options.out);
+  check_options(options);
   WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
   for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  if (!options.start.empty()) def.start = read_start(options.start);
   const std::vector<std::string> repairs = repair_objects(def);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});

@@ -15,6 +15,9 @@ struct SimulateOptions {
   int ticks = 600;                ///< 1 to 10,000,000
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   std::string out;       ///< file for the cloth at the end, .obj or .ply; empty: none
+  std::string start;     ///< .npy file with where particles begin (start_file.h); empty: none
+  std::string series;    ///< .npy file for what happens (series.h); empty: none
+  int series_every = 1;  ///< ticks between two of its records, 1 to 10,000,000
   bool balance = false;  ///< measures the work of all that acts; a run then takes much longer
   bool json = false;     ///< summary as one JSON object instead of a table
   int threads = 1;       ///< 1 to 64
