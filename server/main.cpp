@@ -129,7 +129,7 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   add_number(simulate, "--series-every", o.series_every, kTickCounts,
              "Ticks between two records of it (1)");
   add_switch(simulate, "--balance", o.balance,
-             "Measure what each cause did to the cloth's energy, at several times the cost");
+             "Measure what each cause did to the cloth's energy; takes longer");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,

@@ -186,7 +186,7 @@ class World {
   Reactions coming_reactions() const;
 
   /// Switches measuring the work of everything that acts, from the present state on; changes no
-  /// result. A tick then takes about three times as long. A reset begins anew.
+  /// result. A tick then takes longer: half as long again in `flag`. A reset begins anew.
   void measure_energy(bool wanted);
   /// Null if it is not measured.
   const EnergyBalance* energy_balance() const { return energy_ ? &energy_->balance : nullptr; }
