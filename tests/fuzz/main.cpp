@@ -41,7 +41,7 @@ constexpr double kSlower = 1;
 
 // CPU time of one scene [s]: 30 minutes on two cores then see more than 2,000 scenes. More seconds
 // show more of each and fewer of them.
-constexpr double kSceneSeconds = 0.8;
+constexpr double kSceneSeconds = 0.5;
 
 struct Options {
   std::uint64_t seed = 0;
