@@ -76,6 +76,7 @@ test('on small screens panels and toolbar leave 60 % of the height, and nothing 
   const name = 'Maximilian-Alexander von Weft 32'; // the longest
   const page = await open_page(browser, server.url, { ...PHONE, name });
   const other = await open_page(browser, server.url, { name: 'Ben' });
+  await until(async () => (await page.locator('#viewers li').count()) === 2, 'both are named');
   const clear = () => page.evaluate(() => {
     const rect = (element) => element.getBoundingClientRect();
     const shown = [...document.querySelectorAll('#top *, #toolbar, #toolbar *')].filter(

@@ -8,12 +8,13 @@ import { import_page_module } from './support/page_module.mjs';
 
 const { crossings_text, guarantee_text, reasons_text } = await import_page_module('panel/guarantee');
 
-const says = async (page) => ({
-  guarantee: await page.locator('#guarantee-text').textContent(),
-  reasons: await page.locator('#reasons').textContent(),
-  state: await page.locator('#guarantee').getAttribute('data-state'),
-  crossings: await page.locator('#crossings').textContent(),
-});
+/** All words of one moment. */
+const says = (page) =>
+  page.evaluate(() => {
+    const words = (id) => document.getElementById(id).textContent;
+    const { state } = document.getElementById('guarantee').dataset;
+    return { guarantee: words('guarantee-text'), reasons: words('reasons'), state, crossings: words('crossings') };
+  });
 
 test('each state of the guarantee and each count has its words', () => {
   const guarantee = { state: 'held', covers: ['objects', 'cloth'], pairs: 0, reasons: [] };
@@ -40,8 +41,10 @@ test('the page shows that nothing passes through, and the smallest gap in millim
   with_server(['--scene', 'drape-sphere', '--paused'], async (page, script) => {
     await until(async () => (await says(page)).crossings === '0 crossings, nothing near');
     await script.advance(120);
-    await until(async () => /smallest gap \d+\.\d+ mm/.test((await says(page)).crossings));
-    const { guarantee, state, crossings } = await says(page);
+    const { guarantee, state, crossings } = await until(async () => {
+      const said = await says(page);
+      return /smallest gap \d+\.\d+ mm/.test(said.crossings) && said;
+    }, 'a gap is told');
     assert.deepEqual([guarantee, state], ['Cloth passes through nothing', 'held']);
     assert.match(crossings, /^0 crossings, /);
     assert.ok(await page.locator('#guarantee').isVisible());
@@ -51,22 +54,27 @@ test('the page shows that nothing passes through, and the smallest gap in millim
 
 test('a bad start is on the page of who comes late, until it is out; a voided promise until reset', bounded, () =>
   with_server(['--scene', 'hard-start-inside', '--paused'], async (page, script) => {
-    const bad = async (shown) =>
-      /^Not promised for \d+ pairs: cloth started inside ball$/.test((await says(shown)).reasons);
-    await until(() => bad(page), 'before the first tick');
-    assert.match((await says(page)).crossings, /^\d+ crossings?, /);
+    const bad = async (shown) => {
+      const said = await says(shown);
+      return /^Not promised for \d+ pairs: cloth started inside ball$/.test(said.reasons) && said;
+    };
+    const { crossings } = await until(() => bad(page), 'before the first tick');
+    assert.match(crossings, /^\d+ crossings?, /);
     await script.advance(5);
     const late = await open_page(browser, new URL('/', page.url()).href);
     await until(() => bad(late), 'who comes late knows');
     await late.context().close();
     await script.advance(240);
-    await until(async () => (await says(page)).state === 'held', 'it is out');
-    assert.equal((await says(page)).guarantee, 'Cloth passes through nothing');
+    const becomes = (state) =>
+      until(async () => {
+        const said = await says(page);
+        return said.state === state && said;
+      }, `the promise is ${state}`);
+    assert.equal((await becomes('held')).guarantee, 'Cloth passes through nothing');
     await script.pin({ particle: 544, radius: 2 });
     await script.move('ball', { position: [0, 2, 0], speed: 20, force: true });
     await script.advance(60);
-    await until(async () => (await says(page)).state === 'void');
-    assert.match((await says(page)).reasons, /: ball was forced/);
+    assert.match((await becomes('void')).reasons, /: ball was forced/);
     await script.reset();
     await until(() => bad(page));
   }),

@@ -1,15 +1,18 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { camera_at_rest, open_page, pixel_of, read, until } from './support/browser.mjs';
+import { camera_at_rest, done, next_pictures, open_page, pixel_of, read, until } from './support/browser.mjs';
 import {
   CALM,
   COLUMNS,
   bounded,
   browser,
   drag_cloth,
+  pass,
   point_at_cloth,
   position,
+  pulling,
   server,
+  shows_last_tick,
   with_page,
   with_server,
 } from './support/default_page.mjs';
@@ -17,67 +20,77 @@ import {
 // Hands by the mouse, on the cloth and beside it.
 
 test('a mouse lifts the cloth, M pins it there and frees it again', bounded, () =>
-  with_page({}, async (page, script) => {
+  with_page({ paused: true }, async (page, script) => {
     const before = await script.query('positions');
     const particle = await drag_cloth(page, 20, -110);
     const height = before[particle][1];
-    await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
-    const [hand] = await read(page, 'hands');
+    const [hand] = await until(async () => {
+      const hands = await read(page, 'hands');
+      return hands.length === 1 && hands;
+    }, 'the hand is drawn');
     assert.equal(hand.own, true);
-    for (const name of ['Ticks', 'Real time', 'Step', 'Latency']) {
-      const value = page.locator('#measurements div', { hasText: name }).locator('output');
-      await until(async () => /^\d+(\.\d+)?$/.test(await value.textContent()), `${name} is told`);
-    }
-    const pins = script.last.pins.length;
+    await pass(page, script, async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
+    const pins = new Set((await script.query('pins')).map(({ id }) => id));
     await page.keyboard.press('m');
-    await until(() => script.last.pins.length === pins + 1);
+    const pin = await until(() => script.last.pins.find(({ id }) => !pins.has(id)), 'it is pinned');
     await page.mouse.up();
     await until(() => script.last.grabs.length === 0);
-    const pin = script.last.pins.at(-1);
     const held = await position(script, pin.particle);
-    const { tick } = await script.query('state');
-    await until(async () => (await script.query('state')).tick > tick + 60);
+    await script.advance(60);
     assert.deepEqual(await position(script, pin.particle), held);
+    await shows_last_tick(page, script);
+    await until(async () => (await read(page, 'pins')).some(({ id }) => id === pin.id), 'the page shows the pin');
+    await camera_at_rest(page); // it may have followed the cloth
     const { x, y } = await pixel_of(page, pin.position);
     await page.mouse.move(x, y);
     await page.keyboard.press('m');
-    await until(() => script.last.pins.length === pins);
-    await until(async () => (await position(script, pin.particle))[1] < held[1] - 0.05, 'it falls');
+    await until(async () => (await script.query('pins')).every(({ id }) => pins.has(id)), 'it is freed');
+    await pass(page, script, async () => (await position(script, pin.particle))[1] < held[1] - 0.05, 'it falls');
   }),
 );
 
-test('the latency is told only while a hand holds in a running room', bounded, () =>
-  with_page({}, async (page, script) => {
+test('figures of time are told, but latency only while a hand holds in a running room', bounded, () =>
+  with_page({ paused: true }, async (page, script) => {
     const told = () =>
       page.evaluate(() => {
         const value = document.getElementById('latency');
         return value.closest('div').hidden ? null : Number(value.textContent);
       });
-    await script.pause();
-    await until(() => read(page, 'paused'));
     await drag_cloth(page, 0, -20);
     await until(() => script.last.grabs.length === 1);
     const { tick } = await script.advance(10);
     await until(async () => (await read(page, 'tick')) === tick);
+    await next_pictures(page);
     assert.equal(await told(), null, 'nothing is told of a pause');
     await script.resume();
-    await until(async () => (await told()) !== null, 'it is told while the room runs');
+    await until(async () => {
+      if ((await told()) !== null) return true;
+      // A slow machine may have lost the hand, whose lease runs now.
+      if ((await read(page, 'input')) === 'holding') return false;
+      await page.mouse.up();
+      await drag_cloth(page, 0, -20);
+      return false;
+    }, 'it is told while the room runs');
+    for (const name of ['Ticks', 'Real time', 'Step']) {
+      const value = page.locator('#measurements div', { hasText: name }).locator('output');
+      await until(async () => /^\d+(\.\d+)?$/.test(await value.textContent()), `${name} is told`);
+    }
     await page.mouse.up();
     await until(async () => (await told()) === null, 'it is forgotten when the hand lets go');
   }),
 );
 
 test('the wheel moves a hand along the view, and only without one the camera', bounded, () =>
-  with_page({}, async (page, script) => {
+  with_page({ paused: true }, async (page, script) => {
     await drag_cloth(page, 0, -20);
     const camera = await camera_at_rest(page);
-    const distance = async () => {
-      const [{ target }] = script.last.grabs.length ? await script.query('grabs') : [{ target: null }];
-      return target && Math.hypot(...target.map((value, axis) => value - camera.position[axis]));
-    };
-    const first = await until(distance, 'the server knows the hand');
+    const distance = ([{ target }]) => Math.hypot(...target.map((value, axis) => value - camera.position[axis]));
+    const first = distance(await pulling(page, script));
     await page.mouse.wheel(0, -400);
-    await until(async () => (await distance()) > first * 1.1, 'the hand goes away from the viewer');
+    await until(
+      async () => distance(await script.query('grabs')) > first * 1.1,
+      'the hand goes away from the viewer',
+    );
     assert.deepEqual(await camera_at_rest(page), camera);
     await page.mouse.up();
     await until(() => script.last.grabs.length === 0);
@@ -97,6 +110,8 @@ test('beside the cloth the mouse moves the camera and nothing else', bounded, ()
       await page.mouse.move(60, 200);
       await page.mouse.down({ button });
       await page.mouse.move(140, 180, { steps: 2 });
+      await done(page);
+      assert.deepEqual(await script.query('grabs'), [], `${button} takes nothing`);
       await page.mouse.up({ button });
       for (const key of keys) await page.keyboard.up(key);
       return camera_at_rest(page);
@@ -112,28 +127,28 @@ test('beside the cloth the mouse moves the camera and nothing else', bounded, ()
     assert.deepEqual(rotation(panned_too), rotation(orbited));
     assert.notDeepEqual(panned_too.position, panned.position);
     await page.mouse.wheel(0, 300);
-    assert.ok(length(await camera_at_rest(page)) > length(panned_too));
+    await until(async () => length(await camera_at_rest(page)) > length(panned_too), 'the wheel leads away');
     await page.keyboard.press('f');
     const { target } = await until(async () => {
-      const [seen] = (await script.query('camera')).filter(({ viewer }) => viewer !== script.viewer);
-      return seen;
+      const { position } = await read(page, 'camera');
+      const near = (other) => Math.hypot(...other.map((value, axis) => value - position[axis])) < 1e-3;
+      return (await script.query('camera')).find((seen) => near(seen.position));
     }, 'the server knows the camera');
     assert.equal(target.length, 3);
-    assert.deepEqual(script.last.grabs, []);
   }),
 );
 
 test('a sling waits for the hand to let go; what breaks the hold off does not throw', bounded, () =>
-  with_server([...CALM, '--set', 'environment.drag=5'], async (page, script) => {
+  with_server([...CALM, '--paused', '--set', 'environment.drag=5'], async (page, script) => {
     await page.keyboard.press('s');
     const sling = page.getByRole('button', { name: 'Sling', exact: true });
     assert.equal(await sling.getAttribute('aria-pressed'), 'true');
     // Step by step, and once the cloth hangs still: what moves it then is the hand.
-    await script.pause();
     await script.advance(300);
+    await shows_last_tick(page, script);
     const particle = await drag_cloth(page, 90, -60);
-    await until(() => script.last.grabs.length === 1);
-    assert.equal(script.last.grabs[0].mode, 'sling');
+    const [{ mode }] = await pulling(page, script);
+    assert.equal(mode, 'sling');
     const velocity = async () => (await script.query('velocities'))[particle];
     const before = await velocity();
     const change = async () => Math.hypot(...(await velocity()).map((v, k) => v - before[k]));
@@ -145,8 +160,9 @@ test('a sling waits for the hand to let go; what breaks the hold off does not th
     await script.advance(3);
     assert.ok((await change()) < 0.3, 'it was not thrown');
     await page.mouse.up();
+    await shows_last_tick(page, script);
     await drag_cloth(page, 90, -60);
-    await until(() => script.last.grabs.length === 1);
+    await pulling(page, script);
     await page.mouse.up();
     await until(() => script.last.grabs.length === 0);
     await script.advance(3);
@@ -157,11 +173,9 @@ test('a sling waits for the hand to let go; what breaks the hold off does not th
 );
 
 test('two pages see each other’s hands, with names and colours', bounded, () =>
-  with_page({ name: 'Ada' }, async (ada, script) => {
+  with_page({ name: 'Ada', paused: true }, async (ada, script) => {
     const ben = await open_page(browser, server.url, { name: 'Ben' });
     try {
-      // While the cloth rests, a hand is not lost however slowly its page draws.
-      await script.pause();
       const of = async (page, name) => (await read(page, 'hands')).find((hand) => hand.name === name);
       await drag_cloth(ada, 40, -40);
       const seen = await until(() => of(ben, 'Ada'), 'Ben sees the hand of Ada');
@@ -186,7 +200,7 @@ test('two pages see each other’s hands, with names and colours', bounded, () =
 );
 
 test('a drag ends when the pointer is cancelled and when the window loses the focus', bounded, () =>
-  with_page({}, async (page, script) => {
+  with_page({ paused: true }, async (page, script) => {
     for (const name of ['pointercancel', 'blur']) {
       await drag_cloth(page, 0, -20);
       await until(() => script.last.grabs.length === 1);

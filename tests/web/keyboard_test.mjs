@@ -1,14 +1,14 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, drag_cloth, position, with_page } from './support/default_page.mjs';
+import { bounded, drag_cloth, pass, position, pulling, with_page } from './support/default_page.mjs';
 
 // The cloth by the keyboard alone, and the first visit.
 
 const said = (page) => page.locator('#announcer').textContent();
 
 test('the keyboard alone takes, moves, pins and lets go, and says what it does', bounded, () =>
-  with_page({}, async (page, script) => {
+  with_page({ paused: true }, async (page, script) => {
     const home = await camera_at_rest(page);
     // Tab leads to the view before anything else is reached by a pointer.
     await page.evaluate(() => document.getElementById('view').focus());
@@ -30,16 +30,18 @@ test('the keyboard alone takes, moves, pins and lets go, and says what it does',
     const particle = triangles[triangle * 3];
     const height = (await position(script, particle))[1];
     for (let n = 0; n < 10; n++) await page.keyboard.press('ArrowUp');
-    await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
-    const target = async () => (await script.query('grabs'))[0].target;
-    const distance = async () =>
-      Math.hypot(...(await target()).map((value, axis) => value - home.position[axis]));
-    const before = await distance();
+    await pass(page, script, async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');
+    const distance = ([{ target }]) =>
+      Math.hypot(...target.map((value, axis) => value - home.position[axis]));
+    const before = distance(await pulling(page, script));
     for (let n = 0; n < 3; n++) await page.keyboard.press('Shift+ArrowUp');
-    await until(async () => (await distance()) > before * 1.05, 'it goes away from the eye');
-    const pins = script.last.pins.length;
+    await until(
+      async () => distance(await script.query('grabs')) > before * 1.05,
+      'it goes away from the eye',
+    );
+    const pins = (await script.query('pins')).length;
     await page.keyboard.press('m');
-    await until(() => script.last.pins.length === pins + 1);
+    await until(async () => (await script.query('pins')).length === pins + 1, 'a pin is there');
     assert.equal(await said(page), 'Pinned');
     // However far the cloth is carried, the view waits until it is let go.
     assert.deepEqual(await camera_at_rest(page), home, 'the view stayed where it was');
@@ -47,7 +49,6 @@ test('the keyboard alone takes, moves, pins and lets go, and says what it does',
     await until(() => script.last.grabs.length === 0);
     assert.equal(await said(page), 'Let go');
     await page.keyboard.press('Escape');
-    await script.pause();
     const rest = await camera_at_rest(page);
     await page.keyboard.press('ArrowRight');
     await until(async () => (await camera_at_rest(page)).position[0] !== rest.position[0]);
@@ -55,7 +56,7 @@ test('the keyboard alone takes, moves, pins and lets go, and says what it does',
 );
 
 test('the keyboard’s hand lets go when the window loses the focus', bounded, () =>
-  with_page({}, async (page, script) => {
+  with_page({ paused: true }, async (page, script) => {
     await page.evaluate(() => document.getElementById('view').focus());
     await page.keyboard.press('c');
     await page.keyboard.press('Enter');
@@ -68,7 +69,7 @@ test('the keyboard’s hand lets go when the window loses the focus', bounded, (
 test('a first visit: open, drag, M make a lifted, pinned cloth', bounded, () =>
   with_page({}, async (page, script) => {
     const before = await script.query('positions');
-    const pins = new Set(script.last.pins.map(({ id }) => id));
+    const pins = new Set((await script.query('pins')).map(({ id }) => id));
     const particle = await drag_cloth(page, 20, -110);
     const height = before[particle][1];
     await until(async () => (await position(script, particle))[1] > height + 0.1, 'it is lifted');

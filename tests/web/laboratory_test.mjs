@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { read, until } from './support/browser.mjs';
+import { done, next_pictures, read, until } from './support/browser.mjs';
 import { bounded, with_server } from './support/default_page.mjs';
 import { import_page_module } from './support/page_module.mjs';
 import { start_server } from './support/server.mjs';
@@ -85,13 +85,19 @@ test('the page shows figures, band and marks of a textile test, and none elsewhe
     const { drape_coefficient_percent, published_low_percent } = await script.query('measurements');
     const shown = `${drape_coefficient_percent.toFixed(1)} %`;
     await until(async () => (await panel.textContent()).includes(shown), 'it is asked again');
-    assert.ok((await panel.textContent()).includes(`Published: ${published_low_percent.toFixed(0)} to`));
+    const band = `Published: ${published_low_percent.toFixed(0)} to`;
+    await until(async () => (await panel.textContent()).includes(band), band);
     await until(async () => (await read(page, 'laboratory')).length > 0, 'the outline is drawn');
     await script.load('cantilever-test');
+    await until(async () => (await read(page, 'scene')) === 'cantilever-test');
     await until(async () => /Bending length/.test(await panel.textContent()));
     await until(async () => (await read(page, 'laboratory')).length > 0, 'the angle is drawn');
     await script.load('default');
     await until(() => panel.isHidden());
+    await until(async () => (await read(page, 'laboratory')).length === 0, 'no marks are left');
+    await until(async () => (await read(page, 'scene')) === 'default');
+    await done(page); // by then the page has asked whether this one is a test
+    await next_pictures(page);
     assert.deepEqual(await read(page, 'laboratory'), []);
   }),
 );

@@ -1,13 +1,12 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, drag_cloth, point_at_cloth, with_page, with_server } from './support/default_page.mjs';
+import { bounded, drag_cloth, point_at_cloth, pulling, shows_last_tick, with_page, with_server } from './support/default_page.mjs';
 
 // What is drawn around hands: the ring where one takes the cloth, and the force of one that holds.
 
 test('the ring has the radius of what a hand takes, which [ and ] change', bounded, () =>
-  with_page({}, async (page, script) => {
-    await script.pause();
+  with_page({ paused: true }, async (page, script) => {
     await point_at_cloth(page);
     const { radius } = await read(page, 'ring');
     await page.keyboard.press(']');
@@ -30,12 +29,11 @@ test('the ring has the radius of what a hand takes, which [ and ] change', bound
 );
 
 test('a hand that pulls tells its force', bounded, () =>
-  with_page({}, async (page, script) => {
-    await script.pause();
+  with_page({ paused: true }, async (page, script) => {
     await drag_cloth(page, 60, -80);
-    await until(() => script.last.grabs.length === 1);
-    const { tick } = await script.advance(30);
-    await until(async () => (await read(page, 'tick')) === tick);
+    await pulling(page, script);
+    await script.advance(30);
+    await shows_last_tick(page, script);
     const [{ force }] = await script.query('grabs');
     const size = Math.hypot(...force);
     assert.ok(size > 0.2, `${size} N`);
@@ -44,8 +42,10 @@ test('a hand that pulls tells its force', bounded, () =>
       const told = /^(\d+(?:\.\d)?) N$/.exec(text)?.[1];
       return told && Math.abs(told - size) < 0.06 + 0.05 * size;
     }, 'it is written beside the hand');
-    const [hand] = await read(page, 'hands');
-    assert.ok(Math.abs(hand.force - size) < 1e-3 * size);
+    await until(async () => {
+      const [hand] = await read(page, 'hands');
+      return Math.abs(hand.force - size) < 1e-3 * size;
+    }, 'the hand knows it');
     await page.mouse.up();
     await until(() => page.locator('.name').count().then((count) => count === 0));
   }),
@@ -61,7 +61,10 @@ test('the label of a hand behind an object is fainter', bounded, () =>
     const hidden = async () => (await read(page, 'hands'))[0]?.hidden;
     await until(async () => (await hidden()) === false);
     await script.drag({ particle: 5 }, { target: at(-0.4) });
-    await until(async () => (await read(page, 'hands')).some((hand) => hand.hidden));
+    await until(async () => {
+      const hands = await read(page, 'hands');
+      return hands.length === 2 && hands.some((hand) => hand.hidden);
+    }, 'both are drawn, and one is hidden');
     assert.equal(await page.locator('.name[data-hidden]').count(), 1);
   }),
 );

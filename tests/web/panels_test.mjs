@@ -128,6 +128,7 @@ test('another scene is shown when one is chosen, and R starts it anew', bounded,
     const list = page.getByRole('dialog', { name: 'Scenes' });
     await until(() => list.isVisible(), 'it is fetched and opened');
     const known = (await (await fetch(new URL('api/v1/scenes', server.url))).json()).scenes;
+    await until(async () => (await list.locator('#scene-list li').count()) === known.length, 'all are listed');
     for (const { description } of known) assert.ok(await list.getByText(description).isVisible());
     const chosen = list.locator('[aria-current]');
     assert.match(await chosen.textContent(), /^Default/);
@@ -139,9 +140,12 @@ test('another scene is shown when one is chosen, and R starts it anew', bounded,
     await other.context().close();
     await until(async () => (await read(page, 'scene')) === 'flag');
     await until(async () => (await read(page, 'tick')) > 30);
+    await script.pause();
+    const { tick } = await script.query('state');
     await page.locator('#view').focus();
     await page.keyboard.press('r');
-    await until(async () => (await script.query('state')).tick < 30);
+    await until(async () => (await script.query('state')).tick === 0, `it begins anew, after ${tick} ticks`);
+    await script.resume();
     await script.load('default');
     await until(async () => (await read(page, 'scene')) === 'default');
   }),
@@ -151,7 +155,7 @@ test('who joins a paused room of another scene reads its name in the list', boun
   with_server(['--scene', 'wall', '--paused'], async (page) => {
     await page.getByRole('button', { name: 'Scenes' }).click();
     await until(() => page.locator('#scene-list li').count(), 'the list has come');
-    assert.equal(await scene_title(page), 'Wall');
+    await until(async () => (await scene_title(page)) === 'Wall');
     assert.match(await page.locator('#scene-list [aria-current]').textContent(), /^Wall/);
   }),
 );

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
+import { isDeepStrictEqual } from 'node:util';
 import { camera_at_rest, next_pictures, pixel_of, read, until } from './support/browser.mjs';
-import { bounded, with_page, with_server } from './support/default_page.mjs';
+import { bounded, shows_last_tick, with_page, with_server } from './support/default_page.mjs';
 import { import_page_module } from './support/page_module.mjs';
 import { brightness_at, compare, drawn_cloth, projected_cloth } from './support/silhouette.mjs';
 
@@ -11,6 +12,7 @@ const { inner_offset } = await import_page_module('view/normals');
 
 /** The cloth of the page's picture and of the server's positions, from where the page looks. */
 async function silhouettes(page, script) {
+  await shows_last_tick(page, script);
   const { values } = await script.query('positions', { format: 'f64' });
   const camera = await camera_at_rest(page);
   await until(() => read(page, 'fine'), 'the still picture is a fine one');
@@ -72,7 +74,7 @@ test('no vertex moves while ticks stand still; a step moves them by one tick', b
     await page.keyboard.press(' ');
     await until(async () => (await script.query('state')).paused);
     await until(() => page.evaluate(() => weft.paused));
-    await next_pictures(page);
+    await shows_last_tick(page, script);
     const shown = await read(page, 'positions');
     const { values } = await script.query('positions', { format: 'f32' });
     const off = Math.max(...shown.map((value, i) => Math.abs(value - values[i])));
@@ -129,8 +131,7 @@ function box_of_lines(lines) {
 }
 
 test('the lines of the boxes are the server’s, for each tree and level that is chosen', bounded, () =>
-  with_page({}, async (page, script) => {
-    await script.pause();
+  with_page({ paused: true }, async (page, script) => {
     const trees = await script.query('trees');
     await page.keyboard.press('b');
     const panel = page.getByRole('region', { name: 'Boxes' });
@@ -139,12 +140,14 @@ test('the lines of the boxes are the server’s, for each tree and level that is
       const boxes = await script.query('boxes', { tree, level });
       const text = `${boxes.length} ${boxes.length === 1 ? 'box' : 'boxes'}`;
       await until(async () => (await panel.locator('#box-count').textContent()) === text, text);
-      const { lines } = await until(async () => {
-        const found = await read(page, 'boxes');
-        return found.lines.length === boxes.length * 72 && found;
-      });
-      const drawn = boxes.map((_, k) => box_of_lines(lines.slice(k * 72, k * 72 + 72)));
-      assert.deepEqual(drawn, boxes.map((box) => box.map(Math.fround)));
+      const wanted = boxes.map((box) => box.map(Math.fround));
+      // As many lines may still be those of another choice, or of an earlier tick.
+      await until(async () => {
+        const { lines } = await read(page, 'boxes');
+        if (lines.length !== boxes.length * 72) return false;
+        const drawn = boxes.map((_, k) => box_of_lines(lines.slice(k * 72, k * 72 + 72)));
+        return isDeepStrictEqual(drawn, wanted);
+      }, `the lines are those of ${tree}, level ${level}`);
     };
     for (const { tree, levels } of trees) {
       await panel.getByRole('combobox').selectOption(tree);
@@ -161,6 +164,7 @@ test('the lines of the boxes are the server’s, for each tree and level that is
     await shown('particles', 2);
     await script.load('curtain');
     await until(async () => (await panel.getByRole('option').count()) === 3, 'it has no model');
+    await until(async () => (await read(page, 'scene')) === 'curtain');
     await until(async () => (await read(page, 'boxes')).lines.length > 0);
     await page.locator('#view').focus();
     await page.keyboard.press('b');

@@ -16,9 +16,8 @@ const graphics = (page, act) =>
   }, act);
 
 test('lost graphics are told, and come back with the same picture while nothing moves', bounded, () =>
-  with_page({}, async (page, script) => {
-    await script.pause();
-    await until(() => read(page, 'paused'));
+  with_page({ paused: true }, async (page, script) => {
+    await until(() => read(page, 'lit'), 'the light is whole');
     await camera_at_rest(page);
     await fine(page);
     const before = await mean_color(page);
@@ -30,6 +29,7 @@ test('lost graphics are told, and come back with the same picture while nothing 
     await graphics(page, 'restoreContext');
     await until(async () => !(await words.isVisible()), 'the words go');
     await until(async () => (await read(page, 'pictures')) > pictures, 'a picture is drawn');
+    await until(() => read(page, 'lit'), 'the light is whole again');
     await fine(page);
     const after = await mean_color(page);
     before.forEach((part, i) => assert.ok(Math.abs(after[i] / part - 1) < 0.01, `${before} ${after}`));

@@ -1,11 +1,13 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { camera_at_rest, pixel_of, project, read, until } from './support/browser.mjs';
+import { camera_at_rest, done, pixel_of, project, read, until } from './support/browser.mjs';
 import {
   COLUMNS,
   bounded,
   particle_pixel,
   position,
+  pulling,
+  shows_last_tick,
   with_page,
   with_server,
 } from './support/default_page.mjs';
@@ -23,6 +25,12 @@ const camera_after = (page, before) =>
     return JSON.stringify(camera) !== JSON.stringify(before) && camera;
   }, 'the camera goes elsewhere');
 
+/** The server's hands once it has done all that the page has asked for. */
+async function hands_now(page, script) {
+  await done(page);
+  return script.query('grabs');
+}
+
 /** Two pixels of the view just below the cloth, or above it where a panel is below. */
 async function beside(page) {
   const { positions, camera, size } = await page.evaluate(() => {
@@ -33,7 +41,8 @@ async function beside(page) {
   for (let k = 0; k < positions.length; k += 3)
     heights.push(project(camera, size, positions.slice(k, k + 3)).y);
   const under = ({ x, y }) => page.evaluate(([a, b]) => document.elementFromPoint(a, b)?.id, [x, y]);
-  for (const height of [Math.max(...heights) + 20, Math.min(...heights) - 30]) {
+  const [top, bottom] = [Math.min(...heights), Math.max(...heights)];
+  for (const height of [bottom + 20, top - 30, bottom + 8, top - 8]) {
     const places = [120, 280].map((x) => ({ x, y: Math.round(height) }));
     const ids = await Promise.all(places.map(under));
     if (ids.every((id) => id === 'view')) return places;
@@ -43,16 +52,11 @@ async function beside(page) {
 
 /** A phone at the default scene's start, where time stands still but where the test lets it pass. */
 const with_phone = (act) =>
-  with_page(PHONE, async (page, script) => {
-    const at_start = async () => {
-      await script.reset();
-      await until(async () => (await read(page, 'tick')) === 0);
-    };
-    await script.pause();
-    await at_start();
+  with_page({ ...PHONE, paused: true }, async (page, script) => {
+    await shows_last_tick(page, script);
     await hold_long_presses(page);
     await camera_at_rest(page);
-    await act({ page, script, at_start, fingers: await fingers_on(page) });
+    await act({ page, script, fingers: await fingers_on(page) });
   });
 
 test('one finger lifts the cloth, and beside it turns the view', bounded, () =>
@@ -70,14 +74,15 @@ test('one finger lifts the cloth, and beside it turns the view', bounded, () =>
     }, 'it is lifted');
     await fingers.lift(0);
     await until(() => script.last.grabs.length === 0);
+    await shows_last_tick(page, script);
     assert.deepEqual(await camera_at_rest(page), home);
 
     const [below] = await beside(page);
     await fingers.press(0, below);
     await fingers.move({ 0: [80, 0] });
+    assert.deepEqual(await hands_now(page, script), []);
     await fingers.lift(0);
     await camera_after(page, home);
-    assert.equal(script.last.grabs.length, 0);
   }),
 );
 
@@ -91,7 +96,7 @@ test('two fingers on the cloth are two hands, and each lets go by itself', bound
     await until(() => script.last.grabs.length === 1);
     await fingers.press(1, await particle_pixel(page, second));
     await until(() => script.last.grabs.length === 2, 'the second finger is a second hand');
-    assert.equal((await read(page, 'hands')).length, 2);
+    await until(async () => (await read(page, 'hands')).length === 2, 'both are drawn');
     const before = await targets();
     await fingers.move({ 0: [0, -60] });
     const [first_id, second_id] = [...before.keys()];
@@ -116,7 +121,7 @@ test('a finger beside the cloth pushes what another holds away, and draws it nea
       return Math.hypot(...target.map((value, axis) => value - home.position[axis]));
     };
     await fingers.press(0, await particle_pixel(page, PARTICLE));
-    await until(() => script.last.grabs.length === 1);
+    await pulling(page, script);
     const first = await distance();
     const [below] = await beside(page);
     await fingers.press(1, below);
@@ -124,10 +129,11 @@ test('a finger beside the cloth pushes what another holds away, and draws it nea
     await until(async () => (await distance()) > first * 1.1, 'up: away');
     await fingers.move({ 1: [0, 200] });
     await until(async () => (await distance()) < first * 0.9, 'down: near');
-    assert.equal(script.last.grabs.length, 1);
+    assert.equal((await hands_now(page, script)).length, 1);
     await fingers.lift(0);
     await until(() => script.last.grabs.length === 0);
     await fingers.move({ 1: [60, 0] });
+    assert.deepEqual(await hands_now(page, script), []);
     await fingers.lift(1);
     assert.deepEqual(await camera_at_rest(page), home, 'the view stays where it was');
   }),
@@ -140,23 +146,25 @@ test('two fingers beside the cloth shift and zoom', bounded, () =>
     await fingers.press(0, left);
     await fingers.press(1, right);
     await fingers.move({ 0: [-40, 0], 1: [40, 0] });
+    assert.deepEqual(await hands_now(page, script), []);
     await fingers.lift(1);
     await fingers.lift(0);
     const zoomed = await camera_after(page, home);
     const distance = ({ position: [x, , z] }) => Math.hypot(x, z);
     assert.ok(distance(zoomed) < distance(home) * 0.98, `${distance(zoomed)}, ${distance(home)}`);
-    assert.equal(script.last.grabs.length, 0);
   }),
 );
 
 test('a long press pins the cloth and lets go', bounded, () =>
   with_phone(async ({ page, script, fingers }) => {
-    const pins = script.last.pins.length;
+    const pins = async () => (await script.query('pins')).length;
+    const before = await pins();
     await fingers.press(0, await particle_pixel(page, PARTICLE));
     await until(async () => (await long_presses(page)) === 1, 'a finger rests on the cloth');
-    assert.equal(script.last.pins.length, pins);
+    assert.equal((await hands_now(page, script)).length, 1, 'and holds it');
+    assert.equal(await pins(), before);
     await end_long_presses(page);
-    await until(() => script.last.pins.length === pins + 1, 'a long press pins');
+    await until(async () => (await pins()) === before + 1, 'a long press pins');
     await until(() => script.last.grabs.length === 0, 'and lets go');
     await fingers.lift(0);
   }),
@@ -181,12 +189,14 @@ test('a long press frees the pin at each corner, on it and beside it', bounded, 
           await fingers.press(0, { x: pixel.x + dx * out, y: pixel.y + dy * out });
           await until(async () => (await long_presses(page)) === 1, 'a finger rests on the pin');
           await end_long_presses(page);
-          const free = ({ pins }) => !pins.some((pin) => pin.particle === particle);
-          await until(() => free(script.last), `the pin of particle ${particle} is free`);
+          const free = (pins) => !pins.some((pin) => pin.particle === particle);
+          const freed = `the pin of particle ${particle} is free`;
+          await until(async () => free(await script.query('pins')), freed);
+          await until(async () => free(await read(page, 'pins')), `${freed} on the page`);
           await fingers.lift(0);
         }
       }
-      assert.equal(script.last.pins.length, 0);
+      assert.deepEqual(await script.query('pins'), []);
       assert.deepEqual(await camera_at_rest(page), home, 'the view stays where it was');
     },
     { width: 390, height: 844, touch: true },

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { open_page, read, until } from './support/browser.mjs';
+import { done, open_page, read, until } from './support/browser.mjs';
 import {
   bounded,
   browser,
@@ -39,13 +39,14 @@ test('a viewer types a name, which others see and the browser remembers', bounde
     await until(() => dialog.isHidden());
     const names = async (shown) => shown.locator('#viewers .viewer-name').allTextContents();
     await until(async () => (await names(other)).includes('Ada Lovelace'), 'the other sees it');
-    assert.equal((await names(page))[0], 'Ada Lovelace', 'the own name comes first');
+    await until(async () => (await names(page))[0] === 'Ada Lovelace', 'the own name comes first');
     await page.reload();
     await joined(page);
-    await until(async () => (await names(other)).includes('Ada Lovelace'), 'it is remembered');
+    await done(page); // its name was sent first
     const own = await read(page, 'viewer');
-    const { viewers } = { viewers: await script.query('roster') };
-    assert.equal(viewers.find(({ id }) => id === own).name, 'Ada Lovelace');
+    const viewers = await script.query('roster');
+    assert.equal(viewers.find(({ id }) => id === own).name, 'Ada Lovelace', 'it is remembered');
+    await until(async () => (await names(other)).includes('Ada Lovelace'), 'the other sees it again');
     await other.context().close();
   }),
 );

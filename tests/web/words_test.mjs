@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { open_page, read, until } from './support/browser.mjs';
+import { done, open_page, read, until } from './support/browser.mjs';
 import { bounded, browser, drag_cloth, server, with_page } from './support/default_page.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
@@ -58,6 +58,7 @@ test('who holds the cloth while another resets or loads reads who did what', bou
     await heard(other, 'You chose the scene “Flag”');
     await until(async () => (await read(page, 'input')) === 'idle');
     await page.mouse.up();
+    for (const shown of [page, other]) await done(shown);
     const all = [...(await told(page)), ...(await told(other))].join('; ');
     assert.doesNotMatch(all, /slip|released|could not/);
     const script = await server.script();

@@ -96,6 +96,10 @@ export function expose_probe(page: Page): void {
       if (!world) return '';
       return base64(cloth_mask(stage.renderer, stage.scene, orbit.camera, world.parts, probe.size));
     },
+    /** Resolves once the server has done all that the page has asked for so far. */
+    async done(): Promise<void> {
+      await page.client.query('state');
+    },
     /** Draws the cloths with other looks than the server's. */
     dress(looks: Look[]): void {
       page.world?.cloth.dress(looks);

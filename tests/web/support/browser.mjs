@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { setTimeout as sleep } from 'node:timers/promises';
+import { make_pages_late } from './late.mjs';
 import { require_package } from './packages.mjs';
 
 const { chromium } = require_package('playwright-core');
@@ -46,6 +47,7 @@ export async function open_page(browser, url, options = {}) {
   context.setDefaultTimeout(LONGEST_WAIT);
   if (visited) await context.addInitScript(() => localStorage.setItem('weft-taken', 'yes'));
   if (before) await context.addInitScript(before);
+  await make_pages_late(context);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
@@ -84,6 +86,9 @@ export async function until(condition, what = condition.toString()) {
 
 /** Reads one thing of the page's probe. */
 export const read = (page, name) => page.evaluate((key) => window.weft[key], name);
+
+/** Waits until the server has done all that the page has asked for: what it did not ask by then, it never will. */
+export const done = (page) => page.evaluate(() => window.weft.done());
 
 /** Waits until the camera rests. */
 export async function camera_at_rest(page) {

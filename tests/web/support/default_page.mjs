@@ -29,11 +29,14 @@ after(async () => {
   await server?.stop();
 });
 
-/** Gives a test a page and a script at the default scene's start, and sees them off. */
-export async function with_page(options, act) {
+/**
+ * Gives a test a page and a script at the default scene's start, and sees them off.
+ * @param options of the page; paused: time stands still, where no hand is lost, however slowly its page draws
+ */
+export async function with_page({ paused = false, ...options }, act) {
   const script = await server.script();
   await script.release({ all: true });
-  await script.resume();
+  await (paused ? script.pause() : script.resume());
   await script.reset();
   const page = await open_page(browser, server.url, options);
   try {
@@ -59,6 +62,36 @@ export async function with_server(options, act, page_options = {}) {
     await own.stop();
   }
 }
+
+/** Waits until the page shows the newest tick of a room that stands. */
+export const shows_last_tick = (page, script) =>
+  until(async () => {
+    const { tick } = await script.query('state');
+    return (await read(page, 'tick')) === tick;
+  }, 'the page shows the last tick');
+
+/**
+ * Lets time pass in a room that stands until something holds, and waits until the page shows it. There
+ * no hand is lost, however slowly its page draws.
+ */
+export async function pass(page, script, holds, what = holds.toString()) {
+  await until(async () => {
+    await script.advance(5);
+    return holds();
+  }, what);
+  await shows_last_tick(page, script);
+}
+
+/** Waits until the page's own hands pull where they are drawn, and gives all hands as the server has them. */
+export const pulling = (page, script) =>
+  until(async () => {
+    await next_pictures(page);
+    const own = (await read(page, 'hands')).filter((hand) => hand.own);
+    const grabs = await script.query('grabs');
+    const there = ({ target }) =>
+      grabs.some((grab) => Math.hypot(...grab.target.map((value, axis) => value - target[axis])) < 1e-4);
+    return own.length > 0 && own.every(there) && grabs;
+  }, 'the server pulls where the hands are');
 
 export const position = async (script, particle) => (await script.query('positions'))[particle];
 

@@ -2,9 +2,10 @@ import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { createInterface } from 'node:readline';
 import { WeftClient } from '../../../proto/js/index.js';
+import { late_sockets } from './late.mjs';
 import { require_package } from './packages.mjs';
 
-const { WebSocket } = require_package('ws');
+const WebSocket = late_sockets(require_package('ws').WebSocket);
 const program = process.env.WEFT_PROGRAM;
 if (!program) throw new Error('WEFT_PROGRAM must name the program to test');
 

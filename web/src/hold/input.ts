@@ -148,6 +148,7 @@ export class Input {
     const point = this.locate(pointer.x, pointer.y);
     if (!pointer.touch) this.point = point;
     this.actions.follow(pointer.id, point);
+    this.actions.changed(); // its mark follows at once, though nothing else may move
   }
 
   private up(event: PointerEvent, meant: boolean): void {
