@@ -133,27 +133,27 @@ export class EntropyDecoder {
     let next = this.#next;
     let coded = this.#coded;
     let bit = this.#bit;
-    let value = 0; // of the place before; most places follow their neighbour a
     residuals[count] = 0;
     for (let begin = 0; begin < count; begin += CHECK_EVERY) {
       const end = Math.min(count, begin + CHECK_EVERY);
       for (let i = begin; i < end; ++i) {
         // Residuals stay below 2^25, so that their sum is a small integer.
-        const left = a[i] === i - 1 ? value : residuals[a[i]];
-        const around = left + residuals[b[i]];
+        const around = residuals[a[i]] + residuals[b[i]];
         const context = around < LAST_CLASS ? CONTEXT_OF[around] : CONTEXTS - 1;
         demand(used[context] === 1, 'a context that does not occur');
         const slot = now & (SLOTS - 1);
         const token = tokens[(context << 12) | slot];
         const share = shares[(context << 6) | token];
         let x = Math.imul(share & 0xffff, now >>> 12) + slot - (share >> 16);
-        if (x < STATE_LOW) {
-          x = (x << 8) | buffer[coded++];
-          if (x < STATE_LOW) x = (x << 8) | buffer[coded++];
-        }
+        // Whether a byte is due is as good as random, so that a branch would cost more than this:
+        // all ones if it is. A second one is rare.
+        const due = (x - STATE_LOW) >> 31;
+        x = (x << (due & 8)) | (buffer[coded] & due);
+        coded -= due;
+        if (x < STATE_LOW) x = (x << 8) | buffer[coded++];
         now = next;
         next = x;
-        value = token;
+        let value = token;
         if (token >= 16) {
           const low = ((token - 16) >> 1) + 3;
           const word = words.getInt32(bit >> 3, true) >>> (bit & 7);

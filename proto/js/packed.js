@@ -52,6 +52,9 @@ function readPayload(bytes, key) {
   };
 }
 
+/** @param {number} v */
+const unzigzag = (v) => (v >>> 1) ^ -(v & 1);
+
 /**
  * Residuals to differences, in place; arithmetic is modulo 2^32. Neighbours come before.
  * @param {number} neighbours
@@ -59,26 +62,24 @@ function readPayload(bytes, key) {
  * @param {Int32Array} values  of one component
  */
 function addNeighbours(neighbours, { vertices, a, b, c }, values) {
+  // A loop for each, because engines leave the choice inside.
   const count = vertices.length;
-  let before = 0; // the place before is neighbour a of most
-  for (let i = 0; i < count; ++i) {
-    const v = values[i];
-    let d = (v >>> 1) ^ -(v & 1);
-    if (neighbours !== 0) {
-      const atA = a[i] === i - 1 ? before : values[a[i]];
-      if (neighbours === CORNER) {
-        d = (d + atA + values[b[i]] - values[c[i]]) | 0;
-      } else {
-        let sum = (atA + values[b[i]]) | 0;
-        if (b[i] !== count) {
-          if (neighbours === MEAN) sum >>= 1;
-          else sum = (Math.imul(3, sum) - (values[c[i]] << 1) + 2) >> 2;
-        }
-        d = (d + sum) | 0;
-      }
+  if (neighbours === CORNER) {
+    for (let i = 0; i < count; ++i)
+      values[i] = unzigzag(values[i]) + values[a[i]] + values[b[i]] - values[c[i]];
+  } else if (neighbours === MEAN) {
+    for (let i = 0; i < count; ++i) {
+      const sum = (values[a[i]] + values[b[i]]) | 0;
+      values[i] = unzigzag(values[i]) + (b[i] === count ? sum : sum >> 1);
     }
-    values[i] = d;
-    before = d;
+  } else if (neighbours === BLEND) {
+    for (let i = 0; i < count; ++i) {
+      const sum = (values[a[i]] + values[b[i]]) | 0;
+      const blend = (Math.imul(3, sum) - (values[c[i]] << 1) + 2) >> 2;
+      values[i] = unzigzag(values[i]) + (b[i] === count ? sum : blend);
+    }
+  } else {
+    for (let i = 0; i < count; ++i) values[i] = unzigzag(values[i]);
   }
 }
 
@@ -90,10 +91,10 @@ function addNeighbours(neighbours, { vertices, a, b, c }, values) {
  * @param {Int32Array} before
  */
 function addEarlier(base, values, last, before) {
-  if (base === STEP) for (let i = 0; i < values.length; ++i) values[i] = (values[i] + last[i]) | 0;
+  const count = values.length;
+  if (base === STEP) for (let i = 0; i < count; ++i) values[i] = values[i] + last[i];
   if (base !== STRAIGHT) return;
-  for (let i = 0; i < values.length; ++i)
-    values[i] = (values[i] + (last[i] << 1) - before[i]) | 0;
+  for (let i = 0; i < count; ++i) values[i] = values[i] + (last[i] << 1) - before[i];
 }
 
 /** Decodes the frames of one mesh in either codec, in the order in which they were sent. */
