@@ -67,7 +67,7 @@ std::string choice_word(const FieldInfo& info, int value) {
 
 int parse_choice(const std::string& path, const FieldInfo& info, const std::string& text) {
   assert(info.words && "a choice");
-  for (int value = 0; value <= static_cast<int>(info.maximum); ++value) {
+  for (int value = 0; value <= static_cast<int>(info.range.maximum); ++value) {
     if (choice_word(info, value) == text) return value;
   }
   throw DefinitionError(path + info.name, text, allowed_values(info), info.meaning);
@@ -76,20 +76,20 @@ int parse_choice(const std::string& path, const FieldInfo& info, const std::stri
 std::string allowed_values(const FieldInfo& info) {
   if (info.words) {
     std::string text;
-    const int last = static_cast<int>(info.maximum);
+    const int last = static_cast<int>(info.range.maximum);
     for (int value = 0; value <= last; ++value)
       text += (value == 0 ? "" : value == last ? " or " : ", ") + choice_word(info, value);
     return text;
   }
-  std::string text = number_text(info.minimum) + " to " + number_text(info.maximum);
+  std::string text = number_text(info.range.minimum) + " to " + number_text(info.range.maximum);
   if (*info.unit) text += std::string(" ") + info.unit;
   return text;
 }
 
 void check_field(const std::string& path, const FieldInfo& info, double value) {
-  assert(info.minimum <= info.maximum);
+  assert(info.range.minimum <= info.range.maximum);
   // Written so that NaN fails too.
-  if (!(value >= info.minimum && value <= info.maximum))
+  if (!(value >= info.range.minimum && value <= info.range.maximum))
     throw DefinitionError(path + info.name, number_text(value), allowed_values(info), info.meaning);
 }
 
@@ -100,10 +100,10 @@ void check_field(const std::string& path, const FieldInfo& info, int value) {
 void check_field(const std::string&, const FieldInfo&, bool) {}
 
 void check_field(const std::string& path, const FieldInfo& info, const Vec3d& value) {
-  assert(info.minimum <= info.maximum);
+  assert(info.range.minimum <= info.range.maximum);
   static constexpr const char* kAxes[] = {"[0]", "[1]", "[2]"};
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(value[axis] >= info.minimum && value[axis] <= info.maximum))
+    if (!(value[axis] >= info.range.minimum && value[axis] <= info.range.maximum))
       throw DefinitionError(path + info.name + kAxes[axis], number_text(value[axis]),
                             allowed_values(info), info.meaning);
   }

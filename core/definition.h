@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/ranges.h"
 #include "core/types.h"
 
 // Description of definitions: each definition struct has one function `visit_fields` that names its
@@ -12,11 +13,10 @@
 
 namespace weft {
 
-/// Allowed values and description of a field. Ranges include their ends.
+/// Allowed values and description of a field.
 struct FieldInfo {
   const char* name;             ///< as in a key, e.g. "areal_density"
-  double minimum;               ///< smallest allowed value (of each component)
-  double maximum;               ///< largest allowed value (of each component)
+  Range range;                  ///< allowed values (of each component)
   const char* unit;             ///< e.g. "kg/m^2"; may be empty
   const char* meaning;          ///< one clause for people
   const char* words = nullptr;  ///< of a choice: the words for 0, 1, 2 ..., separated by '|'

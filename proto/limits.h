@@ -4,38 +4,26 @@
 #include <cstddef>
 #include <cstdint>
 
-// Limits that are part of weft.v1. Those of a server (viewers, rates) are in `Limits` of events.h.
+#include "core/ranges.h"
+
+// Limits that are part of weft.v1; ranges that core checks too are in core/ranges.h. Those of a
+// server (viewers, rates) are in `Limits` of events.h.
 
 namespace weft::proto {
 
 inline constexpr const char* kSubprotocol = "weft.v1";
-
-/// Both ends are allowed.
-struct Range {
-  double minimum = 0;
-  double maximum = 0;
-};
 
 inline constexpr std::size_t kMostMessageBytes = std::size_t{64} * 1024;
 inline constexpr std::size_t kMostDepth = 8;                 ///< of nested arrays and objects
 inline constexpr double kLargestInteger = 9007199254740992;  ///< 2^53
 inline constexpr Range kIndexRange{0, 2147483647};           ///< particles, triangles, own drags
 inline constexpr Range kIdRange{0, 4294967295};              ///< viewers, pins
-inline constexpr Range kPositionRange{-1e4, 1e4};            ///< each component [m]
 inline constexpr double kLeastDirection = 1e-9;              ///< of its largest component
-inline constexpr Range kPivotRange{-1000, 1000};             ///< of a collider, each component [m]
-inline constexpr Range kOpeningRange{0, 1};                  ///< of a gripper [m]
-inline constexpr Range kGripRange{0, 1000};                  ///< of each of its jaws [N]
 inline constexpr Range kUnitRange{-1, 1};                    ///< components of a unit quaternion
 inline constexpr double kUnitTolerance = 1e-3;               ///< of its norm
-inline constexpr Range kMoveSpeedRange{1e-3, 20};            ///< of a collider or pin [m/s]
 inline constexpr Range kMoveSecondsRange{1e-3, 3600};        ///< duration of a pin's motion [s]
-inline constexpr Range kTurnSpeedRange{1e-3, 60};            ///< of a collider [rad/s]
 inline constexpr Range kWeightRange{0, 1};                   ///< barycentric weights
 inline constexpr double kWeightSumTolerance = 1e-3;
-inline constexpr Range kRadiusRange{0, 100};      ///< [m]
-inline constexpr Range kStiffnessRange{0, 1e5};   ///< [N/m]
-inline constexpr Range kForceRange{0, 1e6};       ///< [N]
 inline constexpr Range kFovRange{1, 179};         ///< [degrees]
 inline constexpr Range kStepRange{1, 600};        ///< [ticks]
 inline constexpr Range kAdvanceRange{1, 100000};  ///< [ticks]
@@ -44,21 +32,8 @@ inline constexpr Range kFrameRateRange{0, 240};     ///< [1/s]
 inline constexpr Range kPackedErrorRange{1e-5, 1};  ///< [m]
 /// Bounds of the error of packed frames; a viewer gets the largest that is not above what it asks.
 inline constexpr std::array<double, 2> kPackedErrors = {1e-5, 1e-4};  ///< [m]
-inline constexpr Range kGravityRange{-1000, 1000};                    ///< each component [m/s^2]
-inline constexpr Range kWindRange{-100, 100};                         ///< each component [m/s]
-inline constexpr std::size_t kMostFans = 4;
-inline constexpr Range kFanSpeedRange{0, 50};      ///< [m/s]
-inline constexpr Range kFanRadiusRange{0.01, 10};  ///< [m]
-inline constexpr Range kFanSpreadRange{0, 2};      ///< a slope
-inline constexpr Range kFanReachRange{0.01, 100};  ///< [m]
 inline constexpr Range kLevelRange{0, 255};
-inline constexpr std::size_t kMostTreeBytes = 80;    ///< of the name of a tree
-inline constexpr Range kGustSpeedRange{0, 100};      ///< [m/s]
-inline constexpr Range kGustLengthRange{0.01, 100};  ///< [m]
-inline constexpr Range kAirDensityRange{0, 1000};    ///< [kg/m^3]
-inline constexpr Range kDragRange{0, 1000};          ///< [1/s]
-inline constexpr Range kSoftnessRange{0.01, 1};
-inline constexpr Range kBudgetRange{0, 1000};  ///< [ms]
+inline constexpr std::size_t kMostTreeBytes = 80;  ///< of the name of a tree
 
 inline constexpr std::size_t kMostIdBytes = 64;
 inline constexpr std::size_t kMostNameCharacters = 32;

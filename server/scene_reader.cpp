@@ -224,7 +224,7 @@ class Reader {
   double number(const FieldInfo& info, const std::string& path, const Json& node) const {
     if (!node.is_number()) throw wrong(path, node, allowed_values(info), info.meaning);
     const double value = node.get<double>();
-    if (!(value >= info.minimum && value <= info.maximum))
+    if (!(value >= info.range.minimum && value <= info.range.maximum))
       throw wrong(path, node, allowed_values(info), info.meaning);
     return value;
   }

@@ -79,8 +79,8 @@ class Schema {
     for (const BendingLength& length : kBendingLengths) {
       properties_[length.info.name] = {{"description", meaning_of(length.info)},
                                        {"type", "number"},
-                                       {"minimum", bound(length.info.minimum)},
-                                       {"maximum", bound(length.info.maximum)}};
+                                       {"minimum", bound(length.info.range.minimum)},
+                                       {"maximum", bound(length.info.range.maximum)}};
       exclusive_[length.info.name] = {{"not", {{"required", Json::array({length.instead_of})}}}};
     }
   }
@@ -157,14 +157,15 @@ class Schema {
       entry["default"] = choice_word(info, static_cast<int>(value));
     } else if constexpr (std::is_same_v<Value, Vec3d>) {
       entry["type"] = "array";
-      entry["items"] = {
-          {"type", "number"}, {"minimum", bound(info.minimum)}, {"maximum", bound(info.maximum)}};
+      entry["items"] = {{"type", "number"},
+                        {"minimum", bound(info.range.minimum)},
+                        {"maximum", bound(info.range.maximum)}};
       entry["minItems"] = entry["maxItems"] = 3;
       entry["default"] = {bound(value[0]), bound(value[1]), bound(value[2])};
     } else {
       entry["type"] = std::is_same_v<Value, double> ? "number" : "integer";
-      entry["minimum"] = bound(info.minimum);
-      entry["maximum"] = bound(info.maximum);
+      entry["minimum"] = bound(info.range.minimum);
+      entry["maximum"] = bound(info.range.maximum);
       entry["default"] = bound(static_cast<double>(value));
     }
   }

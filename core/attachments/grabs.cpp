@@ -12,7 +12,7 @@
 namespace weft {
 namespace {
 
-const FieldInfo kTargetInfo{"target", -1e4, 1e4, "m", "target of the held point"};
+const FieldInfo kTargetInfo{"target", kPositionRange, "m", "target of the held point"};
 
 void validate(const GrabDef& def, std::size_t triangles) {
   check_field("drag.", {"triangle", 0, static_cast<double>(triangles) - 1, "", "a triangle"},
@@ -24,9 +24,10 @@ void validate(const GrabDef& def, std::size_t triangles) {
   }
   check_field("drag.", {"barycentric", 0.999, 1.001, "as their sum", "weights of the corners"},
               sum);
-  check_field("drag.", {"radius", 0, 100, "m", "radius of the held disc"}, def.radius);
-  check_field("drag.", {"stiffness", 0, 1e5, "N/m", "stiffness of the hand"}, def.stiffness);
-  check_field("drag.", {"max_force", 0, 1e6, "N", "largest force of the hand"}, def.max_force);
+  check_field("drag.", {"radius", kRadiusRange, "m", "radius of the held disc"}, def.radius);
+  check_field("drag.", {"stiffness", kStiffnessRange, "N/m", "stiffness of the hand"},
+              def.stiffness);
+  check_field("drag.", {"max_force", kForceRange, "N", "largest force of the hand"}, def.max_force);
   check_field("drag.", kTargetInfo, def.target);
 }
 

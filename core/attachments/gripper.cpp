@@ -102,11 +102,11 @@ void validate(const GripperCommand& command, const std::string& path) {
   const auto check = [&path](const FieldInfo& info, const auto& value) {
     if (value) check_field(path, info, *value);
   };
-  check({"opening", 0, 1, "m", "between the jaws"}, command.opening);
-  check({"force", 0, 1000, "N", "force of each jaw"}, command.force);
-  check({"position", -1000, 1000, "m", "of its middle"}, command.position);
-  check({"speed", 1e-3, kMostColliderSpeed, "m/s", "of its middle"}, command.speed);
-  check({"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "at most"}, command.turn_speed);
+  check({"opening", kOpeningRange, "m", "between the jaws"}, command.opening);
+  check({"force", kGripRange, "N", "force of each jaw"}, command.force);
+  check({"position", kPivotRange, "m", "of its middle"}, command.position);
+  check({"speed", kMoveSpeedRange, "m/s", "of its middle"}, command.speed);
+  check({"turn_speed", kTurnSpeedRange, "rad/s", "at most"}, command.turn_speed);
   if (command.rotation) check_unit(path + "rotation", *command.rotation);
 }
 

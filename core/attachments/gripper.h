@@ -91,16 +91,16 @@ Vec3d press_of(const Gripper& gripper, std::size_t jaw);
 /// Passes each field of a gripper except name, orientation and steps to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
-  visit(FieldInfo{"center", -1000, 1000, "m", "middle between the jaws"}, gripper.centre);
+  visit(FieldInfo{"center", kPivotRange, "m", "middle between the jaws"}, gripper.centre);
   visit(FieldInfo{"half_extents", 1e-3, 1, "m", "half of each side of a jaw; it closes along x"},
         gripper.half_extents);
-  visit(FieldInfo{"opening", 0, 1, "m", "between the jaws' faces at the start"}, gripper.opening);
-  visit(FieldInfo{"force", 0, 1000, "N", "force of each jaw"}, gripper.force);
+  visit(FieldInfo{"opening", kOpeningRange, "m", "between the jaws' faces at the start"},
+        gripper.opening);
+  visit(FieldInfo{"force", kGripRange, "N", "force of each jaw"}, gripper.force);
   visit(FieldInfo{"max_force", 0.01, 1e6, "N", "resistance beyond which it lags"},
         gripper.max_force);
-  visit(FieldInfo{"speed", 1e-3, kMostColliderSpeed, "m/s", "speed limit of its middle"},
-        gripper.speed);
-  visit(FieldInfo{"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "limit of its rotation"},
+  visit(FieldInfo{"speed", kMoveSpeedRange, "m/s", "speed limit of its middle"}, gripper.speed);
+  visit(FieldInfo{"turn_speed", kTurnSpeedRange, "rad/s", "limit of its rotation"},
         gripper.turn_speed);
   visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "closing speed of each jaw"},
         gripper.closing_speed);
@@ -111,7 +111,7 @@ template <class Def, class Visitor>
 void visit_fields_of_gripper_step(Def& step, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "start time"}, step.time);
   visit(FieldInfo{"offset", -1000, 1000, "m", "offset from its defined position"}, step.offset);
-  visit(FieldInfo{"opening", 0, 1, "m", "between the jaws; 0 closes on what is there"},
+  visit(FieldInfo{"opening", kOpeningRange, "m", "between the jaws; 0 closes on what is there"},
         step.opening);
 }
 

@@ -15,10 +15,11 @@ namespace weft {
 /// Identifies a pin; never reused.
 using PinId = std::uint32_t;
 
-inline constexpr double kLeastPinSpeed = 1e-3, kMostPinSpeed = 20;  ///< [m/s]
+inline constexpr double kLeastPinSpeed = kMoveSpeedRange.minimum;
+inline constexpr double kMostPinSpeed = kMoveSpeedRange.maximum;  ///< [m/s]
 
 /// Limit of a pin's target along each axis [m].
-inline constexpr double kFarthestPinTarget = 1e4;
+inline constexpr double kFarthestPinTarget = kPositionRange.maximum;
 
 /// Target of a pin. The pin moves in a straight line and lags when blocked: its particles follow as
 /// fast as the bound of its force and obstacles permit.
@@ -101,12 +102,9 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
 /// Passes each field of a move to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_pin_move(Def& move, Visitor&& visit) {
-  visit(FieldInfo{"position", -kFarthestPinTarget, kFarthestPinTarget, "m",
-                  "target of the pin's middle"},
-        move.target);
-  visit(FieldInfo{"speed", kLeastPinSpeed, kMostPinSpeed, "m/s", "of the pin, at most"},
-        move.speed);
-  visit(FieldInfo{"max_force", 0, 1e6, "N", "of the pin on its way; beyond it the pin lags"},
+  visit(FieldInfo{"position", kPositionRange, "m", "target of the pin's middle"}, move.target);
+  visit(FieldInfo{"speed", kMoveSpeedRange, "m/s", "of the pin, at most"}, move.speed);
+  visit(FieldInfo{"max_force", kForceRange, "N", "of the pin on its way; beyond it the pin lags"},
         move.max_force);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/ranges.h"
+
 // The numbers that the cloth model assumes. Fabrics have theirs in fabric_presets.cpp, with the
 // unit of its sources.
 
@@ -38,7 +40,7 @@ inline constexpr int kMostSubsteps = 20000;
 
 /// Least fraction of its stiffness that a softened cloth keeps [1]; below it fabric is a rubber
 /// band. Larger: a world that is too slow saves fewer substeps, as the root. Smaller: softer cloth.
-inline constexpr double kLeastSoftness = 0.01;
+inline constexpr double kLeastSoftness = kSoftnessRange.minimum;
 
 // Bending.
 

@@ -40,21 +40,27 @@ struct FabricDef {
 /// Passes each field to `visit(info, value)`; see definition.h.
 template <class Def, class Visitor>
 void visit_fields_of_fabric(Def& f, Visitor&& visit) {
-  visit(FieldInfo{"areal_density", 1e-3, 100, "kg/m^2", "mass per area"}, f.areal_density);
-  visit(FieldInfo{"stretch_warp", 0, 1e6, "N/m", "stretch stiffness along u"}, f.stretch_warp);
-  visit(FieldInfo{"stretch_weft", 0, 1e6, "N/m", "stretch stiffness along v"}, f.stretch_weft);
-  visit(FieldInfo{"shear", 0, 1e6, "N/m", "shear stiffness"}, f.shear);
+  visit(FieldInfo{"areal_density", kArealDensityRange, "kg/m^2", "mass per area"}, f.areal_density);
+  visit(FieldInfo{"stretch_warp", kStretchRange, "N/m", "stretch stiffness along u"},
+        f.stretch_warp);
+  visit(FieldInfo{"stretch_weft", kStretchRange, "N/m", "stretch stiffness along v"},
+        f.stretch_weft);
+  visit(FieldInfo{"shear", kStretchRange, "N/m", "shear stiffness"}, f.shear);
   visit(FieldInfo{"poisson", kPoissonOfGrid, 100, "",
                   "of a mesh: narrowing along v per strain along u; -1: as on a grid"},
         f.poisson);
-  visit(FieldInfo{"bending_warp", 0, 10, "N m", "bending rigidity along u"}, f.bending_warp);
-  visit(FieldInfo{"bending_weft", 0, 10, "N m", "bending rigidity along v"}, f.bending_weft);
-  visit(FieldInfo{"damping_ratio", 0, 1, "", "spring damping of the highest mode"},
+  visit(FieldInfo{"bending_warp", kBendingRange, "N m", "bending rigidity along u"},
+        f.bending_warp);
+  visit(FieldInfo{"bending_weft", kBendingRange, "N m", "bending rigidity along v"},
+        f.bending_weft);
+  visit(FieldInfo{"damping_ratio", kDampingRatioRange, "", "spring damping of the highest mode"},
         f.damping_ratio);
-  visit(FieldInfo{"bending_damping", 0, 10, "s", "hinge damping per elastic stiffness"},
+  visit(FieldInfo{"bending_damping", kBendingDampingRange, "s",
+                  "hinge damping per elastic stiffness"},
         f.bending_damping);
-  visit(FieldInfo{"thickness", 1e-4, 0.1, "m", "contact distance from objects"}, f.thickness);
-  visit(FieldInfo{"friction", 0, 10, "", "Coulomb friction; between two cloths the mean of both"},
+  visit(FieldInfo{"thickness", kThicknessRange, "m", "contact distance from objects"}, f.thickness);
+  visit(FieldInfo{"friction", kFrictionRange, "",
+                  "Coulomb friction; between two cloths the mean of both"},
         f.friction);
   visit(FieldInfo{"restitution", 0, 0.999, "", "fraction of the impact velocity that returns"},
         f.restitution);

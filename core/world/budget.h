@@ -21,7 +21,7 @@ struct BudgetDef {
 
 template <class Def, class Visitor>
 void visit_fields_of_budget(Def& def, Visitor&& visit) {
-  visit(FieldInfo{"milliseconds", 0, 1000, "ms", "time budget of each due tick; 0: no bound"},
+  visit(FieldInfo{"milliseconds", kBudgetRange, "ms", "time budget of each due tick; 0: no bound"},
         def.milliseconds);
   visit(choice("remedy", "slow|soften", "over budget: slower time, or softer springs first"),
         def.remedy);

@@ -74,9 +74,9 @@ template <class Def, class Visitor>
 void visit_fields_of_hand(Def& hand, Visitor&& visit) {
   visit(FieldInfo{"u", 0, 1, "", "place along u, as a fraction of the fabric's extent"}, hand.u);
   visit(FieldInfo{"v", 0, 1, "", "place along v, as a fraction of the fabric's extent"}, hand.v);
-  visit(FieldInfo{"radius", 0, 100, "m", "radius of the held disc"}, hand.radius);
-  visit(FieldInfo{"stiffness", 0, 1e5, "N/m", "stiffness of its spring"}, hand.stiffness);
-  visit(FieldInfo{"max_force", 0, 1e6, "N", "force beyond which it lags"}, hand.max_force);
+  visit(FieldInfo{"radius", kRadiusRange, "m", "radius of the held disc"}, hand.radius);
+  visit(FieldInfo{"stiffness", kStiffnessRange, "N/m", "stiffness of its spring"}, hand.stiffness);
+  visit(FieldInfo{"max_force", kForceRange, "N", "force beyond which it lags"}, hand.max_force);
 }
 template <class Def, class Visitor>
 void visit_fields_of_hand_key(Def& key, Visitor&& visit) {
@@ -91,7 +91,7 @@ void visit_fields_of_disturbance(Def& disturbance, Visitor&& visit) {
       FieldInfo{"noise", 0, 1000, "m/s", "most that is added to each component of all velocities"},
       disturbance.noise);
   visit(FieldInfo{"pinned", -100, 100, "m", "jump of all pins' targets"}, disturbance.pinned);
-  visit(FieldInfo{"pin_speed", 1e-3, 20, "m/s", "speed of the pins towards them"},
+  visit(FieldInfo{"pin_speed", kMoveSpeedRange, "m/s", "speed of the pins towards them"},
         disturbance.pin_speed);
   visit(FieldInfo{"gather", 0, 10, "m", "radius of a ball that all free particles are put into"},
         disturbance.gather);
@@ -99,7 +99,7 @@ void visit_fields_of_disturbance(Def& disturbance, Visitor&& visit) {
 template <class Def, class Visitor>
 void visit_fields_of_wind_key(Def& key, Visitor&& visit) {
   visit(FieldInfo{"time", 0, 3600, "s", "start time"}, key.time);
-  visit(FieldInfo{"wind", -100, 100, "m/s", "mean wind velocity"}, key.wind);
+  visit(FieldInfo{"wind", kWindRange, "m/s", "mean wind velocity"}, key.wind);
 }
 template <class Def, class Visitor>
 void visit_fields_of_verdict(Def& verdict, Visitor&& visit) {

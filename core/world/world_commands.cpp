@@ -175,8 +175,7 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
 
 template <class Real>
 void World<Real>::set_softness(double softness) {
-  check_field("", {"softness", kLeastSoftness, 1, "", "fraction of the springs' stiffness"},
-              softness);
+  check_field("", {"softness", kSoftnessRange, "", "fraction of the springs' stiffness"}, softness);
   ClothModel<Real> model = build_cloths<Real>(cloths_to_build(def_));
   soften(softness, model);
   softness_ = softness;

@@ -93,7 +93,7 @@ class SceneDraw {
       Dice dice = dice_.of(length.info.name);
       if (json_.contains(length.instead_of) || !dice.chance(0.1 * taste_.told)) continue;
       json_[length.info.name] =
-          dice.number(length.info.minimum, length.info.maximum, 0.02, taste_.wild);
+          dice.number(length.info.range.minimum, length.info.range.maximum, 0.02, taste_.wild);
     }
   }
 
@@ -136,7 +136,7 @@ class SceneDraw {
   template <class Describe>
   void tagged(const server::TagInfo& info, int, Describe&& describe) {
     Dice dice = dice_.of(info.choice.name);
-    const auto words = static_cast<std::size_t>(info.choice.maximum) + 1;
+    const auto words = static_cast<std::size_t>(info.choice.range.maximum) + 1;
     // The first of a choice that need not be told is the usual one.
     const std::size_t index = info.required || dice.chance(0.15) ? dice.below(words) : 0;
     if (info.required || index > 0)
@@ -158,7 +158,7 @@ class SceneDraw {
   }
 
   double number(Dice& dice, const FieldInfo& info, double usual) const {
-    return dice.number(info.minimum, info.maximum, usual, taste_.wild);
+    return dice.number(info.range.minimum, info.range.maximum, usual, taste_.wild);
   }
 
   void draw(Dice& dice, const FieldInfo& info, const double& value) {
@@ -171,24 +171,24 @@ class SceneDraw {
       number = dice.between(2, dice.chance(0.7) ? std::min(9, taste_.most_side) : taste_.most_side);
     if (name == "particle")
       number = static_cast<double>(dice.below(static_cast<std::size_t>(facts_.particles)));
-    json_[info.name] = static_cast<int>(std::clamp(number, info.minimum, info.maximum));
+    json_[info.name] = static_cast<int>(std::clamp(number, info.range.minimum, info.range.maximum));
   }
   void draw(Dice& dice, const FieldInfo& info, const bool&) { json_[info.name] = dice.chance(0.5); }
   void draw(Dice& dice, const FieldInfo& info, const Vec3d& value) {
     // Far places are seldom, as nothing meets there.
-    const bool is_place = std::string_view(info.unit) == "m" && info.minimum < 0;
+    const bool is_place = std::string_view(info.unit) == "m" && info.range.minimum < 0;
     const double wild = is_place ? 0.2 * taste_.wild : taste_.wild;
     Json numbers = Json::array();
     for (int axis = 0; axis < 3; ++axis) {
       const double usual = is_place ? 0 : value[axis];
-      numbers.push_back(dice.number(info.minimum, info.maximum, usual, wild));
+      numbers.push_back(dice.number(info.range.minimum, info.range.maximum, usual, wild));
     }
     json_[info.name] = std::move(numbers);
   }
   template <class Enum>
   requires std::is_enum_v<Enum>
   void draw(Dice& dice, const FieldInfo& info, const Enum&) {
-    const auto words = static_cast<std::size_t>(info.maximum) + 1;
+    const auto words = static_cast<std::size_t>(info.range.maximum) + 1;
     json_[info.name] = choice_word(info, static_cast<int>(dice.below(words)));
   }
 

@@ -20,6 +20,9 @@ ONLY_WITH_ASSIMP = "core/geometry/mesh_file.cpp"
 # The flag by which whoever owns a thread ends the work on it.
 RAISED_FROM_OTHER_THREADS = "core/stop_signal.h"
 
+# Ranges, numbers alone: core checks its definitions against them, and the wire its messages.
+SHARED_NUMBERS = "core/ranges.h"
+
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">]', re.M)
 THREADS = (r"thread|mutex|shared_mutex|future|condition_variable|semaphore|barrier|latch|stop_token|"
            r"atomic|pthread\.h")
@@ -70,7 +73,8 @@ def cpp_problems(name, text):
     if room:
         own, forbidden = ROOMS[room]
         for quote, header in headers:
-            if quote == '"' and header.split("/")[0] not in own and is_from_root(header):
+            shared = room == "proto" and header == SHARED_NUMBERS
+            if quote == '"' and header.split("/")[0] not in own and is_from_root(header) and not shared:
                 yield f"{room} must not include {header}"
             flag = header == "atomic" and str(name) == RAISED_FROM_OTHER_THREADS
             if forbidden.match(header) and not flag:

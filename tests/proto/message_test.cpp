@@ -98,7 +98,7 @@ State state() {
 }
 
 std::string drag_error() {
-  Error error = range_error("target[1]", 1e99, kPositionRange);
+  Error error = range_error("target[1]", 1e99, weft::kPositionRange);
   error.id = 13;
   error.command = "drag";
   error.hint = "positions are in metres";

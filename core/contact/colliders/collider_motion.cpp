@@ -75,11 +75,10 @@ void validate(const MotionDef& def, const std::string& path) {
 }
 
 void validate(const MoveDef& def, const std::string& path) {
-  check_field(path, {"position", -1000, 1000, "m", "target of the pivot"}, def.target.position);
+  check_field(path, {"position", kPivotRange, "m", "target of the pivot"}, def.target.position);
   check_unit(path + "rotation", def.target.rotation);
-  check_field(path, {"speed", 1e-3, kMostColliderSpeed, "m/s", "of the pivot"}, def.speed);
-  check_field(path, {"turn_speed", 1e-3, kMostColliderTurnSpeed, "rad/s", "of the turn"},
-              def.turn_speed);
+  check_field(path, {"speed", kMoveSpeedRange, "m/s", "of the pivot"}, def.speed);
+  check_field(path, {"turn_speed", kTurnSpeedRange, "rad/s", "of the turn"}, def.turn_speed);
 }
 
 Pose offset_at(const MotionDef& def, double time) {

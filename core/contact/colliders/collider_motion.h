@@ -35,7 +35,8 @@ struct MotionDef {
 inline constexpr std::size_t kMostKeyframes = 1000;
 
 /// Limits of a commanded speed [m/s] and rotation [rad/s].
-inline constexpr double kMostColliderSpeed = 20, kMostColliderTurnSpeed = 60;
+inline constexpr double kMostColliderSpeed = kMoveSpeedRange.maximum;
+inline constexpr double kMostColliderTurnSpeed = kTurnSpeedRange.maximum;
 
 /// A command: move to a pose at no more than these speeds, and stay there.
 struct MoveDef {

@@ -24,13 +24,14 @@ struct EnvironmentDef {
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_environment(Def& e, Visitor&& visit) {
-  visit(FieldInfo{"gravity", -1000, 1000, "m/s^2", "acceleration of gravity"}, e.gravity);
-  visit(FieldInfo{"wind", -100, 100, "m/s", "mean wind velocity"}, e.wind);
-  visit(FieldInfo{"gust_speed", 0, 100, "m/s", "typical speed of the gusts"}, e.gust_speed);
-  visit(FieldInfo{"gust_length", 0.01, 100, "m", "size of an eddy"}, e.gust_length);
-  visit(FieldInfo{"air_density", 0, 1000, "kg/m^3", "density of the air"}, e.air_density);
+  visit(FieldInfo{"gravity", kGravityRange, "m/s^2", "acceleration of gravity"}, e.gravity);
+  visit(FieldInfo{"wind", kWindRange, "m/s", "mean wind velocity"}, e.wind);
+  visit(FieldInfo{"gust_speed", kGustSpeedRange, "m/s", "typical speed of the gusts"},
+        e.gust_speed);
+  visit(FieldInfo{"gust_length", kGustLengthRange, "m", "size of an eddy"}, e.gust_length);
+  visit(FieldInfo{"air_density", kAirDensityRange, "kg/m^3", "density of the air"}, e.air_density);
   visit(FieldInfo{"still_air", 0, 1, "", "air forces even without wind"}, e.still_air);
-  visit(FieldInfo{"drag", 0, 1000, "1/s", "uniform velocity damping"}, e.damping);
+  visit(FieldInfo{"drag", kDragRange, "1/s", "uniform velocity damping"}, e.damping);
 }
 
 /// Throws DefinitionError if a field is out of range or there are too many fans.

@@ -21,17 +21,16 @@ struct FanDef {
   double reach = 1.5;                 ///< distance along which the core keeps its speed [m]
 };
 
-inline constexpr std::size_t kMostFans = 4;
-
 /// Passes each field to `visit(info, value)`.
 template <class Def, class Visitor>
 void visit_fields_of_fan(Def& f, Visitor&& visit) {
-  visit(FieldInfo{"position", -1e4, 1e4, "m", "centre of the outlet disc"}, f.position);
-  visit(FieldInfo{"direction", -1e4, 1e4, "", "direction of the jet"}, f.direction);
-  visit(FieldInfo{"speed", 0, 50, "m/s", "speed in the core"}, f.speed);
-  visit(FieldInfo{"radius", 0.01, 10, "m", "radius of the disc"}, f.radius);
-  visit(FieldInfo{"spread", 0, 2, "", "growth of the jet's radius per distance"}, f.spread);
-  visit(FieldInfo{"reach", 0.01, 100, "m", "length of the core"}, f.reach);
+  visit(FieldInfo{"position", kPositionRange, "m", "centre of the outlet disc"}, f.position);
+  visit(FieldInfo{"direction", kPositionRange, "", "direction of the jet"}, f.direction);
+  visit(FieldInfo{"speed", kFanSpeedRange, "m/s", "speed in the core"}, f.speed);
+  visit(FieldInfo{"radius", kFanRadiusRange, "m", "radius of the disc"}, f.radius);
+  visit(FieldInfo{"spread", kFanSpreadRange, "", "growth of the jet's radius per distance"},
+        f.spread);
+  visit(FieldInfo{"reach", kFanReachRange, "m", "length of the core"}, f.reach);
 }
 
 /// A fan prepared for evaluation at many points.
