@@ -12,6 +12,7 @@ const { weave_of } = await import_page_module('view/weave');
 const { Subdivision } = await import_page_module('view/subdivision');
 const { corners_of } = await import_page_module('view/border');
 const { both_diagonals, cells_of } = await import_page_module('view/cells');
+const { round_of } = await import_page_module('view/round');
 const { Hem } = await import_page_module('view/hem');
 const { even_normals, smooth_normals } = await import_page_module('view/normals');
 const { fabric_extent } = await import_page_module('view/rest_shape');
@@ -120,14 +121,14 @@ test('a tile of each weave goes on at its borders and is even on the whole', () 
 
 test('the renderer’s shader has every part that the fabric’s replaces', () => {
   const [color] = colors_of([{}]);
-  const material = fabric_material({}, color, weave_of('plain'), [1, 1]);
+  const material = fabric_material({}, color, weave_of('plain'), { size: [1, 1], round: null });
   const { vertexShader, fragmentShader } = ShaderLib.physical;
   const shader = { uniforms: {}, vertexShader, fragmentShader };
   material.onBeforeCompile(shader);
   for (const part of ['fabric_place = uv', 'faceforward(world_normal']) {
     assert.ok(shader.vertexShader.includes(part), part);
   }
-  const parts = ['uniform vec3 back_color', 'weave_seen', '? back_roughness', 'tbn * vec3(slope'];
+  const parts = ['uniform vec3 back_color', '> 1.0) discard', 'weave_seen', '? back_roughness', 'tbn * vec3(slope'];
   for (const part of [...parts, 'RE_Direct_Fabric', 'getIBLIrradiance(-', 'pow(clear']) {
     assert.ok(shader.fragmentShader.includes(part), part);
   }
@@ -191,6 +192,39 @@ test('the finer mesh stays within its reach of the triangles, however crumpled t
   }
   assert.ok(farthest <= reach * 1.0001, `${farthest}`);
   assert.ok(farthest > reach / 2, 'it does bend');
+});
+
+test('a round cloth of a grid is drawn as the largest ellipse within its stairs, no other cloth is', () => {
+  const whole = grid(31, (u, v) => [u, v, 0]);
+  const { uv } = whole;
+  const cut = (inside) => {
+    const kept = [];
+    for (let t = 0; t < whole.triangles.length; t += 6) {
+      const cell = [...whole.triangles.subarray(t, t + 6)];
+      if (cell.every((k) => inside(uv[k * 2], uv[k * 2 + 1]))) kept.push(...cell);
+    }
+    return Uint32Array.from(kept);
+  };
+  const round = cut((u, v) => Math.hypot(u - 0.5, v - 0.5) <= 0.5001);
+  const { center, radii } = round_of(round, uv);
+  for (const axis of [0, 1]) {
+    assert.ok(Math.abs(center[axis] - 0.5) < 1e-6);
+    assert.ok(radii[axis] > 0.5 - 1.2 / 30 && radii[axis] < 0.5, `${radii}`);
+  }
+  // The circle lies within the triangles: of cells that are left out no corner and no side is in it.
+  const reach = (u, v) => Math.hypot((u - 0.5) / radii[0], (v - 0.5) / radii[1]);
+  const kept = new Set(round);
+  for (let row = 0; row < 30; row++) {
+    for (let column = 0; column < 30; column++) {
+      const corners = [[0, 0], [0, 1], [1, 0], [1, 1]].map(([a, b]) => (row + a) * 31 + column + b);
+      if (corners.every((k) => kept.has(k))) continue;
+      const near = (low) => Math.min(Math.max(0.5, low / 30), (low + 1) / 30);
+      assert.ok(reach(near(column), near(row)) > 1 - 1e-6, `${column} ${row}`);
+    }
+  }
+  assert.equal(round_of(whole.triangles, uv), null, 'a rectangle');
+  assert.equal(round_of(cut((u, v) => u + v > 0.3), uv), null, 'one without a corner');
+  assert.equal(round_of(cut((u, v) => Math.abs(Math.hypot(u - 0.5, v - 0.5) - 0.35) < 0.15), uv), null, 'a ring');
 });
 
 test('a hem runs round the whole border, with the border outermost and the front shown', () => {

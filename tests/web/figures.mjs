@@ -20,7 +20,7 @@ const FOLDED = { scene: 'drape-sphere', tick: 200 };
 const PATCH = [0, 1.12, 0.15]; // a place on the scene's cloth, between two stripes [m]
 const NEAR = 0.02; // what is shown around it [m]
 const DYE = '#7d7d7d';
-const HALF_TURN = Math.PI / 0.0052; // of the view [pixels of a drag]
+const BEHIND = [-0.053, 1.171, -0.007, 0.5, 0.2, -0.843, 0.756]; // a view of the default scene, away from the light
 
 /** Pictures of patches, folds and scenes, kept in a folder, and what they show. */
 export async function figures_of(folder, only = {}) {
@@ -41,8 +41,14 @@ export async function figures_of(folder, only = {}) {
     const studio = await open({});
     await folds_in(studio, fabrics);
     const scenes = await scenes_in(studio, only.scenes ?? SEVERAL);
-    const behind = await lumas_behind(studio);
     studio.end();
+    const behind = new Map();
+    for (const theme of ['light', 'dark']) {
+      const seen = await open({ view: BEHIND, dark: theme === 'dark' });
+      behind.set(theme, await lumas_behind(seen, theme));
+      seen.end();
+      await seen.page.close();
+    }
     const fills = await fills_in(browser, only.views ?? scene_names());
     return { fabrics, scenes, behind, fills, complaints };
   } finally {
@@ -113,16 +119,10 @@ async function scenes_in(studio, names) {
 }
 
 /** Lumas of the folds of the default scene seen from behind, without weave and hem. */
-async function lumas_behind(studio) {
-  const { page } = studio;
+async function lumas_behind(studio, theme) {
   await show(studio, 'default', 600);
-  await page.evaluate(() => weft.show_pattern(false));
-  await page.mouse.move(5, 350);
-  await page.mouse.down();
-  await page.mouse.move(5 + HALF_TURN, 350);
-  await page.mouse.up();
-  const picture = await keep(studio, 'behind');
-  await page.evaluate(() => weft.show_pattern(true));
+  await studio.page.evaluate(() => weft.show_pattern(false));
+  const picture = await keep(studio, `behind-${theme}`);
   const [dark, bright] = [0.05, 0.95].map((part) => Math.round(luma_at(picture, part)));
   return { dark, bright, span: bright - dark };
 }
@@ -150,8 +150,9 @@ export function print_figures({ fabrics, scenes, behind, fills }) {
   for (const [name, { cloths, difference: least }] of scenes) {
     console.log(`${name}: ${cloths} cloths in sight, least difference ${least.toFixed(1)}`);
   }
-  const { dark, bright, span } = behind;
-  console.log(`default from behind, without weave: luma ${dark} to ${bright} (p5 to p95), ${span} of 255`);
+  for (const [theme, { dark, bright, span }] of behind) {
+    console.log(`default from behind, without weave, ${theme} theme: luma ${dark} to ${bright} (p5 to p95), ${span} of 255`);
+  }
   const percent = ([name, fill]) => `${name} ${(fill * 100).toFixed(0)} %`;
   console.log(`cloth in first views: ${[...fills].map(percent).join(', ')}`);
 }

@@ -16,7 +16,9 @@ const PHONE = { width: 390, height: 780, touch: true };
 /** Pictures of a scene beside that of the scene by itself: what they show, and what is done for it. */
 const EXTRA = {
   default: [
+    { view: 'dark', title: 'in the dark theme', options: { ...DESKTOP, dark: true } },
     { view: 'phone', title: 'on a phone', options: PHONE },
+    { view: 'phone-dark', title: 'on a phone, in the dark theme', options: { ...PHONE, dark: true } },
     { view: 'boxes', title: 'boxes of the triangles, by level', options: DESKTOP, act: show_boxes },
   ],
 };
@@ -119,7 +121,7 @@ function gallery(pictures) {
       gap: 1.5rem; align-items: start; margin-bottom: 2rem; }
     figure { margin: 0; }
     img { width: 100%; height: auto; border-radius: 6px; }
-    .phone img { max-width: 260px; }
+    [class^="phone"] img { max-width: 260px; }
   </style>
   <h1>Weft: pictures of the scenes</h1>
   <p>Each is the page itself at the named tick of 1/60 s.</p>${section(

@@ -5,10 +5,12 @@ import { corners_of } from './border.js';
 import { both_diagonals, cells_of } from './cells.js';
 import { DepthOrder } from './depth_order.js';
 import { fabric_material } from './fabric.js';
+import type { Cut } from './fabric.js';
 import { Hem } from './hem.js';
 import { colors_of, finish_of } from './looks.js';
 import { even_normals, smooth_normals } from './normals.js';
 import { fabric_extent } from './rest_shape.js';
+import { round_of } from './round.js';
 import { Subdivision } from './subdivision.js';
 import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
@@ -25,8 +27,7 @@ interface Piece {
   order: DepthOrder;
   index: BufferAttribute;
   hem: Hem;
-  /** In its plane if it is a rectangle [m]. */
-  size: [number, number] | null;
+  cut: Cut;
 }
 
 /**
@@ -79,7 +80,7 @@ export class ClothMesh {
       const look = looks[k];
       const { weave, edge } = finish_of(look);
       if (!this.weaves.has(weave)) this.weaves.set(weave, weave_of(weave));
-      piece.mesh.material = fabric_material(look, colors[k], this.weaves.get(weave)!, piece.size);
+      piece.mesh.material = fabric_material(look, colors[k], this.weaves.get(weave)!, piece.cut);
       (piece.index.array as Uint32Array).set(piece.triangles);
       piece.index.needsUpdate = true;
       const { first_vertex, vertices, thickness } = this.cloths[k];
@@ -160,9 +161,19 @@ export class ClothMesh {
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.frustumCulled = false; // bounds would have to follow each frame
     this.group.add(mesh);
-    const size: [number, number] | null = cloth.rows && cloth.columns ? [width, height] : null;
-    return { mesh, triangles, order: new DepthOrder(triangles), index, hem, size };
+    const cut = cut_of(cloth, data, [width, height]);
+    return { mesh, triangles, order: new DepthOrder(triangles), index, hem, cut };
   }
+}
+
+/** What a cloth is in its plane. @param extent its width and height [m] */
+function cut_of(cloth: Cloth, data: MeshData, extent: [number, number]): Cut {
+  if (cloth.rows && cloth.columns) return { size: extent, round: null };
+  const first = cloth.first_triangle * 3;
+  const round = round_of(data.triangles.subarray(first, first + cloth.triangles * 3), data.uv);
+  if (!round) return { size: null, round };
+  const scaled = (values: [number, number]) => values.map((value, axis) => value * extent[axis]) as [number, number];
+  return { size: extent, round: { center: scaled(round.center), radii: scaled(round.radii) } };
 }
 
 /** How often a mesh of so many triangles is subdivided. */

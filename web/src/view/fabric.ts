@@ -1,7 +1,8 @@
-import { Color, DoubleSide, MeshPhysicalMaterial, SRGBColorSpace, Vector2, Vector3 } from 'three';
+import { Color, DoubleSide, MeshPhysicalMaterial, SRGBColorSpace, Vector2, Vector3, Vector4 } from 'three';
 import type { Look } from '../../../proto/js/messages.js';
 import { back_of, finish_of } from './looks.js';
 import type { Finish } from './looks.js';
+import type { Round } from './round.js';
 import type { Weave } from './weave.js';
 
 const HEM = 0.014; // [m]
@@ -12,16 +13,22 @@ const STRIPES = 0.07; // from one to the next [m]
 /** Whether weaves and hems are drawn; tests switch them off to measure the shading alone. */
 export const pattern = { value: 1 };
 
+/** What a cloth is in its plane [m]. */
+export interface Cut {
+  /** Null if it is neither a rectangle nor round. */
+  size: [number, number] | null;
+  round: Round | null;
+}
+
 /**
  * A cloth seen from both sides.
  * @param color of the front
- * @param size  of the cloth in its plane if it is a rectangle, else null [m]
  */
 export function fabric_material(
   look: Look | undefined,
   color: Color,
   weave: Weave,
-  size: [number, number] | null,
+  cut: Cut,
 ): MeshPhysicalMaterial {
   const finish = finish_of(look);
   const tile = finish.period * weave.periods;
@@ -43,7 +50,7 @@ export function fabric_material(
     shadowSide: DoubleSide,
     dithering: true,
   });
-  const uniforms = uniforms_of(finish, back_of(look, color), color, weave, size);
+  const uniforms = uniforms_of(finish, back_of(look, color), color, weave, cut);
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
@@ -73,7 +80,7 @@ function uniforms_of(
   back: Color,
   color: Color,
   weave: Weave,
-  size: [number, number] | null,
+  { size, round }: Cut,
 ) {
   const [width, height] = size ?? [1, 1];
   const hem = size ? Math.min(HEM, LARGEST_HEM * Math.min(width, height)) : 0;
@@ -89,6 +96,7 @@ function uniforms_of(
     clear: { value: finish.clear },
     translucency: { value: finish.translucency },
     cloth_size: { value: new Vector3(width, height, hem) },
+    disc: { value: round ? new Vector4(...round.center, ...round.radii) : new Vector4() },
     seam_color: { value: seam },
     stripe_color: { value: finish.stripe ? stripe_of(finish, color) : color },
     striped: { value: finish.stripe ? 1 : 0 },
@@ -122,6 +130,7 @@ const DECLARATIONS = `
   uniform float pattern_shown, back_roughness, weave_periods, weave_weft, grooves, white_weft;
   uniform float clear, stitched, striped;
   uniform vec3 back_color, cloth_size, seam_color, stripe_color;
+  uniform vec4 disc;
   varying vec2 fabric_place;
   /** How much of a pixel a stripe covers, from distances in its period. */
   float stripe(float from_middle, float half_width, float pixel) {
@@ -130,6 +139,9 @@ const DECLARATIONS = `
     return inside * min(1.0, 2.0 * half_width / reach);
   }
   void main() {
+    vec2 disc_place = (fabric_place - disc.xy) / max(disc.zw, vec2(1e-6));
+    bool is_round = disc.z > 0.0;
+    if (is_round && dot(disc_place, disc_place) > 1.0) discard;
 `;
 
 /**
@@ -155,9 +167,11 @@ const DYE = `
   diffuseColor.rgb *= 1.0 + grooves * weave_seen * (2.0 * weave.a - 1.0);
 
   vec2 from_edge = min(fabric_place, cloth_size.xy - fabric_place);
+  if (is_round) from_edge = vec2((1.0 - length(disc_place)) * min(disc.z, disc.w));
   float edge = min(from_edge.x, from_edge.y) / max(cloth_size.z, 1e-6);
   float blur = max(fwidth(edge), 0.02);
   float along = (from_edge.x < from_edge.y ? fabric_place.y : fabric_place.x) / ${STITCH};
+  if (is_round) along = atan(disc_place.y, disc_place.x) * disc.z / ${STITCH};
   float dash = abs(fract(along) - 0.5) * 2.0;
   float gap = mix(0.35, smoothstep(0.62, 0.8, dash), 1.0 - smoothstep(0.1, 0.4, fwidth(along)));
   float seam = 1.0 - smoothstep(0.05, 0.09 + blur, abs(edge - 1.0));

@@ -22,10 +22,12 @@ const SPIRAL_POINTS = Array.from({ length: TAPS }, (_, k) => {
   return `vec2(${(radius * Math.cos(angle)).toFixed(5)}, ${(radius * Math.sin(angle)).toFixed(5)})`;
 });
 
-// The turn of a pixel is an even dither of both coordinates.
+// The turn of a pixel is an even dither of both coordinates, and another one for another radius, so that
+// the mean of pictures whose radii differ is smooth.
 const SPIRAL = `
   if (shadowIntensity > 0.0) {
-  float turn = 6.2832 * fract(52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584))));
+  float dither = 52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)));
+  float turn = 6.2832 * fract(dither + 1.618 * shadowRadius);
   vec2 reach = shadowRadius / shadowMapSize;
   mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
   shadow = 0.0;
