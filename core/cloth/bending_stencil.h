@@ -68,38 +68,33 @@ BendingRow<Real> bending_row(int k, int count, const std::vector<double>& stiffe
 /// Calls visit(stiffness, particle indices, weights, corners) for every stencil w of a part's
 /// quadratic bending form, whose energy is stiffness/2 |sum_k w_k x_k|^2. A grid has 1 -2 1 along
 /// each row and column (half on lines with a cell on one side only), and 1 -1 -1 1 over the corners
-/// of each cell; a mesh has one for each inner edge.
+/// of each cell; a mesh has 1 -1 along each of its links, with a stiffness of either sign.
 template <class Real, class Visitor>
 void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
-  static constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
+  static constexpr double kLink[] = {1, -1}, kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
   const QuadraticBending<Real>& q = part.quadratic_bending;
   const GridCells& g = part.cells;
   assert(g.particles.size() ==
          static_cast<std::size_t>(g.rows) * static_cast<std::size_t>(g.columns));
   const auto particle = [&](int r, int c) { return part.particles.first + g.particle(r, c); };
-  for (const HingeStencil<Real>& hinge : part.hinge_stencils) {
-    Index corners[4];
-    double weights[4];
-    for (int k = 0; k < 4; ++k) {
-      corners[k] = part.particles.first + hinge.x[k];
-      weights[k] = static_cast<double>(hinge.weight[k]);
-    }
-    visit(hinge.stiffness, corners, weights, 4);
+  for (const BendingLink& link : part.bending_links) {
+    const Index ends[] = {part.particles.first + link.i, part.particles.first + link.j};
+    visit(link.weight, ends, kLink, 2);
   }
   for (int r = 0; r < g.rows; ++r) {
     for (int c = 0; c < g.columns; ++c) {
       if (const double share = share_bend_u(g, r, c); share > 0) {
         const Index corners[] = {particle(r, c - 1), particle(r, c), particle(r, c + 1)};
-        visit(q.along_u * static_cast<Real>(share), corners, kLine, 3);
+        visit(static_cast<double>(q.along_u * static_cast<Real>(share)), corners, kLine, 3);
       }
       if (const double share = share_bend_v(g, r, c); share > 0) {
         const Index corners[] = {particle(r - 1, c), particle(r, c), particle(r + 1, c)};
-        visit(q.along_v * static_cast<Real>(share), corners, kLine, 3);
+        visit(static_cast<double>(q.along_v * static_cast<Real>(share)), corners, kLine, 3);
       }
       if (g.has_cell(r, c)) {
         const Index corners[] = {particle(r, c), particle(r, c + 1), particle(r + 1, c),
                                  particle(r + 1, c + 1)};
-        visit(q.twist, corners, kTwist, 4);
+        visit(static_cast<double>(q.twist), corners, kTwist, 4);
       }
     }
   }

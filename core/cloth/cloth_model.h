@@ -68,15 +68,11 @@ struct QuadraticBending {
   Real twist = 0;    ///< (B_w + B_f) / (h_u h_v), times |cell difference|^2 / 2 [N/m]
 };
 
-/// Two triangles of a mesh that is flat at rest, with the energy 1/2 stiffness |sum_a weight_a
-/// x_a|^2. The sum is the hinge's angle times its normal for small angles, and the length of the
-/// mean curvature vector for any bending without stretch (Bergou, Wardetzky, Harmon, Zorin,
-/// Grinspun 2006, "A quadratic bending model for inextensible surfaces").
-template <class Real>
-struct HingeStencil {
-  Index x[4] = {0, 0, 0, 0};      ///< as in a hinge, counted from the part's first particle
-  Real weight[4] = {0, 0, 0, 0};  ///< derivative of the angle along the normal [1/m], sum 0
-  Real stiffness = 0;             ///< B l^2 / (A1 + A2) [N m]
+/// Two particles of a mesh that is flat at rest, with the energy 1/2 weight |x_j - x_i|^2: an entry
+/// of its bending's constant matrix, whose rows sum to zero; see mesh_bending.h.
+struct BendingLink {
+  Index i = 0, j = 0;  ///< counted from the part's first particle
+  double weight = 0;   ///< of either sign [N/m]; in double, for what is flat is a sum that vanishes
 };
 
 /// The present cells of a grid, and the particles at their corners, numbered row by row. A whole
@@ -137,11 +133,11 @@ struct ClothPart {
                                 ///< r * columns + c; else 0
   Real cell_u = 0, cell_v = 0;  ///< h_x, h_y, cell size of a grid [m]
   Real rest_diagonal = 0;       ///< of the box around its rest positions [m]
-  std::optional<GridSprings<Real>> grid_springs;   ///< the same springs, if they are regular
-  QuadraticBending<Real> quadratic_bending;        ///< of a grid; it then has no hinges
-  std::vector<HingeStencil<Real>> hinge_stencils;  ///< of a mesh that is flat at rest
-  std::size_t bending_stencils = 0;                ///< of the quadratic form; see bending_stencil.h
-  GridCells cells;                                 ///< of a grid, whole or cut
+  std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
+  QuadraticBending<Real> quadratic_bending;       ///< of a grid; it then has no hinges
+  std::vector<BendingLink> bending_links;         ///< of a mesh that is flat at rest
+  std::size_t bending_stencils = 0;  ///< or links of the quadratic form; see bending_stencil.h
+  GridCells cells;                   ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
 

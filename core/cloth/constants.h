@@ -54,6 +54,25 @@ inline constexpr double kCrumpledArea = 0.05;
 /// makes a flat mesh bend by hinges.
 inline constexpr double kFlatRestAngle = 1e-5;
 
+/// Error of a slope across an edge of a mesh, over what a quadratic field rises by up to the next
+/// particle, that is left as it is [1]. Larger: meshes bend too stiffly by up to this. Smaller:
+/// rounded vertices of a regular mesh make each particle bend with half as many more.
+inline constexpr double kRightSlope = 3e-4;
+
+/// Least eigenvalue with which particles around an edge tell quadratic fields apart; a wide patch
+/// of them has about 0.1 [1]. Larger: more particles have a say in a slope, and bending takes
+/// longer. Smaller: large weights, and more substeps.
+inline constexpr double kTellsApart = 5e-4;
+
+/// Times that the particles around an edge are joined by their neighbours to tell fields apart [1].
+/// Larger: nothing, on meshes that are wide enough. Smaller: slopes at corners are not exact.
+inline constexpr int kSlopeRounds = 2;
+
+/// Weight of a link of bending, over those of its two particles themselves, that is left out [1].
+/// Larger: what is flat pulls at itself. Smaller: rounded vertices of a regular mesh make each
+/// particle bend with half as many more.
+inline constexpr double kLeastLink = 1e-8;
+
 /// An edge that extends by less than this along a thread direction has the other direction [m].
 /// Larger: the diagonals of very small cells count as threads. Smaller: rounding may make a thread
 /// a diagonal, which has next to no rigidity in that direction.

@@ -87,7 +87,7 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   model.hinges.clear();
   part.hinges = {};
   visit_bending_stencils(part,
-                         [&](Real, const Index*, const double*, int) { ++part.bending_stencils; });
+                         [&](double, const Index*, const double*, int) { ++part.bending_stencils; });
   bound_quadratic_bending(model, part);
 }
 

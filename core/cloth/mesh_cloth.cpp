@@ -11,9 +11,9 @@
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
 #include "core/cloth/membrane.h"
+#include "core/cloth/mesh_bending.h"
 #include "core/cloth/stability_bound.h"
 #include "core/error.h"
-#include "core/geometry/hinge_angle.h"
 
 namespace weft {
 namespace {
@@ -234,26 +234,6 @@ void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
   }
 }
 
-/// Weights of a hinge: the derivative of its angle at rest, which is along the normal.
-template <class Real>
-HingeStencil<Real> stencil_of(const Hinge<Real>& hinge, const ClothModel<Real>& model) {
-  const auto at = [&](int corner) {
-    return model.rest_positions[static_cast<std::size_t>(hinge.x[corner])]
-        .template cast<double>()
-        .eval();
-  };
-  const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));
-  const Vec3d normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
-  HingeStencil<Real> stencil;
-  stencil.stiffness = hinge.stiffness;
-  for (int corner = 0; corner < 4; ++corner) {
-    stencil.x[corner] = hinge.x[corner];
-    stencil.weight[corner] =
-        static_cast<Real>(angle.gradient[static_cast<std::size_t>(corner)].dot(normal));
-  }
-  return stencil;
-}
-
 /// Keeps the hinges or replaces them by the quadratic form.
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
@@ -267,11 +247,10 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
   if (model.hinges.empty() || !(wanted || (may && most <= kFlatRestAngle))) return;
   ClothPart<Real>& part = model.parts.front();
-  for (const Hinge<Real>& hinge : model.hinges)
-    part.hinge_stencils.push_back(stencil_of(hinge, model));
+  part.bending_links = mesh_bending_links(def.fabric, model);
   model.hinges.clear();
   part.hinges = {};
-  part.bending_stencils = part.hinge_stencils.size();
+  part.bending_stencils = part.bending_links.size();
   bound_quadratic_bending(model, part);
 }
 

@@ -41,6 +41,21 @@ double largest(const std::vector<double>& rows, const ClothModel<Real>& model) {
   return most;
 }
 
+/// Absolute rows of the matrix that the links of a mesh are. Its diagonal is their sum.
+template <class Real>
+std::vector<double> rows_of_links(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+  std::vector<double> own(model.mass.size(), 0), others = own;
+  for (const BendingLink& link : part.bending_links) {
+    for (const Index end : {link.i, link.j}) {
+      const auto i = static_cast<std::size_t>(part.particles.first + end);
+      own[i] += link.weight;
+      others[i] += std::abs(link.weight);
+    }
+  }
+  for (std::size_t i = 0; i < own.size(); ++i) others[i] += std::abs(own[i]);
+  return others;
+}
+
 }  // namespace
 
 template <class Real>
@@ -87,13 +102,18 @@ template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part) {
   assert(part.particles.end() <= model.particle_count());
   std::vector<double> row_sum(model.mass.size(), 0);
-  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
-    double sum = 0;
-    for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
-    for (int n = 0; n < count; ++n)
-      row_sum[static_cast<std::size_t>(corners[n])] +=
-          static_cast<double>(k) * std::abs(weights[n]) * sum;
-  });
+  if (!part.bending_links.empty()) {
+    part.bounds.bending_omega2 = largest(rows_of_links(model, part), model);
+    part.bounds.bending_damping_rate = 0;
+    return;
+  }
+  visit_bending_stencils(
+      part, [&](double k, const Index* corners, const double* weights, int count) {
+        double sum = 0;
+        for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
+        for (int n = 0; n < count; ++n)
+          row_sum[static_cast<std::size_t>(corners[n])] += k * std::abs(weights[n]) * sum;
+      });
   part.bounds.bending_omega2 = largest(row_sum, model);
   part.bounds.bending_damping_rate = 0;
 }

@@ -33,11 +33,12 @@ MembraneStrain<Real> strain_of(const MembraneTriangle<Real>& t, const Vec3Array<
 }
 
 /// Value of one bending stencil, sum_k w_k x_k.
-template <class Real>
-Vec3<Real> stencil_value(const Vec3Array<Real>& x, const Index* corners, const double* weights,
+template <class Real, class Stored>
+Vec3<Real> stencil_value(const Vec3Array<Stored>& x, const Index* corners, const double* weights,
                          int count) {
   Vec3<Real> sum = Vec3<Real>::Zero();
-  for (int k = 0; k < count; ++k) sum += at(x, corners[k]) * static_cast<Real>(weights[k]);
+  for (int k = 0; k < count; ++k)
+    sum += at(x, corners[k]).template cast<Real>() * static_cast<Real>(weights[k]);
   return sum;
 }
 
@@ -92,8 +93,9 @@ template <class Real>
 void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force) {
   assert(force.size() == x.size());
-  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
-    const Vec3<Real> pull = stencil_value(x, corners, weights, count) * -k;
+  visit_bending_stencils(part, [&](double k, const Index* corners, const double* weights,
+                                   int count) {
+    const Vec3<Real> pull = stencil_value<Real>(x, corners, weights, count) * -static_cast<Real>(k);
     for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
   });
 }
@@ -120,7 +122,7 @@ void add_air_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
 template <class Real>
 std::size_t quadratic_stencil_count(const ClothPart<Real>& part) {
   const QuadraticBending<Real>& q = part.quadratic_bending;
-  if (!part.hinge_stencils.empty()) return part.hinge_stencils.size();
+  if (!part.bending_links.empty()) return part.bending_links.size();
   if (q.along_u == 0 && q.along_v == 0 && q.twist == 0) return 0;
   return part.bending_stencils;
 }
@@ -159,10 +161,10 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
   if (quadratic_stencil_count(part) == 0) return energy;
-  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
-    energy.bending += 0.5 * static_cast<double>(k) *
-                      static_cast<double>(stencil_value(x, corners, weights, count).squaredNorm());
-  });
+  visit_bending_stencils(
+      part, [&](double k, const Index* corners, const double* weights, int count) {
+        energy.bending += 0.5 * k * stencil_value<double>(x, corners, weights, count).squaredNorm();
+      });
   return energy;
 }
 

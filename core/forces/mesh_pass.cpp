@@ -67,16 +67,16 @@ void MeshPass<Real>::collect_bending(const ClothPart<Real>& part, Rows& rows) {
     }
     return row.far.emplace_back(Link{other, 0, 0, 0});
   };
-  visit_bending_stencils(part, [&](Real k, const Index* corners, const double* weights, int count) {
-    for (int a = 0; a < count; ++a) {
-      Row& row = rows[static_cast<std::size_t>(corners[a] - part.particles.first)];
-      for (int b = 0; b < count; ++b) {
-        if (corners[a] < corners[b])
-          link_to(row, corners[b]).bending_weight +=
-              static_cast<double>(k) * weights[a] * weights[b];
-      }
-    }
-  });
+  visit_bending_stencils(
+      part, [&](double k, const Index* corners, const double* weights, int count) {
+        for (int a = 0; a < count; ++a) {
+          Row& row = rows[static_cast<std::size_t>(corners[a] - part.particles.first)];
+          for (int b = 0; b < count; ++b) {
+            if (corners[a] < corners[b])
+              link_to(row, corners[b]).bending_weight += k * weights[a] * weights[b];
+          }
+        }
+      });
 }
 
 /// A number of slots as a group stores it. A mesh with a larger one does not fit.

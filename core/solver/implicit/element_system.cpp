@@ -53,10 +53,10 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
     membrane_.push_back({t, {}});
   }
   visit_bending_stencils(
-      part, [&](Real stiffness, const Index* corners, const double* weights, int corner_count) {
-        if (!(stiffness > 0)) return;
+      part, [&](double stiffness, const Index* corners, const double* weights, int corner_count) {
+        if (stiffness == 0) return;
         Stencil& stencil = stencils_.emplace_back();
-        stencil.stiffness = stiffness;
+        stencil.stiffness = static_cast<Real>(stiffness);
         stencil.count = corner_count;
         for (int n = 0; n < corner_count; ++n) {
           stencil.x[n] = corners[n] - particles_.first;

@@ -6,7 +6,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/cloth/bending_stencil.h"
 #include "core/error.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/hinge.h"
@@ -128,7 +127,7 @@ TEST_CASE("equilateral springs stretch like the isotropic fabric with a third fo
   CHECK(density(0, 0, kStrain) == Approx(0.5 * 3.0 / 8 * 300).epsilon(0.01));
 }
 
-/// Energy of each hinge or stencil and its corners.
+/// Energy of each hinge and its corners.
 template <class Visitor>
 void visit_bending_energies(const ClothModel<double>& model, const Vec3Array<double>& x,
                             Visitor&& visit) {
@@ -137,23 +136,13 @@ void visit_bending_energies(const ClothModel<double>& model, const Vec3Array<dou
     const double theta = hinge_angle<double>(at(h.x[0]), at(h.x[1]), at(h.x[2]), at(h.x[3])).theta;
     visit(h.x, hinge_energy(h, theta));
   }
-  visit_bending_stencils(model.parts[0],
-                         [&](double k, const Index* corners, const double* weights, int count) {
-                           REQUIRE(count == 4);
-                           std::array<Index, 4> four{};
-                           std::copy_n(corners, count, four.begin());
-                           Vec3d sum = Vec3d::Zero();
-                           for (int n = 0; n < count; ++n) sum += weights[n] * at(corners[n]);
-                           visit(four.data(), 0.5 * k * sum.squaredNorm());
-                         });
 }
 
-TEST_CASE("equilateral triangles bend with rigidity B in every direction, by hinges or quadratic") {
+TEST_CASE("equilateral triangles bend by hinges with rigidity B in every direction") {
   ClothDef def = sheet_cloth(31, 31, 0.02);
   def.fabric.bending_warp = def.fabric.bending_weft = 1e-3;
-  def.bending_model = GENERATE(BendingModel::hinges, BendingModel::quadratic);
+  def.bending_model = BendingModel::hinges;
   const ClothModel<double> model = build_cloth<double>(def);
-  CHECK(model.hinges.empty() == (def.bending_model == BendingModel::quadratic));
   const double angle = GENERATE(0.0, 0.4, 1.0, 1.5);
   constexpr double kCurvature = 1e-3;
   Vec3Array<double> x = model.rest_positions;
@@ -198,7 +187,7 @@ TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hin
     change(def);
     const ClothModel<float> model = build_cloth<float>(def);
     CHECK(!model.hinges.empty());
-    CHECK(model.parts[0].hinge_stencils.empty());
+    CHECK(model.parts[0].bending_links.empty());
   }
 }
 

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/cloth/neighbours.h"
+#include "core/types.h"
+
+// Slope of a field across the edges of a flat mesh, from its values at the particles.
+
+namespace weft {
+
+/// An edge and the one or two triangles at it.
+struct EdgeSides {
+  Edge ends = {kNone, kNone};
+  std::array<Index, 2> triangle = {kNone, kNone};
+  std::array<Index, 2> opposite = {kNone, kNone};  ///< their third corners
+
+  bool is_border() const { return triangle[1] == kNone; }
+};
+
+/// All edges of triangles, at most two of which share one, sorted by their ends.
+std::vector<EdgeSides> sides_of(const std::vector<Triangle>& triangles);
+
+/// A particle's share in a linear function of a field.
+struct ParticleWeight {
+  Index particle = kNone;
+  double weight = 0;
+};
+
+/// Adds to the particle's weight in a short list.
+void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list);
+
+/// Finds the slopes across the edges of a mesh. The mean of the slopes in both triangles, weighted
+/// such that the curvature across drops out, is exact for quadratic fields where the triangles make
+/// a parallelogram. Elsewhere, and on the border, the least change of weights within the triangles'
+/// surroundings makes it so.
+class EdgeSlopes {
+ public:
+  /// @param x  of a mesh whose triangles are flat together wherever they meet [m]
+  EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles);
+
+  const std::vector<EdgeSides>& edges() const { return edges_; }
+
+  /// The edges of a triangle, opposite to each corner.
+  const std::array<Index, 3>& edges_of(std::size_t triangle) const { return of_[triangle]; }
+
+  /// Weights that give the slope at the middle of the edge in its plane and at right angles to it,
+  /// into its first triangle [1/m]. They are exact for linear fields, and for quadratic ones as far
+  /// as the mesh around the edge tells these apart.
+  std::vector<ParticleWeight> across(const EdgeSides& edge) const;
+
+ private:
+  struct Frame;
+  using Members = std::vector<Index>;
+
+  Frame frame_of(const EdgeSides& edge) const;
+  Members nearest(const EdgeSides& edge) const;
+  Members grown(const Members& members) const;
+
+  const Vec3Array<double>& x_;
+  const std::vector<Triangle>& triangles_;
+  std::vector<EdgeSides> edges_;
+  std::vector<std::array<Index, 3>> of_;  // edges of each triangle
+  Neighbours neighbours_;
+};
+
+}  // namespace weft

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+
+// Bending of a mesh that is flat at rest.
+
+namespace weft {
+
+/// Links of the quadratic form with the energy density 1/2 (B_w |x_uu|^2 + B_f |x_vv|^2 + (B_w +
+/// B_f) |x_uv|^2), the same as that of a grid; between particles counted from the part's first.
+///
+/// Each triangle has one curvature, which follows from the slopes across the middles of its edges
+/// (Morley 1968; as mid-edge normals Grinspun, Gingold, Reisman, Zorin 2006). These are no unknowns
+/// here: they are taken from nearby particles, exactly for quadratic fields, and alike for both
+/// triangles at an edge. So a constant curvature has the continuum's energy in any direction on any
+/// triangles and no force inside, what has no energy is flat, and no fold has less than a part of
+/// what hinges would give it.
+/// @param model  of one part; its mesh must be flat at rest, and its `material` gives the threads
+template <class Real>
+std::vector<BendingLink> mesh_bending_links(const FabricDef& fabric, const ClothModel<Real>& model);
+
+}  // namespace weft
