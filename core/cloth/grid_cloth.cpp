@@ -86,8 +86,8 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
       static_cast<Real>((fabric.bending_warp + fabric.bending_weft) / (cell_u * cell_v))};
   model.hinges.clear();
   part.hinges = {};
-  visit_bending_stencils(part,
-                         [&](double, const Index*, const double*, int) { ++part.bending_stencils; });
+  visit_bending_stencils(
+      part, [&](double, const Index*, const double*, int) { ++part.bending_stencils; });
   bound_quadratic_bending(model, part);
 }
 
