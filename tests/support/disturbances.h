@@ -49,15 +49,19 @@ double energy_of(const World<Real>& world) {
       .energies.total();
 }
 
+/// The size of the velocities of noise [m/s].
+inline constexpr double kNoiseSpeed = 20;
+
 /// Throws the free particles or puts them into the ball.
 template <class Real>
-void disturb_particles(ClothState<Real>& state, Disturbance kind, Random& random) {
+void disturb_particles(ClothState<Real>& state, Disturbance kind, double noise_speed,
+                       Random& random) {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     if (state.inverse_mass[i] == 0) continue;
     if (kind == Disturbance::noise) {
       Vec3d v = random.vector(1);
       while (v.norm() > 1 || v.norm() < 1e-3) v = random.vector(1);
-      state.v[i] = (v.normalized() * 20).template cast<Real>();
+      state.v[i] = (v.normalized() * noise_speed).template cast<Real>();
     } else {
       state.x[i] = (Vec3d(0.5, -0.5, 0) + random.vector(5e-4)).template cast<Real>();
     }
@@ -68,7 +72,8 @@ void disturb_particles(ClothState<Real>& state, Disturbance kind, Random& random
 /// of it is done at once where particles are moved or thrown.
 /// @param seed  of the random directions and places
 template <class Real>
-DisturbanceEffect disturb(World<Real>& world, Disturbance kind, unsigned seed = 20) {
+DisturbanceEffect disturb(World<Real>& world, Disturbance kind, unsigned seed = 20,
+                          double noise_speed = kNoiseSpeed) {
   DisturbanceEffect effect;
   effect.before = energy_of(world);
   const auto work_of = [&](auto&& change) {
@@ -79,7 +84,7 @@ DisturbanceEffect disturb(World<Real>& world, Disturbance kind, unsigned seed = 
   };
   if (kind != Disturbance::teleport) {
     Random random(seed);
-    work_of([&](ClothState<Real>& state) { disturb_particles(state, kind, random); });
+    work_of([&](ClothState<Real>& state) { disturb_particles(state, kind, noise_speed, random); });
     return effect;
   }
   const auto first = world.state().x.front();
