@@ -10,7 +10,6 @@
 
 namespace weft::proto {
 
-nlohmann::ordered_json json_of(const Fan& fan);
 nlohmann::ordered_json json_of(const Strain& strain);
 nlohmann::ordered_json json_of(const Energy& energy);
 nlohmann::ordered_json json_of(const Crossings& crossings);

@@ -134,7 +134,7 @@ Json json_of(const State& state) {
           {"air_density", state.air_density},
           {"still_air", state.still_air},
           {"drag", state.drag},
-          {"fans", json_of(state.fans)},
+          {"fans", CommandWriter::json_of(state.fans)},
           {"fabric", state.fabric},
           {"solver", state.solver},
           {"substeps", state.substeps},
@@ -154,13 +154,8 @@ Json json_of(const ViewerInfo& viewer) {
               {"color", viewer.color},
               {"role", viewer.role},
               {"camera", nullptr}};
-  if (viewer.camera) put_camera(out["camera"], *viewer.camera);
+  if (viewer.camera) put_fields(out["camera"], *viewer.camera);
   return out;
-}
-
-Json json_of(const Fan& fan) {
-  return {{"position", fan.position}, {"direction", fan.direction}, {"speed", fan.speed},
-          {"radius", fan.radius},     {"spread", fan.spread},       {"reach", fan.reach}};
 }
 
 Json json_of(const PinInfo& pin) {

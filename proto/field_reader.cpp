@@ -36,6 +36,11 @@ const json* FieldReader::find(const char* key) const {
   return it == object_.end() || it->is_null() ? nullptr : &*it;
 }
 
+bool FieldReader::is_true(const char* key) const {
+  const json* node = find(key);
+  return node != nullptr && node->is_boolean() && node->get<bool>();
+}
+
 const json* FieldReader::require(const char* key) {
   if (!ok()) return nullptr;
   const json* node = find(key);

@@ -13,7 +13,6 @@
 #include "proto/error.h"
 #include "proto/limits.h"
 #include "proto/types.h"
-#include "proto/words.h"
 
 namespace weft::proto {
 
@@ -28,6 +27,7 @@ class FieldReader {
   bool ok() const { return !error_; }
   const std::optional<Error>& error() const { return error_; }
   bool has(const char* key) const { return find(key) != nullptr; }
+  bool is_true(const char* key) const;
 
   // Required fields. On error `value` is unchanged.
   void read(const char* key, bool& value);
@@ -54,7 +54,7 @@ class FieldReader {
         return;
       }
     }
-    fail(word_error(key, text, list_words(words)));
+    fail(word_error(key, text, {words.begin(), words.end()}));
   }
 
   /// The same for an optional field: without it `value` keeps its default.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/commands.h"
+#include "proto/messages/command_writer.h"
 
 // Parts that several messages share. Included only by the encoders.
 
@@ -29,11 +30,11 @@ inline void put_id(nlohmann::ordered_json& out, const Id& id) {
   }
 }
 
-inline void put_camera(nlohmann::ordered_json& out, const Camera& camera) {
-  out["position"] = camera.position;
-  out["target"] = camera.target;
-  out["up"] = camera.up;
-  out["fov"] = camera.fov;
+/// Adds the fields of a command, or of a part of one.
+template <class Described>
+void put_fields(nlohmann::ordered_json& out, const Described& part) {
+  CommandWriter writer(out);
+  Described::describe(writer, part);
 }
 
 }  // namespace weft::proto

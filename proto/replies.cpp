@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const ViewerCamera& camera) {
   Json out = {{"viewer", camera.viewer}};
-  put_camera(out, camera.camera);
+  put_fields(out, camera.camera);
   return out;
 }
 

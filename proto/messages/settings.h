@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "proto/limits.h"
+#include "proto/messages/field.h"
+#include "proto/types.h"
+
+// The command `set`: forces and settings of a room.
+
+namespace weft::proto {
+
+/// A local wind; README.md section 5 defines its numbers.
+struct Fan {
+  Vec3 position{}, direction{};
+  double speed = 5;
+  double radius = 0.25;
+  double spread = 0.2;
+  double reach = 1.5;
+  bool operator==(const Fan&) const = default;
+
+  static void describe(auto& io, auto& fan) {
+    io.required(Field{"position", "centre of the disc that its air leaves", kPositionRange, "m"},
+                fan.position);
+    io.required(
+        Field{"direction", "of the jet, any length but 0", kPositionRange, "", Form::direction},
+        fan.direction);
+    io.optional(Field{"speed", "in the core of the jet", kFanSpeedRange, "m/s"}, fan.speed);
+    io.optional(Field{"radius", "of the disc", kFanRadiusRange, "m"}, fan.radius);
+    io.optional(Field{"spread", "growth of the jet's radius per distance", kFanSpreadRange},
+                fan.spread);
+    io.optional(Field{"reach", "length of the core", kFanReachRange, "m"}, fan.reach);
+  }
+};
+
+/// The room's remedy if ticks exceed their time budget.
+enum class OverBudget : std::uint8_t { slow, soften };
+template <>
+inline constexpr std::array<const char*, 2> kWords<OverBudget> = {"slow", "soften"};
+
+/// All are applied or, if one is refused, none.
+struct Set {
+  std::optional<Vec3> gravity, wind;
+  std::optional<double> gust_speed, gust_length, air_density;
+  std::optional<bool> still_air;
+  std::optional<double> drag;
+  std::optional<std::vector<Fan>> fans;
+  std::optional<double> softness, budget_ms;
+  std::optional<OverBudget> over_budget;
+  bool operator==(const Set&) const = default;
+
+  static constexpr const char* kOp = "set";
+  static void describe(auto& io, auto& set) {
+    io.optional(Field{"gravity", "acceleration", kGravityRange, "m/s²"}, set.gravity);
+    io.optional(Field{"wind", "mean velocity", kWindRange, "m/s"}, set.wind);
+    io.optional(Field{"gust_speed", "typical speed of the gusts", kGustSpeedRange, "m/s"},
+                set.gust_speed);
+    io.optional(Field{"gust_length", "size of an eddy", kGustLengthRange, "m"}, set.gust_length);
+    io.optional(Field{"air_density", "of the air", kAirDensityRange, "kg/m³"}, set.air_density);
+    io.optional(Field{"still_air", "air resists without wind too"}, set.still_air);
+    io.optional(Field{"drag", "uniform damping of velocities", kDragRange, "1/s"}, set.drag);
+    io.optional(Field{"fans", "all local winds", {0, kMostFans}}, set.fans);
+    io.optional(Field{"softness", "fraction of the springs' stiffness", kSoftnessRange},
+                set.softness);
+    io.optional(Field{"budget_ms", "for each tick that is due; 0: no bound", kBudgetRange, "ms"},
+                set.budget_ms);
+    io.optional(Field{"over_budget", "what gives way beyond it"}, set.over_budget);
+    io.one_at_least("set has nothing to set");
+  }
+};
+
+}  // namespace weft::proto
