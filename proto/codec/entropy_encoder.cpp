@@ -126,6 +126,11 @@ void EntropyEncoder::code_tokens(Bytes& out) {
   for (std::size_t j = tokens_.size(); j-- > 0;) {
     const Symbol& symbol = symbols_[tokens_[j] >> 6U][tokens_[j] & 63U];
     std::uint32_t x = states[j & 1U];
+    // Whether a byte is due is as good as random, so it is written in any case, and kept if it is.
+    const std::uint32_t due = x >= symbol.limit ? 1 : 0;
+    front[-1] = static_cast<std::uint8_t>(x);
+    front -= due;
+    x >>= 8 * due;
     while (x >= symbol.limit) {
       *--front = static_cast<std::uint8_t>(x);
       x >>= 8U;

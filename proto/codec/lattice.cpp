@@ -41,6 +41,14 @@ double power_of_two_above(double value) {
   return std::ldexp(1.0, exponent);
 }
 
+/// Whether all are finite numbers. Adding to an exponent that is all ones overflows into the sign.
+bool are_finite(std::span<const float> values) {
+  std::uint32_t overflow = 0;
+  for (const float x : values)
+    overflow |= (std::bit_cast<std::uint32_t>(x) & 0x7f800000U) + 0x00800000U;
+  return overflow >> 31U == 0;
+}
+
 /// How far rounding to float moves a point whose coordinates are below a power of two [m].
 double rounding_at(double reach) {
   return std::sqrt(3.0) * kRounding * reach;
@@ -68,6 +76,7 @@ Bounds bounds_of(std::span<const float> positions) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
   bounds.low = {kFar, kFar, kFar};
   bounds.high = {-kFar, -kFar, -kFar};
+  if (!are_finite(positions)) return {bounds.high, bounds.low};
   for (std::size_t i = 0; i + 2 < positions.size(); i += 3)
     for (std::size_t c = 0; c < 3; ++c) {
       const float x = positions[i + c];
@@ -80,6 +89,7 @@ Bounds bounds_of(std::span<const float> positions) {
 std::optional<Lattice> make_lattice(const Bounds& bounds, double error, double least_reach) {
   assert(error > 0);
   const double largest = std::max(1.0, largest_coordinate(bounds));
+  if (!std::isfinite(largest)) return std::nullopt;
   // With room to grow, or without where the rounding of large coordinates leaves none.
   double reach = power_of_two_above(std::max(kRoomToGrow * largest, least_reach));
   if (rounding_at(reach) >= error / 2) reach = power_of_two_above(largest / kInside);

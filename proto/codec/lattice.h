@@ -43,7 +43,8 @@ struct Integers {
   bool operator==(const Integers&) const = default;
 };
 
-/// The box around positions.
+/// The box around positions; without end if a coordinate is no finite number, so that no lattice
+/// holds them.
 struct Bounds {
   std::array<float, 3> low{}, high{};
 };

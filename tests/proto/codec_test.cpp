@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
@@ -163,6 +164,26 @@ TEST_CASE("A lattice is refused where floats or 2^20 steps cannot keep the bound
   const auto lattice = make_lattice({{0, 0, 0}, {1, 1, 1}}, 1e-5, 0);
   REQUIRE(lattice);
   CHECK_FALSE(holds(*lattice, {{0, 0, 0}, {1, 1, 3}}));  // beyond its reach
+}
+
+TEST_CASE("Positions of which one coordinate is no finite number have no lattice") {
+  std::mt19937 random(12);
+  const std::vector<float> positions = scattered(random, 9, 0.5, 1);
+  const auto lattice = make_lattice(bounds_of(positions), 1e-4, 0);
+  REQUIRE(lattice);
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), -std::nanf("1"),
+        std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()})
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      std::vector<float> broken = positions;
+      broken[i] = bad;
+      const Bounds bounds = bounds_of(broken);
+      CHECK_FALSE(make_lattice(bounds, 1e-4, 0));
+      CHECK_FALSE(holds(*lattice, bounds));
+    }
+  std::vector<float> large = positions;
+  large[4] = std::numeric_limits<float>::max();
+  CHECK(std::isfinite(bounds_of(large).high[1]));
 }
 
 TEST_CASE("A stream is exact in any order of predictions, over any ages of references") {
