@@ -8,15 +8,17 @@
 
 #include "core/scenes/scene_parts.h"
 #include "core/world/world.h"
+#include "tests/support/sheets_of_triangles.h"
 
 namespace weft::bench {
 namespace {
 
-constexpr int kWarmUp = 120;  // ticks
+constexpr int kWarmUp = 120;               // ticks
+constexpr double kSize = 1.5, kTop = 2.2;  // of the cloth, and its upper edge [m]
 
 WorldDef definition(const std::string& motion, int side) {
   WorldDef def;
-  def.cloths[0] = hanging_cloth(side, side, 1.5, 1.5, 2.2, 0);
+  def.cloths[0] = hanging_cloth(side, side, kSize, kSize, kTop, 0);
   for (int k = 0; k < 9; ++k) def.pins.push_back({MaterialPoint{k / 8.0, 0}, 0.02, {}});
   def.environment.damping = 0.1;
   if (motion == "gusts") {
@@ -30,25 +32,25 @@ WorldDef definition(const std::string& motion, int side) {
   return def;
 }
 
-void add_triangles(int side, Recording& recording) {
-  const auto n = static_cast<std::uint32_t>(side);
-  for (std::uint32_t i = 0; i + n < n * n; ++i) {
-    if (i % n + 1 == n) continue;
-    recording.triangles.insert(recording.triangles.end(),
-                               {i, i + n, i + 1, i + 1, i + n, i + n + 1});
-  }
+/// A cloth like that of `definition`, of random triangles.
+ClothDef random_mesh(int side) {
+  ClothDef sheet = test::triangle_sheet(test::Cut::irregular, kSize, kSize, kSize / (side - 1));
+  sheet.fabric = ClothDef{}.fabric;
+  for (Vec3d& p : sheet.mesh->mesh.positions) p += Vec3d(-kSize / 2, kTop, 0);
+  return sheet;
 }
 
-}  // namespace
-
-Recording record_motion(const std::string& motion, int side, int frames) {
-  World<float> world(definition(motion, side), {});
+Recording record(const WorldDef& def, const std::string& motion, int frames) {
+  World<float> world(def, {});
   Recording recording;
   recording.motion = motion;
-  recording.mesh = "grid";
-  const auto n = static_cast<std::uint32_t>(side);
-  recording.cloth = {0, n * n, 0, 2 * (n - 1) * (n - 1), n, n};
-  add_triangles(side, recording);
+  const std::size_t count = world.state().x.size();
+  const auto& triangles = world.model().triangles;
+  recording.cloth = {
+      0, static_cast<std::uint32_t>(count), 0, static_cast<std::uint32_t>(triangles.size()), 0, 0};
+  for (const Triangle& triangle : triangles)
+    for (const Index corner : triangle)
+      recording.triangles.push_back(static_cast<std::uint32_t>(corner));
   double speeds = 0;
   for (int tick = 0; tick < kWarmUp + frames; ++tick) {
     if (world.step().divergence) throw std::runtime_error("the cloth diverged");
@@ -57,7 +59,24 @@ Recording record_motion(const std::string& motion, int side, int frames) {
     for (const Vec3<float>& x : world.state().x) frame.insert(frame.end(), {x[0], x[1], x[2]});
     for (const Vec3<float>& v : world.state().v) speeds += static_cast<double>(v.norm());
   }
-  recording.mean_speed = speeds / static_cast<double>(n * n) / frames;
+  recording.mean_speed = speeds / static_cast<double>(count) / frames;
+  return recording;
+}
+
+}  // namespace
+
+Recording record_motion(const std::string& motion, int side, int frames) {
+  Recording recording = record(definition(motion, side), motion, frames);
+  recording.mesh = "grid";
+  recording.cloth.rows = recording.cloth.columns = static_cast<std::uint32_t>(side);
+  return recording;
+}
+
+Recording record_random_mesh(const std::string& motion, int side, int frames) {
+  WorldDef def = definition(motion, side);
+  def.cloths[0] = random_mesh(side);
+  Recording recording = record(def, motion, frames);
+  recording.mesh = "random";
   return recording;
 }
 

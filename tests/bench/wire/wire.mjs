@@ -10,6 +10,7 @@ import { FrameDecoder, decodeMesh, orderOf } from '../../../proto/js/index.js';
 
 const [folder, module] = process.argv.slice(2);
 const LEVEL = 2; // meshoptimizer's default
+const KEY = 1;
 
 /** The smaller one of what the encoder makes of 16-bit and of 32-bit differences. */
 class Meshoptimizer {
@@ -76,13 +77,13 @@ function measure(row, meshoptimizer) {
     times.push(cpuMilliseconds() - start);
   }
   const sizes = [];
-  let last = null;
+  let last = null; // the numbers before; those on another lattice are none
   const differences = new Int32Array(3 * (vertices + 1));
   const decoder = new FrameDecoder(order);
   for (const frame of meshoptimizer ? frames : []) {
-    decoder.decode(frame);
+    const { flags } = decoder.decode(frame);
     const { numbers } = decoder;
-    if (last) {
+    if (last && !(flags & KEY)) {
       for (let i = 0; i < numbers.length; ++i) differences[i] = numbers[i] - last[i];
       sizes.push(meshoptimizer.size(differences, vertices) / vertices);
     }
@@ -95,19 +96,19 @@ function measure(row, meshoptimizer) {
 const meshoptimizer = await Meshoptimizer.load(module);
 const general = meshoptimizer ? `differences + meshoptimizer ${meshoptimizer.version}` : 'none';
 console.log(`B a vertex and frame, headers included; general compressor: ${general}`);
-console.log('motion mesh  m/s     bound   error  float32 int16 general packed (p95)  ratio | ms encode decode JS');
+console.log('motion mesh   m/s    bound   error  float32 int16 (error) general packed (p95)  ratio | ms encode decode JS');
 for (const row of JSON.parse(readFileSync(join(folder, 'wire.json'), 'utf8'))) {
   const { script, general: other } = measure(row, meshoptimizer);
   const millimetres = (metres) => (1e3 * metres).toFixed(4);
   console.log(
     [
       row.motion.padEnd(6),
-      row.mesh.padEnd(5),
+      row.mesh.padEnd(6),
       row.mean_speed.toFixed(4),
       `${1e3 * row.error_bound} mm`.padEnd(7),
       millimetres(row.largest_error),
       row.float32_bytes.toFixed(2),
-      row.int16_bytes.toFixed(2),
+      `${row.int16_bytes.toFixed(2)} (${millimetres(row.int16_largest_error)})`,
       Number.isNaN(other) ? '-' : other.toFixed(3),
       `${row.packed_bytes.toFixed(3)} (${row.packed_bytes_p95.toFixed(3)})`,
       Number.isNaN(other) ? '-' : (row.packed_bytes / other).toFixed(3),
