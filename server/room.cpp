@@ -205,9 +205,11 @@ void Room::finish_turn() {
   }
   const bool stands = !ticking() && !advance_ && now - last_tick_done_ >= kStandingPause;
   if (stands) {
-    within_limit([this] {
-      if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
-    });
+    within_limit(
+        [this] {
+          if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
+        },
+        kBetweenTicks);
     tell_guarantee();
   }
   tell_changes_if_due(now);

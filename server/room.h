@@ -164,7 +164,7 @@ class Room {
   void note_halt();
   void end_advance(proto::ErrorCode code, const std::string& why, const char* hint);
   template <class Work>
-  bool within_limit(Work&& work);
+  bool within_limit(Work&& work, double share = 1);
 
   // room.cpp: viewers that come and go, and ticks
   void join(proto::ViewerId id, const Join& join);
@@ -319,13 +319,18 @@ class Room {
   std::vector<proto::ReactionSample> reaction_samples_;
 };
 
-/// Runs work that the limit may end.
+/// Share of a tick's limit that what is computed between two ticks may take [1]: with the default
+/// limit nobody waits a second for it. Larger: others wait longer. Smaller: contacts of large
+/// scenes are refused to those who ask.
+inline constexpr double kBetweenTicks = 0.4;
+
+/// Runs work that the limit, or a share of it, may end.
 /// @returns false if it did
 template <class Work>
-bool Room::within_limit(Work&& work) {
+bool Room::within_limit(Work&& work, double share) {
   try {
     std::optional<WorkLimit::Scope> scope;
-    if (options_.limit) scope.emplace(*options_.limit);
+    if (options_.limit) scope.emplace(*options_.limit, share);
     work();
     return true;
   } catch (const Stopped&) {

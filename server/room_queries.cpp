@@ -104,7 +104,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       break;
     }
     case proto::QueryWhat::crossings:
-      if (!within_limit([&] { guarantee_.count(*world_); })) throw Stopped();
+      if (!within_limit([&] { guarantee_.count(*world_); }, kBetweenTicks)) throw Stopped();
       reply.data = guarantee_.count(*world_);
       tell_guarantee();
       break;
@@ -129,10 +129,10 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   return proto::Reply(std::move(reply));
 }
 
-/// Looks one tick ahead, within a tick's limit. Throws Stopped beyond it.
+/// Looks one tick ahead. Throws Stopped if that takes more than what is allowed between two ticks.
 Reactions Room::coming_reactions() {
   Reactions found;
-  if (!within_limit([&] { found = world_->coming_reactions(); })) throw Stopped();
+  if (!within_limit([&] { found = world_->coming_reactions(); }, kBetweenTicks)) throw Stopped();
   return found;
 }
 

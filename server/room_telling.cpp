@@ -115,7 +115,7 @@ void Room::show_to(proto::ViewerId viewer) {
 /// A frame of the present state.
 Frame Room::encode_frame() {
   measure_forces();
-  within_limit([this] { world_->measure_present_forces(); });
+  within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
   grab_samples_.clear();
   for (const Grab<float>& grab : world_->grabs().list) {
     const auto hand = std::find_if(hands_.begin(), hands_.end(),

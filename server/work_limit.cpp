@@ -16,7 +16,8 @@ double read_clock(clockid_t clock) {
 
 }  // namespace
 
-void WorkLimit::begin() {
+void WorkLimit::begin(double share) {
+  share_ = share;
   clockid_t clock = CLOCK_MONOTONIC;
   if (!clock_ && pthread_getcpuclockid(pthread_self(), &clock) == 0) thread_clock_ = clock;
   begun_ = now();
@@ -32,7 +33,7 @@ double WorkLimit::spent() const {
 }
 
 bool WorkLimit::is_over() const {
-  return seconds_ > 0 && spent() > seconds_;
+  return seconds_ > 0 && spent() > seconds_ * share_;
 }
 
 LimitWatch::LimitWatch(WorkLimit& limit)

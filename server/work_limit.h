@@ -32,7 +32,10 @@ class WorkLimit {
   /// Bounds the work on this thread during its lifetime.
   class Scope {
    public:
-    explicit Scope(WorkLimit& limit) : limit_(limit), stop_(&limit.signal_) { limit.begin(); }
+    /// @param share  of the bound that this work may take [1], 0 to 1
+    explicit Scope(WorkLimit& limit, double share = 1) : limit_(limit), stop_(&limit.signal_) {
+      limit.begin(share);
+    }
     ~Scope() { limit_.end(); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -53,7 +56,7 @@ class WorkLimit {
   }
 
  private:
-  void begin();
+  void begin(double share);
   void end() { working_.store(false, std::memory_order_release); }
   double now() const;
 
@@ -62,6 +65,7 @@ class WorkLimit {
   StopSignal signal_;
   std::atomic<clockid_t> thread_clock_ = CLOCK_MONOTONIC;  ///< of the working thread
   std::atomic<double> begun_ = 0;
+  std::atomic<double> share_ = 1;  ///< of the bound, for the current work
   std::atomic<bool> working_ = false;
 };
 

@@ -33,7 +33,7 @@ struct HaltingRoom {
     room = std::make_unique<TestRoom>(paused, std::vector<std::pair<std::string, std::string>>{},
                                       options);
     hand.limit.signal().attend = [this] {
-      if (seen++ == stop) hand.now += 3;
+      if (seen++ == stop) hand.now += takes;
       if (at_stop) at_stop();
       return room->room->gives_up();
     };
@@ -48,6 +48,7 @@ struct HaltingRoom {
 
   HandLimit hand;
   int seen = 0, stop = -1;
+  double takes = 3;               ///< CPU time at the chosen stop point [s]
   std::function<void()> at_stop;  ///< done at each stop point
   std::unique_ptr<TestRoom> room;
 };
@@ -312,6 +313,25 @@ TEST_CASE("a scene is built beside the running one, which goes on until it is re
   t.clock.now += 0.3;  // after what was sent to all its viewer pauses
   t.room->finish_turn();
   CHECK(t.output.last("result", 2)["tick"] == 0);
+}
+
+TEST_CASE("what is computed between two ticks may take two fifths of a tick's limit") {
+  HaltingRoom t(true);
+  t.room->join(1);
+  for (const char* what : {"contacts", "reactions", "crossings"}) {
+    INFO(what);
+    const std::string query = std::string(R"({"op":"query","id":1,"what":")") + what + "\"}";
+    t.takes = 0.7;
+    t.halt_at(0);
+    CHECK(t.room->say(1, query)["op"] == "result");
+    t.takes = 0.9;
+    t.halt_at(0);
+    CHECK(t.room->say(1, query)["code"] == "too_costly");
+    t.takes = 1.9;
+    t.halt_at(0);
+    CHECK(t.room->say(1, R"({"op":"advance","id":2,"n":1})")["op"] == "result");
+  }
+  CHECK(t.get().world().tick() == 3);
 }
 
 TEST_CASE("a load that fails, however it fails, leaves scene, epoch and clock alone") {
