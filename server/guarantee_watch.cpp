@@ -25,13 +25,16 @@ void GuaranteeWatch::start(const ServedWorld& world, ComingStarts starts) {
   crossings_at_start_.reset();
   began_ = false;
   starts_ = std::move(starts);
-  if (pause_ > 0) crossings_at_start_ = count(world);
+  try {
+    if (pause_ > 0) crossings_at_start_ = count(world);
+  } catch (const Stopped&) {  // it took too long, and is tried again when there is time
+  }
   restart();
 }
 
 void GuaranteeWatch::restart() {
   crossings_ = crossings_at_start_;
-  uncounted_ = 0;
+  uncounted_ = crossings_ ? 0 : 1;
   bad_starts_ = {};
   voided_.clear();
   news_.clear();
@@ -83,12 +86,13 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   if (crossings_ && uncounted_ == 0) return *crossings_;
   const double start = clock_();
   // A count that takes too long is retried as late as if it had finished.
-  next_count_ = start + kCountPatience / kCountShare;
+  next_count_ = next_try_ = start + kCountPatience / kCountShare;
   std::vector<Meeting> meetings;
   const proto::Crossings counted = crossings_of(world, counter_, meetings);
   if (began_ && !bad_starts_.what.empty()) counter_.find_in_rounds(world, meetings);
   crossings_ = counted;
   uncounted_ = 0;
+  next_try_ = 0;
   displaced_ = false;
   // Before the first tick the look-ahead knows more.
   if (began_) {
@@ -111,7 +115,7 @@ bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
 }
 
 bool GuaranteeWatch::count_if_stale(const ServedWorld& world) {
-  if (pause_ == 0 || uncounted_ == 0) return false;
+  if (pause_ == 0 || uncounted_ == 0 || clock_() < next_try_) return false;
   count(world);
   return true;
 }

@@ -26,7 +26,7 @@ class GuaranteeWatch {
   /// @param clock  [s], for spacing the counts
   GuaranteeWatch(std::uint32_t pause, Clock clock) : pause_(pause), clock_(std::move(clock)) {}
 
-  /// Takes another world, at its start.
+  /// Takes another world, at its start. A stop signal of the thread ends only its first count.
   /// @param starts  faults that its first tick will find
   void start(const ServedWorld& world, ComingStarts starts);
   /// The same world is back at its start.
@@ -62,6 +62,7 @@ class GuaranteeWatch {
   std::optional<proto::Crossings> crossings_, crossings_at_start_;
   std::uint32_t uncounted_ = 0;      ///< ticks since the last count
   double next_count_ = 0;            ///< earliest time of the next one [s]
+  double next_try_ = 0;              ///< the same after one that took too long; 0: none did [s]
   ComingStarts starts_;              ///< found by the look-ahead
   BadStarts bad_starts_;             ///< announced starts, and other crossings
   std::vector<Meeting> meetings_;    ///< which pairs cross, as last counted or at the start

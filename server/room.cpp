@@ -66,7 +66,7 @@ void Room::start_world(BuiltScene&& scene) {
   output_.offer_mesh(mesh_.hash, mesh_bytes_, {epoch_, std::move(scene.order)});
   wanted_softness_ = 1;
   budget_.restart(world_->def().budget, {});
-  guarantee_.start(*world_, std::move(scene.bad_starts));
+  within_limit([&] { guarantee_.start(*world_, std::move(scene.bad_starts)); }, kBetweenTicks);
   output_.set_frame_rate(world_->def().tick_rate * speed());
 }
 

@@ -45,13 +45,13 @@ void Room::take_meanwhile(Inbound item) {
   if (in_tick_ && first && !advance_ &&
       (is_beside_the_cloth(item) || std::holds_alternative<Join>(item.what)))
     return take_now(std::move(item));
-  gives_up_ = gives_up_ || is<proto::Reset>(item);
+  gives_up_ = gives_up_ || (is<proto::Reset>(item) && first && !must_wait(item));
   waiting_.push_back(std::move(item));
 }
 
 bool Room::gives_up() {
   over_limit_ = options_.limit && options_.limit->is_over();
-  return over_limit_ || (in_tick_ && (gives_up_ || (building_ && building_->build->done())));
+  return over_limit_ || (in_tick_ && (gives_up_ || (building_ && building_->build->succeeded())));
 }
 
 /// Whether it has to wait. An `advance` and a `load` hold up only the later commands of their own
@@ -64,7 +64,8 @@ bool Room::must_wait(const Inbound& item) const {
   return viewer->second.next_turn > clock_();
 }
 
-/// Runs the waiting items in order; those of one viewer never overtake each other.
+/// Runs the waiting items in order; those of one viewer never overtake each other, except a pause
+/// that ends its own advance, behind which the others wait.
 void Room::work_off() {
   finish_build();
   const double start = clock_();
@@ -77,7 +78,10 @@ void Room::work_off() {
       held.clear();
       continue;
     }
-    if (std::find(held.begin(), held.end(), item.viewer) != held.end() || must_wait(item)) {
+    const bool ends_its_advance =
+        advance_ && advance_->viewer == item.viewer && is<proto::Pause>(item);
+    const bool behind = std::find(held.begin(), held.end(), item.viewer) != held.end();
+    if ((behind && !ends_its_advance) || must_wait(item)) {
       held.push_back(item.viewer);
       ++k;
       continue;

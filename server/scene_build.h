@@ -62,6 +62,8 @@ class SceneBuild {
   void cancel();
 
   bool done() const { return done_.load(std::memory_order_acquire); }
+  /// Whether there is a scene to take: a build that failed replaces nothing.
+  bool succeeded() const { return done() && !failure_; }
   bool cancelled() const { return cancelled_.load(std::memory_order_acquire); }
   /// The result, once it is done. Throws what building threw.
   BuiltScene take();

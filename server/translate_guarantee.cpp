@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/world/object_name.h"
+
 namespace weft::server {
 
 proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
@@ -17,7 +19,7 @@ proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter
 std::vector<std::string> voiding_colliders(const ServedWorld& world) {
   std::vector<std::string> names;
   for (std::size_t k = 0; k < world.colliders().size(); ++k)
-    if (world.colliders()[k].voided) names.push_back(world.def().colliders[k].name);
+    if (world.colliders()[k].voided) names.push_back(object_name(world.def(), k));
   return names;
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/geometry/distance.h"
 #include "core/world/constants.h"
+#include "core/world/object_name.h"
 
 namespace weft {
 namespace {
@@ -178,9 +179,9 @@ void add_meetings(const World<Real>& world, const std::vector<Meeting>& meetings
       const auto k = static_cast<std::size_t>(m.collider);
       if (world.colliders()[k].voided) continue;  // it was forced there
       const std::string inside =
-          cloth_name(def, m.cloth) + " started inside " + def.colliders[k].name;
+          cloth_name(def, m.cloth) + " started inside " + object_name(def, k);
       if (has(to.what, inside)) continue;
-      through = has(known, inside) ? inside : through + def.colliders[k].name;
+      through = has(known, inside) ? inside : through + object_name(def, k);
     } else {
       through += m.other == m.cloth ? "itself" : cloth_name(def, m.other);
     }

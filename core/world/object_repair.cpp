@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/geometry/mesh_repair.h"
+#include "core/world/object_name.h"
 
 namespace weft {
 
@@ -13,8 +14,7 @@ std::vector<std::string> repair_objects(WorldDef& def) {
   for (std::size_t k = 0; k < def.colliders.size(); ++k) {
     auto* const shape = std::get_if<MeshDef>(&def.colliders[k].shape);
     if (!shape) continue;
-    const std::string& given = def.colliders[k].name;
-    const std::string name = given.empty() ? "object " + std::to_string(k) : given;
+    const std::string name = object_name(def, k);
     const MeshRepair done = repair(shape->mesh);
     if (done.dropped > 0)
       told.push_back(

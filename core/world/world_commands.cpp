@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
 #include "core/world/constants.h"
+#include "core/world/object_name.h"
 #include "core/world/state_hash.h"
 #include "core/world/world.h"
 
@@ -248,7 +249,7 @@ std::vector<std::string> World<Real>::bad_starts() const {
   const auto name_of = [this](Index k) { return cloth_name(def_, k); };
   for (const BadStart<Real>& start : contact_.bad_starts()) {
     if (colliders_[start.collider].voided) continue;  // it was forced there
-    list.push_back(name_of(start.cloth) + " started inside " + def_.colliders[start.collider].name);
+    list.push_back(name_of(start.cloth) + " started inside " + object_name(def_, start.collider));
   }
   if (!guard_ || guard_->open_pairs() == 0) return list;
   for (const auto& [one, other] : guard_->tangled_cloths())

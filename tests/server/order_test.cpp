@@ -275,6 +275,37 @@ TEST_CASE("its viewer and every other one can end an advance") {
   }
 }
 
+TEST_CASE("a pause ends an advance of its viewer although other commands wait behind that") {
+  TestRoom t;
+  t.join(1);
+  t.tell(1, R"({"op":"advance","id":1,"n":100000})");
+  t.room->advance_until(0);
+  t.tell(1, R"({"op":"hash","id":2})");
+  t.tell(1, R"({"op":"pause","id":3})");
+  CHECK_FALSE(t.room->advancing());
+  t.room->finish_turn();
+  CHECK(t.output.last("error", 1)["code"] == "interrupted");
+  CHECK(t.output.last("result", 2)["op"] == "result");
+  CHECK(t.output.last("result", 3)["op"] == "result");
+}
+
+TEST_CASE("a load that is refused while a tick runs costs no tick") {
+  Jobs jobs;
+  RoomOptions options = with_jobs(jobs);
+  options.read_scene = [](const std::string&) -> WorldDef {
+    throw DefinitionError("scene.x", "1", "less");
+  };
+  HaltingRoom t(false, options);
+  t.room->join(1);
+  for (int tick = 1; tick <= 5; ++tick) {
+    t.room->tell(1, R"({"op":"load","id":1,"scene":{"name":"x"}})");
+    t.at_stop = [&] { jobs.run_all(); };
+    t.room->tick(1);
+    CHECK(t.get().world().tick() == static_cast<std::uint64_t>(tick));
+    CHECK(t.room->output.last("error", 1)["code"] == "out_of_range");
+  }
+}
+
 TEST_CASE("what a viewer changed before it went is changed, and what it asked is dropped") {
   TestRoom t;
   t.join(1);
@@ -318,18 +349,19 @@ TEST_CASE("a scene is built beside the running one, which goes on until it is re
 TEST_CASE("what is computed between two ticks may take two fifths of a tick's limit") {
   HaltingRoom t(true);
   t.room->join(1);
+  int id = 0;
+  const auto said = [&](double takes, const std::string& rest) {
+    t.takes = takes;
+    t.halt_at(0);
+    t.room->clock.now += 1;  // after what it asked before
+    return t.room->say(1, R"({"id":)" + std::to_string(++id) + rest);
+  };
   for (const char* what : {"contacts", "reactions", "crossings"}) {
     INFO(what);
-    const std::string query = std::string(R"({"op":"query","id":1,"what":")") + what + "\"}";
-    t.takes = 0.7;
-    t.halt_at(0);
-    CHECK(t.room->say(1, query)["op"] == "result");
-    t.takes = 0.9;
-    t.halt_at(0);
-    CHECK(t.room->say(1, query)["code"] == "too_costly");
-    t.takes = 1.9;
-    t.halt_at(0);
-    CHECK(t.room->say(1, R"({"op":"advance","id":2,"n":1})")["op"] == "result");
+    const std::string query = std::string(R"(,"op":"query","what":")") + what + "\"}";
+    CHECK(said(0.9, query)["code"] == "too_costly");
+    CHECK(said(0.7, query)["op"] == "result");
+    CHECK(said(1.9, R"(,"op":"advance","n":1})")["op"] == "result");
   }
   CHECK(t.get().world().tick() == 3);
 }
