@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// The numbers that all of contact shares; each of its folders has its own page.
+// The numbers that all of contact shares.
 
 namespace weft {
 

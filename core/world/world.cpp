@@ -150,15 +150,18 @@ template <class Real>
 const TickReport& World<Real>::step() {
   begin_tick();
   try {
-    run_script();      // hands, winds and disturbances of the scene itself
-    plan_targets();    // of grippers, objects and pins, at their speeds
-    rouse_sleepers();  // on which something acts
+    run_script();      // the scene's own hands, winds and disturbances
+    plan_targets();    // grippers, objects and pins, each at its bounded speed
+    rouse_sleepers();  // cloths on which something acts
     if (rests()) return rest();
     const int substeps = choose_substeps(solver_of(def_));
     sample_surroundings();                         // gravity, damping, the air at each particle
     lead_hands(tick_seconds(), state_.x, grabs_);  // no farther than the cloth can follow
-    advance_or_recover(substeps);  // forces, kick, contact, drift; more substeps if that blew up
-    finish_targets();              // what was reached, held back or gripped
+    // Each substep: forces, kick, contact and drift; see advance_together in solver/verlet.cpp and
+    // Collision::before_drift. A tick that blew up, or that another solver must step, is done again
+    // from its start with other substeps.
+    advance_or_recover(substeps);
+    finish_targets();  // what was reached, held back or gripped
     put_to_sleep();
     end_tick();
   } catch (const Stopped&) {
