@@ -167,11 +167,7 @@ class Run {
       options.limit = &limit_;
       options.build_limit = limits_.build;
       // A thread of its own, as in the server; but waited for, so that each run is the same.
-      options.beside = [this](std::function<void()> job) {
-        const double start = cpu_seconds();
-        std::thread(std::move(job)).join();
-        beside_ += cpu_seconds() - start;
-      };
+      options.beside = [](std::function<void()> job) { std::thread(std::move(job)).join(); };
       measured("reading the scene", Kind::build, [&] {
         options.scene_def = library_.from_client(script_.scene);
         options.read_scene = [this](const std::string& text) { return library_.from_client(text); };
@@ -198,17 +194,16 @@ class Run {
   enum class Kind { tick, wait, build };
 
   /// Does something and counts the CPU time that it takes: as a tick, as what ticks wait for, or as
-  /// the building of the first scene. What is built beside the ticks keeps none of them waiting.
+  /// the building of the first scene.
   template <class Work>
   void measured(const std::string& what, Kind kind, Work&& work) {
     put(outcome_.doing, "step " + std::to_string(outcome_.steps) + ": " + what);
     set_alarm(limits_.hang);
-    const double start = cpu_seconds(), beside = beside_;
+    const double start = cpu_seconds();
     work();
-    const double built = beside_ - beside, seconds = cpu_seconds() - start - built;
+    const double seconds = cpu_seconds() - start;
     set_alarm(0);
-    outcome_.cpu += seconds + built;
-    outcome_.longest_build = std::max(outcome_.longest_build, built);
+    outcome_.cpu += seconds;
     if (kind == Kind::build) {
       outcome_.longest_build = std::max(outcome_.longest_build, seconds);
     } else if (kind == Kind::tick) {
@@ -386,7 +381,6 @@ class Run {
   server::LimitWatch watch_;
   std::unique_ptr<server::Room> room_;
   double now_ = 100;
-  double beside_ = 0;  ///< CPU time of what was built beside the ticks [s]
   std::uint64_t looks_ = 0;
   std::uint32_t number_ = 0;
   std::set<proto::ViewerId> here_;
