@@ -40,6 +40,17 @@ ClothDef random_mesh(int side) {
   return sheet;
 }
 
+/// Two triangles a cell, which as_mesh() cuts anew; the model's own have diagonals both ways.
+void cut_cells(int side, Recording& recording) {
+  const auto n = static_cast<std::uint32_t>(side);
+  recording.triangles.clear();
+  for (std::uint32_t i = 0; i + n < n * n; ++i) {
+    if (i % n + 1 == n) continue;
+    recording.triangles.insert(recording.triangles.end(),
+                               {i, i + n, i + 1, i + 1, i + n, i + n + 1});
+  }
+}
+
 Recording record(const WorldDef& def, const std::string& motion, int frames) {
   World<float> world(def, {});
   Recording recording;
@@ -68,6 +79,7 @@ Recording record(const WorldDef& def, const std::string& motion, int frames) {
 Recording record_motion(const std::string& motion, int side, int frames) {
   Recording recording = record(definition(motion, side), motion, frames);
   recording.mesh = "grid";
+  cut_cells(side, recording);
   recording.cloth.rows = recording.cloth.columns = static_cast<std::uint32_t>(side);
   return recording;
 }
