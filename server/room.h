@@ -319,9 +319,9 @@ class Room {
   std::vector<proto::ReactionSample> reaction_samples_;
 };
 
-/// Share of a tick's limit that what is computed between two ticks may take [1]: with the default
-/// limit nobody waits a second for it. Larger: others wait longer. Smaller: contacts of large
-/// scenes are refused to those who ask.
+/// Share of a tick's limit that work between two ticks may take [1]: 0.8 s with the default limit,
+/// so that no command waits a second for it. Larger: commands wait longer. Smaller: queries for the
+/// contacts of large scenes are refused.
 inline constexpr double kBetweenTicks = 0.4;
 
 /// Runs work that the limit, or a share of it, may end.

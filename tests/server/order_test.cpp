@@ -1,7 +1,5 @@
 // Whose turn it is: ticks that are given up, and an advance that others see through.
 
-#include <functional>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
