@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/list_scenes.h"
 #include "server/log_sink.h"
 #include "server/mesh_child.h"
 #include "server/options.h"

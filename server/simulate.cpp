@@ -24,7 +24,6 @@
 #include "server/output.h"
 #include "server/scene_build.h"
 #include "server/scene_library.h"
-#include "server/scene_schema.h"
 #include "server/series.h"
 #include "server/start_file.h"
 #include "server/thread_pool.h"
@@ -358,33 +357,6 @@ int simulate(const SimulateOptions& options) {
   // The summary is printed even if the file cannot be written.
   if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
   return warn_of_crossings(measurement);
-}
-
-int list_scenes(const ScenesOptions& options) {
-  if (options.schema) {
-    std::fputs(scene_schema().c_str(), stdout);
-    return 0;
-  }
-  if (!options.name.empty()) {
-    if (!options.json) throw OptionError("NAME", options.name, "a name together with --json");
-    std::fputs(write_scene(SceneLibrary(beside_program("meshes")).opened(options.name)).c_str(),
-               stdout);
-    return 0;
-  }
-  Json list = Json::array();
-  std::size_t longest = 0;
-  for (const SceneInfo& scene : scenes()) {
-    list.push_back({{"name", scene.name}, {"description", scene.description}});
-    longest = std::max(longest, scene.name.size());
-  }
-  if (options.json) {
-    std::printf("%s\n", Json{{"scenes", list}}.dump(2).c_str());
-    return 0;
-  }
-  for (const SceneInfo& scene : scenes())
-    std::printf("%-*s  %s\n", static_cast<int>(longest), scene.name.c_str(),
-                scene.description.c_str());
-  return 0;
 }
 
 }  // namespace weft::server
