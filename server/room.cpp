@@ -35,6 +35,7 @@ Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock cl
   if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
   start_world(build_scene(def, executor_, options_.limit ? options_.limit->seconds() : 0));
+  told_ = {state_message(), pins_message(), grabs_message()};
   meter_.restart(clock_());
 }
 
@@ -110,10 +111,11 @@ void Room::join(proto::ViewerId id, const Join& join) {
                           "query", "move", "move_pin", "gripper", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
-  output_.send(id, text_message(proto::encode_state(state()), Topic::state));
+  if (!in_tick_) told_ = {state_message(), pins_message(), grabs_message()};
+  output_.send(id, told_.state);
   output_.send(id, text_message(proto::encode_roster(roster()), Topic::roster));
-  output_.send(id, text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins));
-  output_.send(id, text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs));
+  output_.send(id, told_.pins);
+  output_.send(id, told_.grabs);
   for (const SceneNotice& notice : scene_notices_) output_.send(id, message_of(notice));
   output_.welcome_done(id);
   viewer.wants_frame = true;
@@ -160,13 +162,8 @@ std::optional<double> Room::step_world() {
   tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
   if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
   if (!report.rested) guarantee_.note_tick(*world_);
-  // A resting state is counted once, since nothing will change it.
   const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();
-  within_limit([&] {
-    if (report.rested || fell_asleep ? guarantee_.count_if_stale(*world_)
-                                     : guarantee_.count_if_due(*world_))
-      state_changed_ = true;
-  });
+  count_crossings(report.rested || fell_asleep);
   if (report.rested) tell_guarantee();
   if (report.rested) return seconds;
   tell_guarantee();
@@ -178,6 +175,16 @@ std::optional<double> Room::step_world() {
   jumped_ = jumped_ || report.divergence->remedy == DivergenceRemedy::stopped_cloth;
   notify(proto::NoticeLevel::warning, "recovered", what);
   return seconds;
+}
+
+/// Counts crossings if it is time.
+/// @param stays  whether the state stays as it is, so that it is counted once
+void Room::count_crossings(bool stays) {
+  bool news = true;  // as it is if the count does not end
+  within_limit(
+      [&] { news = stays ? guarantee_.count_if_stale(*world_) : guarantee_.count_if_due(*world_); },
+      kBetweenTicks);
+  state_changed_ = state_changed_ || news;
 }
 
 void Room::tick() {
@@ -205,11 +212,7 @@ void Room::finish_turn() {
   }
   const bool stands = !ticking() && !advance_ && now - last_tick_done_ >= kStandingPause;
   if (stands) {
-    within_limit(
-        [this] {
-          if (guarantee_.count_if_stale(*world_)) state_changed_ = true;
-        },
-        kBetweenTicks);
+    count_crossings(true);
     tell_guarantee();
   }
   tell_changes_if_due(now);

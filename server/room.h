@@ -18,6 +18,7 @@
 #include "server/budget_keeper.h"
 #include "server/clock.h"
 #include "server/command_log.h"
+#include "server/constants.h"
 #include "server/guarantee_watch.h"
 #include "server/inbound.h"
 #include "server/metrics.h"
@@ -76,7 +77,8 @@ class Room {
   /// between its ticks.
   void take(Inbound item);
 
-  /// The same during a tick: runs at once what does not touch the cloth, and queues the rest.
+  /// The same during a tick: runs at once what needs nothing of the cloth but its state before the
+  /// tick, and queues the rest.
   void take_meanwhile(Inbound item);
   /// Whether the current work should end, because it exceeds its limit or a command has made it
   /// worthless. Polled by the owner of the stop signal.
@@ -142,6 +144,12 @@ class Room {
     std::uint32_t left = 0;
     std::optional<proto::AdvanceFrames> frames;  ///< for its viewer, regardless of its `hz`
     double taken = 0;                            ///< when it was last free to continue [s]
+    bool paused = false;  ///< by a viewer, within the tick that runs and ends it
+  };
+
+  /// The cloth as viewers were last told it, between two ticks.
+  struct Told {
+    Message state, pins, grabs;
   };
 
   /// A `load` under way.
@@ -155,6 +163,8 @@ class Room {
 
   // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
+  bool ends_its_advance(const Inbound& item) const;
+  bool may_run_meanwhile(const Inbound& item) const;
   void work_off();
   void let_go(proto::ViewerId viewer);
   double next_turn() const;
@@ -171,6 +181,7 @@ class Room {
   void leave(proto::ViewerId viewer);
   void take_now(Inbound item);
   std::optional<double> step_world();
+  void count_crossings(bool stays);
   void tell_guarantee();  // room_queries.cpp
   void tell_pins();       // room_queries.cpp
   void tell_grabs();      // room_queries.cpp
@@ -197,9 +208,13 @@ class Room {
   void show_advanced();
   proto::Error stalled_error() const;
   void finish_advance(const std::optional<proto::Error>& error = {});
+  void end_paused_advance();
 
   // room_telling.cpp: frames and announcements
   bool has_news() const;
+  Message state_message();
+  Message pins_message();
+  Message grabs_message();
   void tell_changes();
   void tell_changes_if_due(double now);
   void notify(proto::NoticeLevel level, const char* code, std::string message,
@@ -295,6 +310,7 @@ class Room {
   // ticks of the clock, ticks of `advance`, or a replaced state.
   bool state_changed_ = false, roster_changed_ = false, pins_changed_ = false;
   bool grabs_changed_ = false;
+  Told told_;
   std::vector<proto::Notice> notices_;
   double next_telling_ = 0;  // [s]
   bool frame_wanted_ = false, ticked_ = false, advanced_ = false, jumped_ = false;
@@ -318,11 +334,6 @@ class Room {
   std::vector<proto::ContactSample> contact_samples_;
   std::vector<proto::ReactionSample> reaction_samples_;
 };
-
-/// Share of a tick's limit that work between two ticks may take [1]: 0.8 s with the default limit,
-/// so that no command waits a second for it. Larger: commands wait longer. Smaller: queries for the
-/// contacts of large scenes are refused.
-inline constexpr double kBetweenTicks = 0.4;
 
 /// Runs work that the limit, or a share of it, may end.
 /// @returns false if it did

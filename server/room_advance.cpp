@@ -13,7 +13,7 @@ constexpr double kStalled = 2;  // time without a taken frame that counts as not
 }  // namespace
 
 void Room::advance_until(double deadline) {
-  while (advance_ && advance_->left > 0) {
+  while (advance_ && advance_->left > 0 && !advance_->paused) {
     if (advance_waits()) {
       if (clock_() - advance_->taken < kStalled) break;
       viewers_.at(advance_->viewer).stalled = true;
@@ -27,7 +27,15 @@ void Room::advance_until(double deadline) {
     if (shown) show_advanced();
     if (clock_() >= deadline) break;
   }
-  if (advance_ && advance_->left == 0) finish_advance();
+  if (!advance_) return;
+  if (advance_->left == 0)
+    finish_advance();
+  else if (advance_->paused)
+    end_paused_advance();
+}
+
+void Room::end_paused_advance() {
+  end_advance(proto::ErrorCode::interrupted, "a viewer sent pause", "");
 }
 
 /// Whether the most frames of its own `advance` are in flight to a viewer.

@@ -250,7 +250,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
   if (!paused_) frame_wanted_ = true;
   paused_ = state_changed_ = true;
   steps_left_ = 0;
-  if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent pause", "");
+  if (advance_) advance_->paused = true;
+  if (advance_ && !in_tick_) end_paused_advance();
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
@@ -369,7 +370,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
-  return proto::Reply(proto::HashReply{world_->tick(), world_->hash()});
+  const std::uint64_t hash = in_tick_ ? world_->hash_before_tick() : world_->hash();
+  return proto::Reply(proto::HashReply{world_->tick(), hash});
 }
 
 /// Sent by the room itself; only a replayed log contains it.

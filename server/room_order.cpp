@@ -25,11 +25,11 @@ bool is(const Inbound& item) {
   return request && std::holds_alternative<Command>(request->command);
 }
 
-/// Whether it neither reads nor changes the cloth, so that it may run during a tick.
+/// Whether it changes nothing of the cloth and needs no more of it than is known during a tick.
 bool is_beside_the_cloth(const Inbound& item) {
-  return std::holds_alternative<Noted>(item.what) || is<proto::Hello>(item) ||
-         is<proto::Camera>(item) || is<proto::Pause>(item) || is<proto::Resume>(item) ||
-         is<proto::Speed>(item);
+  return std::holds_alternative<Join>(item.what) || std::holds_alternative<Noted>(item.what) ||
+         is<proto::Hello>(item) || is<proto::Camera>(item) || is<proto::Pause>(item) ||
+         is<proto::Resume>(item) || is<proto::Speed>(item) || is<proto::Hash>(item);
 }
 
 }  // namespace
@@ -40,13 +40,22 @@ void Room::take(Inbound item) {
 }
 
 void Room::take_meanwhile(Inbound item) {
-  const auto same_viewer = [&](const Inbound& other) { return other.viewer == item.viewer; };
-  const bool first = std::none_of(waiting_.begin(), waiting_.end(), same_viewer);
-  if (in_tick_ && first && !advance_ &&
-      (is_beside_the_cloth(item) || std::holds_alternative<Join>(item.what)))
-    return take_now(std::move(item));
-  gives_up_ = gives_up_ || (is<proto::Reset>(item) && first && !must_wait(item));
+  const bool may_run = may_run_meanwhile(item);
+  if (in_tick_ && may_run && is_beside_the_cloth(item)) return take_now(std::move(item));
+  gives_up_ = gives_up_ || (may_run && is<proto::Reset>(item));
   waiting_.push_back(std::move(item));
+}
+
+/// Whether it is its viewer's turn during a tick.
+bool Room::may_run_meanwhile(const Inbound& item) const {
+  if (ends_its_advance(item)) return true;
+  const auto same_viewer = [&](const Inbound& other) { return other.viewer == item.viewer; };
+  return std::none_of(waiting_.begin(), waiting_.end(), same_viewer) && !must_wait(item);
+}
+
+/// Whether it is a pause by the viewer of the running `advance`, which waits for nothing.
+bool Room::ends_its_advance(const Inbound& item) const {
+  return advance_ && advance_->viewer == item.viewer && is<proto::Pause>(item);
 }
 
 bool Room::gives_up() {
@@ -59,7 +68,7 @@ bool Room::gives_up() {
 bool Room::must_wait(const Inbound& item) const {
   const auto viewer = viewers_.find(item.viewer);
   if (viewer == viewers_.end()) return false;
-  if (advance_ && advance_->viewer == item.viewer && !is<proto::Pause>(item)) return true;
+  if (advance_ && advance_->viewer == item.viewer && !ends_its_advance(item)) return true;
   if (building_ && (building_->viewer == item.viewer || is<proto::Load>(item))) return true;
   return viewer->second.next_turn > clock_();
 }
@@ -78,10 +87,8 @@ void Room::work_off() {
       held.clear();
       continue;
     }
-    const bool ends_its_advance =
-        advance_ && advance_->viewer == item.viewer && is<proto::Pause>(item);
     const bool behind = std::find(held.begin(), held.end(), item.viewer) != held.end();
-    if ((behind && !ends_its_advance) || must_wait(item)) {
+    if ((behind && !ends_its_advance(item)) || must_wait(item)) {
       held.push_back(item.viewer);
       ++k;
       continue;

@@ -104,7 +104,10 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       break;
     }
     case proto::QueryWhat::crossings:
-      if (!within_limit([&] { guarantee_.count(*world_); }, kBetweenTicks)) throw Stopped();
+      if (!within_limit([&] { guarantee_.count(*world_); }, kBetweenTicks)) {
+        state_changed_ = true;  // the guarantee is not held
+        throw Stopped();
+      }
       reply.data = guarantee_.count(*world_);
       tell_guarantee();
       break;

@@ -67,23 +67,37 @@ void Room::tell_changes_if_due(double now) {
   if (has_news() && now >= next_telling_) tell_changes();
 }
 
+Message Room::state_message() {
+  return text_message(proto::encode_state(state()), Topic::state);
+}
+
+Message Room::pins_message() {
+  return text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins);
+}
+
+Message Room::grabs_message() {
+  return text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs);
+}
+
+/// During a tick, what is told of the cloth waits for its end.
 void Room::tell_changes() {
   std::size_t bytes = 0;
-  const auto tell = [&](std::string text, Topic topic) {
-    bytes += text.size();
-    output_.broadcast(text_message(std::move(text), topic));
+  const auto tell = [&](const Message& message) {
+    bytes += message.bytes.size();
+    output_.broadcast(message);
   };
   const double now = clock_();
   for (const proto::Notice& notice : std::exchange(notices_, {}))
-    tell(proto::encode_notice(notice), Topic::none);
-  if (state_changed_) {
-    tell(proto::encode_state(state()), Topic::state);
-    next_state_ = now + kStatePause;
+    tell(text_message(proto::encode_notice(notice)));
+  if (roster_changed_) tell(text_message(proto::encode_roster(roster()), Topic::roster));
+  roster_changed_ = false;
+  if (!in_tick_) {
+    if (state_changed_) tell(told_.state = state_message());
+    if (state_changed_) next_state_ = now + kStatePause;
+    if (pins_changed_) tell(told_.pins = pins_message());
+    if (grabs_changed_) tell(told_.grabs = grabs_message());
+    state_changed_ = pins_changed_ = grabs_changed_ = false;
   }
-  if (roster_changed_) tell(proto::encode_roster(roster()), Topic::roster);
-  if (pins_changed_) tell(proto::encode_pins(world_->tick(), pins()), Topic::pins);
-  if (grabs_changed_) tell(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs);
-  state_changed_ = roster_changed_ = pins_changed_ = grabs_changed_ = false;
   next_telling_ = now + std::max({world_->tick_seconds(), kShortestTelling,
                                   static_cast<double>(bytes) / kTellingRate});
 }

@@ -160,6 +160,9 @@ class World {
   /// pins, grabs, poses of moving colliders, changed environment and softness, tick. Excludes the
   /// tick while all cloths sleep.
   std::uint64_t hash() const;
+  /// The hash before the tick that runs. Callable at stop points of `step` alone, where the present
+  /// state is that of half a tick.
+  std::uint64_t hash_before_tick() const;
 
   /// Deepest penetration of a particle or edge into a collider [m]; 0 if none.
   double deepest_penetration() const;

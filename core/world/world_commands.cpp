@@ -239,6 +239,18 @@ std::uint64_t World<Real>::hash() const {
 }
 
 template <class Real>
+std::uint64_t World<Real>::hash_before_tick() const {
+  const Checkpoint& before = checkpoint_;
+  assert(before.state.x.size() == model_.mass.size() && "keep_checkpoint comes first");
+  EnvironmentDef environment = environment_;
+  environment.wind = before.wind;
+  const Sleep<Real>& sleep = before.sleep ? *before.sleep : sleep_;
+  return state_hash(before.state, before.pins, before.grabs, def_.colliders, before.colliders,
+                    before.grippers, sleep.asleep(), {environment, def_.environment, softness_},
+                    tick_);
+}
+
+template <class Real>
 double World<Real>::deepest_penetration() const {
   return contact_.deepest_penetration(state_.x);
 }
@@ -304,6 +316,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template void World<Real>::set_softness(double);                                      \
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \
+  template std::uint64_t World<Real>::hash_before_tick() const;                         \
   template double World<Real>::deepest_penetration() const;                             \
   template std::vector<std::string> World<Real>::bad_starts() const;                    \
   template std::size_t World<Real>::open_pairs() const;                                 \

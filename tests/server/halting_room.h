@@ -8,7 +8,8 @@
 
 #include "tests/server/fakes.h"
 
-// Rooms whose ticks end at a chosen stop point, and jobs that a test runs when it wants.
+// Rooms whose ticks end at a chosen stop point, jobs that a test runs when it wants, and logs that
+// are replayed.
 
 namespace weft::server {
 
@@ -57,6 +58,28 @@ inline RoomOptions with_jobs(Jobs& jobs) {
   RoomOptions options;
   options.beside = [&jobs](std::function<void()> job) { jobs.list.push_back(std::move(job)); };
   return options;
+}
+
+inline std::string hash_of(const Room& room) {
+  return proto::hash_text(room.world().hash());
+}
+
+/// The same commands in a room of its own, on other threads.
+inline std::string replayed(const Room& original, std::uint64_t ticks, Executor* executor) {
+  RecordingOutput output;
+  FakeClock clock;
+  Metrics metrics;
+  RoomOptions options;
+  options.scene = "small";
+  options.paused = true;
+  Room replay(options, small_scene, output, clock.clock(), metrics, executor);
+  replay.take({1, 0, Join{}});
+  for (const LogEntry& entry : original.log().entries()) {
+    while (replay.world().tick() < entry.tick) replay.tick();
+    replay.take({1, 1, proto::Request{std::nullopt, entry.command}});
+  }
+  while (replay.world().tick() < ticks) replay.tick();
+  return hash_of(replay);
 }
 
 }  // namespace weft::server

@@ -17,28 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string hash_of(Room& room) {
-  return proto::hash_text(room.world().hash());
-}
-
-/// The same commands in a room of its own, on other threads.
-std::string replayed(const Room& original, std::uint64_t ticks, Executor* executor) {
-  RecordingOutput output;
-  FakeClock clock;
-  Metrics metrics;
-  RoomOptions options;
-  options.scene = "small";
-  options.paused = true;
-  Room replay(options, small_scene, output, clock.clock(), metrics, executor);
-  replay.take({1, 0, Join{}});
-  for (const LogEntry& entry : original.log().entries()) {
-    while (replay.world().tick() < entry.tick) replay.tick();
-    replay.take({1, 1, proto::Request{std::nullopt, entry.command}});
-  }
-  while (replay.world().tick() < ticks) replay.tick();
-  return hash_of(replay);
-}
-
 TEST_CASE("a tick beyond its limit is given up, told with its cause, logged, and pauses the room") {
   HaltingRoom t;
   t.room->join(1);
@@ -123,28 +101,6 @@ TEST_CASE("an advance whose tick is given up ends with an error that names the t
   const LogEntry& logged = t.get().log().entries().front();
   if (made > 0) CHECK(std::get<proto::Advance>(logged.command).n == made);
   CHECK(t.room->say(1, R"({"op":"advance","id":8,"n":2})")["op"] == "result");
-}
-
-TEST_CASE("who joins and what is beside the cloth does not wait for a tick") {
-  HaltingRoom t;
-  t.room->join(1);
-  bool done = false;
-  const std::size_t frames = t.room->output.frames.size();
-  t.at_stop = [&] {
-    if (std::exchange(done, true)) return;
-    t.get().take_meanwhile({2, 0, Join{}});
-    t.get().take_meanwhile({1, 1, *proto::parse_request(R"({"op":"pause","id":3})")});
-    t.get().take_meanwhile({1, 2, *proto::parse_request(R"({"op":"hash","id":4})")});
-    CHECK(t.room->output.last("welcome")["viewer"] == 2);
-    CHECK(t.room->output.last("result", 3)["paused"] == true);
-    CHECK(t.room->output.last("result", 4).is_null());  // needs the cloth
-    CHECK(t.room->output.frames.size() == frames);      // nobody sees half a tick
-  };
-  t.room->tick(1);
-  REQUIRE(done);
-  CHECK(t.get().world().tick() == 1);
-  CHECK(t.room->output.last("result", 4)["tick"] == 1);
-  CHECK(t.room->output.frames.size() > frames);
 }
 
 TEST_CASE("a reset ends the tick under way and comes at once") {

@@ -40,12 +40,17 @@ std::unique_ptr<World<float>> world_at(const WorldDef& def, int ticks,
   return world;
 }
 
-/// Steps once and ends the tick at its stop point number `stop`.
+/// Steps once and ends the tick at its stop point number `stop`. At each stop point the hash of the
+/// state before the tick is known.
 /// @returns whether it was ended before it was done
 bool step_and_stop(World<float>& world, int stop) {
   StopSignal signal;
   int seen = 0;
-  signal.attend = [&] { return seen++ == stop; };
+  const std::uint64_t before = world.hash();
+  signal.attend = [&] {
+    CHECK(world.hash_before_tick() == before);
+    return seen++ == stop;
+  };
   signal.raise();
   const StopScope scope(&signal);
   return world.step().halted;
@@ -97,6 +102,25 @@ TEST_CASE("a tick of the seed's contact ended at any point leaves what a tick no
   def.model = Model::seed;
   def.contact.seed.self = SelfContact::triangles_and_edges;
   check_scene(def, 20, nullptr);
+}
+
+TEST_CASE("within a tick of changing wind and sleeping cloth the hash before it is known") {
+  WorldDef def = scene_of("flag");
+  def.winds = {{0, def.environment.wind}, {0.1, Vec3d(7, 1, 0)}};
+  def.sleep.after = 0.05;
+  def.sleep.distance = 1;
+  def.cloths.push_back(def.cloths[0]);
+  def.cloths[1].name = "far";
+  def.cloths[1].origin += Vec3d(50, 0, 0);
+  def.environment.gust_speed = 0;
+  def.environment.fans.clear();
+  const auto world = world_at(def, 4);
+  bool slept = false;
+  for (int n = 0; n < 12; ++n) {
+    CHECK_FALSE(step_and_stop(*world, -1));
+    slept = slept || world->sleep().is_asleep(1);
+  }
+  CHECK(slept);
 }
 
 TEST_CASE("a world whose every tick is ended stays where it is") {
