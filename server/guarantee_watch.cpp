@@ -35,6 +35,7 @@ void GuaranteeWatch::start(const ServedWorld& world, ComingStarts starts) {
 void GuaranteeWatch::restart() {
   crossings_ = crossings_at_start_;
   uncounted_ = crossings_ ? 0 : 1;
+  unfinished_ = pause_ > 0 && !crossings_;
   bad_starts_ = {};
   voided_.clear();
   news_.clear();
@@ -85,14 +86,15 @@ void GuaranteeWatch::tell_bad_starts(BadStarts found) {
 const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   if (crossings_ && uncounted_ == 0) return *crossings_;
   const double start = clock_();
-  // A count that takes too long is retried as late as if it had finished.
-  next_count_ = next_try_ = start + kCountPatience / kCountShare;
+  // A count that is given up is tried again as late as if it had finished.
+  next_count_ = start + kCountPatience / kCountShare;
+  unfinished_ = true;
   std::vector<Meeting> meetings;
   const proto::Crossings counted = crossings_of(world, counter_, meetings);
   if (began_ && !bad_starts_.what.empty()) counter_.find_in_rounds(world, meetings);
   crossings_ = counted;
   uncounted_ = 0;
-  next_try_ = 0;
+  unfinished_ = false;
   displaced_ = false;
   // Before the first tick the look-ahead knows more.
   if (began_) {
@@ -107,15 +109,18 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
 bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
   const std::uint32_t pause =
       bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
-  const bool due = pause != 0 && uncounted_ >= pause && clock_() >= next_count_;
+  const bool may = clock_() >= next_count_;
+  const bool due = pause != 0 && uncounted_ >= pause && may;
   // Particles moved by the scene bypass contact, which then knows of no start.
-  if (!due && !displaced_) return false;
+  if (!due && (!displaced_ || (unfinished_ && !may))) return false;
+  const bool unknown = unfinished_;
   const std::uint64_t before = crossings_ ? crossings_->count : 0;
-  return count(world).count != before;
+  return count(world).count != before || unknown;
 }
 
 bool GuaranteeWatch::count_if_stale(const ServedWorld& world) {
-  if (pause_ == 0 || uncounted_ == 0 || clock_() < next_try_) return false;
+  if (pause_ == 0 || uncounted_ == 0) return false;
+  if (unfinished_ && clock_() < next_count_) return false;
   count(world);
   return true;
 }
@@ -124,9 +129,14 @@ proto::Guarantee GuaranteeWatch::guarantee(const ServedWorld& world) const {
   proto::Guarantee guarantee = guarantee_of(world, bad_starts_);
   if (guarantee.state == proto::GuaranteeState::bad_start && late_)
     guarantee.state = proto::GuaranteeState::broken;
-  if (guarantee.state != proto::GuaranteeState::held || !crossings_ || crossings_->count == 0)
+  const bool crosses = crossings_ && crossings_->count > 0;
+  if (guarantee.state != proto::GuaranteeState::held || (!crosses && !unfinished_))
     return guarantee;
   guarantee.state = proto::GuaranteeState::broken;
+  if (!crosses) {
+    guarantee.reasons.emplace_back("the last count of crossings took too long to end");
+    return guarantee;
+  }
   guarantee.pairs = crossings_->count;
   guarantee.reasons.emplace_back(has_guard(world.def())
                                      ? "edges pass through triangles, as counted"

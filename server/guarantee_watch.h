@@ -35,7 +35,8 @@ class GuaranteeWatch {
   /// Call after a tick that changed the cloth or an object.
   void note_tick(const ServedWorld& world);
   /// Counts if a count is due.
-  /// @returns whether the number of crossings has changed
+  /// @returns whether more is known, or another number of crossings. A stop signal of the thread
+  /// that ends a count makes it, and the others, throw Stopped.
   bool count_if_due(const ServedWorld& world);
   /// Counts if the state has changed since the last count.
   /// @returns whether it counted
@@ -46,7 +47,7 @@ class GuaranteeWatch {
 
   /// The last count, if there was one.
   const std::optional<proto::Crossings>& crossings() const { return crossings_; }
-  /// Not held while anything crosses in the last count.
+  /// Not held while anything crosses in the last count, or if that was given up.
   proto::Guarantee guarantee(const ServedWorld& world) const;
 
   /// News since the last call.
@@ -62,7 +63,7 @@ class GuaranteeWatch {
   std::optional<proto::Crossings> crossings_, crossings_at_start_;
   std::uint32_t uncounted_ = 0;      ///< ticks since the last count
   double next_count_ = 0;            ///< earliest time of the next one [s]
-  double next_try_ = 0;              ///< the same after one that took too long; 0: none did [s]
+  bool unfinished_ = false;          ///< the last one was given up, so nothing is known
   ComingStarts starts_;              ///< found by the look-ahead
   BadStarts bad_starts_;             ///< announced starts, and other crossings
   std::vector<Meeting> meetings_;    ///< which pairs cross, as last counted or at the start

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/server/fakes.h"
+#include "tests/server/halting_room.h"
 
 // What a room tells of its promise that nothing crosses, and of what it counts.
 
@@ -63,8 +63,10 @@ WorldDef bad_scene(const std::string& name) {
 }
 
 struct BadRoom : TestRoom {
-  explicit BadRoom(const std::string& scene, std::uint32_t count_pause = 60) {
+  explicit BadRoom(const std::string& scene, std::uint32_t count_pause = 60,
+                   WorkLimit* limit = nullptr) {
     RoomOptions options;
+    options.limit = limit;
     options.scene = scene;
     options.scene_names = {"bead", "gathered", "inside", "post", "through"};
     options.paused = true;
@@ -291,6 +293,85 @@ TEST_CASE("counting changes no bit of the motion") {
   }
   CHECK(hashes[0] == hashes[1]);
   CHECK(counted.output.last("state")["crossings"]["tick"] == 90);
+}
+
+TEST_CASE("a count that does not end within its limit leaves no guarantee held until one does") {
+  HaltingRoom t(true);
+  t.takes = 0.9;  // more than is allowed between two ticks
+  t.room->join(1);
+  const auto guarantee = [&] {
+    return t.room->say(1, R"({"op":"query","id":99,"what":"state"})")["data"]["guarantee"];
+  };
+  const auto stand_still = [&](double seconds) {
+    t.room->clock.now += seconds;
+    t.get().finish_turn();
+  };
+  REQUIRE(guarantee() == kHeld);
+  SECTION("while the room stands") {
+    t.room->say(1, R"({"op":"advance","n":5})");
+    t.halt_at(0);
+    stand_still(0.3);
+  }
+  SECTION("as somebody asks") {
+    t.room->say(1, R"({"op":"advance","n":5})");
+    t.halt_at(0);
+    const json error = t.room->say(1, R"({"op":"query","id":1,"what":"crossings"})");
+    REQUIRE(error["code"] == "too_costly");
+  }
+  SECTION("while ticks pass") {
+    t.room->say(1, R"({"op":"resume"})");
+    bool stopped = false;
+    t.at_stop = [&] {  // the first stop point behind the tick of the count
+      if (t.get().world().tick() < 60 || std::exchange(stopped, true)) return;
+      t.hand.now += t.takes;
+    };
+    t.room->tick(61);
+    REQUIRE(stopped);
+    REQUIRE_FALSE(t.get().paused());
+    t.at_stop = nullptr;
+  }
+  CHECK(guarantee()["state"] == "void");
+  CHECK(guarantee()["reasons"].size() == 1);
+  CHECK(t.room->output.last("state")["guarantee"]["state"] == "void");  // told, too
+  // It is tried again when there is time.
+  for (int second = 0; second < 102; ++second) stand_still(1);
+  if (!t.get().paused()) t.room->tick(60);
+  CHECK(guarantee() == kHeld);
+}
+
+TEST_CASE("what the scene throws through itself is not held while its count does not end") {
+  HandLimit hand;
+  BadRoom t("gathered", 60, &hand.limit);
+  bool slow = true;
+  hand.limit.signal().attend = [&] {
+    if (slow && t.room->world().tick() >= 4) hand.now += 0.9;  // it gathers in the fourth tick
+    return t.room->gives_up();
+  };
+  hand.limit.signal().raise();
+  t.join(1);
+  t.say(1, R"({"op":"advance","n":4})");
+  CHECK(t.guarantee()["state"] == "void");
+  slow = false;
+  t.say(1, R"({"op":"reset"})");
+  CHECK(t.guarantee() == kHeld);
+}
+
+TEST_CASE("a first count that did not end holds nothing, and neither does a reset") {
+  FakeClock clock;
+  const World<float> world(bad_scene("through"));
+  GuaranteeWatch watch(60, clock.clock());
+  StopSignal signal;
+  signal.raise();
+  {
+    const StopScope scope(&signal);
+    watch.start(world, {});
+  }
+  CHECK(watch.guarantee(world).state == proto::GuaranteeState::broken);
+  watch.restart();
+  CHECK(watch.guarantee(world).state == proto::GuaranteeState::broken);
+  GuaranteeWatch uncounted(0, clock.clock());
+  uncounted.start(world, {});
+  CHECK(uncounted.guarantee(world).state == proto::GuaranteeState::held);
 }
 
 TEST_CASE("counts are a hundred times as far apart as one takes") {
