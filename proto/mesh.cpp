@@ -92,7 +92,21 @@ bool read_order_of(const std::vector<Section>& sections, const MeshFields& field
          codec::read_order(mesh.order, fields.vertices).has_value();
 }
 
+std::size_t section_bytes(std::size_t count, std::size_t item_bytes) {
+  return kSectionHeaderBytes + padded(count * item_bytes);
+}
+
 }  // namespace
+
+std::size_t mesh_data_bytes(const MeshSize& size) {
+  std::size_t bytes = kMeshBytes + section_bytes(size.vertices, sizeof(Vec3f)) +
+                      section_bytes(size.triangles, kTriangleBytes) +
+                      section_bytes(size.vertices, 2 * sizeof(float));
+  for (const MeshSize::Object& object : size.colliders)
+    bytes += section_bytes(object.vertices, sizeof(Vec3f)) +
+             section_bytes(object.triangles, kTriangleBytes);
+  return bytes + (size.has_order ? section_bytes(size.vertices, kOrderBytes) : 0);
+}
 
 Bytes encode_mesh_data(const SceneMesh& mesh) {
   Bytes out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,6 +28,19 @@ struct SceneMesh {
                                          ///< empty: codec/order.h
   bool operator==(const SceneMesh&) const = default;
 };
+
+/// How much a SceneMesh holds, as far as its message grows with it.
+struct MeshSize {
+  std::size_t vertices = 0, triangles = 0;  ///< of cloth
+  bool has_order = false;
+  struct Object {
+    std::size_t vertices = 0, triangles = 0;
+  };
+  std::vector<Object> colliders;
+};
+
+/// Length of the message of such a mesh [bytes].
+std::size_t mesh_data_bytes(const MeshSize& size);
 
 /// The message. The mesh must be as described in SceneMesh.
 Bytes encode_mesh_data(const SceneMesh& mesh);

@@ -1,5 +1,6 @@
 #include "server/scene_build.h"
 
+#include <string>
 #include <utility>
 
 #include "core/error.h"
@@ -7,8 +8,22 @@
 #include "core/world/object_repair.h"
 #include "core/world/pin_extent.h"
 #include "core/world/spring_hold.h"
+#include "server/constants.h"
+#include "server/translate_mesh.h"
 
 namespace weft::server {
+namespace {
+
+/// Throws CostError if everyone who joins would have to be sent too much.
+void check_mesh_bytes(const WorldDef& def) {
+  const std::size_t bytes = proto::mesh_data_bytes(mesh_size(def));
+  if (bytes <= kMostMeshBytes) return;
+  throw CostError("scene", "a mesh message of " + std::to_string(bytes) + " bytes",
+                  "at most " + std::to_string(kMostMeshBytes) + " bytes, which each viewer is sent",
+                  "use fewer or coarser meshes");
+}
+
+}  // namespace
 
 ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
   WorkLimit limit(tick_limit);
@@ -39,6 +54,7 @@ std::vector<SceneNotice> notices_of(const ServedWorld& world,
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
   const SerialScope serial;
   check_size(def);
+  check_mesh_bytes(def);
   Runtime runtime;
   runtime.executor = executor;
   runtime.clock = &process_seconds;

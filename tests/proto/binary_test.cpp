@@ -146,6 +146,18 @@ TEST_CASE("Golden meshes are read and written byte for byte") {
   });
 }
 
+TEST_CASE("The length of a mesh message is known before it is written") {
+  for_each_golden([](const std::string&, const json& content, const Bytes& message) {
+    if (content["type"] != "mesh" || !content["encoder_writes_it"]) return;
+    const SceneMesh mesh = *decode_mesh_data(message);
+    MeshSize size{
+        mesh.rest_positions.size() / 3, mesh.triangles.size() / 3, !mesh.order.empty(), {}};
+    for (const ColliderMesh& collider : mesh.colliders)
+      size.colliders.push_back({collider.positions.size() / 3, collider.triangles.size() / 3});
+    CHECK(mesh_data_bytes(size) == message.size());
+  });
+}
+
 TEST_CASE("Golden data is read and written byte for byte, with the announced size") {
   for_each_golden([](const std::string&, const json& content, const Bytes& message) {
     if (content["type"] != "data") return;

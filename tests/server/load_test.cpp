@@ -6,7 +6,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/geometry/triangle_mesh.h"
+#include "server/translate_mesh.h"
 #include "tests/server/halting_room.h"
+#include "tests/support/sheets_of_triangles.h"
 
 namespace weft::server {
 namespace {
@@ -130,6 +133,48 @@ TEST_CASE(
   CHECK(message.find("40000 particles x 20000 substeps") != std::string::npos);
   CHECK(message.find("150000000") != std::string::npos);
   CHECK(large.room->world().def().name == "small");
+}
+
+TEST_CASE("a scene whose mesh message would be too long is refused with its bytes and the limit") {
+  RoomOptions options;
+  std::size_t vertices = 0;
+  options.read_scene = [&vertices](const std::string&) {
+    WorldDef def;
+    def.cloths[0].rows = def.cloths[0].columns = 4;
+    TriangleMesh mesh{{}, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+    mesh.positions.assign(vertices, Vec3d(0, -3, 0));  // in no triangle, all but four
+    for (int k = 0; k < 3; ++k) mesh.positions[static_cast<std::size_t>(k)][k] += 0.1;
+    def.colliders = {{"stars", MeshDef{mesh}}};
+    return def;
+  };
+  TestRoom t(true, {}, options);
+  t.join(1);
+  vertices = 2'800'000;  // 12 bytes each
+  const json error = t.say(1, R"({"op":"load","id":1,"scene":{"name":"x"}})");
+  CHECK(error["code"] == "too_costly");
+  const std::string message = error["message"];
+  CHECK(message.find("a mesh message of 336") != std::string::npos);
+  CHECK(message.find("at most 33554432 bytes") != std::string::npos);
+  CHECK(t.room->world().def().name == "small");
+  vertices = 1000;
+  CHECK(t.say(1, R"({"op":"load","id":2,"scene":{"name":"x"}})")["op"] == "result");
+}
+
+TEST_CASE(
+    "the length of a mesh message is estimated as what it is, for grids, meshes and objects") {
+  WorldDef def = small_scene("small");
+  def.cloths.push_back(def.cloths[0]);
+  def.cloths[1].name = "other";
+  def.cloths[1].origin += Vec3d(5, 0, 0);
+  SECTION("grids") {}
+  SECTION("a cloth of triangles and an object") {
+    def.colliders.push_back({"block", MeshDef{box_mesh(Vec3d(0.1, 0.2, 0.3))}});
+    def.cloths[1] = test::triangle_sheet(test::Cut::equilateral, 0.4, 0.3, 0.05);
+    def.cloths[1].name = "other";
+    def.cloths[1].origin = Vec3d(5, 1, 0);
+  }
+  const BuiltScene built = build_scene(def, nullptr, 0);
+  CHECK(proto::mesh_data_bytes(mesh_size(def)) == built.mesh_bytes.size());
 }
 
 }  // namespace
