@@ -135,6 +135,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,
              "Seconds of CPU after which a tick is given up, with exit code 4 (2; 0: never)");
+  add_switch(simulate, "--any-cost", o.any_cost,
+             "Take scenes whatever a tick is estimated to cost");
   add_number(simulate, "--check-every", o.check_every, kTickCounts,
              "Ticks between two counts of crossings (1); exit code 3 if there are any");
 }

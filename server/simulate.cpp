@@ -14,6 +14,7 @@
 #include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
+#include "core/world/cost.h"
 #include "core/world/crossing_counter.h"
 #include "core/world/object_repair.h"
 #include "core/world/verdict.h"
@@ -323,16 +324,34 @@ void check_options(const SimulateOptions& o) {
   check_out("--series", o.series, o.series.ends_with(".npy"), ".npy");
 }
 
+WorldDef definition_of(const SimulateOptions& options) {
+  WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
+  for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  if (!options.start.empty()) def.start = read_start(options.start);
+  return def;
+}
+
+/// Throws CostError, which tells how to lift the bound.
+void bound_cost(const SimulateOptions& options, const World<float>& world) {
+  if (options.any_cost) return;
+  try {
+    check_cost(world.cost_in(world.environment()), "scene", world.def().name);
+  } catch (const CostError& error) {
+    throw CostError(error.field, error.value, error.limit,
+                    error.hint + ", or allow it by --any-cost");
+  }
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
   check_options(options);
-  WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
-  for (const auto& [key, value] : options.settings) set_field(def, key, value);
-  if (!options.start.empty()) def.start = read_start(options.start);
+  WorldDef def = definition_of(options);
+  check_size(def);
   const std::vector<std::string> repairs = repair_objects(def);
   ThreadPool pool(options.threads);
   World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  bound_cost(options, world);
   world.measure_energy(options.balance);
   std::vector<std::string> notices;
   for (const SceneNotice& notice : notices_of(world, repairs)) {

@@ -26,14 +26,15 @@ struct SimulateOptions {
   /// caches.
   int check_every = 1;
   double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
+  bool any_cost = false;                ///< takes scenes whatever a tick is estimated to cost
 };
 
 /// Runs a scene without a clock and prints a summary.
 /// @return exit code: 3 if anything crossed after the scene's grace time (its verdict's
 ///         `clear_after`), 4 if a tick exceeded its limit and was given up; both are reported on
 ///         standard error too; else 0
-/// Throws OptionError or DefinitionError if an input is invalid, OutputError if the file cannot be
-/// written.
+/// Throws OptionError or DefinitionError if an input is invalid or too costly, OutputError if the
+/// file cannot be written.
 int simulate(const SimulateOptions& options);
 
 }  // namespace weft::server

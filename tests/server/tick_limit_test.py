@@ -128,6 +128,27 @@ class Ends(SocketTest):
             self.assertIn("0.05 s of CPU", run.stderr)
             self.assertEqual(run.stdout, "")
 
+    def test_simulate_refuses_what_would_cost_too_much_unless_told_otherwise(self):
+        large = ("--set", "cloths[0].rows=600", "--set", "cloths[0].columns=600")
+        costly = {**HEAVY, "name": "costly", "cloths": [{**HEAVY["cloths"][0], "rows": 100, "columns": 100}]}
+        with tempfile.TemporaryDirectory() as folder:
+            path = scene_file(folder, costly)
+            for options, words in ((large, ["360000 particles", "300000"]),
+                                   (("--scene", path), ["10000 particles x 20000 substeps", "150000000",
+                                                        "--any-cost"])):
+                run = subprocess.run([PROGRAM, "simulate", *options, "--ticks", "1"],
+                                     capture_output=True, text=True, timeout=PATIENCE, check=False)
+                self.assertEqual(run.returncode, 2, run)
+                for word in words:
+                    self.assertIn(word, run.stderr)
+                self.assertEqual(run.stderr.count("\n"), 1)
+                self.assertEqual(run.stdout, "")
+            # Taken, it is given up as soon as it has cost as much as a tick may.
+            run = subprocess.run([PROGRAM, "simulate", "--scene", path, "--ticks", "1", "--any-cost",
+                                  "--tick-limit", "0.05"],
+                                 capture_output=True, text=True, timeout=PATIENCE, check=False)
+            self.assertEqual(run.returncode, 4, run)
+
 
 if __name__ == "__main__":
     main()
