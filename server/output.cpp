@@ -1,12 +1,14 @@
 #include "server/output.h"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <optional>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,6 +22,53 @@ constexpr std::size_t kPrintedBytes = 1 << 20;
 OutputError failed(const std::string& path) {
   return {path, std::strerror(errno)};
 }
+
+/// Paths of unfinished files, which a signal that ends the program takes along; null: a free place.
+constinit std::array<std::atomic<const char*>, 4> unfinished_files{};
+
+/// Signals that end a program from outside, as a key or another program does.
+constexpr std::array kEndings = {SIGHUP, SIGINT, SIGTERM};
+
+extern "C" void end_without_unfinished_files(int signal) {
+  for (const std::atomic<const char*>& place : unfinished_files)
+    if (const char* path = place.load()) ::unlink(path);
+  ::raise(signal);  // now with its usual effect: SA_RESETHAND
+}
+
+/// Leaves signals alone that are ignored or that somebody else attends to.
+void attend_to_endings() {
+  for (const int signal : kEndings) {
+    struct sigaction action {};
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
+    action.sa_handler = &end_without_unfinished_files;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
+/// The place of an unfinished file among these, during its lifetime.
+class UnfinishedFile {
+ public:
+  /// @param path  must live as long; the file need not be there yet
+  explicit UnfinishedFile(const char* path) {
+    static const bool attends = (attend_to_endings(), true);
+    (void)attends;
+    for (std::atomic<const char*>& place : unfinished_files) {
+      const char* none = nullptr;
+      if (!place.compare_exchange_strong(none, path)) continue;
+      place_ = &place;
+      return;
+    }
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile() {
+    if (place_) place_->store(nullptr);
+  }
+
+ private:
+  std::atomic<const char*>* place_ = nullptr;  ///< null: there are too many
+};
 
 }  // namespace
 
@@ -48,21 +97,26 @@ void flush_standard_output() {
 /// Owns a file descriptor, and deletes an unfinished file.
 class NewFile::OpenFile {
  public:
-  /// @param flags  of open(2), besides those for writing
-  OpenFile(std::string path, int flags, mode_t mode)
-      : path_(std::move(path)),
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC | flags, mode)) {}
+  /// Opens what is there already.
+  explicit OpenFile(std::string path)
+      : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)) {}
+  /// Makes a file that is deleted unless it is kept.
+  OpenFile(std::string path, mode_t mode) : path_(std::move(path)) {
+    unfinished_.emplace(path_.c_str());
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_CREAT | O_EXCL, mode);
+    if (!is_open()) keep();
+  }
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
     if (unfinished_) ::unlink(path_.c_str());
+    unfinished_.reset();
   }
 
   bool is_open() const { return descriptor_ >= 0; }
   const std::string& path() const { return path_; }
-  void remove_unless_kept() { unfinished_ = true; }
-  void keep() { unfinished_ = false; }
+  void keep() { unfinished_.reset(); }
 
   bool write(std::string_view bytes) {
     while (!bytes.empty()) {
@@ -83,8 +137,8 @@ class NewFile::OpenFile {
 
  private:
   std::string path_;
-  int descriptor_;
-  bool unfinished_ = false;
+  int descriptor_ = -1;
+  std::optional<UnfinishedFile> unfinished_;
 };
 
 NewFile::NewFile(const std::string& path) : path_(path), target_(path) {
@@ -92,16 +146,14 @@ NewFile::NewFile(const std::string& path) : path_(path), target_(path) {
   const fs::file_status status = fs::status(path, error);
   in_place_ = fs::exists(status) && !fs::is_regular_file(status);
   if (in_place_) {
-    file_ = std::make_unique<OpenFile>(path, 0, 0);
+    file_ = std::make_unique<OpenFile>(path);
     if (!file_->is_open()) throw failed(path_);
     return;
   }
   const fs::path resolved = fs::exists(status) ? fs::canonical(path, error) : fs::path(path);
   if (!error) target_ = resolved.string();
-  file_ = std::make_unique<OpenFile>(target_ + "." + std::to_string(::getpid()) + ".part",
-                                     O_CREAT | O_EXCL, 0666);
+  file_ = std::make_unique<OpenFile>(target_ + "." + std::to_string(::getpid()) + ".part", 0666);
   if (!file_->is_open()) throw failed(path_);
-  file_->remove_unless_kept();
 }
 
 NewFile::~NewFile() = default;

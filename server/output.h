@@ -24,8 +24,9 @@ void prepare_standard_streams();
 /// Flushes standard output. Throws OutputError if any output since the last call was lost.
 void flush_standard_output();
 
-/// A file that grows beside the one that it replaces when it is finished; that one stays as it was
-/// if this one is destroyed before. Anything but a regular file, such as a named pipe, is written
+/// A file that grows beside the one that it replaces when it is finished; that one stays as it was,
+/// and this one vanishes, if it is destroyed before, or if SIGHUP, SIGINT or SIGTERM ends the
+/// program. Anything but a regular file, such as a named pipe, is written
 /// directly. All throw OutputError.
 class NewFile {
  public:

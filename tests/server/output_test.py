@@ -3,10 +3,12 @@
 import json
 import os
 import resource
+import signal
 import stat
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -113,6 +115,39 @@ class Files(unittest.TestCase):
         reader.join(60)
         self.assertIn("\nv ", received[0])
         self.assertTrue(stat.S_ISFIFO(self.path.stat().st_mode))
+
+    def test_a_run_ended_by_a_signal_leaves_no_half_file(self):
+        series = self.folder / "run.npy"
+        for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for there in (False, True):
+                with self.subTest(ending=ending, there=there):
+                    if there:
+                        series.write_text("what was there")
+                    process = subprocess.Popen([PROGRAM, *SIMULATE[:-1], "1000000", "--series", str(series)],
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                    try:
+                        while process.poll() is None and not any(".part" in name for name in self.names()):
+                            time.sleep(0.01)
+                        process.send_signal(ending)
+                        self.assertEqual(process.wait(timeout=240), -ending)
+                    finally:
+                        process.kill()
+                        process.wait()
+                        process.stderr.close()
+                    self.assertEqual(self.names(), ["run.npy"] if there else [])
+                    if there:
+                        self.assertEqual(series.read_text(), "what was there")
+                        series.unlink()
+
+    def test_a_signal_that_is_ignored_ends_no_run(self):
+        process = subprocess.Popen([PROGRAM, *SIMULATE[:-1], "400", "--series", str(self.folder / "run.npy")],
+                                   stdout=subprocess.DEVNULL,
+                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        while process.poll() is None and not any(".part" in name for name in self.names()):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.wait(timeout=240), 0)
+        self.assertEqual(self.names(), ["run.npy"])
 
     def test_a_folder_in_the_place_of_the_file_is_told(self):
         self.path.mkdir()
