@@ -14,11 +14,27 @@ namespace weft::test {
 // Hands that take hold of a cloth anywhere, pull it about and let go, and an exact count of what
 // passed through what after each tick.
 
+/// From how much to how much of something.
+struct Span {
+  double least, most;
+};
+
+/// What hands can do.
+struct Strength {
+  Span stiffness = {100, 2000};  ///< [N/m]
+  Span max_force = {2, 50};      ///< [N]
+  Span speed = {0.5, 5};         ///< [m/s]
+};
+
+/// The strongest hands that a viewer may have.
+inline constexpr Strength kGiant = {{1e5, 1e5}, {1e6, 1e6}, {20, 20}};
+
 /// A hand that moves through points at random, each reached at a speed of its own.
 class WanderingHand {
  public:
   /// Takes hold of a random point of a random triangle.
-  WanderingHand(World<float>& world, Random& random) {
+  WanderingHand(World<float>& world, Random& random, const Strength& strength)
+      : speeds_(strength.speed) {
     GrabDef def;
     def.triangle = random.index(static_cast<Index>(world.model().triangles.size()));
     double a = random.uniform(0, 1), b = random.uniform(0, 1);
@@ -28,8 +44,8 @@ class WanderingHand {
     }
     def.barycentric = {1 - a - b, a, b};
     def.radius = random.uniform(0, 1) < 0.2 ? 0 : random.uniform(0.01, 0.08);
-    def.stiffness = random.uniform(100, 2000);
-    def.max_force = random.uniform(2, 50);
+    def.stiffness = random.uniform(strength.stiffness.least, strength.stiffness.most);
+    def.max_force = random.uniform(strength.max_force.least, strength.max_force.most);
     const Triangle& t = world.model().triangles[static_cast<std::size_t>(def.triangle)];
     for (std::size_t k = 0; k < 3; ++k)
       at_ += def.barycentric[k] * world.state().x[static_cast<std::size_t>(t[k])].cast<double>();
@@ -61,11 +77,12 @@ class WanderingHand {
   /// The objects are around the middle, the ground is at 0: as often as not the path is barred.
   void turn(Random& random) {
     goal_ = Vec3d(random.uniform(-0.7, 0.7), random.uniform(-0.2, 1), random.uniform(-0.7, 0.7));
-    speed_ = random.uniform(0.5, 5);
+    speed_ = random.uniform(speeds_.least, speeds_.most);
   }
 
   GrabId id_ = 0;
   int first_ = 0, last_ = 0;
+  Span speeds_;
   double speed_ = 0;  ///< [m/s]
   Vec3d at_ = Vec3d::Zero(), goal_ = Vec3d::Zero();
 };
@@ -90,7 +107,8 @@ struct DragFigures {
 };
 
 /// Lets the scene come down, then one to ten hands at a time drag its cloth, `drags` times.
-inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, unsigned seed) {
+inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, unsigned seed,
+                              const Strength& strength = {}) {
   constexpr Index kMostHands = 10;
   constexpr int kPause = 6;
   Random random(seed);
@@ -105,7 +123,8 @@ inline DragFigures drag_about(const WorldDef& def, int settle_ticks, int drags, 
   }
   for (int drag = 0; drag < drags; ++drag) {
     std::vector<WanderingHand> hands;
-    for (Index k = 1 + random.index(kMostHands); k > 0; --k) hands.emplace_back(world, random);
+    for (Index k = 1 + random.index(kMostHands); k > 0; --k)
+      hands.emplace_back(world, random, strength);
     int idle = 0;
     for (int tick = 0; idle < kPause; ++tick) {
       bool held = false;

@@ -107,6 +107,22 @@ TEST_CASE("a few drags of up to ten hands at up to 5 m/s leave no crossing anywh
     WARN("the bunny's package is not installed");
 }
 
+TEST_CASE("ten hands of 1 MN at 20 m/s at a time leave no crossing anywhere") {
+  const auto check = [](const WorldDef& def, int settle_ticks, int drags, unsigned seed) {
+    if (!is_chosen(seed)) return;
+    const Repeatable repeatable(seed);
+    const DragFigures seen = drag_about(def, settle_ticks, drags, seed, kGiant);
+    INFO(def.name << ": " << seen.crossings << " crossings in " << seen.crossed_ticks
+                  << " ticks from tick " << seen.first_tick << " on, inside " << seen.deepest
+                  << " m, strain " << seen.strain << ", " << seen.blow_ups << " blow-ups");
+    CHECK(seen.crossings == 0);
+    CHECK(seen.deepest == 0);
+  };
+  check(pile(15), 40, 2, 501);
+  check(scene("hard-needles", 13), 20, 1, 502);
+  check(stirred(9, 3e-4, 503), 30, 1, 503);
+}
+
 TEST_CASE("a sharp object that is stirred about in dragged cloth does not pass through it") {
   check_drags(stirred(9, 3e-4, 401), 30, 2, 401);
   check_drags(stirred(17, 4e-4, 402), 30, 1, 402);
