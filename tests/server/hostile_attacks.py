@@ -15,6 +15,11 @@ RATE = 950      # messages a second, just below the limit
 SLOW_RATE = 20  # of those that cost much
 PATIENCE = 30   # until something counts as never [s]
 
+# Legal to say, and refused: by name, before the scene is built, and after.
+REFUSED = ["nowhere", {"cloths": [{"rows": 1000, "columns": 1000}]}, {"cloths": [{"rows": 1}]},
+           {"cloths": [{"rows": 90, "columns": 90}], "solver": {"min_substeps": 20000}},
+           {"cloths": [{"rows": 5, "columns": 5}], "pins": [{"place": "particle", "particle": 25}]}]
+
 
 def connect(url):
     return websockets.connect(url, subprotocols=["weft.v1"], compression=None, max_size=None,
@@ -40,6 +45,7 @@ def harmless(kind):
                 ["positions", "velocities", "energies", "state", "roster", "work", "crossings"])},
             "forces": lambda: {"op": "query", "what": random.choice(["contacts", "reactions"])},
             "camera": lambda: {"op": "camera", "position": place(), "target": [0, 0, 0]},
+            "refused_load": lambda: {"op": "load", "scene": random.choice(REFUSED)},
             "garbage": lambda: random.choice(["{", "[" * 5000, "x" * 60000, '{"op":"explode"}', "{}",
                                               '{"op":"speed","speed":1e999}', '{"op":"pin","particle":1e9}']),
         }[kind]()
@@ -71,7 +77,7 @@ def scene_changing(kind):
         }[kind]()
 
 
-HARMLESS = ["moves", "pins", "views", "hello", "queries", "forces", "camera", "garbage"]
+HARMLESS = ["moves", "pins", "views", "hello", "queries", "forces", "camera", "refused_load", "garbage"]
 SCENE = ["load", "storm", "advance", "pause", "speed"]
 
 

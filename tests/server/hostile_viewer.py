@@ -3,11 +3,12 @@
     WEFT_PROGRAM=build/weft /usr/bin/python3 tests/server/hostile_viewer.py [--seconds 300] [--part 30]
                                                      [--kinds harmless scene] [--sigterm 50] [--counts]
 
-With what changes no one's scene (moves, pins, views, hello, names, queries, camera, garbage) the others
-keep 0.9 of the ticks and frames of the quiet parts beside it, and none of them is closed. With what does
-(load, set, advance, pause, speed) each of their commands is answered within one tick and 1 s of the
-server's CPU time, joins work, and memory stays within 200 MB of what the scene itself takes. The server
-obeys SIGTERM within 2 s at any moment. Prints a table; exit code 1 tells that something did not hold.
+With what changes no one's scene (moves, pins, views, hello, names, queries, camera, refused loads,
+garbage) the others keep 0.9 of the ticks and frames of the quiet parts beside it, and none of them is
+closed. With what does (load, set, advance, pause, speed) each of their commands is answered within one
+tick and 1 s of the server's CPU time, joins work, and memory stays within 200 MB of what the scene itself
+takes. The server obeys SIGTERM within 2 s at any moment. Prints a table; exit code 1 tells that something
+did not hold.
 
 --counts judges what needs no clock: closed viewers, answers, joins, exit codes. The attacker is a
 process of its own with plain websockets, so that no client of the project paces it.
