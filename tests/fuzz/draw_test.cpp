@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "proto/commands.h"
+#include "server/scene_build.h"
 #include "server/scene_library.h"
 #include "server/scene_schema.h"
 #include "tests/fuzz/command_draw.h"
@@ -136,6 +137,45 @@ TEST_CASE("a seed and a number give the same script again, and another number an
   CHECK(json_of(draw_script(Dice(4, 7), size)).dump() == first);
   CHECK(json_of(draw_script(Dice(4, 8), size)).dump() != first);
   CHECK(json_of(draw_script(Dice(5, 7), size)).dump() != first);
+}
+
+TEST_CASE("scenes that cannot be built are refused as they are built, and some are drawn") {
+  const server::SceneLibrary library("");
+  std::map<std::string, int> refused;
+  for (std::uint64_t k = 0; k < 400; ++k) {
+    for (const Step& step : draw_script(Dice(8, k), {4, 24, 2}).steps) {
+      if (step.kind != Step::Kind::say) continue;
+      const auto request = proto::parse_request(step.text);
+      REQUIRE(request);
+      const auto* load = std::get_if<proto::Load>(&request->command);
+      if (!load || load->definition.size() > 200) continue;
+      try {
+        server::build_scene(library.from_client(load->definition), nullptr, 0);
+      } catch (const DefinitionError& error) {
+        ++refused[error.field];
+      }
+    }
+  }
+  for (const char* field : {"cloths", "scene", "cloths[0].fabric", "pins[0].particle"}) {
+    INFO(field);
+    CHECK(refused[field] > 0);
+  }
+}
+
+TEST_CASE("a third of what viewers do comes while a tick runs, unless none shall") {
+  int within = 0, all = 0;
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    ScriptSize size;
+    size.within = k % 2 == 0;
+    for (const Step& step : draw_script(Dice(9, k), size).steps) {
+      if (step.kind == Step::Kind::ticks) continue;
+      if (!size.within) CHECK(step.within == -1);
+      all += size.within;
+      within += step.within >= 0;
+    }
+  }
+  CHECK(within > all / 5);
+  CHECK(within < all / 2);
 }
 
 TEST_CASE("a script is what its JSON says") {

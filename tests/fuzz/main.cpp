@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <deque>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/clock.h"
+#include "server/thread_pool.h"
 #include "tests/fuzz/apart.h"
 #include "tests/fuzz/run.h"
 #include "tests/fuzz/script_draw.h"
@@ -93,7 +95,8 @@ class Driver {
     run_found();
     if (!options_.script.empty()) {
       std::ifstream file(options_.script == "-" ? "/dev/stdin" : options_.script);
-      start("--script " + options_.script, script_of(nlohmann::ordered_json::parse(file)), false);
+      start("--script " + options_.script, script_of(nlohmann::ordered_json::parse(file)),
+            Again::no);
     } else if (options_.scene) {
       start_scene(*options_.scene);
     } else {
@@ -114,7 +117,7 @@ class Driver {
     for (int number = 1; std::getline(file, line); ++number) {
       if (line.empty() || line[0] == '#') continue;
       start("--script <(sed -n " + std::to_string(number) + "p " + options_.found + ")",
-            script_of(nlohmann::ordered_json::parse(line)), true);
+            script_of(nlohmann::ordered_json::parse(line)), Again::once);
     }
   }
 
@@ -129,15 +132,24 @@ class Driver {
   }
 
   void start_scene(std::uint64_t scene) {
-    constexpr std::uint64_t kRepeated = 8;  // every eighth runs twice
+    // Every eighth runs twice, and every eighth a second time on two threads.
+    constexpr std::uint64_t kRepeated = 8;
     const std::string name = "--seed " + std::to_string(options_.seed) +
                              (options_.small ? " --small" : "") + " --scene " +
                              std::to_string(scene);
-    start(name, draw_script(Dice(options_.seed, scene), size_), scene % kRepeated == 0);
+    ScriptSize size = size_;
+    const bool threads = scene % kRepeated == kRepeated / 2;
+    if (threads) size.within = false;  // threads meet fewer stop points
+    const Again again = threads                  ? Again::on_threads
+                        : scene % kRepeated == 0 ? Again::once
+                                                 : Again::no;
+    start(name, draw_script(Dice(options_.seed, scene), size), again);
   }
 
-  /// @param twice  whether a second run shall lead to the same hash
-  void start(const std::string& name, const Script& script, bool twice) {
+  /// Whether a second run, with a thread more or not, shall lead to the same hash.
+  enum class Again { no, once, on_threads };
+
+  void start(const std::string& name, const Script& script, Again again) {
     if (options_.print) std::cout << json_of(script).dump() << std::endl;
     while (jobs_.size() >= static_cast<std::size_t>(options_.jobs)) finish_one();
     auto job = std::make_unique<Job>();
@@ -148,21 +160,27 @@ class Driver {
       spdlog::set_default_logger(spdlog::stderr_logger_st("fuzz"));
       spdlog::set_level(spdlog::level::err);
       run_script(script, library_, limits_, ~std::uint64_t{0}, outcome);
-      if (twice && outcome.ended && outcome.halts == 0 && outcome.cpu < limits_.scene)
-        run_again(script, outcome);
+      if (again != Again::no && outcome.ended && outcome.halts == 0 && outcome.cpu < limits_.scene)
+        run_again(script, again, outcome);
     };
     job->process = std::make_unique<Apart>(work, kPatience * limits_.hang);
     jobs_.push_back(std::move(job));
   }
 
-  void run_again(const Script& script, Outcome& outcome) {
+  void run_again(const Script& script, Again again, Outcome& outcome) {
     Outcome second{};
-    run_script(script, library_, limits_, outcome.steps, second);
+    server::ThreadPool pool(again == Again::on_threads ? 2 : 1);
+    run_script(script, library_, limits_, outcome.steps, second,
+               again == Again::on_threads ? &pool : nullptr);
+    outcome.problems += second.problems;
+    if (second.problems > 0) std::memcpy(outcome.problem, second.problem, sizeof outcome.problem);
     if (!second.ended || second.halts > 0 || second.cpu > limits_.scene ||
         second.hash == outcome.hash)
       return;
     ++outcome.problems;
-    std::snprintf(outcome.problem, sizeof outcome.problem, "a second run ends with another hash");
+    std::snprintf(outcome.problem, sizeof outcome.problem, "%s",
+                  again == Again::on_threads ? "on two threads it ends with another hash"
+                                             : "a second run ends with another hash");
   }
 
   void finish_one() {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <deque>
 #include <functional>
-#include <map>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
-#include <string_view>
 #include <sys/time.h>
 #include <thread>
 #include <utility>
@@ -45,9 +45,9 @@ void set_alarm(double seconds) {
 class Run {
  public:
   Run(const Script& script, const server::SceneLibrary& library, const Limits& limits,
-      Outcome& outcome)
-      : script_(script), library_(library), limits_(limits), outcome_(outcome), listener_(outcome),
-        limit_(limits.tick), watch_(limit_) {}
+      Outcome& outcome, Executor* executor)
+      : script_(script), library_(library), limits_(limits), outcome_(outcome), executor_(executor),
+        listener_(outcome), limit_(limits.tick), watch_(limit_) {}
 
   void go(std::uint64_t most_steps) {
     if (!build()) return;
@@ -73,18 +73,15 @@ class Run {
     try {
       options.limit = &limit_;
       options.build_limit = limits_.build;
-      // A thread of its own, as in the server; but waited for, so that each run is the same.
-      options.beside = [](std::function<void()> job) { std::thread(std::move(job)).join(); };
+      options.beside = [this](std::function<void()> job) { jobs_.push_back(std::move(job)); };
       measured("reading the scene", Kind::build, [&] {
         options.scene_def = library_.from_client(script_.scene);
         options.read_scene = [this](const std::string& text) { return library_.from_client(text); };
         const auto named = [this](const std::string& name) { return library_.named(name); };
-        room_ = std::make_unique<server::Room>(options, named, listener_, clock(), metrics_);
+        room_ =
+            std::make_unique<server::Room>(options, named, listener_, clock(), metrics_, executor_);
       });
-      limit_.signal().attend = [this] {
-        limit_.signal().lower();
-        return room_->gives_up();
-      };
+      limit_.signal().attend = [this] { return attend(); };
       return true;
     } catch (const DefinitionError& error) {
       put(outcome_.refused, error.what());
@@ -124,7 +121,31 @@ class Run {
     }
   }
 
+  /// At a stop point of what runs.
+  /// @returns whether to give it up
+  bool attend() {
+    if (in_tick_) do_within(stops_++);
+    if (!in_tick_ || later_.empty()) limit_.signal().lower();
+    return room_->gives_up();
+  }
+
+  /// Builds the scenes that are asked for, and does what comes by this stop point of a tick.
+  void do_within(int stop) {
+    build_beside();
+    while (!later_.empty() && later_.front().within <= stop) {
+      const Step step = std::move(later_.front());
+      later_.pop_front();
+      act(step);
+    }
+  }
+
+  /// On a thread of its own, as in the server; but waited for, so that each run is the same.
+  void build_beside() {
+    for (auto& job : std::exchange(jobs_, {})) std::thread(std::move(job)).join();
+  }
+
   void take(server::Inbound item, const std::string& what) {
+    if (in_tick_) return room_->take_meanwhile(std::move(item));
     measured(what, Kind::wait, [&] {
       room_->take(std::move(item));
       room_->finish_turn();
@@ -132,9 +153,19 @@ class Run {
   }
 
   void follow(const Step& step) {
+    if (step.within >= 0) {
+      later_.push_back(step);
+    } else if (step.kind == Step::Kind::ticks) {
+      for (int k = 0; k < step.ticks && outcome_.cpu <= limits_.scene; ++k) tick();
+    } else {
+      act(step);
+      finish_advance();
+    }
+  }
+
+  void act(const Step& step) {
     switch (step.kind) {
       case Step::Kind::ticks:
-        for (int k = 0; k < step.ticks && outcome_.cpu <= limits_.scene; ++k) tick();
         break;
       case Step::Kind::join:
         join(step.viewer);
@@ -167,15 +198,30 @@ class Run {
       now_ += room_->tick_interval();
       one_tick("", [this] { room_->tick(); });
     }
-    measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+    end_turn();
     finish_advance();
+  }
+
+  /// What was to come within a tick comes now if none passes, and so do scenes that are asked for.
+  void end_turn() {
+    if (!room_->ticking() && !room_->advancing()) do_within(std::numeric_limits<int>::max());
+    measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
   }
 
   template <class Work>
   void one_tick(const std::string& of_what, Work&& work) {
     const std::uint64_t before = room_->world().tick();
+    stops_ = 0;
+    in_tick_ = true;
+    if (!later_.empty() || !jobs_.empty()) limit_.signal().raise();
     measured("tick " + std::to_string(before + 1) + of_what, Kind::tick, work);
-    if (room_->world().tick() == before) return;  // it was given up
+    in_tick_ = false;
+    limit_.signal().lower();
+    if (room_->world().tick() != before) note_tick();  // else it was given up
+    do_within(std::numeric_limits<int>::max());        // what it had no stop point for
+  }
+
+  void note_tick() {
     ++outcome_.ticks;
     const TickReport& report = room_->world().report();
     if (report.divergence && !report.rested) ++outcome_.recoveries;
@@ -199,7 +245,6 @@ class Run {
     else if (request->id)
       asked_.emplace_back(viewer, json::parse(text)["id"]);
     take(std::move(item), name + " " + text);
-    finish_advance();
   }
 
   /// Runs an `advance` tick by tick; one that takes too long is ended as its viewer leaves.
@@ -214,7 +259,7 @@ class Run {
         return;
       }
       one_tick(" of advance", [this] { room_->advance_until(now_); });
-      measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+      end_turn();
     }
   }
 
@@ -222,7 +267,8 @@ class Run {
   void settle() {
     for (int turn = 0; turn < kSettling; ++turn) {
       now_ += 0.1;
-      measured("the end of a turn", Kind::wait, [this] { room_->finish_turn(); });
+      do_within(std::numeric_limits<int>::max());
+      end_turn();
       finish_advance();
     }
   }
@@ -269,10 +315,12 @@ class Run {
       listener_.problem("no viewer was told of " + std::to_string(outcome_.halts) + " halts");
   }
 
-  /// Ticks that were given up stand in the log as commands.
+  /// Ticks that were given up stand in the log as commands; those that a reset or a load made
+  /// worthless are no fault.
   void count_halts() {
     for (const server::LogEntry& entry : room_->log().entries()) {
-      if (std::string_view(proto::name_of(entry.command)) != "halt") continue;
+      const auto* halt = std::get_if<proto::Halt>(&entry.command);
+      if (!halt || halt->cause.find("replaces the state") != std::string::npos) continue;
       ++outcome_.halts;
       put(outcome_.halt, proto::encode_request({std::nullopt, entry.command}));
     }
@@ -282,6 +330,7 @@ class Run {
   const server::SceneLibrary& library_;
   const Limits& limits_;
   Outcome& outcome_;
+  Executor* executor_;
   Listener listener_;
   server::Metrics metrics_;
   server::WorkLimit limit_;
@@ -292,13 +341,17 @@ class Run {
   std::uint32_t number_ = 0;
   std::set<proto::ViewerId> here_;
   std::vector<std::pair<proto::ViewerId, json>> asked_;
+  std::deque<Step> later_;                   // within the coming tick
+  std::vector<std::function<void()>> jobs_;  // that build scenes
+  bool in_tick_ = false;
+  int stops_ = 0;  // of the running tick, so far
 };
 
 }  // namespace
 
 void run_script(const Script& script, const server::SceneLibrary& library, const Limits& limits,
-                std::uint64_t most_steps, Outcome& outcome) {
-  Run(script, library, limits, outcome).go(most_steps);
+                std::uint64_t most_steps, Outcome& outcome, Executor* executor) {
+  Run(script, library, limits, outcome, executor).go(most_steps);
 }
 
 }  // namespace weft::fuzz

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/executor.h"
 #include "server/scene_library.h"
 #include "tests/fuzz/script.h"
 
@@ -37,11 +38,12 @@ struct Outcome {
   std::uint64_t hash;  ///< at the end
 };
 
-/// Runs a script in a room with a clock of its own, one thread and no socket, and checks at each
-/// step what must hold whatever is done.
+/// Runs a script in a room with a clock of its own and no socket, and checks at each step what must
+/// hold whatever is done.
 /// @param most_steps  after which it ends
+/// @param executor    of the physics; null: one thread
 void run_script(const Script& script, const server::SceneLibrary& library, const Limits& limits,
-                std::uint64_t most_steps, Outcome& outcome);
+                std::uint64_t most_steps, Outcome& outcome, Executor* executor = nullptr);
 
 /// Exit code of a process whose step took longer than it may.
 inline constexpr int kHangExit = 97;

@@ -16,11 +16,12 @@ struct Step {
   proto::ViewerId viewer = 1;
   int ticks = 0;
   std::string text;  ///< of a command, as it arrives
+  int within = -1;   ///< stop point of the coming tick at which it happens; -1: before that tick
 };
 
 /// A scene and what is done to it: all that a run depends on. As JSON it is one array: the scene,
-/// and then numbers (so many ticks) and pairs [viewer, what], where what is "join", "leave" or a
-/// command.
+/// and then numbers (so many ticks) and [viewer, what], where what is "join", "leave" or a command;
+/// or [viewer, what, within].
 struct Script {
   std::string scene;  ///< JSON text
   std::vector<Step> steps;
@@ -30,20 +31,15 @@ inline nlohmann::ordered_json json_of(const Script& script) {
   using Json = nlohmann::ordered_json;
   Json out = Json::array({Json::parse(script.scene)});
   for (const Step& step : script.steps) {
-    switch (step.kind) {
-      case Step::Kind::ticks:
-        out.push_back(step.ticks);
-        break;
-      case Step::Kind::join:
-        out.push_back({step.viewer, "join"});
-        break;
-      case Step::Kind::leave:
-        out.push_back({step.viewer, "leave"});
-        break;
-      case Step::Kind::say:
-        out.push_back({step.viewer, Json::parse(step.text)});
-        break;
+    if (step.kind == Step::Kind::ticks) {
+      out.push_back(step.ticks);
+      continue;
     }
+    const Json what = step.kind == Step::Kind::join    ? Json("join")
+                      : step.kind == Step::Kind::leave ? Json("leave")
+                                                       : Json::parse(step.text);
+    out.push_back(Json::array({step.viewer, what}));
+    if (step.within >= 0) out.back().push_back(step.within);
   }
   return out;
 }
@@ -63,6 +59,7 @@ inline Script script_of(const nlohmann::ordered_json& json) {
                   : what == "leave" ? Step::Kind::leave
                                     : Step::Kind::say;
       if (step.kind == Step::Kind::say) step.text = what.dump();
+      if (json[k].size() > 2) step.within = json[k][2].get<int>();
     }
     script.steps.push_back(std::move(step));
   }

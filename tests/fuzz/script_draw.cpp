@@ -1,5 +1,6 @@
 #include "tests/fuzz/script_draw.h"
 
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -11,6 +12,9 @@ namespace weft::fuzz {
 namespace {
 
 constexpr double kTicks = 0.4, kLoad = 0.02, kComing = 0.03;  // of a step; else it is a command
+constexpr double kFails = 0.3;   // of a load: its scene cannot be built
+constexpr double kWithin = 0.3;  // of a command: it comes while a tick runs
+constexpr int kMostStop = 40;    // stop points of a tick by which it comes
 constexpr proto::ViewerId kViewers = 3;
 
 /// An id of its own: mostly a number, sometimes text.
@@ -20,13 +24,33 @@ proto::Id id_of(Dice dice, std::size_t step) {
   return "step " + std::to_string(number);
 }
 
+/// A legal scene that is refused before, while or after it is built.
+std::string failing_scene(Dice dice) {
+  static const char* const scenes[] = {
+      R"({"cloths":[{"rows":600,"columns":600}]})",
+      R"({"cloths":[{"rows":90,"columns":90}],"solver":{"min_substeps":20000}})",
+      R"({"cloths":[{"rows":40,"columns":40,"width":0.01,"height":0.01,
+          "fabric":{"stretch_warp":10000,"stretch_weft":10000}}],"tick_rate":1})",
+      R"({"cloths":[{"rows":5,"columns":5}],"pins":[{"place":"particle","particle":25}]})"};
+  return scenes[dice.below(std::size(scenes))];
+}
+
+/// Comes while a tick runs, now and then.
+void place_within(Dice dice, const ScriptSize& size, Step& step) {
+  if (size.within && dice.chance(kWithin)) step.within = static_cast<int>(dice.below(kMostStop));
+}
+
 Step command_step(const Dice& dice, std::size_t number, const ScriptSize& size, RoomFacts& facts) {
   Step step;
   step.kind = Step::Kind::say;
   step.viewer = 1 + static_cast<proto::ViewerId>(dice.of("viewer").below(kViewers));
   proto::Request request;
   request.id = id_of(dice.of("id"), number);
-  if (dice.of("load").chance(kLoad)) {
+  if (dice.of("load").chance(kLoad * kFails)) {
+    proto::Load load;
+    load.definition = failing_scene(dice.of("failing"));
+    request.command = std::move(load);
+  } else if (dice.of("load").chance(kLoad)) {
     proto::Load load;
     load.definition = draw_scene(dice.of("scene"), size.most_side, facts.scene);
     request.command = std::move(load);
@@ -36,6 +60,7 @@ Step command_step(const Dice& dice, std::size_t number, const ScriptSize& size, 
     if (std::holds_alternative<proto::Pin>(request.command)) ++facts.pins_made;
   }
   step.text = proto::encode_request(request);
+  place_within(dice.of("within"), size, step);
   return step;
 }
 
@@ -57,8 +82,12 @@ Script draw_script(const Dice& dice, const ScriptSize& size) {
       script.steps.push_back({Step::Kind::ticks, 0, kind.between(1, size.most_ticks), {}});
     } else if (kind.chance(kComing)) {
       const auto viewer = 1 + static_cast<proto::ViewerId>(kind.below(kViewers));
-      script.steps.push_back({Step::Kind::leave, viewer, 0, {}});
-      script.steps.push_back({Step::Kind::join, viewer, 0, {}});
+      Step leave{Step::Kind::leave, viewer, 0, {}};
+      place_within(place.of("within"), size, leave);
+      Step join = leave;
+      join.kind = Step::Kind::join;
+      script.steps.push_back(std::move(leave));
+      script.steps.push_back(std::move(join));
     } else {
       script.steps.push_back(command_step(place, k, size, facts));
     }

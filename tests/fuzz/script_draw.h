@@ -10,6 +10,7 @@ struct ScriptSize {
   int most_side = 24;   ///< particles along a side of a cloth
   int most_steps = 24;  ///< commands, and bursts of ticks between them
   int most_ticks = 12;  ///< of one burst
+  bool within = true;   ///< some of what viewers do comes while a tick runs
 };
 
 /// A random scene, and random legal commands of every kind between ticks. Depends on its arguments
