@@ -61,6 +61,35 @@ test('the points that are framed are all in the free picture, and from no nearer
   }
 });
 
+/** What is free beside the points in the picture, on its four sides, as parts of its height. */
+function margins(points, { target, distance, ...side }, { slope, aspect, above, below }) {
+  const { right, up, back } = axes_of(side);
+  const seen = { left: Infinity, right: Infinity, below: Infinity, above: Infinity };
+  for (let i = 0; i < points.length; i += 3) {
+    const [x, y, z] = [right, up, back].map((axis) =>
+      axis.x * (points[i] - target.x) + axis.y * (points[i + 1] - target.y) + axis.z * (points[i + 2] - target.z));
+    const [across, along] = [x, y].map((value) => value / slope / (distance - z) / 2);
+    seen.left = Math.min(seen.left, aspect / 2 + across);
+    seen.right = Math.min(seen.right, aspect / 2 - across);
+    seen.below = Math.min(seen.below, 0.5 - below + along);
+    seen.above = Math.min(seen.above, 0.5 - above - along);
+  }
+  return seen;
+}
+
+test('what is framed is in the middle of the free picture, however deep it is', () => {
+  for (const axes of [[[1, 0, 0], [0, 0, 1]], [[0.6, 0, 0.8], [0, 1, 0]], [[0, 0.6, 0.8], [1, 0, 0]]]) {
+    const { points } = sheet([0.3, 1, -0.2], ...axes, 1.4);
+    for (const window of WINDOWS) {
+      for (const side of SIDES) {
+        const free = margins(points, pose_around(points, side, window), window);
+        assert.ok(Math.abs(free.left - free.right) < 0.005, JSON.stringify(free));
+        assert.ok(Math.abs(free.above - free.below) < 0.005, JSON.stringify(free));
+      }
+    }
+  }
+});
+
 test('the sphere of a view just fills the free picture, to 2 %', () => {
   for (const window of WINDOWS) {
     for (const side of SIDES) {

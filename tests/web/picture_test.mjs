@@ -56,10 +56,10 @@ test('the cloth that is drawn is the projection of the positions of the server',
 // pixels differ on the outline alone, and no more of them than anywhere else.
 test('a cloth seen edge-on differs from its projection on the outline alone', bounded, async () => {
   const seen = [];
-  for (const azimuth of [1.4, 1.5]) {
+  for (const azimuth of [1.4, 1.47]) {
     const view = [0, 1, 0, Math.sin(azimuth), 0.2, Math.cos(azimuth), 1];
-    await with_page({ width: 720, height: 540, view }, async (page, script) => {
-      await script.pause();
+    await with_page({ width: 720, height: 540, view, paused: true }, async (page, script) => {
+      await script.advance(60);
       const { outline, differing, inside, area } = await silhouettes(page, script);
       assert.equal(inside, 0, `from an azimuth of ${azimuth}`);
       assert.ok(differing < 0.35 * outline, `${differing} of ${outline} pixels of the outline`);

@@ -1,6 +1,8 @@
 import { Vector3 } from 'three';
 import type { Vec3, View } from '../../../proto/js/messages.js';
 
+const HALVINGS = 16; // of where a picture's middle may be: then it is within a thousandth
+
 /** Where an orbiting camera stands: it looks at a target, from a distance [m] and two angles [rad]. */
 export interface Pose {
   target: Vector3;
@@ -34,7 +36,7 @@ function angles_of([x, y, z]: Vec3): { azimuth: number; elevation: number } {
   return { azimuth: Math.atan2(x, z), elevation: Math.atan2(y, Math.hypot(x, z)) };
 }
 
-/** The nearest pose from this side that has all points in the free picture; `points` are xyz [m]. */
+/** The nearest pose from this side that has all points in the middle of the free picture; `points` are xyz [m]. */
 export function pose_around(
   points: ArrayLike<number>,
   side: { azimuth: number; elevation: number },
@@ -43,27 +45,55 @@ export function pose_around(
   const [lowest, highest] = [2 * below - 1, 1 - 2 * above];
   const { right, up, back } = axes_of(side);
   const [x, y, z] = [0, 1, 2].map((axis) => middle(points, axis));
-  // From a distance d, a point at a right, b up and c back of the middle is in view if
-  // |a - slide| <= aspect slope (d - c) and lowest <= (b - shift) / slope / (d - c) <= highest.
-  const across = { least: Infinity, most: -Infinity };
-  const along = { least: Infinity, most: -Infinity };
+  // Of each point: how far right, up and back of the middle it is.
+  const places = [right, up, back].map(() => new Float64Array(points.length / 3));
   const point = new Vector3();
   for (let i = 0; i < points.length; i += 3) {
     point.set(points[i] - x, points[i + 1] - y, points[i + 2] - z);
-    const [a, b, c] = [point.dot(right), point.dot(up), point.dot(back)];
-    across.least = Math.min(across.least, a - aspect * slope * c);
-    across.most = Math.max(across.most, a + aspect * slope * c);
-    along.least = Math.min(along.least, b + lowest * slope * c);
-    along.most = Math.max(along.most, b + highest * slope * c);
+    for (const [k, axis] of [right, up, back].entries()) places[k][i / 3] = point.dot(axis);
   }
-  const distance = Math.max(
-    (across.most - across.least) / (2 * aspect * slope),
-    (along.most - along.least) / ((highest - lowest) * slope),
-  );
-  const slide = (across.most + across.least) / 2;
-  const shift = (along.most + along.least - (highest + lowest) * slope * distance) / 2;
+  const [a, b, c] = places;
+  const [wide, low, high] = [aspect * slope, lowest * slope, highest * slope];
+  const distance = Math.max(least_distance(a, c, -wide, wide), least_distance(b, c, low, high));
+  const slide = centred(a, c, distance, -wide, wide);
+  const shift = centred(b, c, distance, low, high);
   const target = new Vector3(x, y, z).addScaledVector(right, slide).addScaledVector(up, shift);
   return { target, distance, azimuth: side.azimuth, elevation: side.elevation };
+}
+
+/**
+ * From a distance d and shifted by s, a point at b across the view and c back of its middle is seen at
+ * (b - s) / (d - c). This is the least distance from which, with some shift, all are seen from `low` to
+ * `high`: tangents of angles.
+ */
+function least_distance(b: Float64Array, c: Float64Array, low: number, high: number): number {
+  let [least, most] = [Infinity, -Infinity];
+  for (let i = 0; i < b.length; i++) {
+    least = Math.min(least, b[i] + low * c[i]);
+    most = Math.max(most, b[i] + high * c[i]);
+  }
+  return (most - least) / (high - low);
+}
+
+/** The shift with which as much is free above the points as below them, by halving what is possible. */
+function centred(b: Float64Array, c: Float64Array, distance: number, low: number, high: number): number {
+  let [least, most] = [-Infinity, Infinity];
+  for (let i = 0; i < b.length; i++) {
+    least = Math.max(least, b[i] - high * (distance - c[i]));
+    most = Math.min(most, b[i] - low * (distance - c[i]));
+  }
+  for (let halving = 0; halving < HALVINGS; halving++) {
+    const shift = (least + most) / 2;
+    let [lowest, highest] = [Infinity, -Infinity];
+    for (let i = 0; i < b.length; i++) {
+      const seen = (b[i] - shift) / (distance - c[i]);
+      lowest = Math.min(lowest, seen);
+      highest = Math.max(highest, seen);
+    }
+    if (lowest + highest > low + high) least = shift;
+    else most = shift;
+  }
+  return (least + most) / 2;
 }
 
 /** The pose of a view: its sphere fills the free part of the picture. */
