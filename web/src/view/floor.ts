@@ -1,4 +1,4 @@
-import { Mesh, PlaneGeometry, ShadowMaterial } from 'three';
+import { Mesh, PlaneGeometry, ShaderChunk, ShadowMaterial } from 'three';
 import type { Palette } from './palette.js';
 
 const GRID_RADIUS = 5; // at which the grid has faded out [m]
@@ -7,7 +7,11 @@ const GRID_RADIUS = 5; // at which the grid has faded out [m]
 export class Floor {
   readonly mesh: Mesh;
   private material: ShadowMaterial;
-  private uniforms = { grid_color: { value: null as unknown }, grid_radius: { value: GRID_RADIUS } };
+  private uniforms = {
+    grid_color: { value: null as unknown },
+    grid_radius: { value: GRID_RADIUS },
+    key_blur: { value: 1 },
+  };
 
   constructor(palette: Palette) {
     const size = GRID_RADIUS * 2;
@@ -19,6 +23,7 @@ export class Floor {
         'varying vec2 place;\nvoid main() {\nplace = position.xz;',
       );
       shader.fragmentShader = shader.fragmentShader
+        .replace('#include <shadowmask_pars_fragment>', SHADOWS)
         .replace('void main() {', `${GRID_FUNCTIONS}\nvoid main() {`)
         .replace('#include <tonemapping_fragment>', GRID_OVER_SHADOW);
     };
@@ -29,12 +34,26 @@ export class Floor {
     this.paint(palette);
   }
 
+  /** How much more the key light's shadow is blurred than elsewhere: a floor throws none on itself. */
+  set key_blur(factor: number) {
+    this.uniforms.key_blur.value = factor;
+  }
+
   paint({ grid, shadow, shade }: Palette): void {
     this.material.color.copy(shadow);
     this.material.opacity = shade;
     this.uniforms.grid_color.value = grid;
   }
 }
+
+// The key light is the first that throws shadows.
+const SHADOWS = `
+  uniform float key_blur;
+  ${ShaderChunk.shadowmask_pars_fragment.replace(
+    'directionalLight.shadowRadius',
+    'directionalLight.shadowRadius * (UNROLLED_LOOP_INDEX == 0 ? key_blur : 1.0)',
+  )}
+`;
 
 const GRID_FUNCTIONS = `
   uniform vec3 grid_color;

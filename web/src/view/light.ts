@@ -20,8 +20,10 @@ const KEY_SPREAD = 0.07; // tangent of half the angle under which the key light 
 const SKY_SPREAD = 0.9; // the same for the light from above
 const KEY_BLUR = 0.012; // of the shadow's edge, also where its light moves from exposure to exposure [m]
 const SKY_BLUR = 0.05; // [m]
-const SKY_STEP = 44; // that has to be bridged between the shadows of exposures, by the root of their number [texels]
-const SKY_VARIETY = 0.6; // by which that differs from exposure to exposure, so that what is left of each differs
+// What has to be bridged between the shadows of exposures, by the root of their number [texels].
+const SKY_STEP = 44;
+const KEY_STEP = 48; // on the floor, where what hangs high throws shadows far apart
+const VARIETY = 0.6; // by which that differs from exposure to exposure, so that what is left of each differs
 const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
 const HEMISPHERE = { alone: 1.1, with_environment: 0.12 };
 const CONTACT = 0.85; // part of the light from above that its shadows take
@@ -84,15 +86,17 @@ export class Light {
    * Moves the lights to a point of their areas, so that the mean of many pictures has the shadows of
    * areas; null: to their middles, with shadows that are blurred instead.
    * @param count of those pictures
+   * @returns how much more the key light's shadow is to be blurred on the floor
    */
-  show(sample: Sample | null, count = 1): void {
+  show(sample: Sample | null, count = 1): number {
     const texel = (size: number) => (2 * this.radius) / size;
     const blur = (metres: number, size: number) => Math.min(14, Math.max(1, metres / texel(size)));
     this.key.shadow.radius = blur(KEY_BLUR, MAP_SIZES.key);
-    const step = sample ? (SKY_STEP / Math.sqrt(count)) * (1 + SKY_VARIETY * sample.pixel[0]) : 0;
-    this.sky.shadow.radius = sample ? step : blur(SKY_BLUR, MAP_SIZES.sky);
+    const part = sample ? (1 + VARIETY * sample.pixel[0]) / Math.sqrt(count) : 0;
+    this.sky.shadow.radius = sample ? SKY_STEP * part : blur(SKY_BLUR, MAP_SIZES.sky);
     this.place(this.key, KEY, KEY_SPREAD, sample?.key);
     this.place(this.sky, new Vector3(0, 1, 0.02), SKY_SPREAD, sample?.sky);
+    return Math.max(1, (KEY_STEP * part) / this.key.shadow.radius);
   }
 
   private place(light: DirectionalLight, to: Vector3, spread: number, at = [0, 0]): void {

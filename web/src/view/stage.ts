@@ -120,13 +120,13 @@ export class Stage {
     const { width, height } = this.canvas;
     const sample = this.exposed > 0 ? sample_of(this.exposed - 1) : null;
     if (sample) camera.setViewOffset(width, height, ...sample.pixel, width, height);
-    this.light_.show(sample, EXPOSURES[this.drawn_in]);
+    this.floor.key_blur = this.light_.show(sample, EXPOSURES[this.drawn_in]);
     this.light_.contact = true;
     this.renderer.render(this.scene, camera);
     this.exposure.add(this.exposed);
     this.exposed += 1;
     camera.clearViewOffset();
-    this.light_.show(null);
+    this.floor.key_blur = this.light_.show(null);
   }
 
   /**
