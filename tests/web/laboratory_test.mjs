@@ -7,7 +7,7 @@ import { start_server } from './support/server.mjs';
 
 // The textile tests: marks in the picture, and figures beside it.
 
-const { overhang, shadow } = await import_page_module('view/textile_marks');
+const { marks_of, overhang, shadow } = await import_page_module('view/textile_marks');
 const { ruler } = await import_page_module('view/ruler');
 const { measurement_text, test_of } = await import_page_module('panel/laboratory_panel');
 
@@ -38,6 +38,16 @@ function area(points) {
   return Math.abs(twice) / 2;
 }
 
+/** The largest angle by which a closed outline turns at a point [degrees]. */
+function sharpest_turn(points) {
+  const directions = [];
+  for (let i = 0; i < points.length; i += 6) {
+    directions.push(Math.atan2(points[i + 5] - points[i + 2], points[i + 3] - points[i]));
+  }
+  const turns = directions.map((direction, k) => direction - directions.at(k - 1));
+  return Math.max(...turns.map((turn) => Math.abs(Math.atan2(Math.sin(turn), Math.cos(turn))))) * (180 / Math.PI);
+}
+
 test('the outline on the floor has the area that the drape coefficient is made of, to 2 points', bounded, async () => {
   const { specimen, rest, measured } = await specimen_of('drape-test', 240);
   const flat = area(shadow(rest));
@@ -47,6 +57,10 @@ test('the outline on the floor has the area that the drape coefficient is made o
   assert.ok(told > 20 && told < 95, `${told}`);
   assert.ok(Math.abs(coefficient - told) < 2, `${coefficient} and ${told}`);
   assert.equal(test_of(measured), 'drape');
+  for (const outline of [shadow(rest), shadow(specimen)]) {
+    assert.ok(outline.length / 6 > 40, 'it is closed, and fine');
+    assert.ok(sharpest_turn(outline) < 20, `no stairs are left: ${sharpest_turn(outline)} degrees`);
+  }
 });
 
 test('the lines of the cantilever have the droop and the angle that the server measures', bounded, async () => {
@@ -57,6 +71,12 @@ test('the lines of the cantilever have the droop and the angle that the server m
   const angle = (Math.atan2(droop, Math.hypot(tip[0] - clamp[0], tip[2] - clamp[2])) * 180) / Math.PI;
   assert.ok(Math.abs(angle - measured.chord_angle_degrees) < 0.05, `${angle}`);
   assert.equal(test_of(measured), 'cantilever');
+  const marks = marks_of('cantilever', specimen);
+  for (let i = 0; i < marks.length; i += 3) {
+    const [x, y] = marks.slice(i, i + 2);
+    const away = Math.max(clamp[0] - x, x - tip[0], tip[1] - y, y - clamp[1]);
+    assert.ok(away < 0.025, `what measures the strip is beside it, not ${away} m away`);
+  }
 });
 
 test('a ruler has a mark each centimetre, and longer ones at each fifth and tenth', () => {

@@ -31,7 +31,7 @@ export function ruler(start: Point, along: Point, across: Point, length: number)
   const at = (u: number, v: number) =>
     start.map((value, axis) => value + u * along[axis] + v * across[axis]);
   const points = [...at(0, 0), ...at(length, 0)];
-  const last = Math.round(length * 100);
+  const last = Math.floor(length * 100 + 1e-6);
   for (let centimetre = 0; centimetre <= last; centimetre++) {
     const u = centimetre / 100;
     const mark = centimetre % 10 === 0 ? LONG : centimetre % 5 === 0 ? MIDDLE : SHORT;

@@ -12,6 +12,7 @@ const SPECIMEN_RADIUS = 0.15; // of a flat specimen [m]
 const ABOVE_FLOOR = 0.001; // of lines on the floor [m]
 const RULER_GAP = 0.015; // between a ruler and what it measures [m]
 const ARC_PARTS = 12;
+const SMOOTHINGS = 12; // of an outline: enough for the stairs in which a round cloth of a grid ends
 
 /** What the marks are made of. */
 export interface Specimen {
@@ -38,12 +39,35 @@ export function border(triangles: ArrayLike<number>, cloth: Cloth): number[] {
   return [...edges.values()].flat();
 }
 
-/** The shadow of the cloth's border on the floor under a lamp far above: pairs of points. */
-export function shadow({ positions, triangles, cloth, floor }: Specimen): number[] {
-  const height = floor + ABOVE_FLOOR;
-  const flat = (i: number) => [positions[3 * i], height, positions[3 * i + 2]];
-  return border(triangles, cloth).flatMap(flat);
+/** The border's particles, one after the other. */
+function outline({ triangles, cloth }: Specimen): number[] {
+  const edges = border(triangles, cloth);
+  const next = new Map<number, number>();
+  for (let i = 0; i < edges.length; i += 2) next.set(edges[i], edges[i + 1]);
+  const loop = [edges[0]];
+  while (loop.length < next.size) loop.push(next.get(loop.at(-1)!)!);
+  return loop;
 }
+
+/**
+ * The shadow of the cloth's border on the floor under a lamp far above: pairs of points. The stairs in
+ * which a grid ends are smoothed to a line through their middles, which has the same area inside.
+ */
+export function shadow(specimen: Specimen): number[] {
+  const { positions, floor } = specimen;
+  const loop = outline(specimen);
+  const [x, z] = [0, 2].map((axis) => {
+    let places = loop.map((i) => positions[3 * i + axis]);
+    for (let k = 0; k < SMOOTHINGS; k++) places = smoothed(places);
+    return places;
+  });
+  const at = (k: number) => [x.at(k)!, floor + ABOVE_FLOOR, z.at(k)!];
+  return loop.flatMap((_, k) => [...at(k - 1), ...at(k)]);
+}
+
+/** Each number of a ring as half itself and half its neighbours. */
+const smoothed = (ring: number[]) =>
+  ring.map((value, k) => value / 2 + (ring.at(k - 1)! + ring[(k + 1) % ring.length]) / 4);
 
 /** Where a strip is clamped and where its free end is, each the middle of its columns [m]. */
 export function overhang({ positions, cloth, pin }: Specimen): { clamp: Point; tip: Point } {
@@ -74,7 +98,7 @@ function drape_marks(specimen: Specimen): number[] {
   ];
 }
 
-/** The level and the chord from clamp to tip, the angle between them, the droop, and two rulers. */
+/** The level and the chord from clamp to tip, the angle between them, and a ruler along the droop. */
 function cantilever_marks(specimen: Specimen): number[] {
   const { clamp, tip } = overhang(specimen);
   const depth = half_width(specimen) + 0.002; // before the strip, seen from the side
@@ -90,14 +114,11 @@ function cantilever_marks(specimen: Specimen): number[] {
     }
   }
   const side = x + reach;
-  const length = 0.01 * Math.ceil(100 * Math.hypot(reach, droop));
   return [
     ...[x, y, z, side, y, z], // the level
     ...[x, y, z, side, tip[1], z], // the chord
-    ...[side, y, z, side, tip[1], z], // the droop
     ...arc,
-    ...ruler([x, y + RULER_GAP, z], [1, 0, 0], [0, 1, 0], length),
-    ...ruler([x + length + RULER_GAP, y, z], [0, -1, 0], [1, 0, 0], length),
+    ...ruler([side, y, z], [0, -1, 0], [1, 0, 0], droop),
   ];
 }
 
