@@ -9,7 +9,7 @@ const { back_of, colors_of, FINISHES, PALETTE } = await import_page_module('view
 const { difference, lab_of } = await import_page_module('view/color');
 const { fabric_material } = await import_page_module('view/fabric');
 const { weave_of } = await import_page_module('view/weave');
-const { Subdivision } = await import_page_module('view/subdivision');
+const { roundness, Subdivision } = await import_page_module('view/subdivision');
 const { corners_of } = await import_page_module('view/border');
 const { both_diagonals, cells_of } = await import_page_module('view/cells');
 const { round_of } = await import_page_module('view/round');
@@ -37,15 +37,18 @@ function grid(n, place) {
   return { positions, uv: Float32Array.from(points.flat()), triangles: Uint32Array.from(triangles) };
 }
 
-/** Refines a grid as the page does. */
-function refined({ positions, triangles, uv }, levels, reach) {
+/** Refines a grid as the page does. @param even whether normals are evened out too, and folds left sharp */
+function refined({ positions, triangles, uv }, levels, reach, even = false) {
   const cells = cells_of(triangles, uv);
   const fine = new Subdivision(positions.length / 3, triangles, cells, corners_of(triangles, uv), levels);
   const points = new Float32Array(fine.vertices * 3);
   points.set(positions);
   const normals = new Float32Array(points.length);
-  smooth_normals(points, both_diagonals(triangles, cells), normals.subarray(0, positions.length));
-  fine.refine(points, normals, new Float32Array(fine.vertices).fill(reach));
+  const [both, coarse] = [both_diagonals(triangles, cells), normals.subarray(0, positions.length)];
+  smooth_normals(points, both, coarse);
+  const most = new Float32Array(fine.vertices).fill(reach);
+  if (even) for (const [k, value] of even_normals(both, coarse).entries()) most[k] *= roundness(value);
+  fine.refine(points, normals, most);
   return { fine, points, normals };
 }
 
@@ -193,6 +196,28 @@ test('the finer mesh stays within its reach of the triangles, however crumpled t
   assert.ok(farthest <= reach * 1.0001, `${farthest}`);
   assert.ok(farthest > reach / 2, 'it does bend');
 });
+
+test('the two layers of a sharp fold are not drawn through each other', () => {
+  const [cell, thickness, n] = [0.027, 0.004, 13];
+  for (const uneven of [0, 0.3]) {
+    for (const gap of [0.5 * thickness, thickness, 3 * thickness]) {
+      // Columns run down one layer to the crest and up the other, which is not quite parallel to it.
+      const folded = grid(n, (u, v) => {
+        const [column, row] = [Math.round(u * (n - 1)) - 6, Math.round(v * (n - 1))];
+        const along = cell * Math.abs(column) * (column > 0 ? 1 : 1 - 0.05 * uneven * (row % 2));
+        return [along, row * cell, (Math.sign(column) * gap) / 2];
+      });
+      const { points } = refined(folded, 2, 0.45 * thickness, true);
+      const { points: sides } = refined({ ...folded, positions: signs(n) }, 2, 0);
+      for (let i = 0; i < points.length; i += 3) {
+        assert.ok(points[i + 2] * sides[i + 2] > -1e-9, `${points[i + 2]} m at a gap of ${gap} m`);
+      }
+    }
+  }
+});
+
+/** Sheets as above whose third coordinate is the layer: -1 to the crest, and 1 from there. */
+const signs = (n) => grid(n, (u, v) => [u, v, Math.sign(Math.round(u * (n - 1)) - (n - 1) / 2)]).positions;
 
 test('a round cloth of a grid is drawn as the largest ellipse within its stairs, no other cloth is', () => {
   const whole = grid(31, (u, v) => [u, v, 0]);

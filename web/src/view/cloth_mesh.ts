@@ -11,7 +11,7 @@ import { colors_of, finish_of } from './looks.js';
 import { even_normals, smooth_normals } from './normals.js';
 import { fabric_extent } from './rest_shape.js';
 import { round_of } from './round.js';
-import { Subdivision } from './subdivision.js';
+import { roundness, Subdivision } from './subdivision.js';
 import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
 
@@ -45,6 +45,8 @@ export class ClothMesh {
   private fine: Subdivision;
   private pieces: Piece[];
   private weaves = new Map<string, Weave>();
+  /** How far the surface may leave the simulated one: at particles if it is round, and everywhere now [m]. */
+  private largest_reach: Float32Array;
   private reach: Float32Array;
   private edges: Float32Array;
 
@@ -61,11 +63,11 @@ export class ClothMesh {
     const vector = () => new BufferAttribute(new Float32Array(vertices * 3), 3);
     this.positions = vector().setUsage(DynamicDrawUsage);
     this.normals = vector().setUsage(DynamicDrawUsage);
+    this.largest_reach = new Float32Array(coarse);
     this.reach = new Float32Array(this.fine.vertices);
     this.edges = new Float32Array(this.fine.vertices);
     const uv = new BufferAttribute(new Float32Array(vertices * 2), 2);
     this.pieces = cloths.map((cloth, k) => this.piece(cloth, data, hems[k], uv));
-    this.fine.interpolate(this.reach, 1);
     this.fine.interpolate(uv.array as Float32Array, 2);
     for (const hem of hems) hem.copy(uv.array as Float32Array, 2);
     this.dress(cloths.map(({ look }) => look));
@@ -97,10 +99,17 @@ export class ClothMesh {
     positions.set(particles);
     const of_particles = normals.subarray(0, particles.length);
     smooth_normals(positions, this.shaded, of_particles);
-    if (this.fine.levels > 0) even_normals(this.shaded, of_particles);
+    if (this.fine.levels > 0) this.limit(even_normals(this.shaded, of_particles));
     this.fine.refine(positions, normals, this.reach);
     for (const { hem } of this.pieces) hem.place(positions, normals, this.edges);
     this.positions.needsUpdate = this.normals.needsUpdate = true;
+  }
+
+  /** Chooses how far the surface may leave the simulated one. @param agreement of the normals around particles */
+  private limit(agreement: Float32Array): void {
+    for (const [k, most] of this.largest_reach.entries()) {
+      this.reach[k] = most * roundness(agreement[k]);
+    }
   }
 
   /** Puts the triangles of cloths that one sees through in order, far ones first. */
@@ -146,7 +155,7 @@ export class ClothMesh {
     for (let i = cloth.first_vertex; i < end; i++) {
       uv.setXY(i, data.uv[i * 2] * width, data.uv[i * 2 + 1] * height);
     }
-    this.reach.fill(REACH * cloth.thickness, cloth.first_vertex, end);
+    this.largest_reach.fill(REACH * cloth.thickness, cloth.first_vertex, end);
     const own = this.triangles_of(cloth);
     const triangles = new Uint32Array(own.length + hem.triangles.length);
     triangles.set(own);

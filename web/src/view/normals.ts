@@ -55,9 +55,12 @@ function normalise(normals: Float32Array): void {
  * light would show as rows of dents.
  * @param triangles of the vertices, each cell by both of its diagonals
  * @param normals   in and out; of unit length
+ * @returns of each vertex, how far the normals around it agree: 1 in a plane, 0 where they cancel out
  */
-export function even_normals(triangles: Uint32Array, normals: Float32Array): void {
+export function even_normals(triangles: Uint32Array, normals: Float32Array): Float32Array {
   const sums = new Float32Array(normals.length);
+  const agreement = new Float32Array(normals.length / 3); // at first how many normals there are
+  for (const vertex of triangles) agreement[vertex] += 3;
   for (let t = 0; t < triangles.length; t += 3) {
     const a = triangles[t] * 3;
     const b = triangles[t + 1] * 3;
@@ -69,8 +72,12 @@ export function even_normals(triangles: Uint32Array, normals: Float32Array): voi
       sums[c + axis] += sum;
     }
   }
-  normals.set(sums);
-  normalise(normals);
+  for (let k = 0, i = 0; k < agreement.length; k++, i += 3) {
+    const length = Math.sqrt(sums[i] * sums[i] + sums[i + 1] * sums[i + 1] + sums[i + 2] * sums[i + 2]);
+    agreement[k] = length / (agreement[k] || 1);
+    for (let axis = 0; axis < 3; axis++) normals[i + axis] = sums[i + axis] / (length || 1);
+  }
+  return agreement;
 }
 
 /** Positions moved inwards along the smooth normals by a distance [m]. */

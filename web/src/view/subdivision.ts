@@ -14,6 +14,18 @@ interface Level {
 }
 
 const FIRST_SHARE = 0.8; // of the reach, for the first level; a second one takes the rest
+// Of how far the normals around a vertex agree (`even_normals`), 0 to 1.
+const ROUND = 0.9;
+const SHARP = 0.72;
+
+/**
+ * The part of its reach that a surface is bent at a vertex: all where it is round, nothing where it is
+ * folded sharply, because there its own two layers are nearer to each other than contact keeps others.
+ * @param agreement of the normals around it
+ */
+export function roundness(agreement: number): number {
+  return Math.min(1, Math.max(0, (agreement - SHARP) / (ROUND - SHARP)));
+}
 
 /**
  * A finer mesh that goes through the vertices of a coarse one, for display. Each edge is bent to a
@@ -21,7 +33,7 @@ const FIRST_SHARE = 0.8; // of the reach, for the first level; a second one take
  * and halved; in the middle of a cell the curves of both diagonals are averaged, and borders are
  * cubics through four of their vertices (the four-point scheme, Dubuc 1986). New vertices stay
  * within `reach` of the coarse triangles, less than half of the distance that contact keeps, so that
- * surfaces that do not touch are not drawn through each other.
+ * surfaces that do not touch are not drawn through each other; at sharp folds less (`roundness`).
  */
 export class Subdivision {
   /** Of the finest level; triangle t of the coarse mesh is 4^levels of these, beginning there. */
@@ -74,7 +86,8 @@ export class Subdivision {
    * Fills in positions and normals of the new vertices.
    * @param positions three values per vertex [m]; those of the coarse mesh are given
    * @param normals   likewise, of unit length
-   * @param reach     of each vertex: how far the surface may leave the coarse triangles [m]
+   * @param reach     of each vertex: how far the surface may leave the coarse triangles [m]; that of new
+   *                  vertices is filled in, and is the less of that of their edge's ends
    */
   refine(positions: Float32Array, normals: Float32Array, reach: Float32Array): void {
     for (const [k, level] of this.divisions.entries()) {
@@ -108,7 +121,9 @@ function halve_edges(
     let ox = middle[0] - mx;
     let oy = middle[1] - my;
     let oz = middle[2] - mz;
-    const most = reach[a] * share;
+    const least = Math.min(reach[a], reach[b]);
+    reach[first + e / 2] = least;
+    const most = least * share;
     const length = ox * ox + oy * oy + oz * oz;
     if (length > most * most) {
       const shorter = most / Math.sqrt(length);
@@ -149,7 +164,7 @@ function round_borders(
       offset[axis] = (a + b - before - after) / 16;
       length += offset[axis] * offset[axis];
     }
-    const most = reach[from] * share;
+    const most = reach[first + borders[k]] * share;
     const part = length > most * most ? most / Math.sqrt(length) : 1;
     const at = (first + borders[k]) * 3;
     for (let axis = 0; axis < 3; axis++) {
