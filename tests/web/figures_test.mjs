@@ -66,7 +66,7 @@ test('the speed of time is set from 1/32 to 4 by slider and keys, and shown to a
 );
 
 test('figures open and close by button and key, and stay as they were left', bounded, async () => {
-  const page = await open_page(browser, server.url, { width: 1000, height: 640 });
+  const page = await open_page(browser, server.url, { width: 1600, height: 720 });
   const script = await server.script();
   const chart = page.locator('#energy-chart');
   assert.ok(await chart.isVisible(), 'on a wide screen they are open');

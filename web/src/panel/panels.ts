@@ -7,7 +7,7 @@ import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
-const WIDE = '(width > 900px) and (height > 560px)'; // where figures do not cover the cloth
+const WIDE = '(width >= 1600px) and (height >= 720px)'; // where figures do not cover the cloth
 const RATE_WINDOW = 2; // window of the tick rate [s]
 
 export type Phase = 'closed' | 'connecting' | 'open' | 'waiting';
