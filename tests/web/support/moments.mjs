@@ -7,6 +7,12 @@ const USUAL_TICK = 240;
 const TICKS = {
   default: 600,
   'drape-sphere': 150,
+  'hard-teleport': 120,
+  'hard-squeeze': 120,
+  'hard-stack': 180,
+  'hard-mass-ratio': 130,
+  'hard-warp-and-weft': 130,
+  'hard-ring': 130,
   // Four seconds, as of the others.
   'hard-step-30th': 120,
   'hard-step-10th': 40,
