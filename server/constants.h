@@ -2,10 +2,12 @@
 
 #include <cstddef>
 
-// The numbers that the server assumes about what work may cost. Ranges of options stand in
-// options.h, of commands in proto/limits.h.
+// The numbers that the server assumes about work, time and viewers. Ranges of options stand in
+// options.h, those of commands in proto/limits.h.
 
 namespace weft::server {
+
+// What work may cost.
 
 /// Share of a tick's limit that work between two ticks may take [1]: 0.8 s with the default limit,
 /// so that no command waits a second for it. Larger: commands wait longer. Smaller: queries for the
@@ -13,8 +15,59 @@ namespace weft::server {
 inline constexpr double kBetweenTicks = 0.4;
 
 /// Longest mesh message [bytes], which everyone who joins is sent: 9 s at 30 Mbit/s. All cloth of
-/// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller:
-/// fine meshes are refused.
+/// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller: fine
+/// meshes are refused.
 inline constexpr std::size_t kMostMeshBytes = std::size_t{32} << 20U;
+
+/// Commands of one turn may take this long before the next tick [s]. Larger: a crowd of commands
+/// delays ticks. Smaller: it waits for more of them.
+inline constexpr double kOrderSlice = 0.1;
+
+/// A cheaper command than this costs its viewer nothing [s of CPU]. After a more expensive one its
+/// viewer waits kWaitPerCost times as long before its next, if other viewers are present. Larger:
+/// one viewer can keep others waiting. Smaller: scripts that ask much are held up.
+inline constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
+
+/// A viewer waits this long after its `load` [s], because the new scene is sent to all. Larger: a
+/// script that loads scene after scene is slow. Smaller: it keeps others busy with meshes.
+inline constexpr double kPauseAfterLoad = 0.25;
+
+// Time.
+
+/// Longest sleep of the simulation thread [s]. Larger: leases end later. Smaller: an idle room costs
+/// more.
+inline constexpr double kLongestSleep = 0.25;
+
+/// Idle time after which a room counts crossings once [s]. Larger: a paused room tells them later.
+/// Smaller: single steps are counted each.
+inline constexpr double kStandingPause = 0.25;
+
+/// Ticks of which the median is told. More: it follows a change later. Fewer: it wavers.
+inline constexpr std::size_t kTickTimes = 120;
+
+/// Fraction of the wanted speed below which time passes slowly [1], how long it has to until that is
+/// told, and until it is told again [s]. Larger: less is told, and later.
+inline constexpr double kSlow = 0.9, kSlowPatience = 2, kSlowNoticePause = 10;
+
+// What viewers are told, and how often.
+
+/// Time between two `state` while ticks pass [s]. Larger: figures lag. Smaller: more messages.
+inline constexpr double kStatePause = 0.25;
+
+/// Shortest time between two announcements of changes [s]. Larger: changes are told later at high
+/// tick rates. Smaller: more messages.
+inline constexpr double kShortestTelling = 1.0 / 240;
+
+/// Sustained rate of announcements to one viewer [bytes/s]. Larger: one viewer's pins can fill
+/// another one's queue. Smaller: long lists are told late.
+inline constexpr double kTellingRate = 2e6;
+
+/// Frames of an `advance` that its viewer has not taken, beyond which its ticks wait. More: memory.
+/// Fewer: the ticks wait for each round trip.
+inline constexpr long kMostFramesInFlight = 4;
+
+/// Time without a taken frame after which the viewer of an `advance` counts as not reading [s].
+/// Larger: it holds up the room for longer. Smaller: a slow link ends it.
+inline constexpr double kStalled = 2;
 
 }  // namespace weft::server

@@ -14,13 +14,6 @@
 namespace weft::server {
 namespace {
 
-constexpr double kStandingPause = 0.25;  // idle time after which a room counts crossings once [s]
-constexpr double kLongestSleep = 0.25;   // [s]
-constexpr std::size_t kTickTimes = 120;  // for the median
-constexpr double kSlow = 0.9;            // fraction of the wanted speed that counts as slow motion
-constexpr double kSlowPatience = 2;      // [s]
-constexpr double kSlowNoticePause = 10;  // [s]
-
 constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f", "#b04fd1",
                                                 "#d99a00", "#00a3a3", "#d13f7c", "#6b7a1f"};
 
@@ -29,14 +22,14 @@ constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f",
 Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock,
            Metrics& metrics, Executor* executor)
     : options_(std::move(options)), scenes_(std::move(scenes)), output_(output),
-      clock_(std::move(clock)), metrics_(metrics), executor_(executor), paused_(options_.paused),
-      guarantee_(options_.count_pause, clock_) {
+      clock_(std::move(clock)), metrics_(metrics), executor_(executor),
+      time_(options_.paused, clock_()), guarantee_(options_.count_pause, clock_) {
   WorldDef def = options_.scene_def ? *options_.scene_def : definition_of(options_.scene);
   if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
   start_world(build_scene(def, executor_, options_.limit ? options_.limit->seconds() : 0));
   told_ = {state_message(), pins_message(), grabs_message()};
-  meter_.restart(clock_());
+  time_.restart_meter(clock_());
 }
 
 WorldDef Room::definition_of(const std::string& scene) const {
@@ -58,15 +51,12 @@ void Room::start_world(BuiltScene&& scene) {
   pin_owners_.clear();
   moving_pins_.clear();
   scene_grabs_.clear();
-  tick_times_.clear();
-  next_tick_time_ = 0;
   ++epoch_;
   mesh_ = std::move(scene.mesh);
   mesh_.epoch = epoch_;
   mesh_bytes_ = std::move(scene.mesh_bytes);
   output_.offer_mesh(mesh_.hash, mesh_bytes_, {epoch_, std::move(scene.order)});
-  wanted_softness_ = 1;
-  budget_.restart(world_->def().budget, {});
+  time_.begin_scene(world_->def().budget);
   within_limit([&] { guarantee_.start(*world_, std::move(scene.bad_starts)); }, kBetweenTicks);
   output_.set_frame_rate(world_->def().tick_rate * speed());
 }
@@ -151,16 +141,14 @@ std::optional<double> Room::step_world() {
   }
   in_tick_ = false;
   const TickReport& report = world_->report();
-  last_tick_done_ = clock_();
-  const double seconds = last_tick_done_ - start;
+  const double end = clock_(), seconds = end - start;
+  time_.note_end_of_tick(end);
   if (report.halted) {
     note_halt();
     return std::nullopt;
   }
   metrics_.count_tick(seconds, report.rested);
-  if (tick_times_.size() < kTickTimes) tick_times_.resize(tick_times_.size() + 1);
-  tick_times_[next_tick_time_++ % tick_times_.size()] = seconds;
-  if (next_tick_time_ == kTickTimes) next_tick_time_ = 0;
+  time_.note_tick(seconds);
   if (!report.rested) guarantee_.note_tick(*world_);
   const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();
   count_crossings(report.rested || fell_asleep);
@@ -190,16 +178,16 @@ void Room::count_crossings(bool stays) {
 void Room::tick() {
   const std::optional<double> seconds = step_world();
   if (!seconds) return;
-  meter_.add(world_->tick_seconds(), clock_());
+  time_.note_passed(world_->tick_seconds(), clock_());
   if (!world_->report().rested) {
     ticked_ = true;
     keep_budget(*seconds);
   }
-  if (paused_ && steps_left_ > 0 && --steps_left_ == 0) state_changed_ = true;
+  if (time_.take_step()) state_changed_ = true;
 }
 
 double Room::real_time_factor() const {
-  return ticking() ? meter_.factor(clock_(), speed()) : 0;
+  return ticking() ? time_.real_time_factor(clock_()) : 0;
 }
 
 void Room::finish_turn() {
@@ -210,7 +198,7 @@ void Room::finish_turn() {
     state_changed_ = state_changed_ || !world_->report().rested;
     tell_slow_motion(now);
   }
-  const bool stands = !ticking() && !advance_ && now - last_tick_done_ >= kStandingPause;
+  const bool stands = !ticking() && !advance_ && now - time_.last_tick_done() >= kStandingPause;
   if (stands) {
     count_crossings(true);
     tell_guarantee();
@@ -234,7 +222,7 @@ void Room::end_leases() {
   const double now = clock_();
   for (std::size_t i = hands_.size(); i-- > 0;) {
     // A hand does not time out in lock-step or while the room is paused.
-    if (paused_ || advance_) hands_[i].heard = now;
+    if (paused() || advance_) hands_[i].heard = now;
     if (now - hands_[i].heard < options_.limits.lease_seconds) continue;
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%g", options_.limits.lease_seconds);
@@ -247,15 +235,9 @@ void Room::end_leases() {
 }
 
 void Room::tell_slow_motion(double now) {
-  const double factor = real_time_factor();
+  const double factor = time_.real_time_factor(now);
   metrics_.set_real_time_factor(factor);
-  if (factor >= kSlow * speed()) {
-    slow_since_ = -1;
-    return;
-  }
-  if (slow_since_ < 0) slow_since_ = now;
-  if (now - slow_since_ < kSlowPatience || now < next_slow_notice_) return;
-  next_slow_notice_ = now + kSlowNoticePause;
+  if (!time_.is_slow(now)) return;
   notify(proto::NoticeLevel::warning, "slow_motion",
          "the cloth is too heavy for its tick rate and moves in slow motion", 0, {}, factor);
 }
@@ -271,21 +253,17 @@ Message Room::message_of(const SceneNotice& what) const {
 
 proto::State Room::state() const {
   proto::State state = state_of(*world_);
-  state.paused = paused_;
-  state.speed = wanted_speed_;
-  state.pace = budget_.setting().pace;
+  const BudgetKeeper& budget = time_.budget();
+  state.paused = paused();
+  state.speed = time_.wanted_speed();
+  state.pace = budget.setting().pace;
   state.softness = world_->softness();
-  state.budget_ms = budget_.budget().milliseconds;
-  state.over_budget = to_wire(budget_.budget().remedy);
+  state.budget_ms = budget.budget().milliseconds;
+  state.over_budget = to_wire(budget.budget().remedy);
   state.real_time_factor = real_time_factor();
   state.guarantee = guarantee_.guarantee(*world_);
   state.crossings = guarantee_.crossings();
-  if (!tick_times_.empty()) {
-    std::vector<double> times = tick_times_;
-    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
-    state.step_ms = *middle * 1000;
-  }
+  if (const auto seconds = time_.median_tick()) state.step_ms = *seconds * 1000;
   return state;
 }
 

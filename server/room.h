@@ -15,16 +15,15 @@
 #include "proto/events.h"
 #include "proto/frame.h"
 #include "proto/replies.h"
-#include "server/budget_keeper.h"
 #include "server/clock.h"
 #include "server/command_log.h"
 #include "server/constants.h"
 #include "server/guarantee_watch.h"
 #include "server/inbound.h"
 #include "server/metrics.h"
+#include "server/room_clock.h"
 #include "server/room_output.h"
 #include "server/scene_build.h"
-#include "server/tick_pacer.h"
 #include "server/translate.h"
 #include "server/work_limit.h"
 
@@ -96,7 +95,7 @@ class Room {
   void advance_until(double deadline);
 
   /// Whether ticks follow the clock: the room runs, or `step` asked for some.
-  bool ticking() const { return !advance_ && (!paused_ || steps_left_ > 0); }
+  bool ticking() const { return !advance_ && time_.runs(); }
   double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
@@ -110,9 +109,9 @@ class Room {
 
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return log_; }
-  bool paused() const { return paused_; }
+  bool paused() const { return time_.paused(); }
   /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
-  double speed() const { return wanted_speed_ * budget_.setting().pace; }
+  double speed() const { return time_.speed(); }
   double real_time_factor() const;
   std::uint32_t epoch() const { return epoch_; }
   std::uint64_t frames_encoded() const { return frames_encoded_; }
@@ -283,10 +282,7 @@ class Room {
   proto::MeshAnnouncement mesh_;
   SharedBytes mesh_bytes_;
 
-  bool paused_ = false;
-  double wanted_speed_ = 1, wanted_softness_ = 1;
-  BudgetKeeper budget_;
-  std::uint32_t steps_left_ = 0;
+  RoomClock time_;
   std::optional<Advance> advance_;
   std::optional<Building> building_;
   std::deque<Inbound> waiting_;
@@ -300,11 +296,7 @@ class Room {
   std::map<PinId, proto::ViewerId> pin_owners_;
   CommandLog log_;
 
-  RealTimeMeter meter_;
-  std::vector<double> tick_times_;  // ring of the latest [s]
-  std::size_t next_tick_time_ = 0;
-  double next_state_ = 0, next_slow_notice_ = 0, slow_since_ = -1;
-  double last_tick_done_ = 0;  // [s]
+  double next_state_ = 0;  // earliest `state` that only ticks make [s]
 
   // Changes not yet announced, and the causes of change since the last frame to all: commands,
   // ticks of the clock, ticks of `advance`, or a replaced state.

@@ -5,12 +5,6 @@
 // Ticks that a viewer requests, without a clock.
 
 namespace weft::server {
-namespace {
-
-constexpr long kMostFramesInFlight = 4;  // frames in flight that the viewer has not taken
-constexpr double kStalled = 2;  // time without a taken frame that counts as not reading [s]
-
-}  // namespace
 
 void Room::advance_until(double deadline) {
   while (advance_ && advance_->left > 0 && !advance_->paused) {

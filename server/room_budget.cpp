@@ -10,8 +10,9 @@ namespace weft::server {
 /// Applies the keeper's decisions as commands of the room itself. Ticks of `advance` have no clock
 /// and do not count.
 void Room::keep_budget(double seconds) {
-  const BudgetKeeper::Setting before = budget_.setting();
-  const auto next = budget_.add(seconds, solver_of(world_->def()) == SolverKind::verlet);
+  BudgetKeeper& budget = time_.budget();
+  const BudgetKeeper::Setting before = budget.setting();
+  const auto next = budget.add(seconds, solver_of(world_->def()) == SolverKind::verlet);
   if (!next) return;
   const bool softened = next->softness != before.softness;
   std::string what;
@@ -26,24 +27,25 @@ void Room::keep_budget(double seconds) {
     follow_speed();
     what = "time passes at " + number_text(next->pace) + " of the wanted speed";
   }
-  const bool full = next->pace >= 1 && next->softness >= wanted_softness_;
+  const bool full = next->pace >= 1 && next->softness >= time_.wanted_softness();
   state_changed_ = true;
   notify(full ? proto::NoticeLevel::info : proto::NoticeLevel::warning,
          full ? "within_budget" : "over_budget",
-         "a budget of " + number_text(budget_.budget().milliseconds) + " ms a tick: " + what, 0, {},
+         "a budget of " + number_text(budget.budget().milliseconds) + " ms a tick: " + what, 0, {},
          softened ? next->softness : next->pace);
 }
 
 /// Sets a budget, and undoes the restrictions of the previous one.
 void Room::ask_for_budget(const BudgetDef& budget) {
-  if (world_->softness() != wanted_softness_) world_->set_softness(wanted_softness_);
-  budget_.restart(budget, {1, wanted_softness_}, wanted_softness_);
+  const double softness = time_.wanted_softness();
+  if (world_->softness() != softness) world_->set_softness(softness);
+  time_.set_budget(budget);
   follow_speed();
 }
 
 /// Applies a changed speed.
 void Room::follow_speed() {
-  meter_.restart(clock_());
+  time_.restart_meter(clock_());
   output_.set_frame_rate(world_->def().tick_rate * speed());
 }
 

@@ -247,29 +247,26 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Camera& command) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
-  if (!paused_) frame_wanted_ = true;
-  paused_ = state_changed_ = true;
-  steps_left_ = 0;
+  if (!paused()) frame_wanted_ = true;
+  time_.pause();
+  state_changed_ = true;
   if (advance_) advance_->paused = true;
   if (advance_ && !in_tick_) end_paused_advance();
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
-  if (paused_) meter_.restart(clock_());
-  if (paused_) frame_wanted_ = true;
-  paused_ = false;
-  steps_left_ = 0;
+  if (paused()) frame_wanted_ = true;
+  time_.resume(clock_());
   state_changed_ = true;
   return proto::Reply(proto::PauseReply{world_->tick(), false});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
-  if (!paused_) return not_paused();
+  if (!paused()) return not_paused();
   if (advance_) return advancing_error();
-  if (steps_left_ == 0) meter_.restart(clock_());
-  steps_left_ += command.n;
-  return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + steps_left_});
+  time_.add_steps(command.n, clock_());
+  return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + time_.steps_left()});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
@@ -279,7 +276,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   pin_owners_.clear();
   moving_pins_.clear();
   scene_grabs_.clear();
-  steps_left_ = 0;
+  time_.drop_steps();
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
   guarantee_.restart();
@@ -288,10 +285,10 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
-  wanted_speed_ = command.speed;
+  time_.set_speed(command.speed);
   follow_speed();
   state_changed_ = true;
-  return proto::Reply(proto::SpeedReply{world_->tick(), wanted_speed_});
+  return proto::Reply(proto::SpeedReply{world_->tick(), time_.wanted_speed()});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Move& command) {
@@ -343,20 +340,20 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   check_cost(world_->cost_in(environment), "set", "environment");
   world_->set_environment(environment);
   if (command.softness) {
-    wanted_softness_ = *command.softness;
-    world_->set_softness(wanted_softness_);
+    time_.set_softness(*command.softness);
+    world_->set_softness(*command.softness);
   }
   if (command.softness || command.budget_ms || command.over_budget)
-    ask_for_budget(with_settings(budget_.budget(), command));
+    ask_for_budget(with_settings(time_.budget().budget(), command));
   state_changed_ = true;
   if (measures_forces_) frame_wanted_ = true;  // the forces of the coming tick have changed
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
-  if (!paused_) return not_paused();
+  if (!paused()) return not_paused();
   if (advance_) return advancing_error();
-  if (steps_left_ > 0)
+  if (time_.steps_left() > 0)
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);
   caller.stalled = caller.stalled && frames_wait(caller);

@@ -16,9 +16,6 @@ using proto::ErrorCode;
 using proto::make_error;
 using proto::ViewerId;
 
-/// A viewer waits this long after its `load`, because the new scene is sent to all [s].
-constexpr double kPauseAfterLoad = 0.25;
-
 }  // namespace
 
 /// The scene that a `load` asks for. Runs on another thread: reads nothing that changes.
@@ -56,8 +53,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
 /// Announces the new scene to all viewers.
 void Room::tell_loaded(ViewerId viewer) {
   if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
-  steps_left_ = 0;
-  meter_.restart(clock_());
+  time_.drop_steps();
+  time_.restart_meter(clock_());
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
   state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
   notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);

@@ -12,13 +12,6 @@
 namespace weft::server {
 namespace {
 
-/// Commands of one turn may take this long before the next tick [s].
-constexpr double kOrderSlice = 0.1;
-
-/// A cheaper command than this costs its viewer nothing [s of CPU]. After a more expensive one its
-/// viewer waits kWaitPerCost times as long before its next, if other viewers are present.
-constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
-
 template <class Command>
 bool is(const Inbound& item) {
   const auto* request = std::get_if<proto::Request>(&item.what);
@@ -151,8 +144,8 @@ void Room::note_halt() {
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Halt{cause});
   if (!over_limit_ && tick_failure_.empty()) return;
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Pause{});
-  paused_ = state_changed_ = frame_wanted_ = true;
-  steps_left_ = 0;
+  time_.pause();
+  state_changed_ = frame_wanted_ = true;
   const std::string what = "tick " + std::to_string(world_->tick() + 1) + " was given up: " + cause;
   spdlog::warn("scene {}: {}", world_->def().name, what);
   metrics_.count_halt();

@@ -10,13 +10,6 @@
 // When a room sends frames and announces changes, and what they contain.
 
 namespace weft::server {
-namespace {
-
-constexpr double kStatePause = 0.25;            // between two `state` while ticks pass [s]
-constexpr double kShortestTelling = 1.0 / 240;  // between two announcements of changes [s]
-constexpr double kTellingRate = 2e6;            // sustained rate to one viewer [bytes/s]
-
-}  // namespace
 
 /// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
@@ -142,10 +135,10 @@ Frame Room::encode_frame() {
 
   proto::FrameView view;
   view.header.flags = static_cast<std::uint8_t>(
-      proto::kFrameKey | (jumped_ ? proto::kFrameJump : 0) | (paused_ ? proto::kFramePaused : 0));
+      proto::kFrameKey | (jumped_ ? proto::kFrameJump : 0) | (paused() ? proto::kFramePaused : 0));
   view.header.tick = world_->tick();
   view.header.time = static_cast<double>(world_->tick()) * world_->tick_seconds();
-  view.header.server_time = last_tick_done_;
+  view.header.server_time = time_.last_tick_done();
   view.header.sequence = view.header.reference = ++sequence_;
   view.header.epoch = epoch_;
   view.positions = floats_of(world_->state().x);
