@@ -15,8 +15,8 @@ namespace weft::server {
 inline constexpr double kBetweenTicks = 0.4;
 
 /// Longest mesh message [bytes], which everyone who joins is sent: 9 s at 30 Mbit/s. All cloth of
-/// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller: fine
-/// meshes are refused.
+/// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller:
+/// fine meshes are refused.
 inline constexpr std::size_t kMostMeshBytes = std::size_t{32} << 20U;
 
 /// Commands of one turn may take this long before the next tick [s]. Larger: a crowd of commands
@@ -34,8 +34,8 @@ inline constexpr double kPauseAfterLoad = 0.25;
 
 // Time.
 
-/// Longest sleep of the simulation thread [s]. Larger: leases end later. Smaller: an idle room costs
-/// more.
+/// Longest sleep of the simulation thread [s]. Larger: leases end later. Smaller: an idle room
+/// costs more.
 inline constexpr double kLongestSleep = 0.25;
 
 /// Idle time after which a room counts crossings once [s]. Larger: a paused room tells them later.
@@ -45,8 +45,8 @@ inline constexpr double kStandingPause = 0.25;
 /// Ticks of which the median is told. More: it follows a change later. Fewer: it wavers.
 inline constexpr std::size_t kTickTimes = 120;
 
-/// Fraction of the wanted speed below which time passes slowly [1], how long it has to until that is
-/// told, and until it is told again [s]. Larger: less is told, and later.
+/// Fraction of the wanted speed below which time passes slowly [1], how long it has to until that
+/// is told, and until it is told again [s]. Larger: less is told, and later.
 inline constexpr double kSlow = 0.9, kSlowPatience = 2, kSlowNoticePause = 10;
 
 // What viewers are told, and how often.

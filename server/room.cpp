@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <spdlog/spdlog.h>
 
@@ -47,8 +46,7 @@ void Room::start_world(BuiltScene&& scene) {
     spdlog::log(notice.warns ? spdlog::level::warn : spdlog::level::info, "scene {}: {}",
                 world_->def().name, notice.message);
   measures_forces_ = false;
-  hands_.clear();
-  pin_owners_.clear();
+  holds_.clear();
   moving_pins_.clear();
   scene_grabs_.clear();
   ++epoch_;
@@ -119,10 +117,7 @@ void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
 
 void Room::leave(proto::ViewerId viewer) {
   if (viewers_.erase(viewer) == 0) return;
-  for (std::size_t i = hands_.size(); i-- > 0;) {
-    if (hands_[i].viewer == viewer)
-      end_hand(hands_.begin() + static_cast<std::ptrdiff_t>(i), CommandOrigin::leave);
-  }
+  for (const Hand& hand : holds_.of(viewer)) end_hand(hand, CommandOrigin::leave);
   roster_changed_ = true;
 }
 
@@ -220,17 +215,15 @@ double Room::next_wake() const {
 
 void Room::end_leases() {
   const double now = clock_();
-  for (std::size_t i = hands_.size(); i-- > 0;) {
-    // A hand does not time out in lock-step or while the room is paused.
-    if (paused() || advance_) hands_[i].heard = now;
-    if (now - hands_[i].heard < options_.limits.lease_seconds) continue;
-    char seconds[32];
-    std::snprintf(seconds, sizeof seconds, "%g", options_.limits.lease_seconds);
+  const double lease = options_.limits.lease_seconds;
+  // A hand does not time out in lock-step or while the room is paused.
+  if (paused() || advance_) holds_.renew_leases(now);
+  for (const Hand& hand : holds_.expired(now, lease)) {
     notify(proto::NoticeLevel::warning, "lease_expired",
-           "drag " + std::to_string(hands_[i].drag) + " was released after " + seconds +
-               " s without a target",
-           hands_[i].viewer, hands_[i].drag);
-    end_hand(hands_.begin() + static_cast<std::ptrdiff_t>(i), CommandOrigin::lease);
+           "drag " + std::to_string(hand.drag) + " was released after " +
+               proto::number_text(lease) + " s without a target",
+           hand.viewer, hand.drag);
+    end_hand(hand, CommandOrigin::lease);
   }
 }
 
@@ -270,30 +263,6 @@ proto::State Room::state() const {
 std::vector<proto::ViewerInfo> Room::roster() const {
   std::vector<proto::ViewerInfo> list;
   for (const auto& [id, viewer] : viewers_) list.push_back(viewer.info);
-  return list;
-}
-
-std::vector<proto::PinInfo> Room::pins() const {
-  std::vector<proto::PinInfo> list;
-  for (const Pin& pin : world_->pins().list) {
-    const auto owner = pin_owners_.find(pin.id);
-    list.push_back(pin_info(*world_, pin, owner == pin_owners_.end() ? 0 : owner->second));
-  }
-  return list;
-}
-
-std::vector<proto::GrabInfo> Room::grabs(bool with_force) const {
-  std::vector<proto::GrabInfo> list;
-  for (const Grab<float>& grab : world_->grabs().list) {
-    if (const auto own = world_->scene_hand(grab.id))
-      list.push_back(grab_info(*world_, grab, 0, static_cast<std::uint32_t>(*own)));
-    for (const Hand& hand : hands_) {
-      if (hand.grab == grab.id) list.push_back(grab_info(*world_, grab, hand.viewer, hand.drag));
-    }
-  }
-  if (!with_force) {
-    for (proto::GrabInfo& grab : list) grab.force.reset();
-  }
   return list;
 }
 

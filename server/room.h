@@ -19,6 +19,7 @@
 #include "server/command_log.h"
 #include "server/constants.h"
 #include "server/guarantee_watch.h"
+#include "server/holds.h"
 #include "server/inbound.h"
 #include "server/metrics.h"
 #include "server/room_clock.h"
@@ -129,14 +130,6 @@ class Room {
     double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
   };
 
-  /// A hand: its viewer, that viewer's number for it, and when it last sent a target.
-  struct Hand {
-    GrabId grab = 0;
-    proto::ViewerId viewer = 0;
-    std::uint32_t drag = 0;
-    double heard = 0;  ///< [s]
-  };
-
   struct Advance {
     proto::ViewerId viewer = 0;
     std::optional<proto::Id> id;
@@ -196,8 +189,6 @@ class Room {
   Message message_of(const SceneNotice& notice) const;
   proto::State state() const;
   std::vector<proto::ViewerInfo> roster() const;
-  std::vector<proto::PinInfo> pins() const;
-  std::vector<proto::GrabInfo> grabs(bool with_force) const;
   WorldDef definition_of(const std::string& scene) const;
   WorldDef definition_of(const std::string& name, const std::string& json) const;
 
@@ -264,11 +255,8 @@ class Room {
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);
   Reactions coming_reactions();
-  std::optional<proto::Error> check_new_hand(proto::ViewerId viewer, std::uint32_t drag) const;
-  std::optional<proto::Error> check_free(proto::ViewerId viewer, Index particle) const;
   Outcome release_pins(const std::vector<std::uint32_t>& ids);
-  std::vector<Hand>::iterator find_hand(proto::ViewerId viewer, std::uint32_t drag);
-  void end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin);
+  void end_hand(const Hand& hand, CommandOrigin origin);
 
   RoomOptions options_;
   SceneSource scenes_;
@@ -292,8 +280,7 @@ class Room {
   std::string tick_failure_;  ///< what it threw; empty: nothing
 
   std::map<proto::ViewerId, Viewer> viewers_;
-  std::vector<Hand> hands_;
-  std::map<PinId, proto::ViewerId> pin_owners_;
+  Holds holds_;
   CommandLog log_;
 
   double next_state_ = 0;  // earliest `state` that only ticks make [s]

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/world/cost.h"
+#include "server/refusals.h"
 #include "server/room.h"
 #include "server/translate.h"
 #include "server/translate_holds.h"
@@ -18,37 +19,6 @@ namespace {
 using proto::ErrorCode;
 using proto::make_error;
 using proto::ViewerId;
-
-proto::Error field_error(ErrorCode code, std::string message, const char* field,
-                         std::uint32_t value, std::string hint = {}) {
-  proto::Error error = make_error(code, std::move(message), std::move(hint));
-  error.field = field;
-  error.value = std::to_string(value);
-  return error;
-}
-
-proto::Error too_many(const char* what, std::size_t limit) {
-  proto::Error error = make_error(ErrorCode::too_many,
-                                  "at most " + std::to_string(limit) + " " + what, "end one first");
-  proto::Limit bound;
-  bound.maximum = static_cast<double>(limit);
-  error.limit = bound;
-  return error;
-}
-
-proto::Error unknown_pin(std::uint32_t pin) {
-  return field_error(ErrorCode::unknown_pin, "there is no pin with this id", "pin", pin,
-                     "the message pins lists them");
-}
-
-proto::Error not_paused() {
-  return make_error(ErrorCode::not_paused, "the room is running", "send pause first");
-}
-
-proto::Error advancing_error() {
-  return make_error(ErrorCode::busy, "another viewer's advance is running",
-                    "wait for its end, or end it by pause");
-}
 
 }  // namespace
 
@@ -109,58 +79,24 @@ Room::Outcome Room::apply(ViewerId, const proto::Pick& command) {
   return proto::Reply(proto::PickReply{world_->tick(), to_wire(hit)});
 }
 
-std::vector<Room::Hand>::iterator Room::find_hand(ViewerId viewer, std::uint32_t drag) {
-  return std::find_if(hands_.begin(), hands_.end(),
-                      [&](const Hand& hand) { return hand.viewer == viewer && hand.drag == drag; });
-}
-
-std::optional<proto::Error> Room::check_new_hand(ViewerId viewer, std::uint32_t drag) const {
-  std::size_t own = 0;
-  for (const Hand& hand : hands_) {
-    if (hand.viewer != viewer) continue;
-    ++own;
-    if (hand.drag == drag)
-      return field_error(ErrorCode::drag_exists, "this viewer already has a drag with this number",
-                         "drag", drag, "end it or use another number");
-  }
-  if (own >= options_.limits.drags_per_viewer)
-    return too_many("drags of one viewer", options_.limits.drags_per_viewer);
-  if (hands_.size() >= options_.limits.drags) return too_many("drags", options_.limits.drags);
-  return std::nullopt;
-}
-
-std::optional<proto::Error> Room::check_free(ViewerId viewer, Index particle) const {
-  for (const Grab<float>& grab : world_->grabs().list) {
-    const bool holds =
-        std::find(grab.particles.begin(), grab.particles.end(), particle) != grab.particles.end();
-    if (!holds) continue;
-    for (const Hand& hand : hands_) {
-      if (hand.grab == grab.id && hand.viewer != viewer)
-        return field_error(ErrorCode::held, "another hand holds this particle", "particle",
-                           static_cast<std::uint32_t>(particle), "take another or wait");
-    }
-  }
-  return std::nullopt;
-}
-
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
-  if (auto error = check_new_hand(viewer, command.drag)) return *std::move(error);
+  if (auto error = check_new_hand(holds_, viewer, command.drag, options_.limits))
+    return *std::move(error);
   const auto point = resolve_hold(*world_, command.hold);
   if (!point) return point.error();
-  if (auto error = check_free(viewer, nearest_corner(*world_, *point))) return *std::move(error);
+  if (auto error = check_free(holds_, *world_, viewer, nearest_corner(*world_, *point)))
+    return *std::move(error);
   const GrabDef def = grab_def(*world_, command, *point);
   const GrabId grab = world_->grab(def);
-  hands_.push_back({grab, viewer, command.drag, clock_()});
+  holds_.add({grab, viewer, command.drag, clock_()});
   grabs_changed_ = frame_wanted_ = true;
   return proto::Reply(
       proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target), {}});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
-  const auto hand = find_hand(viewer, command.drag);
-  if (hand == hands_.end())
-    return field_error(ErrorCode::unknown_drag, "this viewer has no drag with this number", "drag",
-                       command.drag, "start it; its lease may have ended it");
+  Hand* const hand = holds_.find(viewer, command.drag);
+  if (!hand) return unknown_drag(command.drag, "start it; its lease may have ended it");
   const Vec3d target = from_wire(command.target);
   const auto& grabs = world_->grabs().list;
   const auto grab = std::find_if(grabs.begin(), grabs.end(),
@@ -173,24 +109,22 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
-  const auto hand = find_hand(viewer, command.drag);
-  if (hand == hands_.end())
-    return field_error(ErrorCode::unknown_drag, "this viewer has no drag with this number", "drag",
-                       command.drag);
+  const Hand* const hand = holds_.find(viewer, command.drag);
+  if (!hand) return unknown_drag(command.drag);
   proto::DragReply reply{world_->tick(), command.drag, hand->grab, {}, {}};
   if (const auto impulse = command.fire ? world_->fire(hand->grab) : std::nullopt)
     reply.impulse = to_wire(*impulse);
   else
     world_->release(hand->grab);
-  hands_.erase(hand);
+  holds_.remove(hand->grab);
   grabs_changed_ = frame_wanted_ = true;
   return proto::Reply(reply);
 }
 
-void Room::end_hand(std::vector<Hand>::iterator hand, CommandOrigin origin) {
-  log_.add(world_->tick(), hand->viewer, origin, proto::DragEnd{hand->drag});
-  world_->release(hand->grab);
-  hands_.erase(hand);
+void Room::end_hand(const Hand& hand, CommandOrigin origin) {
+  log_.add(world_->tick(), hand.viewer, origin, proto::DragEnd{hand.drag});
+  world_->release(hand.grab);
+  holds_.remove(hand.grab);
   grabs_changed_ = frame_wanted_ = true;
 }
 
@@ -201,7 +135,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
     return too_many("pins", options_.limits.pins);
   const Index particle = nearest_corner(*world_, *point);
   const PinId pin = world_->pin({particle, command.radius, {}});
-  pin_owners_[pin] = viewer;
+  holds_.own(pin, viewer);
   pins_changed_ = frame_wanted_ = true;
   const auto count = static_cast<std::uint32_t>(world_->pins().list.back().particles.size());
   return proto::Reply(
@@ -211,7 +145,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
 Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
   for (const std::uint32_t id : ids) {
     world_->unpin(id);
-    pin_owners_.erase(id);
+    holds_.disown(id);
   }
   if (!ids.empty()) pins_changed_ = frame_wanted_ = true;
   return proto::Reply(proto::ReleaseReply{world_->tick(), ids});
@@ -272,8 +206,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
 Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
   world_->reset();
-  hands_.clear();
-  pin_owners_.clear();
+  holds_.clear();
   moving_pins_.clear();
   scene_grabs_.clear();
   time_.drop_steps();

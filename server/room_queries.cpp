@@ -73,10 +73,10 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       reply.data = state().strain;
       break;
     case proto::QueryWhat::pins:
-      reply.data = pins();
+      reply.data = pins_of(*world_, holds_);
       break;
     case proto::QueryWhat::grabs:
-      reply.data = grabs(true);
+      reply.data = grabs_of(*world_, holds_, true);
       break;
     case proto::QueryWhat::roster:
       reply.data = roster();
@@ -98,7 +98,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       break;
     case proto::QueryWhat::reactions: {
       proto::ReactionInfo reactions = reactions_of(*world_, coming_reactions());
-      for (const proto::GrabInfo& grab : grabs(true))
+      for (const proto::GrabInfo& grab : grabs_of(*world_, holds_, true))
         reactions.grabs.push_back({grab.id, grab.viewer, *grab.force});
       reply.data = std::move(reactions);
       break;

@@ -65,11 +65,12 @@ Message Room::state_message() {
 }
 
 Message Room::pins_message() {
-  return text_message(proto::encode_pins(world_->tick(), pins()), Topic::pins);
+  return text_message(proto::encode_pins(world_->tick(), pins_of(*world_, holds_)), Topic::pins);
 }
 
 Message Room::grabs_message() {
-  return text_message(proto::encode_grabs(world_->tick(), grabs(false)), Topic::grabs);
+  return text_message(proto::encode_grabs(world_->tick(), grabs_of(*world_, holds_, false)),
+                      Topic::grabs);
 }
 
 /// During a tick, what is told of the cloth waits for its end.
@@ -123,12 +124,7 @@ void Room::show_to(proto::ViewerId viewer) {
 Frame Room::encode_frame() {
   measure_forces();
   within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
-  grab_samples_.clear();
-  for (const Grab<float>& grab : world_->grabs().list) {
-    const auto hand = std::find_if(hands_.begin(), hands_.end(),
-                                   [&](const Hand& h) { return h.grab == grab.id; });
-    grab_samples_.push_back(grab_sample(*world_, grab, hand == hands_.end() ? 0 : hand->viewer));
-  }
+  grab_samples(*world_, holds_, grab_samples_);
   applied_.clear();
   for (const auto& [id, viewer] : viewers_)
     if (viewer.applied > 0) applied_.push_back({id, viewer.applied});
