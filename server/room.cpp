@@ -27,7 +27,7 @@ Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock cl
   if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
   for (const auto& [key, value] : options_.settings) set_field(def, key, value);
   start_world(build_scene(def, executor_, options_.limit ? options_.limit->seconds() : 0));
-  told_ = {state_message(), pins_message(), grabs_message()};
+  renew_told();
   time_.restart_meter(clock_());
 }
 
@@ -47,8 +47,7 @@ void Room::start_world(BuiltScene&& scene) {
                 world_->def().name, notice.message);
   measures_forces_ = false;
   holds_.clear();
-  moving_pins_.clear();
-  scene_grabs_.clear();
+  told_.restart();
   ++epoch_;
   mesh_ = std::move(scene.mesh);
   mesh_.epoch = epoch_;
@@ -81,7 +80,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
   Viewer& viewer = viewers_[id];
   viewer.info = {id, "viewer " + std::to_string(id), kColors[id % kColors.size()], "operator", {}};
   viewer.mesh_over_http = join.mesh_over_http;
-  roster_changed_ = true;
+  news_.roster = true;
   tell_changes_if_due(clock_());
 
   proto::Welcome welcome;
@@ -99,7 +98,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
                           "query", "move", "move_pin", "gripper", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
-  if (!in_tick_) told_ = {state_message(), pins_message(), grabs_message()};
+  if (!in_tick_) renew_told();
   output_.send(id, told_.state);
   output_.send(id, text_message(proto::encode_roster(roster()), Topic::roster));
   output_.send(id, told_.pins);
@@ -118,7 +117,7 @@ void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
 void Room::leave(proto::ViewerId viewer) {
   if (viewers_.erase(viewer) == 0) return;
   for (const Hand& hand : holds_.of(viewer)) end_hand(hand, CommandOrigin::leave);
-  roster_changed_ = true;
+  news_.roster = true;
 }
 
 /// @returns its duration [s]; nothing if the tick was given up
@@ -150,14 +149,23 @@ std::optional<double> Room::step_world() {
   if (report.rested) tell_guarantee();
   if (report.rested) return seconds;
   tell_guarantee();
-  tell_pins();
-  tell_grabs();
+  if (note_pins(*world_, told_)) news_.pins = true;
+  if (note_grabs(*world_, told_)) news_.grabs = true;
   if (!report.divergence) return seconds;
   const std::string what = describe(*report.divergence);
   spdlog::warn("scene {}: {}", world_->def().name, what);
-  jumped_ = jumped_ || report.divergence->remedy == DivergenceRemedy::stopped_cloth;
+  if (report.divergence->remedy == DivergenceRemedy::stopped_cloth) frames_.note_break();
   notify(proto::NoticeLevel::warning, "recovered", what);
   return seconds;
+}
+
+/// Announces which cloths sleep, when that changes.
+/// @returns whether it did
+bool Room::tell_sleep() {
+  if (!note_sleep(*world_, told_)) return false;
+  metrics_.set_asleep(static_cast<int>(std::count(told_.asleep.begin(), told_.asleep.end(), 1)));
+  news_.state = true;
+  return true;
 }
 
 /// Counts crossings if it is time.
@@ -167,7 +175,7 @@ void Room::count_crossings(bool stays) {
   within_limit(
       [&] { news = stays ? guarantee_.count_if_stale(*world_) : guarantee_.count_if_due(*world_); },
       kBetweenTicks);
-  state_changed_ = state_changed_ || news;
+  news_.state = news_.state || news;
 }
 
 void Room::tick() {
@@ -175,10 +183,10 @@ void Room::tick() {
   if (!seconds) return;
   time_.note_passed(world_->tick_seconds(), clock_());
   if (!world_->report().rested) {
-    ticked_ = true;
+    frames_.note_tick();
     keep_budget(*seconds);
   }
-  if (time_.take_step()) state_changed_ = true;
+  if (time_.take_step()) news_.state = true;
 }
 
 double Room::real_time_factor() const {
@@ -189,8 +197,8 @@ void Room::finish_turn() {
   work_off();
   const double now = clock_();
   end_leases();
-  if (ticking() && now >= next_state_) {
-    state_changed_ = state_changed_ || !world_->report().rested;
+  if (ticking() && now >= news_.next_state) {
+    news_.state = news_.state || !world_->report().rested;
     tell_slow_motion(now);
   }
   const bool stands = !ticking() && !advance_ && now - time_.last_tick_done() >= kStandingPause;
@@ -200,16 +208,16 @@ void Room::finish_turn() {
   }
   tell_changes_if_due(now);
   if (now >= next_frame()) publish(now);
-  if (now >= next_idle_frame_) show_to_those_who_lack(now);
+  if (now >= frames_.next_idle()) show_to_those_who_lack(now);
 }
 
 double Room::next_wake() const {
   const double now = clock_();
   double wake = std::min(now + kLongestSleep, next_frame());
-  if (has_news()) wake = std::min(wake, next_telling_);
+  if (news_.any()) wake = std::min(wake, news_.next);
   if (!waiting_.empty()) wake = std::min(wake, next_turn());
   for (const auto& [id, viewer] : viewers_)
-    if (viewer.wants_frame) wake = std::min(wake, next_idle_frame_);
+    if (viewer.wants_frame) wake = std::min(wake, frames_.next_idle());
   return wake;
 }
 

@@ -18,10 +18,13 @@
 #include "server/clock.h"
 #include "server/command_log.h"
 #include "server/constants.h"
+#include "server/frame_maker.h"
+#include "server/frame_turns.h"
 #include "server/guarantee_watch.h"
 #include "server/holds.h"
 #include "server/inbound.h"
 #include "server/metrics.h"
+#include "server/news.h"
 #include "server/room_clock.h"
 #include "server/room_output.h"
 #include "server/scene_build.h"
@@ -115,7 +118,7 @@ class Room {
   double speed() const { return time_.speed(); }
   double real_time_factor() const;
   std::uint32_t epoch() const { return epoch_; }
-  std::uint64_t frames_encoded() const { return frames_encoded_; }
+  std::uint64_t frames_encoded() const { return frame_maker_.count(); }
 
  private:
   struct Viewer {
@@ -137,11 +140,6 @@ class Room {
     std::optional<proto::AdvanceFrames> frames;  ///< for its viewer, regardless of its `hz`
     double taken = 0;                            ///< when it was last free to continue [s]
     bool paused = false;  ///< by a viewer, within the tick that runs and ends it
-  };
-
-  /// The cloth as viewers were last told it, between two ticks.
-  struct Told {
-    Message state, pins, grabs;
   };
 
   /// A `load` under way.
@@ -175,9 +173,7 @@ class Room {
   std::optional<double> step_world();
   void count_crossings(bool stays);
   void tell_guarantee();  // room_queries.cpp
-  void tell_pins();       // room_queries.cpp
-  void tell_grabs();      // room_queries.cpp
-  bool tell_sleep();      // room_queries.cpp
+  bool tell_sleep();
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
   void follow_speed();
@@ -201,7 +197,8 @@ class Room {
   void end_paused_advance();
 
   // room_telling.cpp: frames and announcements
-  bool has_news() const;
+  void change(bool News::*what);
+  void renew_told();
   Message state_message();
   Message pins_message();
   Message grabs_message();
@@ -283,35 +280,17 @@ class Room {
   Holds holds_;
   CommandLog log_;
 
-  double next_state_ = 0;  // earliest `state` that only ticks make [s]
-
-  // Changes not yet announced, and the causes of change since the last frame to all: commands,
-  // ticks of the clock, ticks of `advance`, or a replaced state.
-  bool state_changed_ = false, roster_changed_ = false, pins_changed_ = false;
-  bool grabs_changed_ = false;
+  News news_;
   Told told_;
-  std::vector<proto::Notice> notices_;
-  double next_telling_ = 0;  // [s]
-  bool frame_wanted_ = false, ticked_ = false, advanced_ = false, jumped_ = false;
-  double next_idle_frame_ = 0;       // earliest one without a tick of the clock [s]
-  double next_jump_ = 0;             // earliest one that may precede those [s]
-  proto::ViewerId advance_for_ = 0;  // its viewer has the frames of `advance`, or declined them
-  std::uint32_t sequence_ = 0;
-  std::uint64_t frames_encoded_ = 0;
+  FrameTurns frames_;
+  FrameMaker frame_maker_;
+  bool measures_forces_ = false;  // whether the world measures them
+  GuaranteeWatch guarantee_;
+  std::vector<SceneNotice> scene_notices_;
+
   std::uint32_t transfers_ = 0;
   std::vector<float> box_values_;     // of the current answer, lowest and highest corners
   std::optional<Message> follow_up_;  // binary message that follows the current answer
-  std::vector<proto::GrabSample> grab_samples_;
-  std::vector<proto::PoseSample> pose_samples_;
-  std::vector<proto::AppliedCommand> applied_;
-  bool measures_forces_ = false;     // whether the world measures them
-  std::vector<char> asleep_;         // of each cloth, as last announced
-  std::vector<PinId> moving_pins_;   // as last announced
-  std::vector<GrabId> scene_grabs_;  // of the scene's own hands, as last announced
-  GuaranteeWatch guarantee_;
-  std::vector<SceneNotice> scene_notices_;
-  std::vector<proto::ContactSample> contact_samples_;
-  std::vector<proto::ReactionSample> reaction_samples_;
 };
 
 /// Runs work that the limit, or a share of it, may end.

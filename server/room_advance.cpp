@@ -17,7 +17,7 @@ void Room::advance_until(double deadline) {
     const bool shown = shows_next_tick();
     if (!step_world()) return;  // announced, and the advance ended if nothing replaces it
     --advance_->left;
-    advanced_ = advanced_ || !world_->report().rested;
+    if (!world_->report().rested) frames_.note_advance();
     if (shown) show_advanced();
     if (clock_() >= deadline) break;
   }
@@ -74,7 +74,7 @@ void Room::finish_advance(const std::optional<proto::Error>& error) {
     output_.send(done.viewer, text_message(proto::encode_error(*error)));
   else
     answer(done.viewer, done.id, proto::AdvanceReply{world_->tick(), world_->hash()});
-  state_changed_ = true;
+  news_.state = true;
 }
 
 }  // namespace weft::server

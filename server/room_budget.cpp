@@ -28,7 +28,7 @@ void Room::keep_budget(double seconds) {
     what = "time passes at " + number_text(next->pace) + " of the wanted speed";
   }
   const bool full = next->pace >= 1 && next->softness >= time_.wanted_softness();
-  state_changed_ = true;
+  news_.state = true;
   notify(full ? proto::NoticeLevel::info : proto::NoticeLevel::warning,
          full ? "within_budget" : "over_budget",
          "a budget of " + number_text(budget.budget().milliseconds) + " ms a tick: " + what, 0, {},

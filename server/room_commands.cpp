@@ -70,7 +70,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Hello& command) {
   proto::ViewerInfo& info = viewers_.at(viewer).info;
   if (command.name) info.name = *command.name;
   if (command.color) info.color = *command.color;
-  roster_changed_ = true;
+  news_.roster = true;
   return proto::Reply(proto::HelloReply{viewer, info.name, info.color, info.role});
 }
 
@@ -89,7 +89,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const GrabDef def = grab_def(*world_, command, *point);
   const GrabId grab = world_->grab(def);
   holds_.add({grab, viewer, command.drag, clock_()});
-  grabs_changed_ = frame_wanted_ = true;
+  change(&News::grabs);
   return proto::Reply(
       proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target), {}});
 }
@@ -102,7 +102,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
   const auto grab = std::find_if(grabs.begin(), grabs.end(),
                                  [&](const Grab<float>& g) { return g.id == hand->grab; });
   // A hand at rest repeats its target, which changes nothing.
-  if (grab == grabs.end() || grab->target != target.cast<float>()) frame_wanted_ = true;
+  if (grab == grabs.end() || grab->target != target.cast<float>()) frames_.note_command();
   world_->move_grab(hand->grab, target);
   hand->heard = clock_();
   return proto::Reply(proto::DragReply{world_->tick(), command.drag, hand->grab, {}, {}});
@@ -117,7 +117,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
   else
     world_->release(hand->grab);
   holds_.remove(hand->grab);
-  grabs_changed_ = frame_wanted_ = true;
+  change(&News::grabs);
   return proto::Reply(reply);
 }
 
@@ -125,7 +125,7 @@ void Room::end_hand(const Hand& hand, CommandOrigin origin) {
   log_.add(world_->tick(), hand.viewer, origin, proto::DragEnd{hand.drag});
   world_->release(hand.grab);
   holds_.remove(hand.grab);
-  grabs_changed_ = frame_wanted_ = true;
+  change(&News::grabs);
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
@@ -136,7 +136,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
   const Index particle = nearest_corner(*world_, *point);
   const PinId pin = world_->pin({particle, command.radius, {}});
   holds_.own(pin, viewer);
-  pins_changed_ = frame_wanted_ = true;
+  change(&News::pins);
   const auto count = static_cast<std::uint32_t>(world_->pins().list.back().particles.size());
   return proto::Reply(
       proto::PinReply{world_->tick(), pin, static_cast<std::uint32_t>(particle), count});
@@ -147,7 +147,7 @@ Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
     world_->unpin(id);
     holds_.disown(id);
   }
-  if (!ids.empty()) pins_changed_ = frame_wanted_ = true;
+  if (!ids.empty()) change(&News::pins);
   return proto::Reply(proto::ReleaseReply{world_->tick(), ids});
 }
 
@@ -181,18 +181,18 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Camera& command) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
-  if (!paused()) frame_wanted_ = true;
+  if (!paused()) frames_.note_command();
   time_.pause();
-  state_changed_ = true;
+  news_.state = true;
   if (advance_) advance_->paused = true;
   if (advance_ && !in_tick_) end_paused_advance();
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
-  if (paused()) frame_wanted_ = true;
+  if (paused()) frames_.note_command();
   time_.resume(clock_());
-  state_changed_ = true;
+  news_.state = true;
   return proto::Reply(proto::PauseReply{world_->tick(), false});
 }
 
@@ -207,10 +207,10 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
   world_->reset();
   holds_.clear();
-  moving_pins_.clear();
-  scene_grabs_.clear();
+  told_.restart();
   time_.drop_steps();
-  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
+  news_.replace();
+  frames_.note_jump();
   notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
   guarantee_.restart();
   tell_guarantee();
@@ -220,7 +220,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
 Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {
   time_.set_speed(command.speed);
   follow_speed();
-  state_changed_ = true;
+  news_.state = true;
   return proto::Reply(proto::SpeedReply{world_->tick(), time_.wanted_speed()});
 }
 
@@ -245,8 +245,8 @@ Room::Outcome Room::apply(ViewerId, const proto::MovePin& command) {
   if (!move) return move.error();
   const proto::Vec3 before = pin_info(*world_, *pin, 0).position;
   world_->move_pin(pin->id, *move);
-  tell_pins();
-  pins_changed_ = frame_wanted_ = true;
+  note_pins(*world_, told_);
+  change(&News::pins);
   return proto::Reply(proto::MovePinReply{world_->tick(), command.pin, before});
 }
 
@@ -254,8 +254,8 @@ Room::Outcome Room::apply(ViewerId, const proto::StopPin& command) {
   const weft::Pin* pin = find_pin(*world_, command.pin);
   if (pin == nullptr) return unknown_pin(command.pin);
   world_->stop_pin(pin->id);
-  tell_pins();
-  pins_changed_ = frame_wanted_ = true;
+  note_pins(*world_, told_);
+  change(&News::pins);
   return proto::Reply(
       proto::MovePinReply{world_->tick(), command.pin, pin_info(*world_, *pin, 0).position});
 }
@@ -278,8 +278,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
   }
   if (command.softness || command.budget_ms || command.over_budget)
     ask_for_budget(with_settings(time_.budget().budget(), command));
-  state_changed_ = true;
-  if (measures_forces_) frame_wanted_ = true;  // the forces of the coming tick have changed
+  news_.state = true;
+  if (measures_forces_) frames_.note_command();  // the forces of the coming tick have changed
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }
 
@@ -292,10 +292,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   caller.stalled = caller.stalled && frames_wait(caller);
   if (caller.stalled && command.frames) return stalled_error();
   advance_ = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
-  // Changes by earlier commands are shown together with those of its ticks.
-  advanced_ = advanced_ || frame_wanted_;
-  frame_wanted_ = false;
-  advance_for_ = command.frames ? viewer : 0;
+  frames_.begin_advance(command.frames ? viewer : 0);
   return proto::Reply(proto::AdvanceReply{});
 }
 

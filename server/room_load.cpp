@@ -56,7 +56,8 @@ void Room::tell_loaded(ViewerId viewer) {
   time_.drop_steps();
   time_.restart_meter(clock_());
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
-  state_changed_ = pins_changed_ = grabs_changed_ = frame_wanted_ = jumped_ = true;
+  news_.replace();
+  frames_.note_jump();
   notify(proto::NoticeLevel::info, "loaded", "the scene is now " + world_->def().name, viewer);
   for (const SceneNotice& notice : scene_notices_)
     notify(proto::NoticeLevel::warning, notice.code, notice.message);

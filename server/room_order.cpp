@@ -145,7 +145,7 @@ void Room::note_halt() {
   if (!over_limit_ && tick_failure_.empty()) return;
   log_.add(world_->tick(), 0, CommandOrigin::limit, proto::Pause{});
   time_.pause();
-  state_changed_ = frame_wanted_ = true;
+  change(&News::state);
   const std::string what = "tick " + std::to_string(world_->tick() + 1) + " was given up: " + cause;
   spdlog::warn("scene {}: {}", world_->def().name, what);
   metrics_.count_halt();

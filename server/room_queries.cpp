@@ -105,7 +105,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
     }
     case proto::QueryWhat::crossings:
       if (!within_limit([&] { guarantee_.count(*world_); }, kBetweenTicks)) {
-        state_changed_ = true;  // the guarantee is not held
+        news_.state = true;  // the guarantee is not held
         throw Stopped();
       }
       reply.data = guarantee_.count(*world_);
@@ -139,43 +139,12 @@ Reactions Room::coming_reactions() {
   return found;
 }
 
-/// Announces which cloths sleep, when that changes.
-/// @returns whether it did
-bool Room::tell_sleep() {
-  const std::vector<char>& asleep = world_->sleep().asleep();
-  if (asleep == asleep_) return false;
-  asleep_ = asleep;
-  metrics_.set_asleep(static_cast<int>(std::count(asleep_.begin(), asleep_.end(), 1)));
-  state_changed_ = true;
-  return true;
-}
-
 /// Announces that the promise of no crossings has ended or is restored.
 void Room::tell_guarantee() {
   for (GuaranteeWatch::News& news : guarantee_.take_news()) {
     notify(news.level, news.code, std::move(news.message));
-    state_changed_ = true;
+    news_.state = true;
   }
-}
-
-/// Announces the pins again when one has set out, by the scene itself, or has arrived.
-void Room::tell_pins() {
-  std::vector<PinId> moving;
-  for (const Pin& pin : world_->pins().list)
-    if (pin.path) moving.push_back(pin.id);
-  if (moving == moving_pins_) return;
-  moving_pins_ = std::move(moving);
-  pins_changed_ = true;
-}
-
-/// Announces the hands again when one of the scene's own has taken hold or let go.
-void Room::tell_grabs() {
-  std::vector<GrabId> held;
-  for (const Grab<float>& grab : world_->grabs().list)
-    if (world_->scene_hand(grab.id)) held.push_back(grab.id);
-  if (held == scene_grabs_) return;
-  scene_grabs_ = std::move(held);
-  grabs_changed_ = true;
 }
 
 }  // namespace weft::server
