@@ -7,8 +7,6 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
-#include "server/translate_forces.h"
-#include "server/translate_holds.h"
 
 namespace weft::server {
 namespace {
@@ -98,7 +96,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
                           "query", "move", "move_pin", "gripper", "load"};
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
-  if (!in_tick_) renew_told();
+  if (!tick_.runs) renew_told();
   output_.send(id, told_.state);
   output_.send(id, text_message(proto::encode_roster(roster()), Topic::roster));
   output_.send(id, told_.pins);
@@ -106,7 +104,7 @@ void Room::join(proto::ViewerId id, const Join& join) {
   for (const SceneNotice& notice : scene_notices_) output_.send(id, message_of(notice));
   output_.welcome_done(id);
   viewer.wants_frame = true;
-  if (!in_tick_) show_to(id);
+  if (!tick_.runs) show_to(id);
 }
 
 void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
@@ -124,16 +122,16 @@ void Room::leave(proto::ViewerId viewer) {
 std::optional<double> Room::step_world() {
   measure_forces();
   const double start = clock_();
-  gives_up_ = over_limit_ = false;
-  in_tick_ = true;
-  tick_failure_.clear();
+  tick_.replaced = tick_.over_limit = false;
+  tick_.runs = true;
+  tick_.failure.clear();
   // A halted tick does not throw: its report says so.
   try {
     within_limit([this] { world_->step(); });
   } catch (const std::exception& error) {
-    tick_failure_ = error.what();
+    tick_.failure = error.what();
   }
-  in_tick_ = false;
+  tick_.runs = false;
   const TickReport& report = world_->report();
   const double end = clock_(), seconds = end - start;
   time_.note_end_of_tick(end);
@@ -201,7 +199,8 @@ void Room::finish_turn() {
     news_.state = news_.state || !world_->report().rested;
     tell_slow_motion(now);
   }
-  const bool stands = !ticking() && !advance_ && now - time_.last_tick_done() >= kStandingPause;
+  const bool stands =
+      !ticking() && !order_.advance && now - time_.last_tick_done() >= kStandingPause;
   if (stands) {
     count_crossings(true);
     tell_guarantee();
@@ -215,7 +214,7 @@ double Room::next_wake() const {
   const double now = clock_();
   double wake = std::min(now + kLongestSleep, next_frame());
   if (news_.any()) wake = std::min(wake, news_.next);
-  if (!waiting_.empty()) wake = std::min(wake, next_turn());
+  if (!order_.waiting.empty()) wake = std::min(wake, next_turn());
   for (const auto& [id, viewer] : viewers_)
     if (viewer.wants_frame) wake = std::min(wake, frames_.next_idle());
   return wake;
@@ -225,7 +224,7 @@ void Room::end_leases() {
   const double now = clock_();
   const double lease = options_.limits.lease_seconds;
   // A hand does not time out in lock-step or while the room is paused.
-  if (paused() || advance_) holds_.renew_leases(now);
+  if (paused() || order_.advance) holds_.renew_leases(now);
   for (const Hand& hand : holds_.expired(now, lease)) {
     notify(proto::NoticeLevel::warning, "lease_expired",
            "drag " + std::to_string(hand.drag) + " was released after " +

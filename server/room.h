@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -16,18 +15,16 @@
 #include "proto/frame.h"
 #include "proto/replies.h"
 #include "server/clock.h"
-#include "server/command_log.h"
 #include "server/constants.h"
 #include "server/frame_maker.h"
 #include "server/frame_turns.h"
 #include "server/guarantee_watch.h"
 #include "server/holds.h"
-#include "server/inbound.h"
 #include "server/metrics.h"
 #include "server/news.h"
+#include "server/order.h"
 #include "server/room_clock.h"
 #include "server/room_output.h"
-#include "server/scene_build.h"
 #include "server/translate.h"
 #include "server/work_limit.h"
 
@@ -91,15 +88,15 @@ class Room {
 
   /// Cancels the scene that a `load` is building, before the room is destroyed.
   void cancel_build() {
-    if (building_) building_->build->cancel();
+    if (order_.building) order_.building->build->cancel();
   }
 
-  bool advancing() const { return advance_.has_value(); }
+  bool advancing() const { return order_.advance.has_value(); }
   /// Runs ticks of the current `advance` until it is done or the clock passes `deadline`.
   void advance_until(double deadline);
 
   /// Whether ticks follow the clock: the room runs, or `step` asked for some.
-  bool ticking() const { return !advance_ && time_.runs(); }
+  bool ticking() const { return !order_.advance && time_.runs(); }
   double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
@@ -112,7 +109,7 @@ class Room {
   double next_wake() const;
 
   const ServedWorld& world() const { return *world_; }
-  const CommandLog& log() const { return log_; }
+  const CommandLog& log() const { return order_.log; }
   bool paused() const { return time_.paused(); }
   /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
   double speed() const { return time_.speed(); }
@@ -133,27 +130,18 @@ class Room {
     double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
   };
 
-  struct Advance {
-    proto::ViewerId viewer = 0;
-    std::optional<proto::Id> id;
-    std::uint32_t left = 0;
-    std::optional<proto::AdvanceFrames> frames;  ///< for its viewer, regardless of its `hz`
-    double taken = 0;                            ///< when it was last free to continue [s]
-    bool paused = false;  ///< by a viewer, within the tick that runs and ends it
-  };
-
-  /// A `load` under way.
-  struct Building {
-    proto::ViewerId viewer = 0;
-    proto::Request request;
-    std::shared_ptr<SceneBuild> build;
+  /// The tick that runs, or the last one.
+  struct RunningTick {
+    bool runs = false;
+    bool replaced = false;    ///< a command that replaces the state ends it
+    bool over_limit = false;  ///< it exceeds its limit
+    std::string failure;      ///< what it threw; empty: nothing
   };
 
   using Outcome = proto::Result<proto::Reply>;
 
   // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
-  bool ends_its_advance(const Inbound& item) const;
   bool may_run_meanwhile(const Inbound& item) const;
   void work_off();
   void let_go(proto::ViewerId viewer);
@@ -268,17 +256,11 @@ class Room {
   SharedBytes mesh_bytes_;
 
   RoomClock time_;
-  std::optional<Advance> advance_;
-  std::optional<Building> building_;
-  std::deque<Inbound> waiting_;
-  bool in_tick_ = false;      ///< a tick is running
-  bool gives_up_ = false;     ///< a command that replaces the state ends it
-  bool over_limit_ = false;   ///< it exceeds its limit
-  std::string tick_failure_;  ///< what it threw; empty: nothing
+  Order order_;
+  RunningTick tick_;
 
   std::map<proto::ViewerId, Viewer> viewers_;
   Holds holds_;
-  CommandLog log_;
 
   News news_;
   Told told_;

@@ -7,24 +7,24 @@
 namespace weft::server {
 
 void Room::advance_until(double deadline) {
-  while (advance_ && advance_->left > 0 && !advance_->paused) {
+  while (order_.advance && order_.advance->left > 0 && !order_.advance->paused) {
     if (advance_waits()) {
-      if (clock_() - advance_->taken < kStalled) break;
-      viewers_.at(advance_->viewer).stalled = true;
+      if (clock_() - order_.advance->taken < kStalled) break;
+      viewers_.at(order_.advance->viewer).stalled = true;
       return finish_advance(stalled_error());
     }
-    advance_->taken = clock_();
+    order_.advance->taken = clock_();
     const bool shown = shows_next_tick();
     if (!step_world()) return;  // announced, and the advance ended if nothing replaces it
-    --advance_->left;
+    --order_.advance->left;
     if (!world_->report().rested) frames_.note_advance();
     if (shown) show_advanced();
     if (clock_() >= deadline) break;
   }
-  if (!advance_) return;
-  if (advance_->left == 0)
+  if (!order_.advance) return;
+  if (order_.advance->left == 0)
     finish_advance();
-  else if (advance_->paused)
+  else if (order_.advance->paused)
     end_paused_advance();
 }
 
@@ -39,19 +39,19 @@ bool Room::frames_wait(const Viewer& viewer) const {
 
 /// Whether the viewer of the advance asked for the frame of the coming tick.
 bool Room::shows_next_tick() const {
-  return advance_->frames == proto::AdvanceFrames::all ||
-         (advance_->frames == proto::AdvanceFrames::last && advance_->left == 1);
+  return order_.advance->frames == proto::AdvanceFrames::all ||
+         (order_.advance->frames == proto::AdvanceFrames::last && order_.advance->left == 1);
 }
 
 bool Room::advance_waits() const {
-  return advance_ && shows_next_tick() && frames_wait(viewers_.at(advance_->viewer));
+  return order_.advance && shows_next_tick() && frames_wait(viewers_.at(order_.advance->viewer));
 }
 
 void Room::show_advanced() {
-  const Viewer& viewer = viewers_.at(advance_->viewer);
+  const Viewer& viewer = viewers_.at(order_.advance->viewer);
   const Frame frame = encode_frame();
   const bool full = viewer.wants_forces && frame.with_forces;
-  output_.send(advance_->viewer,
+  output_.send(order_.advance->viewer,
                {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
 }
 
@@ -62,14 +62,14 @@ proto::Error Room::stalled_error() const {
       "the frames of this advance were not read for " + proto::number_text(kStalled) + " s",
       "it ended at tick " + std::to_string(world_->tick()) + "; read faster or ask for the last");
   error.command = "advance";
-  if (advance_) error.id = advance_->id;
+  if (order_.advance) error.id = order_.advance->id;
   return error;
 }
 
 void Room::finish_advance(const std::optional<proto::Error>& error) {
-  const Advance done = *advance_;
-  advance_.reset();
-  log_.shorten_advance(done.left);
+  const Advance done = *order_.advance;
+  order_.advance.reset();
+  order_.log.shorten_advance(done.left);
   if (error)
     output_.send(done.viewer, text_message(proto::encode_error(*error)));
   else

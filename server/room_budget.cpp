@@ -20,10 +20,10 @@ void Room::keep_budget(double seconds) {
     world_->set_softness(next->softness);
     proto::Set command;
     command.softness = next->softness;
-    log_.add(world_->tick(), 0, CommandOrigin::budget, command);
+    order_.log.add(world_->tick(), 0, CommandOrigin::budget, command);
     what = "springs have " + number_text(next->softness) + " of their stiffness";
   } else {
-    log_.add(world_->tick(), 0, CommandOrigin::budget, proto::Speed{speed()});
+    order_.log.add(world_->tick(), 0, CommandOrigin::budget, proto::Speed{speed()});
     follow_speed();
     what = "time passes at " + number_text(next->pace) + " of the wanted speed";
   }

@@ -30,12 +30,12 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
         std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
     if (!outcome) return refuse(viewer, request, outcome.error());
     if (std::holds_alternative<proto::Load>(request.command)) {
-      building_->request = request;  // it is already logged, and answered when finished
+      order_.building->request = request;  // it is already logged, and answered when finished
       return finish_build();
     }
-    log_.add(tick, viewer, CommandOrigin::viewer, request.command);
+    order_.log.add(tick, viewer, CommandOrigin::viewer, request.command);
     if (std::holds_alternative<proto::Advance>(request.command)) {
-      advance_->id = request.id;  // answered when it is done
+      order_.advance->id = request.id;  // answered when it is done
       return;
     }
     answer(viewer, request.id, *outcome);
@@ -122,7 +122,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragEnd& command) {
 }
 
 void Room::end_hand(const Hand& hand, CommandOrigin origin) {
-  log_.add(world_->tick(), hand.viewer, origin, proto::DragEnd{hand.drag});
+  order_.log.add(world_->tick(), hand.viewer, origin, proto::DragEnd{hand.drag});
   world_->release(hand.grab);
   holds_.remove(hand.grab);
   change(&News::grabs);
@@ -184,8 +184,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
   if (!paused()) frames_.note_command();
   time_.pause();
   news_.state = true;
-  if (advance_) advance_->paused = true;
-  if (advance_ && !in_tick_) end_paused_advance();
+  if (order_.advance) order_.advance->paused = true;
+  if (order_.advance && !tick_.runs) end_paused_advance();
   return proto::Reply(proto::PauseReply{world_->tick(), true});
 }
 
@@ -198,13 +198,13 @@ Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
 
 Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
   if (!paused()) return not_paused();
-  if (advance_) return advancing_error();
+  if (order_.advance) return advancing_error();
   time_.add_steps(command.n, clock_());
   return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + time_.steps_left()});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
-  if (advance_) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
+  if (order_.advance) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
   world_->reset();
   holds_.clear();
   told_.restart();
@@ -285,19 +285,19 @@ Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   if (!paused()) return not_paused();
-  if (advance_) return advancing_error();
+  if (order_.advance) return advancing_error();
   if (time_.steps_left() > 0)
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);
   caller.stalled = caller.stalled && frames_wait(caller);
   if (caller.stalled && command.frames) return stalled_error();
-  advance_ = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
+  order_.advance = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
   frames_.begin_advance(command.frames ? viewer : 0);
   return proto::Reply(proto::AdvanceReply{});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Hash&) {
-  const std::uint64_t hash = in_tick_ ? world_->hash_before_tick() : world_->hash();
+  const std::uint64_t hash = tick_.runs ? world_->hash_before_tick() : world_->hash();
   return proto::Reply(proto::HashReply{world_->tick(), hash});
 }
 

@@ -52,7 +52,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
 
 /// Announces the new scene to all viewers.
 void Room::tell_loaded(ViewerId viewer) {
-  if (advance_) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
+  if (order_.advance) end_advance(ErrorCode::interrupted, "a viewer loaded a scene", "");
   time_.drop_steps();
   time_.restart_meter(clock_());
   for (const auto& [id, entry] : viewers_) send_mesh(id, entry);
@@ -68,24 +68,24 @@ void Room::tell_loaded(ViewerId viewer) {
 void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definition) {
   Executor* const executor = executor_;
   const double limit = options_.limit ? options_.limit->seconds() : 0;
-  building_.emplace();
-  building_->viewer = viewer;
-  building_->build =
+  order_.building.emplace();
+  order_.building->viewer = viewer;
+  order_.building->build =
       std::make_shared<SceneBuild>([definition = std::move(definition), executor,
                                     limit] { return build_scene(definition(), executor, limit); },
                                    options_.build_limit);
-  options_.beside([build = building_->build] { build->run(); });
+  options_.beside([build = order_.building->build] { build->run(); });
 }
 
 /// Replaces the present scene by one that has been built.
 void Room::finish_build() {
-  if (!building_ || !building_->build->done()) return;
-  const Building done = std::move(*building_);
-  building_.reset();
+  if (!order_.building || !order_.building->build->done()) return;
+  const Building done = std::move(*order_.building);
+  order_.building.reset();
   try {
     const std::uint64_t tick = world_->tick();
     start_world(done.build->take());
-    log_.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
+    order_.log.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
     tell_loaded(done.viewer);
     answer(done.viewer, done.request.id, proto::LoadReply{0, world_->def().name, epoch_});
     if (const auto found = viewers_.find(done.viewer);

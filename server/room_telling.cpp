@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "server/room.h"
-#include "server/translate_forces.h"
-#include "server/translate_holds.h"
 
 // When a room sends frames and announces changes, and what they contain.
 
@@ -14,9 +12,9 @@ namespace weft::server {
 /// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
   bool wanted = output_.wants_forces();
-  if (advance_ &&
-      advance_->frames.value_or(proto::AdvanceFrames::none) != proto::AdvanceFrames::none) {
-    const auto caller = viewers_.find(advance_->viewer);
+  if (order_.advance &&
+      order_.advance->frames.value_or(proto::AdvanceFrames::none) != proto::AdvanceFrames::none) {
+    const auto caller = viewers_.find(order_.advance->viewer);
     wanted = wanted || (caller != viewers_.end() && caller->second.wants_forces);
   }
   if (wanted == measures_forces_) return;
@@ -86,7 +84,7 @@ void Room::tell_changes() {
     tell(text_message(proto::encode_notice(notice)));
   if (news_.roster) tell(text_message(proto::encode_roster(roster()), Topic::roster));
   news_.roster = false;
-  if (!in_tick_) {
+  if (!tick_.runs) {
     if (news_.state) tell(told_.state = state_message());
     if (news_.state) news_.next_state = now + kStatePause;
     if (news_.pins) tell(told_.pins = pins_message());
