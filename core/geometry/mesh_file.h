@@ -38,7 +38,7 @@ bool is_mesh_file_name(std::string_view name);
 /// position are merged, with the uv of the first, in the order of first use in the file.
 ///
 /// The parser is not safe for every file: one from an untrusted source is parsed in a separate
-/// process with limits (server/mesh_child.h).
+/// process with limits (server/scene/mesh_child.h).
 ///
 /// @param bytes  the whole file
 /// @param name   for its ending and for errors

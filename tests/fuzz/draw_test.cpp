@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "proto/commands.h"
-#include "server/scene_build.h"
-#include "server/scene_library.h"
-#include "server/scene_schema.h"
+#include "server/room/scene_build.h"
+#include "server/scene/scene_library.h"
+#include "server/scene/scene_schema.h"
 #include "tests/fuzz/command_draw.h"
 #include "tests/fuzz/scene_draw.h"
 #include "tests/fuzz/script_draw.h"

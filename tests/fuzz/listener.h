@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/frame.h"
-#include "server/room_output.h"
+#include "server/room/room_output.h"
 #include "tests/fuzz/run.h"
 
 namespace weft::fuzz {

@@ -17,7 +17,7 @@
 
 #include "core/error.h"
 #include "core/world/crossing_counter.h"
-#include "server/room.h"
+#include "server/room/room.h"
 #include "tests/fuzz/listener.h"
 
 namespace weft::fuzz {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/executor.h"
-#include "server/scene_library.h"
+#include "server/scene/scene_library.h"
 #include "tests/fuzz/script.h"
 
 namespace weft::fuzz {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/scene_format.h"
+#include "server/scene/scene_format.h"
 #include "tests/fuzz/scene_rules.h"
 
 namespace weft::fuzz {

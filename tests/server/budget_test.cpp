@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/budget_keeper.h"
+#include "server/room/budget_keeper.h"
 #include "tests/server/fakes.h"
 
 // A room that needs more time for its ticks than it may says so and does what was agreed.

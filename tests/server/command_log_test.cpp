@@ -1,4 +1,4 @@
-#include "server/command_log.h"
+#include "server/room/command_log.h"
 
 #include <cstdint>
 #include <variant>

@@ -15,9 +15,9 @@
 
 #include "core/error.h"
 #include "proto/commands.h"
-#include "server/room.h"
-#include "server/room_output.h"
-#include "server/viewer_channel.h"
+#include "server/net/viewer_channel.h"
+#include "server/room/room.h"
+#include "server/room/room_output.h"
 
 // A clock that is set by hand, a stream that writes when it is told to, and an output that
 // remembers.

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "proto/codec/packed_frame.h"
-#include "server/hub.h"
+#include "server/net/hub.h"
 #include "tests/server/fakes.h"
 
 namespace weft::server {

@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/connection_count.h"
+#include "server/net/connection_count.h"
+#include "server/net/rate_limit.h"
 #include "server/options.h"
-#include "server/rate_limit.h"
 #include "server/thread_pool.h"
 
 namespace weft::server {

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/geometry/triangle_mesh.h"
-#include "server/translate_mesh.h"
+#include "server/translate/translate_mesh.h"
 #include "tests/server/halting_room.h"
 #include "tests/support/sheets_of_triangles.h"
 

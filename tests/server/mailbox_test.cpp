@@ -1,4 +1,4 @@
-#include "server/mailbox.h"
+#include "server/net/mailbox.h"
 
 #include <atomic>
 #include <thread>

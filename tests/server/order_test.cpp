@@ -6,8 +6,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/scene_json.h"
-#include "server/simulation_loop.h"
+#include "server/room/simulation_loop.h"
+#include "server/scene/scene_json.h"
 #include "tests/server/halting_room.h"
 #include "tests/support/targets.h"
 #include "tests/support/two_threads.h"

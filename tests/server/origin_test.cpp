@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "server/addresses.h"
+#include "server/net/addresses.h"
 
 namespace weft::server {
 namespace {

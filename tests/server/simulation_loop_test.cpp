@@ -1,4 +1,4 @@
-#include "server/simulation_loop.h"
+#include "server/room/simulation_loop.h"
 
 #include <vector>
 

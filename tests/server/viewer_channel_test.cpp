@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "server/close_codes.h"
-#include "server/hub.h"
+#include "server/net/close_codes.h"
+#include "server/net/hub.h"
 #include "tests/server/fakes.h"
 
 namespace weft::server {

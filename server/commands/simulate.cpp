@@ -1,0 +1,381 @@
+#include "server/commands/simulate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/diagnostics/strain.h"
+#include "core/geometry/mesh_file.h"
+#include "core/scenes/scenes.h"
+#include "core/world/cost.h"
+#include "core/world/crossing_counter.h"
+#include "core/world/object_repair.h"
+#include "core/world/verdict.h"
+#include "core/world/world.h"
+#include "server/clock.h"
+#include "server/commands/series.h"
+#include "server/commands/start_file.h"
+#include "server/options.h"
+#include "server/output.h"
+#include "server/room/guarantee_watch.h"
+#include "server/room/scene_build.h"
+#include "server/scene/scene_library.h"
+#include "server/thread_pool.h"
+#include "server/translate/translate.h"
+#include "server/work_limit.h"
+
+namespace weft::server {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Exit code if anything crossed.
+constexpr int kCrossed = 3;
+/// Exit code if a tick exceeded its limit.
+constexpr int kHalted = 4;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+struct Measurement {
+  double cpu = 0, wall = 0;   ///< of the steps alone [s]
+  std::vector<double> ticks;  ///< [s], sorted
+  Profile stages;             ///< summed
+  double deepest = 0;         ///< [m]
+  int checks = 0;             ///< ticks checked for penetrations and crossings
+  int divergences = 0;
+  int least_substeps = 0, most_substeps = 0;
+  double largest_strain = 0;  ///< over the whole run
+  std::size_t cloth_crossings =
+      0;  ///< of the cloths with themselves and each other, over all checks
+  std::size_t object_crossings = 0;          ///< of cloths with objects, over all checks
+  int crossed_ticks = 0, first_crossed = 0;  ///< number of the first one; 0: none
+  std::size_t late_crossings = 0;            ///< after the scene's grace time for crossings
+  std::size_t broken_promises = 0;           ///< those that its contact rules out
+  Verdict<float> verdict;                    // of a hard case
+  proto::Guarantee guarantee;                ///< at the end
+};
+
+/// @returns false if the tick exceeded its limit; the state is then unchanged
+bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
+  const double cpu = cpu_seconds(), wall = process_seconds();
+  const TickReport& report = [&]() -> const TickReport& {
+    const WorkLimit::Scope scope(limit);
+    return world.step();
+  }();
+  if (report.halted) return false;
+  const double seconds = process_seconds() - wall;
+  m.cpu += cpu_seconds() - cpu;
+  m.wall += seconds;
+  m.ticks.push_back(seconds);
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    m.stages.stages[i].seconds += report.profile.stages[i].seconds;
+    m.stages.stages[i].work += report.profile.stages[i].work;
+  }
+  m.divergences += report.divergence ? 1 : 0;
+  m.least_substeps =
+      m.least_substeps == 0 ? report.substeps : std::min(m.least_substeps, report.substeps);
+  m.most_substeps = std::max(m.most_substeps, report.substeps);
+  m.largest_strain = std::max(m.largest_strain, report.largest_strain);
+  return true;
+}
+
+/// Crossings that break the scene's promise: contact of the seed promises nothing, and without
+/// self-contact cloths may pass through each other.
+std::size_t broken_promises(const World<float>& world, const WorldCrossings& found) {
+  if (contact_of(world.def()) != ContactModel::certified) return 0;
+  return found.objects.all() + (has_guard(world.def()) ? found.cloths.all() : 0);
+}
+
+/// Checks for penetrations and counts crossings.
+void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Measurement& m) {
+  ++m.checks;
+  m.deepest = std::max(m.deepest, world.deepest_penetration());
+  const WorldCrossings found = judged ? m.verdict.crossing_now : counter.count(world);
+  if (found.total() == 0) return;
+  m.cloth_crossings += found.cloths.proper + found.cloths.touching;
+  m.object_crossings += found.objects.proper + found.objects.touching;
+  ++m.crossed_ticks;
+  if (m.first_crossed == 0) m.first_crossed = static_cast<int>(world.tick());
+  if (world.report().time <= world.def().verdict.clear_after) return;
+  m.late_crossings += found.total();
+  m.broken_promises += broken_promises(world, found);
+}
+
+/// @returns nothing if a tick was given up
+std::optional<Measurement> run(World<float>& world, const SimulateOptions& options) {
+  WorkLimit limit(options.tick_limit);
+  const LimitWatch watch(limit);
+  Measurement m;
+  m.ticks.reserve(static_cast<std::size_t>(options.ticks));
+  CrossingCounter<float> counter;
+  const bool judged = world.def().verdict.strain > 0;
+  GuaranteeWatch promise(0, &process_seconds);
+  promise.start(world, look_ahead(world, options.tick_limit));
+  std::optional<Series<float>> series;
+  if (!options.series.empty())
+    series.emplace(options.series, world, options.series_every, options.ticks);
+  for (int i = 1; i <= options.ticks; ++i) {
+    if (!measure_tick(world, limit, m)) return std::nullopt;
+    promise.note_tick(world);
+    if (series) series->note_tick(world);
+    if (judged) m.verdict.look(world);
+    if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
+  }
+  if (series) series->finish();
+  promise.count(world);
+  m.guarantee = promise.guarantee(world);
+  std::sort(m.ticks.begin(), m.ticks.end());
+  return m;
+}
+
+double percentile(const std::vector<double>& sorted, std::size_t percent) {
+  return sorted[std::min(sorted.size() - 1, sorted.size() * percent / 100)];
+}
+
+/// Counters of the guard; null without one.
+Json guard_summary(const World<float>& world) {
+  if (!world.guard()) return nullptr;
+  const GuardCounts& counts = world.guard()->counts();
+  return {{"wanted_motion", counts.wanted},
+          {"truncated_motion", counts.truncated},
+          {"truncated_part", counts.wanted > 0 ? counts.truncated / counts.wanted : 0},
+          {"collections", counts.collections},
+          {"renewals", counts.renewals},
+          {"particles_anchored", counts.anchored},
+          {"steps_certified", counts.critical},
+          {"open_pairs", world.guard()->open_pairs()}};
+}
+
+/// What each cause did to the cloth's energy over the run [J].
+Json balance_summary(const World<float>& world) {
+  const EnergyBalance* balance = world.energy_balance();
+  if (!balance) return "not measured";
+  Json work = Json::object(), losses = Json::object();
+  visit_work(balance->flows, [&](const char* name, double value) { work[name] = value; });
+  work["disturbances"] = balance->disturbances;
+  visit_losses(balance->flows, [&](const char* name, double value) { losses[name] = value; });
+  losses["sleep"] = balance->sleep;
+  losses["recovery"] = balance->recovery;
+  losses["solver"] = balance->lost();
+  return {
+      {"start", balance->start}, {"work", work}, {"losses", losses}, {"now", balance->now.total()}};
+}
+
+/// Result of a hard case; null for other scenes.
+Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
+  if (!(world.def().verdict.strain > 0)) return nullptr;
+  const std::vector<std::string> failures = verdict.failures(world.def().verdict);
+  return {
+      {"passed", failures.empty()},
+      {"failures", failures},
+      {"ticks", verdict.ticks},
+      {"crossings", verdict.crossings},
+      {"ticks_with_crossings", verdict.crossed_ticks},
+      {"crossings_before", verdict.early_crossings},
+      {"deepest_penetration", verdict.deepest},
+      {"smallest_gap", std::isfinite(verdict.smallest_gap) ? Json(verdict.smallest_gap) : Json()},
+      {"largest_strain", verdict.largest_strain},
+      {"energy_excess", verdict.energy_excess},
+      {"rest_error", std::isfinite(verdict.rest_error) ? Json(verdict.rest_error) : Json()},
+      {"height_error", std::isfinite(verdict.height_error) ? Json(verdict.height_error) : Json()},
+      {"hands_lag", verdict.hands_lag},
+      {"lost_motion", verdict.lost_motion},
+      {"recoveries", verdict.recoveries},
+      {"allowed",
+       {{"strain", world.def().verdict.strain},
+        {"lost_motion", world.def().verdict.lost_motion},
+        {"clear_after", world.def().verdict.clear_after},
+        {"heights", world.def().verdict.heights},
+        {"hands_lag", world.def().verdict.hands_lag}}}};
+}
+
+Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m,
+             const std::vector<std::string>& notices) {
+  const double simulated = options.ticks * world.tick_seconds();
+  std::vector<float> scratch;
+  const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
+  const Energies& energy = world.report().energies;
+  Json measured = Json::object();
+  for (const NamedNumber& number : measurements(world.def().test, world.model(), world.state(),
+                                                world.environment().gravity.norm()))
+    measured[number.name] = number.value;
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStageCount; ++i) {
+    stages[kStageNames[i]] = {{"milliseconds", m.stages.stages[i].seconds * 1000},
+                              {"work", m.stages.stages[i].work}};
+  }
+  return {
+      {"scene", options.scene},
+      {"particles", world.model().mass.size()},
+      {"triangles", world.model().triangles.size()},
+      {"ticks", options.ticks},
+      {"tick_rate", world.def().tick_rate},
+      {"threads", options.threads},
+      {"simulated_seconds", simulated},
+      {"cpu_seconds", m.cpu},
+      {"wall_seconds", m.wall},
+      {"real_time_factor", m.cpu > 0 ? simulated / m.cpu : 0},
+      {"tick_milliseconds",
+       {{"median", percentile(m.ticks, 50) * 1000}, {"p95", percentile(m.ticks, 95) * 1000}}},
+      {"stages", stages},
+      {"energy",
+       {{"kinetic", energy.kinetic},
+        {"stretch", energy.stretch},
+        {"bending", energy.bending},
+        {"gravity", energy.gravity},
+        {"total", energy.total()}}},
+      {"balance", balance_summary(world)},
+      {"error", "not measured"},
+      {"strain",
+       {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
+      {"measurements", measured},
+      {"deepest_penetration", m.deepest},
+      {"crossings",
+       {{"cloth_with_cloth", m.cloth_crossings},
+        {"cloth_with_object", m.object_crossings},
+        {"ticks_looked_at", m.checks},
+        {"ticks_with_any", m.crossed_ticks},
+        {"first_tick", m.first_crossed > 0 ? Json(m.first_crossed) : Json()}}},
+      {"guarantee",
+       {{"state", proto::name_of(m.guarantee.state)},
+        {"covers", m.guarantee.covers},
+        {"pairs", m.guarantee.pairs},
+        {"reasons", m.guarantee.reasons}}},
+      {"guard", guard_summary(world)},
+      {"verdict", verdict_summary(world, m.verdict)},
+      {"hash", proto::hash_text(world.hash())},
+      {"solver", solver_name(world.def())},
+      {"substeps", world.report().substeps},
+      {"substeps_of_run", {m.least_substeps, m.most_substeps}},
+      {"divergences", m.divergences},
+      {"notices", notices}};
+}
+
+void print_row(const std::string& name, const Json& value) {
+  if (value.is_number_float())
+    std::printf("%-34s %.6g\n", name.c_str(), value.get<double>());
+  else if (value.is_string())
+    std::printf("%-34s %s\n", name.c_str(), value.get<std::string>().c_str());
+  else
+    std::printf("%-34s %s\n", name.c_str(), value.dump().c_str());
+}
+
+void print_table(const Json& object, const std::string& prefix) {
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object())
+      print_table(value, prefix + key + ".");
+    else
+      print_row(prefix + key, value);
+  }
+}
+
+TriangleMesh cloth_mesh(const World<float>& world) {
+  TriangleMesh mesh;
+  for (const Vec3f& x : world.state().x) mesh.positions.push_back(x.cast<double>());
+  mesh.triangles = world.model().triangles;
+  return mesh;
+}
+
+/// Reports crossings on standard error.
+/// @return exit code: failure if any came after the scene's grace time
+int warn_of_crossings(const Measurement& m) {
+  if (m.crossed_ticks == 0) return 0;
+  std::fprintf(stderr,
+               "weft: %zu crossings of cloth with cloth and %zu with objects in %d of %d ticks, "
+               "from tick %d on%s\n",
+               m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
+               m.broken_promises > 0  ? ""
+               : m.late_crossings > 0 ? ", about which its contact promises nothing"
+                                      : ", none after the scene's grace time");
+  return m.broken_promises > 0 ? kCrossed : 0;
+}
+
+/// Checks the path of an output before minutes are spent.
+/// @param name  of the option
+void check_out(const char* name, const std::string& path, bool ending, const char* endings) {
+  if (path.empty()) return;
+  if (!ending) throw OptionError(name, path, std::string("a file that ends in ") + endings);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    throw OptionError(name, path, "a file in a folder that exists");
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+    throw OptionError(name, path, "a file in a folder that may be written to");
+}
+
+void check_options(const SimulateOptions& o) {
+  check_range("--ticks", o.ticks, kTickCounts);
+  check_range("--threads", o.threads, kThreadCounts);
+  check_range("--check-every", o.check_every, kTickCounts);
+  check_range("--series-every", o.series_every, kTickCounts);
+  check_range("--tick-limit", o.tick_limit, kTickLimits);
+  check_out("--out", o.out, o.out.ends_with(".obj") || o.out.ends_with(".ply"), ".obj or .ply");
+  check_out("--series", o.series, o.series.ends_with(".npy"), ".npy");
+}
+
+WorldDef definition_of(const SimulateOptions& options) {
+  WorldDef def = SceneLibrary(beside_program("meshes"), options.scenes).opened(options.scene);
+  for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  if (!options.start.empty()) def.start = read_start(options.start);
+  return def;
+}
+
+/// Throws CostError, which tells how to lift the bound.
+void bound_cost(const SimulateOptions& options, const World<float>& world) {
+  if (options.any_cost) return;
+  try {
+    check_cost(world.cost_in(world.environment()), "scene", world.def().name);
+  } catch (const CostError& error) {
+    throw CostError(error.field, error.value, error.limit,
+                    error.hint + ", or allow it by --any-cost");
+  }
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  check_options(options);
+  WorldDef def = definition_of(options);
+  check_size(def);
+  const std::vector<std::string> repairs = repair_objects(def);
+  ThreadPool pool(options.threads);
+  World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  bound_cost(options, world);
+  world.measure_energy(options.balance);
+  std::vector<std::string> notices;
+  for (const SceneNotice& notice : notices_of(world, repairs)) {
+    notices.push_back(notice.message);
+    if (notice.warns) std::fprintf(stderr, "weft: %s\n", notice.message.c_str());
+  }
+  const std::optional<Measurement> measured = run(world, options);
+  if (!measured) {
+    std::fprintf(stderr,
+                 "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
+                 "fewer particles or substeps, or raise --tick-limit\n",
+                 static_cast<unsigned long long>(world.tick() + 1), options.scene.c_str(),
+                 options.tick_limit);
+    return kHalted;
+  }
+  const Measurement& measurement = *measured;
+  const Json result = summary(options, world, measurement, notices);
+  if (options.json)
+    std::printf("%s\n", result.dump(2).c_str());
+  else
+    print_table(result, "");
+  // The summary is printed even if the file cannot be written.
+  if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
+  return warn_of_crossings(measurement);
+}
+
+}  // namespace weft::server

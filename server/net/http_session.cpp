@@ -1,0 +1,153 @@
+#include "server/net/http_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include "server/net/http_routes.h"
+#include "server/net/lingering_close.h"
+#include "server/net/session.h"
+
+namespace weft::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using beast::error_code;
+
+constexpr std::size_t kMostHeaderBytes = 16 * 1024;
+constexpr std::string_view kHeaderEnd = "\r\n\r\n";
+
+/// Reads headers itself and parses them once they are complete, so that no byte that a client sends
+/// after its upgrade request is lost.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(ServiceContext& context, asio::ip::tcp::socket socket,
+              std::shared_ptr<ConnectionCount::Place> place, bool refuse)
+      : context_(context), place_(std::move(place)), stream_(std::move(socket)), refuse_(refuse) {
+    error_code ignored;
+    stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
+  }
+
+  void start() {
+    // The first request has a shorter deadline than later ones: a new connection has a request to
+    // send.
+    expire_after(context_.options.limits.handshake_seconds);
+    take_request();
+  }
+
+ private:
+  void expire_after(double seconds) {
+    stream_.expires_after(std::chrono::milliseconds(static_cast<long>(seconds * 1000)));
+  }
+
+  std::string_view received() const {
+    return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};
+  }
+
+  void take_request() {
+    const std::size_t end = received().find(kHeaderEnd);
+    if (end != std::string_view::npos) return parse(end + kHeaderEnd.size());
+    if (buffer_.size() >= kMostHeaderBytes)
+      return refuse(http::status::request_header_fields_too_large, "too_large",
+                    "the header is larger than 16 KiB");
+    stream_.async_read_some(buffer_.prepare(4096),
+                            [self = shared_from_this()](error_code error, std::size_t bytes) {
+                              if (error) return;
+                              self->buffer_.commit(bytes);
+                              self->take_request();
+                            });
+  }
+
+  void parse(std::size_t header_bytes) {
+    http::request_parser<http::empty_body> parser;
+    parser.header_limit(static_cast<std::uint32_t>(kMostHeaderBytes));
+    // A body of any announced length is refused below, by name. (In Boost 1.74 `none` allows none.)
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());
+    error_code error;
+    parser.put(asio::buffer(buffer_.data().data(), header_bytes), error);
+    const bool has_body =
+        parser.is_header_done() && (parser.chunked() || parser.content_length().value_or(0) > 0);
+    if (has_body) {
+      request_ = parser.get();
+      return refuse(http::status::payload_too_large, "too_large", "a request has no body here");
+    }
+    if (error || !parser.is_done())
+      return refuse(http::status::bad_request, "bad_request", "this is not HTTP/1.1");
+    buffer_.consume(header_bytes);
+    request_ = parser.release();
+    respond();
+  }
+
+  void respond() {
+    if (refuse_) return refuse(http::status::service_unavailable, "busy", "too many connections");
+    if (std::optional<HttpResponse> refusal = refuse_host(context_, request_))
+      return write(std::move(*refusal));
+    if (!wants_upgrade(request_) || request_.method() != http::verb::get)
+      return write(answer_request(context_, request_));
+    HttpResponse answer = check_upgrade(context_, request_);
+    if (answer.result() != http::status::switching_protocols) return write(std::move(answer));
+    stream_.expires_never();
+    start_session(context_, stream_.release_socket(), std::move(request_), std::string(received()),
+                  std::move(place_));
+  }
+
+  void refuse(http::status status, const char* code, const char* message) {
+    proto::HttpError error;
+    error.code = code;
+    error.message = message;
+    HttpResponse answer = error_response(request_, status, error);
+    answer.keep_alive(false);
+    write(std::move(answer));
+  }
+
+  void write(HttpResponse response) {
+    response_ = std::move(response);
+    expire_after(context_.options.limits.idle_seconds);
+    const auto done = [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return;
+      if (!self->response_.keep_alive() || self->context_.stopping) return self->end();
+      self->expire_after(self->context_.options.limits.idle_seconds);
+      self->take_request();
+    };
+    if (request_.method() == http::verb::head || response_.result() == http::status::not_modified) {
+      // The announced length is that of the omitted body.
+      header_only_.emplace(response_);
+      http::async_write_header(stream_, *header_only_, done);
+      return;
+    }
+    http::async_write(stream_, response_, done);
+  }
+
+  // The connection counts until it is closed, so that the limits cover closing ones too.
+  void end() {
+    async_lingering_close(stream_, [self = shared_from_this()](error_code) {});
+  }
+
+  ServiceContext& context_;
+  std::shared_ptr<ConnectionCount::Place> place_;
+  beast::tcp_stream stream_;
+  bool refuse_;
+  beast::flat_buffer buffer_;
+  HttpRequest request_;
+  HttpResponse response_;
+  std::optional<http::response_serializer<http::string_body>> header_only_;
+};
+
+}  // namespace
+
+void start_http_session(ServiceContext& context, asio::ip::tcp::socket socket,
+                        std::shared_ptr<ConnectionCount::Place> place, bool refuse) {
+  std::make_shared<HttpSession>(context, std::move(socket), std::move(place), refuse)->start();
+}
+
+}  // namespace weft::server

@@ -1,0 +1,321 @@
+#include "server/net/session.h"
+
+#include <chrono>
+#include <netinet/tcp.h>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "proto/data.h"
+#include "proto/replies.h"
+#include "server/net/close_codes.h"
+#include "server/net/lingering_close.h"
+#include "server/net/rate_limit.h"
+
+namespace boost::beast {
+
+// Beast closes a stream through these; its buffered stream has no overloads. The overload for a
+// socket, in Boost 1.74, closes after the first read even if there is more to read.
+template <class Buffer, class Handler>
+void async_teardown(role_type, buffered_read_stream<tcp_stream, Buffer>& stream,
+                    Handler&& handler) {
+  weft::server::async_lingering_close(stream.next_layer(), std::forward<Handler>(handler));
+}
+
+template <class NextLayer, class Buffer>
+void beast_close_socket(buffered_read_stream<NextLayer, Buffer>& stream) {
+  close_socket(stream.next_layer());
+}
+
+}  // namespace boost::beast
+
+namespace weft::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using beast::error_code;
+
+// Text beyond the wire's limit is still read up to here, so that its sender gets the proper error.
+constexpr std::size_t kMostReadBytes = 4 * proto::kMostMessageBytes;
+constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel keeps of one viewer
+constexpr double kAcksPerSecond = 4000;
+constexpr double kFlood = 2;         // this many times the limit of messages ends the connection
+constexpr double kCloseSeconds = 5;  // for the closing handshake
+
+std::chrono::steady_clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
+
+class Session : public ViewerStream, public std::enable_shared_from_this<Session> {
+ public:
+  Session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
+          const std::string& early, std::shared_ptr<ConnectionCount::Place> place)
+      : context_(context), place_(std::move(place)), ws_(std::move(socket)),
+        request_(std::move(request)), messages_(context.options.limits.messages_per_second,
+                                                context.options.limits.messages_per_second),
+        flood_(kFlood * context.options.limits.messages_per_second,
+               kFlood * context.options.limits.messages_per_second),
+        acks_(kAcksPerSecond, kAcksPerSecond), watch_(ws_.get_executor()), cut_(ws_.get_executor()),
+        viewer_(context.next_viewer++) {
+    auto& buffered = ws_.next_layer();
+    const auto room = buffered.buffer().prepare(early.size());
+    buffered.buffer().commit(asio::buffer_copy(room, asio::buffer(early)));
+  }
+
+  void start();
+
+  void write(const Message& message) override;
+  void close(std::uint16_t code, const std::string& reason) override;
+  void on_welcomed() override { read(); }
+
+ private:
+  void on_accepted();
+  void read();
+  void on_message();
+  void on_text(std::string_view text);
+  void on_binary();
+  void on_request(const proto::Request& request, double received);
+  void on_view(const std::optional<proto::Id>& id, const proto::View& view);
+  void choose_codec(const proto::View& view);
+  void on_excess(std::string_view text);
+  void refuse(const proto::Error& error);
+  void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
+  void note();
+  void watch();
+  void close_by_policy(std::uint16_t code, const std::string& reason);
+  void cut_later();
+  void finish();
+
+  ServiceContext& context_;
+  std::shared_ptr<ConnectionCount::Place> place_;
+  websocket::stream<beast::buffered_read_stream<beast::tcp_stream, beast::flat_buffer>, false> ws_;
+  UpgradeRequest request_;
+  beast::flat_buffer incoming_;
+  Message outgoing_;
+  RateLimit messages_, flood_, acks_;
+  asio::steady_timer watch_, cut_;
+  proto::ViewerId viewer_;
+  ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
+  std::uint32_t number_ = 0;          // of the last text message
+  double packed_error_ = proto::kPackedErrors.back();  // that it wants, if packed [m]
+  double alive_ = 0;
+  bool pinging_ = false, finished_ = false, cutting_ = false;
+};
+
+void Session::start() {
+  error_code ignored;
+  auto& socket = beast::get_lowest_layer(ws_).socket();
+  socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+  // A small backlog in the kernel keeps frames fresh.
+  ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kNotSentLowWater,
+               sizeof kNotSentLowWater);
+  websocket::stream_base::timeout timeout{};
+  timeout.handshake_timeout = duration_of(context_.options.limits.handshake_seconds);
+  timeout.idle_timeout = websocket::stream_base::none();
+  timeout.keep_alive_pings = false;
+  ws_.set_option(timeout);
+  ws_.auto_fragment(false);
+  ws_.read_message_max(kMostReadBytes);
+  ws_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+    response.set(beast::http::field::sec_websocket_protocol, proto::kSubprotocol);
+    response.set(beast::http::field::server, "weft");
+  }));
+  ws_.async_accept(request_, [self = shared_from_this()](error_code error) {
+    if (!error) self->on_accepted();
+  });
+}
+
+void Session::on_accepted() {
+  if (context_.stopping) return;
+  channel_ = &context_.hub.add(viewer_, *this);
+  alive_ = context_.clock();
+  ws_.control_callback(
+      [this](websocket::frame_type, beast::string_view) { alive_ = context_.clock(); });
+  const std::string_view target(request_.target().data(), request_.target().size());
+  const bool mesh_over_http = target.find("mesh=http") != std::string_view::npos;
+  context_.mailbox.put({viewer_, 0, Join{mesh_over_http}});
+  watch();
+}
+
+void Session::read() {
+  ws_.async_read(incoming_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (error) return self->finish();
+    self->on_message();
+    self->incoming_.consume(self->incoming_.size());
+    self->read();
+  });
+}
+
+void Session::on_message() {
+  alive_ = context_.clock();
+  if (!channel_ || channel_->closing()) return;
+  if (ws_.got_binary()) return on_binary();
+  on_text({static_cast<const char*>(incoming_.data().data()), incoming_.size()});
+}
+
+void Session::on_binary() {
+  const std::span<const std::byte> bytes(static_cast<const std::byte*>(incoming_.data().data()),
+                                         incoming_.size());
+  const auto sequence = proto::decode_ack(bytes);
+  if (!sequence) return close_by_policy(kCloseNotAnAck, "a binary message that is not an ack");
+  if (!acks_.take(context_.clock())) return close_by_policy(kClosePolicy, "too many acks");
+  channel_->on_acknowledged(*sequence);
+}
+
+void Session::on_text(std::string_view text) {
+  const double received = context_.clock();
+  ++number_;
+  if (!flood_.take(received))
+    return close_by_policy(kClosePolicy, "far too many messages a second");
+  if (!messages_.take(received)) return on_excess(text);
+  const auto request = proto::parse_request(text);
+  if (request) return on_request(*request, received);
+  refuse(request.error());
+  note();
+}
+
+void Session::on_request(const proto::Request& request, double received) {
+  if (const auto* ping = std::get_if<proto::Ping>(&request.command)) {
+    context_.metrics.count_command("ping");
+    answer(request.id, proto::PingReply{ping->t, received, context_.clock()});
+    return note();
+  }
+  if (const auto* view = std::get_if<proto::View>(&request.command)) {
+    context_.metrics.count_command("view");
+    return on_view(request.id, *view);
+  }
+  if (context_.mailbox.put({viewer_, number_, request})) return;
+  proto::Error error = proto::make_error(proto::ErrorCode::busy, "too many commands are waiting",
+                                         "wait for answers before sending more");
+  error.command = proto::name_of(request.command);
+  error.id = request.id;
+  refuse(error);
+  note();
+}
+
+void Session::on_view(const std::optional<proto::Id>& id, const proto::View& view) {
+  if (!channel_) return;
+  const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
+  if (view.hz) context_.hub.set_most_frames(viewer_, *view.hz);
+  if (view.forces) context_.hub.want_forces(viewer_, *view.forces);
+  choose_codec(view);
+  const double error = channel_->packed_error();
+  answer(id, proto::ViewReply{channel_->most_frames(),
+                              error > 0 ? proto::Codec::packed : proto::Codec::f32,
+                              channel_->asked_forces(), error});
+  // Anything not sent before is missing now, such as a key; no other wish of a viewer makes a
+  // frame.
+  Noted noted;
+  noted.wants_frame = (channel_->wants_frames() && !had_frames) ||
+                      (channel_->wants_forces() && !had_forces) ||
+                      (channel_->wants_frames() && view.codec == proto::Codec::packed);
+  noted.forces = view.forces;
+  context_.mailbox.put({viewer_, number_, noted});
+}
+
+void Session::choose_codec(const proto::View& view) {
+  for (const double error : proto::kPackedErrors)
+    if (view.error && error <= *view.error) packed_error_ = error;
+  const bool packed =
+      view.codec ? *view.codec == proto::Codec::packed : channel_->packed_error() > 0;
+  if (view.codec || (view.error && packed))
+    context_.hub.want_packed(viewer_, packed ? packed_error_ : 0);
+}
+
+/// A dropped message gets an answer too: its sender may wait for one.
+void Session::on_excess(std::string_view text) {
+  proto::Error error = proto::make_error(proto::ErrorCode::rate_limited,
+                                         "too many messages a second; this one was dropped",
+                                         "wait for answers, or send less often");
+  error.id = proto::find_id(text);
+  error.limit = proto::Limit{};
+  error.limit->maximum = context_.options.limits.messages_per_second;
+  refuse(error);
+  note();
+}
+
+void Session::refuse(const proto::Error& error) {
+  context_.metrics.count_error(proto::name_of(error.code));
+  if (channel_) channel_->send(text_message(proto::encode_error(error)));
+}
+
+void Session::answer(const std::optional<proto::Id>& id, const proto::Reply& reply) {
+  if (id && channel_) channel_->send(text_message(proto::encode_reply(*id, reply)));
+}
+
+void Session::note() {
+  context_.mailbox.put({viewer_, number_, Noted{}});
+}
+
+void Session::write(const Message& message) {
+  if (message.topic == Topic::frame) acks_.allow_one();  // one ack per frame
+  outgoing_ = message;
+  ws_.binary(message.binary);
+  ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),
+                  [self = shared_from_this()](error_code error, std::size_t bytes) {
+                    self->context_.metrics.count_bytes(bytes);
+                    self->outgoing_ = {};
+                    // Reading notices the broken connection too, and finishes.
+                    if (!error && self->channel_) self->channel_->on_written();
+                  });
+}
+
+void Session::close(std::uint16_t code, const std::string& reason) {
+  cut_later();
+  websocket::close_reason why(static_cast<websocket::close_code>(code));
+  why.reason.assign(reason.data(), std::min(reason.size(), why.reason.max_size()));
+  ws_.async_close(why, [self = shared_from_this()](error_code) { self->finish(); });
+}
+
+void Session::close_by_policy(std::uint16_t code, const std::string& reason) {
+  cut_later();
+  if (channel_) channel_->close(code, reason);
+}
+
+void Session::cut_later() {
+  if (std::exchange(cutting_, true)) return;
+  cut_.expires_after(duration_of(kCloseSeconds));
+  cut_.async_wait([self = shared_from_this()](error_code error) {
+    if (!error) beast::get_lowest_layer(self->ws_).close();
+  });
+}
+
+void Session::watch() {
+  const double patience = context_.options.limits.pong_seconds;
+  watch_.expires_after(duration_of(patience / 2));
+  watch_.async_wait([self = shared_from_this(), patience](error_code error) {
+    if (error || !self->channel_) return;
+    if (self->context_.clock() - self->alive_ > patience)
+      return self->close_by_policy(kCloseNoPong, "no answer to pings");
+    if (!std::exchange(self->pinging_, true))
+      self->ws_.async_ping({}, [self](error_code) { self->pinging_ = false; });
+    self->watch();
+  });
+}
+
+void Session::finish() {
+  if (std::exchange(finished_, true)) return;
+  watch_.cancel();
+  cut_.cancel();
+  beast::get_lowest_layer(ws_).close();
+  if (!std::exchange(channel_, nullptr)) return;
+  context_.hub.remove(viewer_);
+  context_.mailbox.put({viewer_, number_, Leave{}});
+}
+
+}  // namespace
+
+void start_session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
+                   const std::string& early, std::shared_ptr<ConnectionCount::Place> place) {
+  std::make_shared<Session>(context, std::move(socket), std::move(request), early, std::move(place))
+      ->start();
+}
+
+}  // namespace weft::server

@@ -1,0 +1,45 @@
+#include "server/room/order.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace weft::server {
+
+bool is_beside_the_cloth(const Inbound& item) {
+  return std::holds_alternative<Join>(item.what) || std::holds_alternative<Noted>(item.what) ||
+         is<proto::Hello>(item) || is<proto::Camera>(item) || is<proto::Pause>(item) ||
+         is<proto::Resume>(item) || is<proto::Speed>(item) || is<proto::Hash>(item);
+}
+
+bool is_for_its_viewer_alone(const Inbound& item) {
+  return is<proto::Query>(item) || is<proto::Hash>(item) || is<proto::Pick>(item) ||
+         is<proto::Advance>(item) || is<proto::Load>(item);
+}
+
+bool ends_its_advance(const Order& order, const Inbound& item) {
+  return order.advance && order.advance->viewer == item.viewer && is<proto::Pause>(item);
+}
+
+bool is_held_up(const Order& order, const Inbound& item) {
+  const std::optional<Advance>& advance = order.advance;
+  if (advance && advance->viewer == item.viewer && !ends_its_advance(order, item)) return true;
+  const std::optional<Building>& building = order.building;
+  return building && (building->viewer == item.viewer || is<proto::Load>(item));
+}
+
+bool has_waiting(const Order& order, proto::ViewerId viewer) {
+  return std::any_of(order.waiting.begin(), order.waiting.end(),
+                     [viewer](const Inbound& item) { return item.viewer == viewer; });
+}
+
+std::vector<Inbound> take_waiting(Order& order, proto::ViewerId viewer) {
+  std::deque<Inbound> others;
+  std::vector<Inbound> own;
+  for (Inbound& item : std::exchange(order.waiting, {}))
+    item.viewer == viewer ? own.push_back(std::move(item)) : others.push_back(std::move(item));
+  order.waiting = std::move(others);
+  return own;
+}
+
+}  // namespace weft::server

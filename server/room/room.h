@@ -1,0 +1,292 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/error.h"
+#include "proto/events.h"
+#include "proto/frame.h"
+#include "proto/replies.h"
+#include "server/clock.h"
+#include "server/constants.h"
+#include "server/metrics.h"
+#include "server/room/frame_maker.h"
+#include "server/room/frame_turns.h"
+#include "server/room/guarantee_watch.h"
+#include "server/room/holds.h"
+#include "server/room/news.h"
+#include "server/room/order.h"
+#include "server/room/room_clock.h"
+#include "server/room/room_output.h"
+#include "server/translate/translate.h"
+#include "server/work_limit.h"
+
+namespace weft::server {
+
+/// Makes the definition of a scene. Throws DefinitionError if there is none of this name.
+using SceneSource = std::function<WorldDef(const std::string&)>;
+
+struct RoomOptions {
+  std::string scene = "default";      ///< name of the first scene
+  std::optional<WorldDef> scene_def;  ///< the first scene itself, if no name leads to it
+  double tick_rate = 0;               ///< [1/s]; 0: as each scene says
+  std::vector<std::pair<std::string, std::string>>
+      settings;                          ///< of the first scene; core's set_field
+  std::vector<std::string> scene_names;  ///< suggested for mistyped names
+  /// Reads a scene that a client sends as JSON; throws DefinitionError. Null: no client may send
+  /// one.
+  std::function<WorldDef(const std::string&)> read_scene;
+  bool paused = false;
+  std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
+  std::string version, session;    ///< for `welcome`
+  proto::ServerLimits limits;
+  /// Bounds a tick, and queries that look one tick ahead; outlives the room. Null: no bound.
+  WorkLimit* limit = nullptr;
+  double build_limit = 0;  ///< of CPU for building a scene [s]; 0: no bound
+  /// CPU time of the room's thread, by which viewers of expensive commands are made to wait [s];
+  /// the default makes none wait.
+  Clock cpu_clock = [] { return 0.0; };
+  /// Runs a job on another thread; the default runs it at once. The room checks for its end in each
+  /// turn.
+  std::function<void(std::function<void()>)> beside = [](const std::function<void()>& job) {
+    job();
+  };
+};
+
+/// One shared cloth with its clock, its hands and its order of commands. Everything happens on the
+/// simulation thread; input arrives through `take` and output leaves through RoomOutput. The state
+/// changes only between ticks, by commands in the log.
+class Room {
+ public:
+  /// Throws DefinitionError if the scene cannot be built.
+  Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock, Metrics& metrics,
+       Executor* executor = nullptr);
+
+  /// Called when a taken command is finished.
+  std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
+
+  /// Takes an item of a viewer, between two ticks, and runs everything whose turn it is. While an
+  /// `advance` runs, other commands of its viewer wait for its end; those of other viewers run
+  /// between its ticks.
+  void take(Inbound item);
+
+  /// The same during a tick: runs at once what needs nothing of the cloth but its state before the
+  /// tick, and queues the rest.
+  void take_meanwhile(Inbound item);
+  /// Whether the current work should end, because it exceeds its limit or a command has made it
+  /// worthless. Polled by the owner of the stop signal.
+  bool gives_up();
+  /// The signal that ends the current work; null if nothing can.
+  StopSignal* stop_signal() { return options_.limit ? &options_.limit->signal() : nullptr; }
+
+  /// Cancels the scene that a `load` is building, before the room is destroyed.
+  void cancel_build() {
+    if (order_.building) order_.building->build->cancel();
+  }
+
+  bool advancing() const { return order_.advance.has_value(); }
+  /// Runs ticks of the current `advance` until it is done or the clock passes `deadline`.
+  void advance_until(double deadline);
+
+  /// Whether ticks follow the clock: the room runs, or `step` asked for some.
+  bool ticking() const { return !order_.advance && time_.runs(); }
+  double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
+  void tick();
+
+  /// Whether `advance_until` would do nothing now, because its viewer has not yet taken its frames.
+  bool advance_waits() const;
+
+  /// Call after ticks and commands: ends leases, announces changes, sends the newest frame.
+  void finish_turn();
+  /// Latest time of the next `finish_turn`, even if nothing happens [s].
+  double next_wake() const;
+
+  const ServedWorld& world() const { return *world_; }
+  const CommandLog& log() const { return order_.log; }
+  bool paused() const { return time_.paused(); }
+  /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
+  double speed() const { return time_.speed(); }
+  double real_time_factor() const;
+  std::uint32_t epoch() const { return epoch_; }
+  std::uint64_t frames_encoded() const { return frame_maker_.count(); }
+
+ private:
+  struct Viewer {
+    proto::ViewerInfo info;
+    bool mesh_over_http = false;
+    bool wants_frame = false;   ///< it lacks the present one
+    bool wants_forces = false;  ///< in its frames
+    std::uint32_t applied = 0;  ///< number of its last text message that was taken
+    /// Every frame of its own `advance` that is in flight holds a copy.
+    std::shared_ptr<const int> ticket = std::make_shared<int>();
+    bool stalled = false;  ///< it took none for too long, and has not taken one since
+    double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
+  };
+
+  /// The tick that runs, or the last one.
+  struct RunningTick {
+    bool runs = false;
+    bool replaced = false;    ///< a command that replaces the state ends it
+    bool over_limit = false;  ///< it exceeds its limit
+    std::string failure;      ///< what it threw; empty: nothing
+  };
+
+  using Outcome = proto::Result<proto::Reply>;
+
+  // room_order.cpp: the order of commands
+  bool must_wait(const Inbound& item) const;
+  bool may_run_meanwhile(const Inbound& item) const;
+  void work_off();
+  void let_go(proto::ViewerId viewer);
+  double next_turn() const;
+  void charge(proto::ViewerId viewer, double cost);
+  void start_build(proto::ViewerId viewer, std::function<WorldDef()> definition);
+  void finish_build();
+  void note_halt();
+  void end_advance(proto::ErrorCode code, const std::string& why, const char* hint);
+  template <class Work>
+  bool within_limit(Work&& work, double share = 1);
+
+  // room.cpp: viewers that come and go, and ticks
+  void join(proto::ViewerId id, const Join& join);
+  void leave(proto::ViewerId viewer);
+  void take_now(Inbound item);
+  std::optional<double> step_world();
+  void count_crossings(bool stays);
+  void tell_guarantee();  // room_queries.cpp
+  bool tell_sleep();
+  void keep_budget(double seconds);
+  void ask_for_budget(const BudgetDef& budget);
+  void follow_speed();
+  void end_leases();
+  void start_world(BuiltScene&& scene);
+  void tell_loaded(proto::ViewerId viewer);
+  void send_mesh(proto::ViewerId to, const Viewer& viewer);
+  void tell_slow_motion(double now);
+  Message message_of(const SceneNotice& notice) const;
+  proto::State state() const;
+  std::vector<proto::ViewerInfo> roster() const;
+  WorldDef definition_of(const std::string& scene) const;
+  WorldDef definition_of(const std::string& name, const std::string& json) const;
+
+  // room_advance.cpp
+  bool frames_wait(const Viewer& viewer) const;
+  bool shows_next_tick() const;
+  void show_advanced();
+  proto::Error stalled_error() const;
+  void finish_advance(const std::optional<proto::Error>& error = {});
+  void end_paused_advance();
+
+  // room_telling.cpp: frames and announcements
+  void change(bool News::*what);
+  void renew_told();
+  Message state_message();
+  Message pins_message();
+  Message grabs_message();
+  void tell_changes();
+  void tell_changes_if_due(double now);
+  void notify(proto::NoticeLevel level, const char* code, std::string message,
+              proto::ViewerId viewer = 0, std::optional<std::uint32_t> drag = {},
+              std::optional<double> value = {});
+  void measure_forces();
+  bool frames_stand() const;
+  double next_frame() const;
+  Frame encode_frame();
+  void publish(double now);
+  void show_to(proto::ViewerId viewer);
+  void show_to_those_who_lack(double now);
+
+  // room_commands.cpp: one function per command
+  void handle(proto::ViewerId viewer, const proto::Request& request);
+  void answer(proto::ViewerId viewer, const std::optional<proto::Id>& id,
+              const proto::Reply& reply);
+  void refuse(proto::ViewerId viewer, const proto::Request& request, proto::Error error);
+  Outcome apply(proto::ViewerId viewer, const proto::Hello& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pick& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragStart& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragMove& command);
+  Outcome apply(proto::ViewerId viewer, const proto::DragEnd& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleasePin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleaseParticle& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ReleaseAll& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Camera& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Pause& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Resume& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Step& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Reset& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Move& command);
+  Outcome apply(proto::ViewerId viewer, const proto::MoveEnd& command);
+  Outcome apply(proto::ViewerId viewer, const proto::MovePin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::StopPin& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Gripper& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Set& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Advance& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Query& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Hash& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Load& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
+  Outcome apply(proto::ViewerId viewer, const proto::View& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Halt& command);
+  Outcome query_numbers(const proto::Query& command, std::span<const float> values,
+                        std::uint32_t components);
+  Outcome query_boxes(const proto::Query& command);
+  Reactions coming_reactions();
+  Outcome release_pins(const std::vector<std::uint32_t>& ids);
+  void end_hand(const Hand& hand, CommandOrigin origin);
+
+  RoomOptions options_;
+  SceneSource scenes_;
+  RoomOutput& output_;
+  Clock clock_;
+  Metrics& metrics_;
+  Executor* executor_;
+
+  std::unique_ptr<ServedWorld> world_;
+  std::uint32_t epoch_ = 0;
+  proto::MeshAnnouncement mesh_;
+  SharedBytes mesh_bytes_;
+
+  RoomClock time_;
+  Order order_;
+  RunningTick tick_;
+
+  std::map<proto::ViewerId, Viewer> viewers_;
+  Holds holds_;
+
+  News news_;
+  Told told_;
+  FrameTurns frames_;
+  FrameMaker frame_maker_;
+  bool measures_forces_ = false;  // whether the world measures them
+  GuaranteeWatch guarantee_;
+  std::vector<SceneNotice> scene_notices_;
+
+  std::uint32_t transfers_ = 0;
+  std::vector<float> box_values_;     // of the current answer, lowest and highest corners
+  std::optional<Message> follow_up_;  // binary message that follows the current answer
+};
+
+/// Runs work that the limit, or a share of it, may end.
+/// @returns false if it did
+template <class Work>
+bool Room::within_limit(Work&& work, double share) {
+  try {
+    std::optional<WorkLimit::Scope> scope;
+    if (options_.limit) scope.emplace(*options_.limit, share);
+    work();
+    return true;
+  } catch (const Stopped&) {
+    return false;
+  }
+}
+
+}  // namespace weft::server

@@ -1,0 +1,80 @@
+#include <string>
+
+#include "server/room/room.h"
+
+// Ticks that a viewer requests, without a clock.
+
+namespace weft::server {
+
+void Room::advance_until(double deadline) {
+  while (order_.advance && order_.advance->left > 0 && !order_.advance->paused) {
+    if (advance_waits()) {
+      if (clock_() - order_.advance->taken < kStalled) break;
+      viewers_.at(order_.advance->viewer).stalled = true;
+      return finish_advance(stalled_error());
+    }
+    order_.advance->taken = clock_();
+    const bool shown = shows_next_tick();
+    if (!step_world()) return;  // announced, and the advance ended if nothing replaces it
+    --order_.advance->left;
+    if (!world_->report().rested) frames_.note_advance();
+    if (shown) show_advanced();
+    if (clock_() >= deadline) break;
+  }
+  if (!order_.advance) return;
+  if (order_.advance->left == 0)
+    finish_advance();
+  else if (order_.advance->paused)
+    end_paused_advance();
+}
+
+void Room::end_paused_advance() {
+  end_advance(proto::ErrorCode::interrupted, "a viewer sent pause", "");
+}
+
+/// Whether the most frames of its own `advance` are in flight to a viewer.
+bool Room::frames_wait(const Viewer& viewer) const {
+  return viewer.ticket.use_count() > kMostFramesInFlight;
+}
+
+/// Whether the viewer of the advance asked for the frame of the coming tick.
+bool Room::shows_next_tick() const {
+  return order_.advance->frames == proto::AdvanceFrames::all ||
+         (order_.advance->frames == proto::AdvanceFrames::last && order_.advance->left == 1);
+}
+
+bool Room::advance_waits() const {
+  return order_.advance && shows_next_tick() && frames_wait(viewers_.at(order_.advance->viewer));
+}
+
+void Room::show_advanced() {
+  const Viewer& viewer = viewers_.at(order_.advance->viewer);
+  const Frame frame = encode_frame();
+  const bool full = viewer.wants_forces && frame.with_forces;
+  output_.send(order_.advance->viewer,
+               {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
+}
+
+/// Ends an `advance` whose viewer takes none of its frames, so that it does not hold up the room.
+proto::Error Room::stalled_error() const {
+  proto::Error error = proto::make_error(
+      proto::ErrorCode::stalled,
+      "the frames of this advance were not read for " + proto::number_text(kStalled) + " s",
+      "it ended at tick " + std::to_string(world_->tick()) + "; read faster or ask for the last");
+  error.command = "advance";
+  if (order_.advance) error.id = order_.advance->id;
+  return error;
+}
+
+void Room::finish_advance(const std::optional<proto::Error>& error) {
+  const Advance done = *order_.advance;
+  order_.advance.reset();
+  order_.log.shorten_advance(done.left);
+  if (error)
+    output_.send(done.viewer, text_message(proto::encode_error(*error)));
+  else
+    answer(done.viewer, done.id, proto::AdvanceReply{world_->tick(), world_->hash()});
+  news_.state = true;
+}
+
+}  // namespace weft::server

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "server/room/room.h"
+
+// When a room sends frames and announces changes, and what they contain.
+
+namespace weft::server {
+
+/// Measures contacts and reactions as long as a viewer wants them.
+void Room::measure_forces() {
+  bool wanted = output_.wants_forces();
+  if (order_.advance &&
+      order_.advance->frames.value_or(proto::AdvanceFrames::none) != proto::AdvanceFrames::none) {
+    const auto caller = viewers_.find(order_.advance->viewer);
+    wanted = wanted || (caller != viewers_.end() && caller->second.wants_forces);
+  }
+  if (wanted == measures_forces_) return;
+  measures_forces_ = wanted;
+  within_limit([this] { world_->measure_forces(measures_forces_); });
+}
+
+void Room::show_to_those_who_lack(double now) {
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.wants_frame) continue;
+    show_to(id);
+    frames_.sent_to_one(now, world_->tick_seconds());
+  }
+}
+
+/// Whether ticks make no frames now: the clock makes no ticks, or all cloth sleeps.
+bool Room::frames_stand() const {
+  return !ticking() || world_->report().rested;
+}
+
+/// When a frame to all is due [s]; infinity if nobody wants one.
+double Room::next_frame() const {
+  return output_.wants_frames() ? frames_.next(frames_stand())
+                                : std::numeric_limits<double>::infinity();
+}
+
+void Room::tell_changes_if_due(double now) {
+  if (news_.any() && now >= news_.next) tell_changes();
+}
+
+/// Notes that something is to be told, and shown.
+void Room::change(bool News::*what) {
+  news_.*what = true;
+  frames_.note_command();
+}
+
+/// Takes what viewers are told of the cloth from the world, between two ticks.
+void Room::renew_told() {
+  told_.state = state_message();
+  told_.pins = pins_message();
+  told_.grabs = grabs_message();
+}
+
+Message Room::state_message() {
+  return text_message(proto::encode_state(state()), Topic::state);
+}
+
+Message Room::pins_message() {
+  return text_message(proto::encode_pins(world_->tick(), pins_of(*world_, holds_)), Topic::pins);
+}
+
+Message Room::grabs_message() {
+  return text_message(proto::encode_grabs(world_->tick(), grabs_of(*world_, holds_, false)),
+                      Topic::grabs);
+}
+
+/// Long lists of pins are told less often. During a tick, what is told of the cloth waits for its
+/// end.
+void Room::tell_changes() {
+  std::size_t bytes = 0;
+  const auto tell = [&](const Message& message) {
+    bytes += message.bytes.size();
+    output_.broadcast(message);
+  };
+  const double now = clock_();
+  for (const proto::Notice& notice : std::exchange(news_.notices, {}))
+    tell(text_message(proto::encode_notice(notice)));
+  if (news_.roster) tell(text_message(proto::encode_roster(roster()), Topic::roster));
+  news_.roster = false;
+  if (!tick_.runs) {
+    if (news_.state) tell(told_.state = state_message());
+    if (news_.state) news_.next_state = now + kStatePause;
+    if (news_.pins) tell(told_.pins = pins_message());
+    if (news_.grabs) tell(told_.grabs = grabs_message());
+    news_.state = news_.pins = news_.grabs = false;
+  }
+  news_.next = now + std::max({world_->tick_seconds(), kShortestTelling,
+                               static_cast<double>(bytes) / kTellingRate});
+}
+
+/// Sends the newest frame to all viewers for which it is news.
+void Room::publish(double now) {
+  Frame frame = encode_frame();
+  frame.at_once = frames_.jumped();
+  // The result of `advance` goes to its viewer as it requested, until something else changes.
+  frame.not_to = frames_.excluded();
+  frames_.sent(now, world_->tick_seconds());
+  for (auto& [id, viewer] : viewers_)
+    if (id != frame.not_to) viewer.wants_frame = false;
+  output_.offer_frame(std::move(frame));
+}
+
+/// Sends a frame to a viewer that lacks the present one.
+void Room::show_to(proto::ViewerId viewer) {
+  Frame frame = encode_frame();
+  frame.at_once = true;
+  frame.only_to = viewer;
+  viewers_.at(viewer).wants_frame = false;
+  output_.offer_frame(std::move(frame));
+}
+
+/// A frame of the present state.
+Frame Room::encode_frame() {
+  measure_forces();
+  within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
+  std::vector<proto::AppliedCommand>& applied = frame_maker_.applied();
+  applied.clear();
+  for (const auto& [id, viewer] : viewers_)
+    if (viewer.applied > 0) applied.push_back({id, viewer.applied});
+  return frame_maker_.make(*world_, holds_,
+                           {frames_.jumped(), paused(), time_.last_tick_done(), epoch_});
+}
+
+void Room::notify(proto::NoticeLevel level, const char* code, std::string message,
+                  proto::ViewerId viewer, std::optional<std::uint32_t> drag,
+                  std::optional<double> value) {
+  proto::Notice notice;
+  notice.level = level;
+  notice.code = code;
+  notice.message = std::move(message);
+  notice.tick = world_->tick();
+  if (viewer != 0) notice.viewer = viewer;
+  notice.drag = drag;
+  notice.value = value;
+  news_.add(std::move(notice));
+}
+
+}  // namespace weft::server
