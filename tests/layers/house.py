@@ -4,8 +4,8 @@
 
 A room is a folder of core, or another folder at the top. Functions and classes are those that
 universal-ctags finds; a function is as long as the lines from its name to its closing brace.
-Comments are the lines that hold one. Upward includes are those that the floors of core forbid
-(layers.py).
+Comments are the lines that hold one. Upward includes are those that the floors of core and
+server forbid (layers.py).
 """
 
 import json
@@ -68,7 +68,7 @@ def table(root):
         lines = text.splitlines()
         upward = sum(layers.floor_of(header) > layers.floor_of(name)
                      for quote, header in layers.INCLUDE.findall(text)
-                     if quote == '"' and name.parts[0] == "core" and header.startswith("core/"))
+                     if quote == '"' and header.startswith(name.parts[0] + "/"))
         for room in rooms_of(name):
             counts[room].update(files=1, lines=len(lines), upward=upward,
                                 comments=sum(bool(COMMENT.search(line)) for line in lines),

@@ -42,6 +42,9 @@ ROOMS = {
 # Folders of core, the lowest first; files beside the folders are below all of them.
 FLOORS = ("math", "geometry", "cloth", "forces", "contact", "attachments", "diagnostics", "solver", "world",
           "scenes")
+# Folders of the server, the same.
+SERVER_FLOORS = ("scene", "translate", "room", "net", "commands")
+FLOORS_OF = {"core": FLOORS, "server": SERVER_FLOORS}
 # Folders of the page, the lowest first; files beside the folders join them and are above all.
 PAGE_FLOORS = ("wire", "view", "hold", "panel")
 CLOCK_USE = re.compile(r"std::chrono|\b(clock_gettime|gettimeofday|random_device)\b")
@@ -79,11 +82,11 @@ def cpp_problems(name, text):
             flag = header == "atomic" and str(name) == RAISED_FROM_OTHER_THREADS
             if forbidden.match(header) and not flag:
                 yield f"{room} must not include <{header}>"
-    if room == "core":
-        if len(name.parts) > 2 and name.parts[1] not in FLOORS:
-            yield f"core/{name.parts[1]} is no floor of core"
+    if room in FLOORS_OF:
+        if len(name.parts) > 2 and name.parts[1] not in FLOORS_OF[room]:
+            yield f"{room}/{name.parts[1]} is no floor of {room}"
         for quote, header in headers:
-            if quote == '"' and header.startswith("core/") and floor_of(header) > floor_of(name):
+            if quote == '"' and header.startswith(room + "/") and floor_of(header) > floor_of(name):
                 yield f"{header} is on a floor above this file"
     for quote, header in headers:
         if quote == '"' and not is_from_root(header):
@@ -94,7 +97,7 @@ def cpp_problems(name, text):
         yield "does not open with a line on what it does"
     if room == "core" and CLOCK_USE.search(text):
         yield "core must not read a clock"
-    if room == "server" and not name.name.startswith("translate"):
+    if room == "server" and name.parts[1] != "translate":
         sides = {header.split("/")[0] for _, header in headers}
         if {"core", "proto"} <= sides:
             yield "only server/translate joins core and proto"
@@ -108,9 +111,10 @@ def opens_with_its_purpose(text):
 
 
 def floor_of(name):
-    """The height of a file of core; -1 beside the folders."""
-    folders = PurePosixPath(name).parts[1:-1]
-    return FLOORS.index(folders[0]) if folders and folders[0] in FLOORS else -1
+    """The height of a file of core or server; -1 beside the folders."""
+    top, *folders = PurePosixPath(name).parts[:-1]
+    floors = FLOORS_OF.get(top, ())
+    return floors.index(folders[0]) if folders and folders[0] in floors else -1
 
 
 def is_from_root(header):
