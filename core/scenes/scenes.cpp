@@ -199,7 +199,10 @@ void build_turntable(WorldDef& def, const std::string&) {
                                       {-1, 0, 0, 0}};
   for (int k = 0; k < 5; ++k)
     board.motion.keyframes.push_back({kPeriod / 4 * k, Vec3d::Zero(), turns[k]});
-  def.colliders = {ground(), board};
+  // The sheet hides the board: below its hem one sees what that stands on.
+  const ColliderDef post{"post", CapsuleDef{Vec3d(0, 0.05, 0), Vec3d(0, kTop - 0.08, 0), 0.03}};
+  const ColliderDef foot{"foot", upright_box(Vec3d(0, 0.015, 0), Vec3d(0.17, 0.015, 0.17))};
+  def.colliders = {ground(), board, post, foot};
   def.environment.damping = 0.1;
 }
 
