@@ -30,8 +30,10 @@ inline constexpr Range kAdvanceRange{1, 100000};  ///< [ticks]
 inline constexpr Range kSpeedRange{0.01, 10};
 inline constexpr Range kFrameRateRange{0, 240};     ///< [1/s]
 inline constexpr Range kPackedErrorRange{1e-5, 1};  ///< [m]
-/// Bounds of the error of packed frames; a viewer gets the largest that is not above what it asks.
-inline constexpr std::array<double, 2> kPackedErrors = {1e-5, 1e-4};  ///< [m]
+/// Bounds of the error of packed frames. A viewer gets the largest that is neither above what it
+/// allows nor above the usual one, and a larger one only while it does not keep up.
+inline constexpr std::array<double, 3> kPackedErrors = {1e-5, 1e-4, 4e-4};  ///< [m]
+inline constexpr double kUsualPackedError = kPackedErrors[1];               ///< [m]
 inline constexpr Range kLevelRange{0, 255};
 inline constexpr std::size_t kMostTreeBytes = 80;  ///< of the name of a tree
 

@@ -1,5 +1,7 @@
 #include "server/net/hub.h"
 
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "proto/events.h"
@@ -83,10 +85,10 @@ void Hub::want_forces(proto::ViewerId viewer, bool wanted) {
   count_takers();
 }
 
-void Hub::want_packed(proto::ViewerId viewer, double error) {
+void Hub::want_packed(proto::ViewerId viewer, double usual, double most) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
-  found->second.channel->pack_with(packer_, error);
+  found->second.channel->pack_with(packer_, usual, most);
   count_takers();
 }
 
@@ -95,6 +97,7 @@ void Hub::poll() {
     viewer.channel->poll();
     count_frames(viewer);
     tell_dropped(viewer);
+    tell_quality(viewer);
   }
 }
 
@@ -138,6 +141,19 @@ void Hub::tell_dropped(Viewer& viewer) {
   notice.code = "frames_dropped";
   notice.message = std::to_string(dropped) + " frames were dropped for this viewer";
   notice.count = dropped;
+  viewer.channel->send(text_message(proto::encode_notice(notice)));
+}
+
+void Hub::tell_quality(Viewer& viewer) {
+  const auto now = viewer.channel->take_change();
+  if (!now) return;
+  proto::Notice notice;
+  notice.code = "quality";
+  notice.message =
+      "this viewer gets " + proto::number_text(std::round(now->hz)) + " frames a second" +
+      (now->error > 0 ? " within " + proto::number_text(now->error) + " m" : std::string()) +
+      ": as many as it keeps up with";
+  notice.value = now->hz;
   viewer.channel->send(text_message(proto::encode_notice(notice)));
 }
 

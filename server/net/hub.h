@@ -35,8 +35,9 @@ class Hub {
   void set_most_frames(proto::ViewerId viewer, double hz);
   void want_forces(proto::ViewerId viewer, bool wanted);
   /// Packs the viewer's frames from now on, the first one as a key.
-  /// @param error  bound [m]; 0: float32
-  void want_packed(proto::ViewerId viewer, double error);
+  /// @param usual  bound of their error [m]; 0: float32
+  /// @param most   bound while the viewer does not keep up, at least as large [m]
+  void want_packed(proto::ViewerId viewer, double usual, double most);
 
   /// Sends what has become due, tells viewers of dropped frames, counts. Call every 10 to 50 ms.
   void poll();
@@ -66,6 +67,7 @@ class Hub {
   void count_takers();
   void count_frames(Viewer& viewer);
   void tell_dropped(Viewer& viewer);
+  void tell_quality(Viewer& viewer);
 
   Clock clock_;
   double frame_rate_;

@@ -1,5 +1,6 @@
 #include "server/net/session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <netinet/tcp.h>
 #include <optional>
@@ -104,7 +105,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   proto::ViewerId viewer_;
   ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
   std::uint32_t number_ = 0;          // of the last text message
-  double packed_error_ = proto::kPackedErrors.back();  // that it wants, if packed [m]
+  double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
   bool pinging_ = false, finished_ = false, cutting_ = false;
 };
@@ -221,12 +222,15 @@ void Session::on_view(const std::optional<proto::Id>& id, const proto::View& vie
 }
 
 void Session::choose_codec(const proto::View& view) {
+  most_error_ = view.error.value_or(most_error_);
+  double usual = proto::kPackedErrors.front();
   for (const double error : proto::kPackedErrors)
-    if (view.error && error <= *view.error) packed_error_ = error;
+    if (error <= std::min(most_error_, proto::kUsualPackedError)) usual = error;
   const bool packed =
       view.codec ? *view.codec == proto::Codec::packed : channel_->packed_error() > 0;
   if (view.codec || (view.error && packed))
-    context_.hub.want_packed(viewer_, packed ? packed_error_ : 0);
+    context_.hub.want_packed(viewer_, packed ? usual : 0,
+                             packed ? std::max(usual, most_error_) : 0);
 }
 
 /// A dropped message gets an answer too: its sender may wait for one.

@@ -1,6 +1,7 @@
 #include "server/net/viewer_channel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "proto/limits.h"
@@ -84,8 +85,10 @@ void ViewerChannel::welcome_done() {
 
 void ViewerChannel::offer_frame(const Frame& frame) {
   if (!wants_frames()) return;
-  // A frame left out because of the viewer's `hz` does not count as dropped.
-  if (waiting_frame_ && (writing_ || !window_.has_room())) ++frames_dropped_;
+  // A frame left out because of the viewer's rate does not count as dropped.
+  const bool late =
+      waiting_frame_ && (waiting_frame_->at_once || clock_() >= next_frame_time_ + kLate / rate());
+  if (late && (writing_ || !window_.has_room())) ++frames_dropped_;
   const bool at_once = frame.at_once || (waiting_frame_ && waiting_frame_->at_once);
   waiting_frame_ = frame;
   waiting_frame_->at_once = at_once;
@@ -104,7 +107,8 @@ void ViewerChannel::on_written() {
 
 void ViewerChannel::set_most_frames(double hz) {
   most_frames_ = hz;
-  window_.set_frame_rate(std::min(frame_rate_, most_frames_));
+  quality_.restart();
+  apply_quality();
   if (hz == 0)
     waiting_frame_.reset();
   else
@@ -114,7 +118,7 @@ void ViewerChannel::set_most_frames(double hz) {
 
 void ViewerChannel::set_frame_rate(double frame_rate) {
   frame_rate_ = frame_rate;
-  window_.set_frame_rate(std::min(frame_rate_, most_frames_));
+  window_.set_frame_rate(std::min(frame_rate_, rate()));
 }
 
 void ViewerChannel::close(std::uint16_t code, const std::string& reason,
@@ -141,14 +145,14 @@ std::uint64_t ViewerChannel::take_dropped() {
 
 bool ViewerChannel::frame_is_due(double now) const {
   if (!waiting_frame_ || !wants_frames() || !window_.has_room()) return false;
-  return now >= next_frame_time_ - kEarly / most_frames_ ||
+  return now >= next_frame_time_ - kEarly / rate() ||
          (waiting_frame_->at_once && now >= next_urgent_frame_);
 }
 
 void ViewerChannel::count_frame(const Frame& frame, double now) {
   window_.sent(frame.sequence, now);
   ++frames_sent_;
-  const double interval = 1 / most_frames_;
+  const double interval = 1 / rate();
   next_frame_time_ = std::max(next_frame_time_, now - kLate * interval) + interval;
   if (frame.at_once) next_urgent_frame_ = now + interval;
 }
@@ -174,10 +178,52 @@ void ViewerChannel::pump() {
   start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true, Topic::frame});
 }
 
-void ViewerChannel::pack_with(FramePacker& packer, double error) {
+void ViewerChannel::pack_with(FramePacker& packer, double usual, double most) {
+  assert(usual >= 0 && most >= usual);
   packer_ = &packer;
+  usual_error_ = usual;
+  most_error_ = most;
   packed_ = {};
-  packed_.error = error;
+  packed_.error = error();
+}
+
+void ViewerChannel::poll() {
+  const auto coarser =
+      std::count_if(proto::kPackedErrors.begin(), proto::kPackedErrors.end(), [this](double bound) {
+        return usual_error_ > 0 && bound > usual_error_ && bound <= most_error_;
+      });
+  if (quality_.update(clock_(), frames_sent_, frames_dropped_, static_cast<int>(coarser))) {
+    apply_quality();
+    quality_changed_ = true;
+  }
+  pump();
+}
+
+/// Most frames a second that the viewer takes, at even spacing.
+double ViewerChannel::rate() const {
+  const int pace = quality_.quality().pace;
+  return pace == 1 ? most_frames_ : std::min(most_frames_, frame_rate_ / pace);
+}
+
+/// Bound of the error of packed frames [m].
+double ViewerChannel::error() const {
+  double bound = usual_error_;
+  int steps = quality_.quality().coarser;
+  for (const double coarser : proto::kPackedErrors)
+    if (steps > 0 && coarser > bound && coarser <= most_error_) bound = coarser, --steps;
+  return bound;
+}
+
+void ViewerChannel::apply_quality() {
+  window_.set_frame_rate(std::min(frame_rate_, rate()));
+  if (packed_.error == error()) return;
+  packed_ = {};  // another lattice: the next frame is a key
+  packed_.error = error();
+}
+
+std::optional<ViewerChannel::Sending> ViewerChannel::take_change() {
+  if (!std::exchange(quality_changed_, false)) return std::nullopt;
+  return Sending{std::min(frame_rate_, rate()), packed_.error};
 }
 
 void ViewerChannel::start(Message message) {

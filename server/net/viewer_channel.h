@@ -11,6 +11,7 @@
 #include "server/message.h"
 #include "server/net/frame_packer.h"
 #include "server/net/frame_window.h"
+#include "server/net/viewer_quality.h"
 
 namespace weft::server {
 
@@ -64,21 +65,24 @@ class ViewerChannel {
   /// The pending write is done.
   void on_written();
 
-  /// Sends what has become due; call a few times a second or more.
-  void poll() { pump(); }
+  /// Sends what has become due and suits the quality to the viewer; call ten times a second or
+  /// more.
+  void poll();
 
   /// @param hz  most frames per second of real time, 0 to 240; 0: none
   void set_most_frames(double hz);
-  /// The `hz` in force [1/s]; the highest allowed, if none was set.
+  /// The `hz` asked for [1/s]; the highest allowed, if none was.
   double most_frames() const { return most_frames_; }
   /// Whether its frames include contacts and reactions.
   void want_forces(bool wanted) { with_forces_ = wanted; }
   bool wants_forces() const { return with_forces_ && wants_frames(); }
   bool asked_forces() const { return with_forces_; }
   /// Frames are packed from now on when they are sent, the first one as a key.
-  /// @param error  bound [m]; 0: they go as they are
-  void pack_with(FramePacker& packer, double error);
-  double packed_error() const { return packed_.error; }
+  /// @param usual  bound of their error [m]; 0: they go as they are
+  /// @param most   bound while the viewer does not keep up, at least as large [m]
+  void pack_with(FramePacker& packer, double usual, double most);
+  /// The usual bound [m]; 0: frames are not packed.
+  double packed_error() const { return usual_error_; }
   bool wants_frames() const { return frames_allowed_ && !closing_ && most_frames_ > 0; }
 
   /// The room's frame rate has changed [1/s].
@@ -96,6 +100,14 @@ class ViewerChannel {
   /// Frames dropped since the last call, for a notice.
   std::uint64_t take_dropped();
 
+  /// What the viewer is sent at most, for a notice.
+  struct Sending {
+    double hz = 0;     ///< frames a second
+    double error = 0;  ///< bound [m]; 0: not packed
+  };
+  /// The same, if it changed since the last call because the viewer did not keep up, or does again.
+  std::optional<Sending> take_change();
+
  private:
   void enqueue(Message message);
   template <class Predicate>
@@ -103,6 +115,9 @@ class ViewerChannel {
   bool overflows() const;
   void pump();
   bool frame_is_due(double now) const;
+  double rate() const;
+  double error() const;
+  void apply_quality();
   void count_frame(const Frame& frame, double now);
   void start(Message message);
 
@@ -120,6 +135,9 @@ class ViewerChannel {
   std::string close_reason_;
   FramePacker* packer_ = nullptr;
   PackedStream packed_;
+  double usual_error_ = 0, most_error_ = 0;  // [m]
+  QualitySteps quality_;
+  bool quality_changed_ = false;
   std::deque<Message> queue_;
   std::size_t queued_bytes_ = 0;  // of the messages that count
   std::optional<Frame> waiting_frame_;

@@ -212,11 +212,11 @@ TEST_CASE("nothing is packed that no viewer wants, and float32 is as it was") {
   for (std::uint32_t n = 1; n < 5; ++n) h.pass(n);
   CHECK(h.hub.packer().encodings() == 0);
   CHECK(h.codec_of_last() == 0);
-  h.hub.want_packed(1, 1e-4);
+  h.hub.want_packed(1, 1e-4, 1e-4);
   for (std::uint32_t n = 5; n < 10; ++n) h.pass(n);
   CHECK(h.codec_of_last() == 2);
   CHECK(h.hub.packer().encodings() == 5);
-  h.hub.want_packed(1, 0);
+  h.hub.want_packed(1, 0, 0);
   CHECK(h.hub.packer().kept_frames() == 0);
   h.pass(10);
   CHECK(h.codec_of_last() == 0);
@@ -226,7 +226,7 @@ TEST_CASE("nothing is packed that no viewer wants, and float32 is as it was") {
 TEST_CASE(
     "frames that must arrive are packed in their turn, and a dropped one is built on by none") {
   OneHub h;
-  h.hub.want_packed(1, 1e-4);
+  h.hub.want_packed(1, 1e-4, 1e-4);
   Receiver viewer;
   const auto read = [&](std::size_t from) {
     for (std::size_t i = from; i < h.stream.written.size(); ++i)

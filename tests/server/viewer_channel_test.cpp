@@ -28,8 +28,10 @@ TEST_CASE("a viewer never has more than one write in flight") {
 TEST_CASE("a stalled viewer gets the newest frame when it reads again, none of those between") {
   OneViewer v;
   v.channel.offer_frame(fake_frame(1));
-  for (std::uint32_t i = 2; i <= 100; ++i) v.channel.offer_frame(fake_frame(i));
-  v.fake.now += 1;
+  for (std::uint32_t i = 2; i <= 100; ++i) {
+    v.fake.now += 1.0 / 60;
+    v.channel.offer_frame(fake_frame(i));
+  }
   v.stream.finish_write();
   CHECK(v.stream.written == std::vector<std::string>{"frame 1", "frame 100"});
   CHECK(v.channel.frames_dropped() == 98);
@@ -296,7 +298,10 @@ TEST_CASE("a viewer is told how many frames were left out for it") {
   stream.channel = &hub.add(1, stream);
   hub.welcome_done(1);
   hub.poll();
-  for (std::uint32_t i = 1; i <= 40; ++i) hub.offer_frame(fake_frame(i));
+  for (std::uint32_t i = 1; i <= 40; ++i) {
+    hub.offer_frame(fake_frame(i));
+    fake.now += 1.0 / 60;
+  }
   fake.now += 6;
   hub.poll();
   stream.drain();

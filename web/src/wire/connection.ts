@@ -1,7 +1,7 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
 import { WorkerFrames } from './worker_frames.js';
 
-const SHOWN_ERROR = 1e-4; // how far off a vertex may be; below what a picture shows [m]
+const SHOWN_ERROR = 4e-4; // how far off a vertex may be on a slow link; 1e-4 else [m]
 const EVERY_TICK = 240; // frames per second; more than any display shows
 const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
 const PATIENCE = 3; // failed attempts before a proxy is suspected
