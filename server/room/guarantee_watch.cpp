@@ -41,7 +41,7 @@ void GuaranteeWatch::restart() {
   news_.clear();
   began_ = late_ = displaced_ = false;
   meetings_ = starts_.meetings;
-  tell_bad_starts(starts_);
+  tell_bad_starts({starts_.what, starts_.pairs});
 }
 
 void GuaranteeWatch::note_tick(const ServedWorld& world) {

@@ -170,7 +170,7 @@ class Room {
   void tell_loaded(proto::ViewerId viewer);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
-  Message message_of(const SceneNotice& notice) const;
+  Message message_of(const SceneNotice& what) const;
   proto::State state() const;
   std::vector<proto::ViewerInfo> roster() const;
   WorldDef definition_of(const std::string& scene) const;
