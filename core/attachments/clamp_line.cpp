@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/attachments/constants.h"
+#include "core/cloth/mesh_bending.h"
 #include "core/cloth/stability_bound.h"
 
 namespace weft {
@@ -49,16 +50,39 @@ HeldLines held_lines(double width, double slack, int all) {
   return {last + 1, std::round(kStiffeningParts / (0.5 - beyond)) / kStiffeningParts};
 }
 
+HeldStrip held_strip(const ClampLine& clamp) {
+  const bool far_side = clamp.side == Side::right || clamp.side == Side::bottom;
+  return {clamp.is_row() ? 1 : 0, far_side, clamp.border};
+}
+
 bool ClampLine::is_within(const ClampLine& other) const {
   if (part != other.part || side != other.side) return false;
   return side == Side::top || side == Side::left ? line < other.line : line > other.line;
 }
+
+namespace {
+
+/// Gives a mesh its strips. @returns whether they are others than before
+template <class Real>
+bool set_strips(const std::vector<ClampLine>& clamps, std::size_t number, ClothPart<Real>& part) {
+  std::vector<HeldStrip> strips;
+  for (const ClampLine& clamp : clamps) {
+    if (clamp.part != number || !part.bends_by_links) continue;
+    strips.push_back(held_strip(clamp));
+  }
+  if (strips == part.held_strips) return false;
+  part.held_strips = std::move(strips);
+  return true;
+}
+
+}  // namespace
 
 template <class Real>
 std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
   std::vector<LineFactors> factors(model.parts.size());
   for (const ClampLine& clamp : clamps) {
     assert(clamp.part < model.parts.size());
+    if (model.parts[clamp.part].cells.rows == 0) continue;
     const auto reaches_beyond = [&](const ClampLine& other) { return clamp.is_within(other); };
     if (std::any_of(clamps.begin(), clamps.end(), reaches_beyond)) continue;
     const GridCells& cells = model.parts[clamp.part].cells;
@@ -68,6 +92,7 @@ std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothM
   std::vector<std::size_t> changed;
   for (std::size_t p = 0; p < factors.size(); ++p) {
     GridCells& cells = model.parts[p].cells;
+    if (set_strips(clamps, p, model.parts[p])) changed.push_back(p);
     if (cells.row_stiffening == factors[p].rows && cells.column_stiffening == factors[p].columns)
       continue;
     cells.row_stiffening = std::move(factors[p].rows);
@@ -100,6 +125,15 @@ void stiffen_hinges(std::size_t number, ClothModel<Real>& model) {
 }
 
 template <class Real>
+void renew_links(std::size_t number, ClothModel<Real>& model) {
+  assert(number < model.parts.size());
+  ClothPart<Real>& part = model.parts[number];
+  if (!part.bends_by_links) return;
+  part.bending_links = mesh_bending_links(model, part);
+  part.bending_stencils = part.bending_links.size();
+}
+
+template <class Real>
 void renew_bending_bounds(std::size_t number, ClothModel<Real>& model) {
   assert(number < model.parts.size());
   ClothPart<Real>& part = model.parts[number];
@@ -109,6 +143,7 @@ void renew_bending_bounds(std::size_t number, ClothModel<Real>& model) {
 #define WEFT_INSTANTIATE(Real)                                                                    \
   template std::vector<std::size_t> set_clamps(const std::vector<ClampLine>&, ClothModel<Real>&); \
   template void stiffen_hinges(std::size_t, ClothModel<Real>&);                                   \
+  template void renew_links(std::size_t, ClothModel<Real>&);                                      \
   template void renew_bending_bounds(std::size_t, ClothModel<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

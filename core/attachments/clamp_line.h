@@ -5,7 +5,7 @@
 
 #include "core/cloth/cloth_model.h"
 
-// Where the border of a pinned strip clamps a grid.
+// Where the border of a pinned strip clamps the cloth.
 
 namespace weft {
 
@@ -31,21 +31,27 @@ struct HeldLines {
 /// @param all    lines that there are, at least 2; what holds all of them clamps nothing
 HeldLines held_lines(double width, double slack, int all);
 
-/// The border of a pinned strip along rows or columns of a grid.
+/// The border of a pinned strip, along rows or columns of a grid or across a mesh.
 struct ClampLine {
   std::size_t part = 0;  ///< of the model
   Side side = Side::top;
-  int line = 0;           ///< the last held row or column
+  int line = 0;           ///< the last held row or column of a grid
   double stiffening = 1;  ///< see HeldLines
+  double border = 0;      ///< coordinate across a mesh [m]; what it leaves free: mesh_bending.h
 
   bool is_row() const { return side == Side::top || side == Side::bottom; }
   /// Whether a strip along the same side holds this line and more.
   bool is_within(const ClampLine& other) const;
 };
 
-/// Gives the grids of a model the factors of these clamps, and of no others.
-/// @returns the parts whose factors changed; what follows from them is then to be made anew:
-///          `stiffen_hinges`, `renew_bending_bounds`, and whatever else was prepared from the model
+/// A clamp across a mesh, as that sees it.
+HeldStrip held_strip(const ClampLine& clamp);
+
+/// Gives the grids of a model the factors of these clamps, and its meshes their strips, and those
+/// of no others.
+/// @returns the parts where these changed; what follows from them is then to be made anew:
+///          `stiffen_hinges`, `renew_links`, `renew_bending_bounds`, and whatever else was prepared
+///          from the model
 template <class Real>
 std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model);
 
@@ -53,6 +59,10 @@ std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothM
 /// @param model  with the hinges of this part as woven
 template <class Real>
 void stiffen_hinges(std::size_t part, ClothModel<Real>& model);
+
+/// Makes the links of a mesh that bends by them anew.
+template <class Real>
+void renew_links(std::size_t part, ClothModel<Real>& model);
 
 /// Bounds the frequencies of a part's bending anew, and leaves those of the membrane.
 template <class Real>

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/attachments/constants.h"
+#include "core/cloth/held_strip.h"
 #include "core/error.h"
 
 namespace weft {
@@ -91,6 +92,27 @@ double held_width(const EdgeStrip& strip, double cell, double low, double high, 
   return last * cell;
 }
 
+/// The border of a strip of a mesh, if it holds triangles and leaves others free.
+/// @param border  of the strip [m]
+template <class Real>
+std::optional<ClampLine> clamp_of_mesh(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                                       Side side, double border) {
+  const auto number = static_cast<std::size_t>(&part - model.parts.data());
+  const ClampLine clamp{number, side, 0, 1, border};
+  if (!part.bends_by_links) return std::nullopt;
+  const HeldStrip strip = held_strip(clamp);
+  Index held = 0;
+  for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
+    const Triangle& t = model.triangles[static_cast<std::size_t>(n)];
+    held += std::all_of(t.begin(), t.end(), [&](Index i) {
+      const auto& place = model.material[static_cast<std::size_t>(i)];
+      return holds(strip, {static_cast<double>(place[0]), static_cast<double>(place[1])});
+    });
+  }
+  if (held == 0 || held == part.triangles.count) return std::nullopt;
+  return clamp;
+}
+
 template <class Real>
 PinnedParticles particles_of_strip(const ClothModel<Real>& model, const ClothPart<Real>& part,
                                    const EdgeStrip& strip) {
@@ -106,6 +128,10 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const ClothPar
   if (const double cell = cell_of(part, axis); cell > 0)
     width = held_width(strip, cell, bounds.low[axis], bounds.high[axis], slack,
                        static_cast<std::size_t>(&part - model.parts.data()), held.clamp);
+  else if (width > slack)
+    held.clamp = clamp_of_mesh(
+        model, part, strip.side,
+        far_side ? bounds.high[axis] - width - slack : bounds.low[axis] + width + slack);
   for (Index i = range.first; i < range.end(); ++i) {
     const auto value = static_cast<double>(model.material[static_cast<std::size_t>(i)][axis]);
     const double inside = far_side ? bounds.high[axis] - value : value - bounds.low[axis];

@@ -43,7 +43,7 @@ struct PinDef {
 struct PinnedParticles {
   Index centre = 0;
   std::vector<Index> particles;    ///< ascending; at least the centre
-  std::optional<ClampLine> clamp;  ///< of a strip with a width, on a grid
+  std::optional<ClampLine> clamp;  ///< of a strip with a width that clamps
 };
 
 /// Finds the particles of a pin. Throws DefinitionError on "pin.cloth", "pin.particle",

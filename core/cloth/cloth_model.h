@@ -104,6 +104,16 @@ struct GridCells {
   }
 };
 
+/// A pinned strip along one side of a mesh, which is straight up to its border
+/// (attachments/clamp_line.h).
+struct HeldStrip {
+  int axis = 0;           ///< across it: 0 u, 1 v
+  bool far_side = false;  ///< holds what lies beyond the border in the direction of the axis
+  double border = 0;      ///< coordinate [m]
+
+  friend bool operator==(const HeldStrip&, const HeldStrip&) = default;
+};
+
 /// A range of consecutive indices.
 struct IndexRange {
   Index first = 0, count = 0;
@@ -136,6 +146,8 @@ struct ClothPart {
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;       ///< of a grid; it then has no hinges
   std::vector<BendingLink> bending_links;         ///< of a mesh that is flat at rest
+  bool bends_by_links = false;                    ///< such a mesh, though it may have none
+  std::vector<HeldStrip> held_strips;             ///< that the links are made for
   std::size_t bending_stencils = 0;  ///< or links of the quadratic form; see bending_stencil.h
   GridCells cells;                   ///< of a grid, whole or cut
   FrequencyBounds bounds;

@@ -73,6 +73,11 @@ inline constexpr int kSlopeRounds = 2;
 /// particle bend with half as many more.
 inline constexpr double kLeastLink = 1e-8;
 
+/// Largest factor of the bending of a mesh's triangle that a strip holds in part [1]. Larger: a
+/// stiff triangle takes more substeps. Smaller: where it is held nearly whole the cloth bends from
+/// behind the strip's border.
+inline constexpr double kMostMeshStiffening = 32;
+
 /// An edge that extends by less than this along a thread direction has the other direction [m].
 /// Larger: the diagonals of very small cells count as threads. Smaller: rounding may make a thread
 /// a diagonal, which has next to no rigidity in that direction.

@@ -132,47 +132,63 @@ EdgeSlopes::Members EdgeSlopes::grown(const Members& members) const {
 
 namespace {
 
-/// A fit of quadratic fields to some particles. The nearer ones count more.
-class QuadraticFit {
+Eigen::Vector3d squares_at(const Eigen::Vector2d& p) {
+  return {p[0] * p[0] / 2, p[0] * p[1], p[1] * p[1] / 2};
+}
+
+/// A fit of Fields fields, besides the linear ones, to some particles. The nearer ones count more.
+template <int Fields>
+class FieldFit {
  public:
+  using Values = Eigen::Matrix<double, Fields, 1>;
+
   /// @param places  of the particles, in units such that nearby ones are about 1 away
-  explicit QuadraticFit(const std::vector<Eigen::Vector2d>& places) : places_(places) {
-    Eigen::Matrix3d linear = Eigen::Matrix3d::Zero(), mixed = linear, square = linear;
-    for (const Eigen::Vector2d& p : places_) {
-      const Eigen::Vector3d a = linear_part(p), q = square_part(p);
-      linear += nearness(p) * a * a.transpose();
-      mixed += nearness(p) * a * q.transpose();
-      square += nearness(p) * q * q.transpose();
+  /// @param values  of the fields there, about 1 too
+  FieldFit(const std::vector<Eigen::Vector2d>& places, const std::vector<Values>& values)
+      : places_(places), values_(values) {
+    assert(places.size() == values.size());
+    Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+    Mixed mixed = Mixed::Zero();
+    Square square = Square::Zero();
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const double near = nearness(places_[k]);
+      const Eigen::Vector3d a = linear_part(places_[k]);
+      linear += near * a * a.transpose();
+      mixed += near * a * values_[k].transpose();
+      square += near * values_[k] * values_[k].transpose();
     }
-    linear_of_square_ = linear.ldlt().solve(mixed);
-    solver_.computeDirect(square - mixed.transpose() * linear_of_square_);
+    linear_of_fields_ = linear.ldlt().solve(mixed);
+    const Square own = square - mixed.transpose() * linear_of_fields_;
+    if constexpr (Fields == 1)
+      solver_.compute(own);
+    else
+      solver_.computeDirect(own);
   }
 
-  /// Whether the particles tell all quadratic fields apart.
+  /// Whether the particles tell all the fields apart.
   bool is_determined() const { return solver_.eigenvalues()[0] > kTellsApart; }
 
-  /// The least weights that vanish for linear fields and give these values for x^2/2, xy, y^2/2, as
-  /// far as determined.
-  std::vector<double> weights(const Eigen::Vector3d& values) const {
-    Eigen::Vector3d of_modes = solver_.eigenvectors().transpose() * values;
-    for (int k = 0; k < 3; ++k) {
+  /// The least weights that vanish for linear fields and give these values for the others, as far
+  /// as determined.
+  std::vector<double> weights(const Values& wanted) const {
+    Values of_modes = solver_.eigenvectors().transpose() * wanted;
+    for (int k = 0; k < Fields; ++k) {
       const double own = solver_.eigenvalues()[k];
       of_modes[k] = own > kTellsApart ? of_modes[k] / own : 0;
     }
-    const Eigen::Vector3d factors = solver_.eigenvectors() * of_modes;
+    const Values factors = solver_.eigenvectors() * of_modes;
     std::vector<double> weights;
-    for (const Eigen::Vector2d& p : places_)
-      weights.push_back(
-          nearness(p) *
-          (square_part(p) - linear_of_square_.transpose() * linear_part(p)).dot(factors));
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const Values rest = values_[k] - linear_of_fields_.transpose() * linear_part(places_[k]);
+      weights.push_back(nearness(places_[k]) * rest.dot(factors));
+    }
     return weights;
   }
 
-  static Eigen::Vector3d square_part(const Eigen::Vector2d& p) {
-    return {p[0] * p[0] / 2, p[0] * p[1], p[1] * p[1] / 2};
-  }
-
  private:
+  using Mixed = Eigen::Matrix<double, 3, Fields>;
+  using Square = Eigen::Matrix<double, Fields, Fields>;
+
   static Eigen::Vector3d linear_part(const Eigen::Vector2d& p) { return {1, p[0], p[1]}; }
   static double nearness(const Eigen::Vector2d& p) {
     const double root = 1 + p.squaredNorm();
@@ -180,42 +196,112 @@ class QuadraticFit {
   }
 
   const std::vector<Eigen::Vector2d>& places_;
-  Eigen::Matrix3d linear_of_square_;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
+  const std::vector<Values>& values_;
+  Mixed linear_of_fields_;
+  Eigen::SelfAdjointEigenSolver<Square> solver_;
 };
+
+/// Mean of what is positive of a quantity that goes evenly from one value to another.
+double mean_positive(double from, double to) {
+  const double low = std::min(from, to), high = std::max(from, to);
+  if (low >= 0) return 0.5 * (low + high);
+  return high > 0 ? 0.5 * high * high / (high - low) : 0;
+}
 
 }  // namespace
 
-std::vector<ParticleWeight> EdgeSlopes::across(const EdgeSides& edge) const {
-  const Frame frame = frame_of(edge);
+/// Adds a share of the slope in one of its triangles.
+void EdgeSlopes::add_inside(const EdgeSides& edge, const Frame& frame, std::size_t side,
+                            double share, std::vector<ParticleWeight>& slope) const {
+  assert(edge.triangle[side] != kNone);
+  const double weight = share / frame.y[side], foot = frame.foot[side] / frame.length;
+  add_weight(edge.opposite[side], weight, slope);
+  add_weight(edge.ends[0], -weight * (0.5 - foot), slope);
+  add_weight(edge.ends[1], -weight * (0.5 + foot), slope);
+}
+
+std::vector<ParticleWeight> EdgeSlopes::inside(const EdgeSides& edge, std::size_t side) const {
+  std::vector<ParticleWeight> slope;
+  add_inside(edge, frame_of(edge), side, 1, slope);
+  return slope;
+}
+
+/// The mean of the slopes in both triangles, in which the curvature across drops out.
+std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
+                                                    const Frame& frame) const {
   std::vector<ParticleWeight> slope;
   const double whole = frame.y[0] - frame.y[1];  // of a border edge y[1] is 0
   for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side) {
     const double share = edge.is_border() ? 1 : std::abs(frame.y[1 - side]) / whole;
-    const double weight = share / frame.y[side], foot = frame.foot[side] / frame.length;
-    add_weight(edge.opposite[side], weight, slope);
-    add_weight(edge.ends[0], -weight * (0.5 - foot), slope);
-    add_weight(edge.ends[1], -weight * (0.5 + foot), slope);
+    add_inside(edge, frame, side, share, slope);
   }
-  Eigen::Vector3d wrong = Eigen::Vector3d::Zero();
-  for (const ParticleWeight& one : slope)
-    wrong += one.weight *
-             QuadraticFit::square_part(frame.place(x_[static_cast<std::size_t>(one.particle)]));
-  if (!(wrong.cwiseAbs().maxCoeff() * frame.height > kRightSlope)) return slope;
+  return slope;
+}
+
+/// Changes a slope, by the least weights, by what fields lack.
+/// @param value   of the fields at a particle, about 1 nearby
+/// @param wanted  change of the slopes of the fields
+template <int Fields, class ValueAt>
+void EdgeSlopes::amend(const EdgeSides& edge, const Frame& frame, const ValueAt& value,
+                       const Eigen::Matrix<double, Fields, 1>& wanted,
+                       std::vector<ParticleWeight>& slope) const {
   Members members = nearest(edge);
   std::vector<Eigen::Vector2d> places;
+  std::vector<Eigen::Matrix<double, Fields, 1>> values;
   for (int round = 0;; ++round) {
-    places.clear();
-    for (const Index i : members) places.push_back(frame.place(x_[static_cast<std::size_t>(i)]));
-    const QuadraticFit fit(places);
+    places.clear(), values.clear();
+    for (const Index i : members) {
+      places.push_back(frame.place(x_[static_cast<std::size_t>(i)]));
+      values.push_back(value(i));
+    }
+    const FieldFit<Fields> fit(places, values);
     if (!fit.is_determined() && round < kSlopeRounds) {
       members = grown(members);
       continue;
     }
-    const std::vector<double> more = fit.weights(-wrong);
+    const std::vector<double> more = fit.weights(wanted);
     for (std::size_t k = 0; k < more.size(); ++k) add_weight(members[k], more[k], slope);
-    return slope;
+    return;
   }
+}
+
+std::vector<ParticleWeight> EdgeSlopes::across(const EdgeSides& edge) const {
+  const Frame frame = frame_of(edge);
+  std::vector<ParticleWeight> slope = mean_inside(edge, frame);
+  const auto value = [&](Index i) {
+    return squares_at(frame.place(x_[static_cast<std::size_t>(i)]));
+  };
+  Eigen::Vector3d wrong = Eigen::Vector3d::Zero();
+  for (const ParticleWeight& one : slope) wrong += one.weight * value(one.particle);
+  if (wrong.cwiseAbs().maxCoeff() * frame.height > kRightSlope)
+    amend<3>(edge, frame, value, -wrong, slope);
+  return slope;
+}
+
+bool EdgeSlopes::meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const {
+  const Members members = nearest(edge);
+  return std::any_of(members.begin(), members.end(),
+                     [&](Index i) { return beyond[static_cast<std::size_t>(i)] < 0; });
+}
+
+std::vector<ParticleWeight> EdgeSlopes::across_clamped(const EdgeSides& edge,
+                                                       const std::vector<double>& beyond) const {
+  assert(beyond.size() == x_.size());
+  const auto at = [&](Index i) { return beyond[static_cast<std::size_t>(i)]; };
+  const Frame frame = frame_of(edge);
+  std::vector<ParticleWeight> slope = mean_inside(edge, frame);
+  double rise = 0;  // of the distance, across the edge
+  for (const ParticleWeight& one : slope) rise += one.weight * at(one.particle);
+  const double from = at(edge.ends[0]), to = at(edge.ends[1]);
+  const double unit = std::hypot(rise, (to - from) / frame.length) * frame.height;
+  const auto value = [&](Index i) {
+    const double distance = std::max(at(i), 0.0) / unit;
+    return Eigen::Matrix<double, 1, 1>(0.5 * distance * distance);
+  };
+  Eigen::Matrix<double, 1, 1> wrong(-rise * mean_positive(from, to) / (unit * unit));
+  for (const ParticleWeight& one : slope) wrong += one.weight * value(one.particle);
+  if (std::abs(wrong[0]) * frame.height > kRightSlope) amend<1>(edge, frame, value, -wrong, slope);
+  return slope;
 }
 
 }  // namespace weft

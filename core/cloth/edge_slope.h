@@ -51,11 +51,30 @@ class EdgeSlopes {
   /// as the mesh around the edge tells these apart.
   std::vector<ParticleWeight> across(const EdgeSides& edge) const;
 
+  /// The mean slope across an edge beside a clamp, in the same sense: exact for the field whose
+  /// only curvature is across the clamp's border and which is zero and level up to that.
+  /// @param beyond  distance of each particle beyond the border, negative where it is held
+  std::vector<ParticleWeight> across_clamped(const EdgeSides& edge,
+                                             const std::vector<double>& beyond) const;
+
+  /// Whether particles that may have a say in an edge's slope are held behind a border.
+  bool meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const;
+
+  /// The slope in one of an edge's triangles, 0 or 1, which is that of a linear field.
+  std::vector<ParticleWeight> inside(const EdgeSides& edge, std::size_t side) const;
+
  private:
   struct Frame;
   using Members = std::vector<Index>;
 
   Frame frame_of(const EdgeSides& edge) const;
+  void add_inside(const EdgeSides& edge, const Frame& frame, std::size_t side, double share,
+                  std::vector<ParticleWeight>& slope) const;
+  std::vector<ParticleWeight> mean_inside(const EdgeSides& edge, const Frame& frame) const;
+  template <int Fields, class ValueAt>
+  void amend(const EdgeSides& edge, const Frame& frame, const ValueAt& value,
+             const Eigen::Matrix<double, Fields, 1>& wanted,
+             std::vector<ParticleWeight>& slope) const;
   Members nearest(const EdgeSides& edge) const;
   Members grown(const Members& members) const;
 

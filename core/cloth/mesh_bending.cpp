@@ -8,6 +8,7 @@
 
 #include "core/cloth/constants.h"
 #include "core/cloth/edge_slope.h"
+#include "core/cloth/held_strip.h"
 #include "core/cloth/membrane.h"
 
 namespace weft {
@@ -34,17 +35,13 @@ void add_weight(Index particle, const Eigen::Vector3d& weight, std::vector<Curva
 struct FlatTriangle {
   std::array<Eigen::Vector2d, 3> corner;
   double area = 0;
+  double free = 1;  ///< part of it that no strip holds
 
-  template <class Real>
-  FlatTriangle(const ClothModel<Real>& model, const Triangle& t) {
-    std::array<Vec3d, 3> x;
-    RestCorners material;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(t[k]);
-      x[k] = model.rest_positions[i].template cast<double>();
-      material[k] = {static_cast<double>(model.material[i][0]),
-                     static_cast<double>(model.material[i][1])};
-    }
+  /// @param x         of its corners [m]
+  /// @param material  their (u, v) [m]
+  FlatTriangle(const std::array<Vec3d, 3>& x, const RestCorners& material,
+               const std::vector<HeldStrip>& strips)
+      : free(strips.empty() ? 1 : free_part(strips, material)) {
     const RestCorners flat = laid_flat(x, material);
     for (std::size_t k = 0; k < 3; ++k) corner[k] = {flat[k][0], flat[k][1]};
     const Eigen::Vector2d a = corner[1] - corner[0], b = corner[2] - corner[0];
@@ -59,6 +56,60 @@ struct FlatTriangle {
     return across.dot(corner[k] - corner[(k + 1) % 3]) > 0 ? (-across).eval() : across;
   }
 };
+
+/// (u, v) of a particle [m].
+template <class Real>
+std::array<double, 2> place_of(const ClothModel<Real>& model, Index i) {
+  const auto& place = model.material[static_cast<std::size_t>(i)];
+  return {static_cast<double>(place[0]), static_cast<double>(place[1])};
+}
+
+/// One cloth of a model on its own: particles are counted from its first.
+struct PartMesh {
+  Vec3Array<double> x;  // at rest [m]
+  std::vector<Triangle> triangles;
+  std::vector<FlatTriangle> flat;
+  std::vector<std::vector<double>> beyond;  // by strip, of each particle [m]
+
+  template <class Real>
+  PartMesh(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+    for (Index i = part.particles.first; i < part.particles.end(); ++i)
+      x.push_back(model.rest_positions[static_cast<std::size_t>(i)].template cast<double>());
+    for (const HeldStrip& strip : part.held_strips) {
+      beyond.emplace_back();
+      for (Index i = part.particles.first; i < part.particles.end(); ++i)
+        beyond.back().push_back(distance_beyond(strip, place_of(model, i)));
+    }
+    for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
+      Triangle t = model.triangles[static_cast<std::size_t>(n)];
+      std::array<Vec3d, 3> corners;
+      RestCorners material;
+      for (std::size_t k = 0; k < 3; ++k) {
+        material[k] = place_of(model, t[k]);
+        t[k] -= part.particles.first;
+        corners[k] = x[static_cast<std::size_t>(t[k])];
+      }
+      triangles.push_back(t);
+      flat.emplace_back(corners, material, part.held_strips);
+    }
+  }
+};
+
+/// The slope across an edge: that of a held triangle if one of the two is held.
+/// @param free    part of each triangle that no strip holds
+/// @param beyond  distance of each particle beyond each strip's border [m]
+std::vector<ParticleWeight> slope_at(const EdgeSides& edge, const std::vector<double>& free,
+                                     const std::vector<std::vector<double>>& beyond,
+                                     const EdgeSlopes& mesh) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Index t = edge.triangle[side];
+    if (t != kNone && free[static_cast<std::size_t>(t)] == 0) return mesh.inside(edge, side);
+  }
+  for (const std::vector<double>& distances : beyond) {
+    if (mesh.meets_held(edge, distances)) return mesh.across_clamped(edge, distances);
+  }
+  return mesh.across(edge);
+}
 
 /// The curvature of a triangle: over its area, the sum over its edges of by how much the slope
 /// outwards is steeper there than in the triangle, times the edge's length and direction.
@@ -130,25 +181,32 @@ class BendingMatrix {
 }  // namespace
 
 template <class Real>
-std::vector<BendingLink> mesh_bending_links(const FabricDef& fabric,
-                                            const ClothModel<Real>& model) {
-  assert(model.parts.size() == 1);
-  Vec3Array<double> x;
-  for (const Vec3<Real>& p : model.rest_positions) x.push_back(p.template cast<double>());
-  const EdgeSlopes mesh(x, model.triangles);
+std::vector<BendingLink> mesh_bending_links(const ClothModel<Real>& model,
+                                            const ClothPart<Real>& part) {
+  const PartMesh mesh(model, part);
+  const EdgeSlopes edges(mesh.x, mesh.triangles);
+  std::vector<double> free;
+  for (const FlatTriangle& flat : mesh.flat) free.push_back(flat.free);
   Slopes slopes;
-  for (const EdgeSides& edge : mesh.edges()) slopes.push_back(mesh.across(edge));
-  BendingMatrix matrix(x.size());
+  for (const EdgeSides& edge : edges.edges())
+    slopes.push_back(slope_at(edge, free, mesh.beyond, edges));
+  BendingMatrix matrix(mesh.x.size());
+  const FabricDef& fabric = part.fabric;
   const Eigen::Vector3d rigidity(fabric.bending_warp, fabric.bending_weft,
                                  fabric.bending_warp + fabric.bending_weft);
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    const FlatTriangle flat(model, model.triangles[t]);
-    matrix.add(curvature(model.triangles[t], t, flat, mesh, slopes), rigidity * flat.area);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const FlatTriangle& flat = mesh.flat[t];
+    if (flat.free == 0) continue;
+    const double stiffening = std::min(1 / flat.free, kMostMeshStiffening);
+    matrix.add(curvature(mesh.triangles[t], t, flat, edges, slopes),
+               rigidity * (flat.area * stiffening));
   }
   return matrix.links();
 }
 
-template std::vector<BendingLink> mesh_bending_links(const FabricDef&, const ClothModel<float>&);
-template std::vector<BendingLink> mesh_bending_links(const FabricDef&, const ClothModel<double>&);
+template std::vector<BendingLink> mesh_bending_links(const ClothModel<float>&,
+                                                     const ClothPart<float>&);
+template std::vector<BendingLink> mesh_bending_links(const ClothModel<double>&,
+                                                     const ClothPart<double>&);
 
 }  // namespace weft

@@ -17,8 +17,13 @@ namespace weft {
 /// triangles at an edge. So a constant curvature has the continuum's energy in any direction on any
 /// triangles and no force inside, what has no energy is flat, and no fold has less than a part of
 /// what hinges would give it.
-/// @param model  of one part; its mesh must be flat at rest, and its `material` gives the threads
+///
+/// A held strip does not bend: a triangle inside it has its slope, and what lies beside it turns
+/// about their common edge. A triangle that the border cuts bends only beyond that, where it has
+/// the curvature of the whole turn: its rigidity is divided by its free part.
+/// @param part  of the model; its mesh must be flat at rest, and its `material` gives the threads
 template <class Real>
-std::vector<BendingLink> mesh_bending_links(const FabricDef& fabric, const ClothModel<Real>& model);
+std::vector<BendingLink> mesh_bending_links(const ClothModel<Real>& model,
+                                            const ClothPart<Real>& part);
 
 }  // namespace weft

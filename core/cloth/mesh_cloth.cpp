@@ -247,7 +247,8 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
   if (model.hinges.empty() || !(wanted || (may && most <= kFlatRestAngle))) return;
   ClothPart<Real>& part = model.parts.front();
-  part.bending_links = mesh_bending_links(def.fabric, model);
+  part.bends_by_links = true;
+  part.bending_links = mesh_bending_links(model, part);
   model.hinges.clear();
   part.hinges = {};
   part.bending_stencils = part.bending_links.size();

@@ -51,6 +51,7 @@ void World<Real>::renew_clamps() {
   for (const std::size_t part : changed) {
     weave_hinges(part);
     stiffen_hinges(part, model_);
+    renew_links(part, model_);
     renew_bending_bounds(part, model_);
   }
   prepare_solver();
