@@ -128,9 +128,7 @@ template <class Real>
 void renew_links(std::size_t number, ClothModel<Real>& model) {
   assert(number < model.parts.size());
   ClothPart<Real>& part = model.parts[number];
-  if (!part.bends_by_links) return;
-  part.bending_links = mesh_bending_links(model, part);
-  part.bending_stencils = part.bending_links.size();
+  if (part.bends_by_links) bend_by_links(model, part);
 }
 
 template <class Real>

@@ -34,7 +34,7 @@ void validate(const ClothDef& def) {
         "a direction at right angles to cloth.u", "the cells are rectangles");
   if (def.bending_model == BendingModel::quadratic && !quadratic_bending_fits(def))
     throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
-                          "a rest angle or bending damping needs hinges");
+                          "a rest angle needs hinges");
   const bool cut = !def.mesh && def.outline != Outline::rectangle;
   if (cut && (def.skip_stiffness != 0 || def.direct_springs))
     throw DefinitionError("cloth.outline", "ellipse", "rectangle with these springs",

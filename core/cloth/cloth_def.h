@@ -125,10 +125,10 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
 
-/// Whether the quadratic form may replace the hinges: for a cloth that is flat at rest (a mesh is
-/// checked later) and without bending damping.
+/// Whether the quadratic form may replace the hinges: for a cloth that is flat at rest; a mesh is
+/// checked later.
 inline bool quadratic_bending_fits(const ClothDef& def) {
-  return def.rest_angle == 0 && def.fabric.bending_damping == 0;
+  return def.rest_angle == 0;
 }
 
 /// Whether the cloth is built from triangles of constant strain: a mesh, unless springs were asked

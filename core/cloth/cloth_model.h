@@ -55,7 +55,7 @@ template <class Real>
 struct GridSprings {
   Real warp = 0, weft = 0, shear = 0;                 ///< stiffness [N/m]
   Real rest_warp = 0, rest_weft = 0, rest_shear = 0;  ///< [m]
-  Real damping_per_stiffness = 0;                     ///< beta = c/k [s]
+  Real warp_time = 0, weft_time = 0, shear_time = 0;  ///< beta = c/k [s]
 };
 
 /// Bending of a grid that is flat at rest, as a quadratic form with a constant Hessian:
@@ -73,6 +73,16 @@ struct QuadraticBending {
 struct BendingLink {
   Index i = 0, j = 0;  ///< counted from the part's first particle
   double weight = 0;   ///< of either sign [N/m]; in double, for what is flat is a sum that vanishes
+};
+
+/// Curvatures of a mesh's triangles along both threads and between them, each a sum over particles
+/// near by. Their squares are the energy that the links are; the dashpots need each on its own.
+template <class Real>
+struct TriangleCurvatures {
+  std::vector<std::size_t> begin;   ///< of each triangle's particles below, and the last one's end
+  std::vector<Index> particles;     ///< counted from the part's first
+  std::vector<Vec3<Real>> weights;  ///< of each in the three curvatures [1/m^2]
+  std::vector<Vec3<Real>> stiffness;  ///< by triangle: rigidity times area [N m^3]
 };
 
 /// The present cells of a grid, and the particles at their corners, numbered row by row. A whole
@@ -146,6 +156,8 @@ struct ClothPart {
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;       ///< of a grid; it then has no hinges
   std::vector<BendingLink> bending_links;         ///< of a mesh that is flat at rest
+  Real bending_time = 0;                          ///< tau of the quadratic form's dashpots [s]
+  TriangleCurvatures<Real> curvatures;            ///< of such a mesh, if it has these
   bool bends_by_links = false;                    ///< such a mesh, though it may have none
   std::vector<HeldStrip> held_strips;             ///< that the links are made for
   std::size_t bending_stencils = 0;  ///< or links of the quadratic form; see bending_stencil.h

@@ -18,6 +18,11 @@ inline constexpr double kPoissonOfGrid = -1;
 /// C12 is poisson * stretch_weft on a mesh, and on a grid, or without a Poisson's ratio, the same
 /// as C66. The uniaxial modulus along the warp is C11 - C12^2/C22. Bending: energy per area B/2
 /// (warp), B/2 (weft) times curvature squared; B in every direction if both are equal.
+///
+/// Damping (Kelvin and Voigt): stress is that of the strain plus a relaxation time tau times its
+/// rate, one tau each for stretch, shear and bending. A wave or mode of angular frequency omega
+/// then decays by omega^2 tau / 2 a second, whatever the mesh. `damping_ratio` is what stability
+/// needs besides, of the mesh's highest mode; stretch and shear have the larger of both.
 struct FabricDef {
   double areal_density = 0.2;       ///< sigma [kg/m^2]
   double stretch_warp = 400;        ///< Y_w [N/m], along the columns' direction u
@@ -27,8 +32,10 @@ struct FabricDef {
                                     ///< strain; of a mesh, below the root of Y_w / Y_f
   double bending_warp = 1e-5;       ///< B_w [N m], curvature along u
   double bending_weft = 1e-5;       ///< B_f [N m], curvature along v
-  double damping_ratio = 0.05;      ///< dashpot along each spring, as a ratio of the highest mode
-  double bending_damping = 0;       ///< hinge damping per elastic stiffness [s]
+  double damping_ratio = 0.05;      ///< dashpot of the membrane, as a ratio of the highest mode
+  double stretch_damping = 0;       ///< tau of stretch [s]
+  double shear_damping = 0;         ///< tau of shear [s]
+  double bending_damping = 0;       ///< tau of bending [s]
   double thickness = 0.004;         ///< contact distance of the mid-surface from objects [m]
   double friction = 0.4;            ///< Coulomb coefficient against objects
   double restitution = 0;           ///< k_diss of the seed's eq. (10), 0 <= k < 1
@@ -53,10 +60,13 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
         f.bending_warp);
   visit(FieldInfo{"bending_weft", kBendingRange, "N m", "bending rigidity along v"},
         f.bending_weft);
-  visit(FieldInfo{"damping_ratio", kDampingRatioRange, "", "spring damping of the highest mode"},
+  visit(FieldInfo{"damping_ratio", kDampingRatioRange, "", "damping of the highest membrane mode"},
         f.damping_ratio);
-  visit(FieldInfo{"bending_damping", kBendingDampingRange, "s",
-                  "hinge damping per elastic stiffness"},
+  visit(FieldInfo{"stretch_damping", kBendingDampingRange, "s", "relaxation time of stretch"},
+        f.stretch_damping);
+  visit(FieldInfo{"shear_damping", kBendingDampingRange, "s", "relaxation time of shear"},
+        f.shear_damping);
+  visit(FieldInfo{"bending_damping", kBendingDampingRange, "s", "relaxation time of bending"},
         f.bending_damping);
   visit(FieldInfo{"thickness", kThicknessRange, "m", "contact distance from objects"}, f.thickness);
   visit(FieldInfo{"friction", kFrictionRange, "",

@@ -53,7 +53,7 @@ GridStiffness uniform_springs(const ClothDef& def) {
 
 /// Stores the springs' numbers by kind, if all springs are regular.
 template <class Real>
-void summarise_springs(const ClothDef& def, ClothPart<Real>& part) {
+void summarise_springs(const ClothDef& def, const SpringTimes& times, ClothPart<Real>& part) {
   if (!is_uniform(def)) return;
   const double cell_u = def.width / (def.columns - 1), cell_v = def.height / (def.rows - 1);
   const GridStiffness k = uniform_springs(def);
@@ -64,9 +64,9 @@ void summarise_springs(const ClothDef& def, ClothPart<Real>& part) {
   springs.rest_warp = static_cast<Real>(cell_u);
   springs.rest_weft = static_cast<Real>(cell_v);
   springs.rest_shear = static_cast<Real>(std::hypot(cell_u, cell_v));
-  if (part.bounds.membrane_omega2 > 0)
-    springs.damping_per_stiffness =
-        static_cast<Real>(part.bounds.membrane_damping_rate / part.bounds.membrane_omega2);
+  springs.warp_time = static_cast<Real>(times.warp);
+  springs.weft_time = static_cast<Real>(times.weft);
+  springs.shear_time = static_cast<Real>(times.shear);
   part.grid_springs = springs;
 }
 
@@ -84,6 +84,7 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
       static_cast<Real>(fabric.bending_warp * cell_v / (cell_u * cell_u * cell_u)),
       static_cast<Real>(fabric.bending_weft * cell_u / (cell_v * cell_v * cell_v)),
       static_cast<Real>((fabric.bending_warp + fabric.bending_weft) / (cell_u * cell_v))};
+  part.bending_time = static_cast<Real>(fabric.bending_damping);
   model.hinges.clear();
   part.hinges = {};
   visit_bending_stencils(
@@ -109,8 +110,11 @@ void finish_grid(const ClothDef& def, ClothModel<Real>& model) {
   ClothPart<Real>& part = model.parts.front();
   bound_springs(model, part);
   bound_hinges(model, part);
-  if (!def.direct_springs) add_spring_damping(model, part, def.fabric.damping_ratio);
-  summarise_springs(def, part);
+  const SpringTimes times =
+      grid_spring_times(def.fabric, def.width / (def.columns - 1), def.height / (def.rows - 1),
+                        least_relaxation_time(part));
+  if (!def.direct_springs) add_spring_damping(times, model, part);
+  summarise_springs(def, times, part);
   choose_bending(def, model);
 }
 

@@ -60,6 +60,21 @@ GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell
   return k;
 }
 
+SpringTimes grid_spring_times(const FabricDef& fabric, double cell_u, double cell_v, double least) {
+  assert(cell_u > 0 && cell_v > 0 && least >= 0);
+  const double ratio2 = cell_u * cell_u / (cell_v * cell_v);
+  const double stretch = std::max(fabric.stretch_damping, least),
+               shear = std::max(fabric.shear_damping, least);
+  // C11 of the dashpots is tau Y_w, of which the diagonals have their share.
+  const auto left = [&](double stiffness, double share) {
+    const double springs = stiffness - share;
+    if (stretch == shear || !(springs > 0)) return stretch;
+    return std::max((stretch * stiffness - shear * share) / springs, least);
+  };
+  return {left(fabric.stretch_warp, fabric.shear * ratio2),
+          left(fabric.stretch_weft, fabric.shear / ratio2), shear};
+}
+
 template <class Real>
 std::vector<Spring<Real>> grid_springs(const ClothDef& def, std::vector<SpringKind>& kinds) {
   const double cell_u = def.width / (def.columns - 1);

@@ -4,6 +4,7 @@
 
 #include "core/cloth/cloth_def.h"
 #include "core/cloth/cloth_model.h"
+#include "core/cloth/stability_bound.h"
 
 // Springs of a grid.
 
@@ -21,6 +22,12 @@ struct GridStiffness {
 /// Springs with the continuum limit C11 = Y_w, C22 = Y_f, C12 = C66 = G.
 /// Throws DefinitionError on "fabric.shear" if a structural spring would be negative.
 GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell_v);
+
+/// Relaxation times of a grid's springs whose continuum limit damps stretch and shear with those of
+/// the fabric. Diagonals resist stretch too, so what they damp of it is left out of the others;
+/// where that is more than the whole, stretch is damped by more than its own time.
+/// @param least  of each [s]
+SpringTimes grid_spring_times(const FabricDef& fabric, double cell_u, double cell_v, double least);
 
 /// All springs of a grid cloth, ordered by first end and then by kind; `kinds` gets one entry each.
 /// Springs without stiffness and damping are left out.

@@ -9,6 +9,7 @@
 
 #include "core/cloth/constants.h"
 #include "core/cloth/membrane_gradient.h"
+#include "core/cloth/stability_bound.h"
 #include "core/error.h"
 
 namespace weft {
@@ -229,9 +230,12 @@ void bound_membrane(const ClothModel<Real>& model, ClothPart<Real>& part) {
     shares.favour(values);
   }
   part.bounds.membrane_omega2 = best;
-  const double tau = 2 * part.fabric.damping_ratio / std::sqrt(best);
-  part.membrane_tensor.relaxation_time = static_cast<Real>(tau);
-  part.bounds.membrane_damping_rate = tau * best;
+  const double least = least_relaxation_time(part);
+  const double stretch = std::max(part.fabric.stretch_damping, least),
+               shear = std::max(part.fabric.shear_damping, least);
+  part.membrane_tensor.stretch_time = static_cast<Real>(stretch);
+  part.membrane_tensor.shear_time = static_cast<Real>(shear);
+  part.bounds.membrane_damping_rate = std::max(stretch, shear) * best;
 }
 
 template <class Real>

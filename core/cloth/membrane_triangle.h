@@ -6,14 +6,15 @@
 
 namespace weft {
 
-/// The membrane's tensor in the axes of the threads, and its dashpot: stress is that of the strain
-/// plus `relaxation_time` times the rate of strain (Kelvin-Voigt).
+/// The membrane's tensor in the axes of the threads, and its dashpots: stress is that of the strain
+/// plus a relaxation time times the rate of strain (Kelvin-Voigt).
 template <class Real>
 struct MembraneTensor {
-  Real warp = 0, weft = 0;   ///< C11 = Y_w, C22 = Y_f [N/m]
-  Real coupling = 0;         ///< C12: Poisson's ratio times C22 [N/m]
-  Real shear = 0;            ///< C66 = G [N/m]
-  Real relaxation_time = 0;  ///< [s]
+  Real warp = 0, weft = 0;  ///< C11 = Y_w, C22 = Y_f [N/m]
+  Real coupling = 0;        ///< C12: Poisson's ratio times C22 [N/m]
+  Real shear = 0;           ///< C66 = G [N/m]
+  Real stretch_time = 0;    ///< relaxation time of both stretches [s]
+  Real shear_time = 0;      ///< and of shear [s]
 };
 
 /// A triangle with the gradients of its linear functions in the fabric's axes: w_u = u1 (x1 - x0) +

@@ -178,11 +178,22 @@ class BendingMatrix {
   std::vector<double> diagonal_;
 };
 
+template <class Real>
+void append(const std::vector<CurvatureWeight>& curvature, const Eigen::Vector3d& stiffness,
+            TriangleCurvatures<Real>& list) {
+  if (list.begin.empty()) list.begin.push_back(0);
+  for (const CurvatureWeight& one : curvature) {
+    list.particles.push_back(one.particle);
+    list.weights.push_back(one.weight.cast<Real>());
+  }
+  list.begin.push_back(list.particles.size());
+  list.stiffness.push_back(stiffness.cast<Real>());
+}
+
 }  // namespace
 
 template <class Real>
-std::vector<BendingLink> mesh_bending_links(const ClothModel<Real>& model,
-                                            const ClothPart<Real>& part) {
+void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
   const PartMesh mesh(model, part);
   const EdgeSlopes edges(mesh.x, mesh.triangles);
   std::vector<double> free;
@@ -194,19 +205,21 @@ std::vector<BendingLink> mesh_bending_links(const ClothModel<Real>& model,
   const FabricDef& fabric = part.fabric;
   const Eigen::Vector3d rigidity(fabric.bending_warp, fabric.bending_weft,
                                  fabric.bending_warp + fabric.bending_weft);
+  part.curvatures = {};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const FlatTriangle& flat = mesh.flat[t];
     if (flat.free == 0) continue;
     const double stiffening = std::min(1 / flat.free, kMostMeshStiffening);
-    matrix.add(curvature(mesh.triangles[t], t, flat, edges, slopes),
-               rigidity * (flat.area * stiffening));
+    const Eigen::Vector3d stiffness = rigidity * (flat.area * stiffening);
+    const auto weights = curvature(mesh.triangles[t], t, flat, edges, slopes);
+    matrix.add(weights, stiffness);
+    if (part.bending_time > 0) append(weights, stiffness, part.curvatures);
   }
-  return matrix.links();
+  part.bending_links = matrix.links();
+  part.bending_stencils = part.bending_links.size();
 }
 
-template std::vector<BendingLink> mesh_bending_links(const ClothModel<float>&,
-                                                     const ClothPart<float>&);
-template std::vector<BendingLink> mesh_bending_links(const ClothModel<double>&,
-                                                     const ClothPart<double>&);
+template void bend_by_links(const ClothModel<float>&, ClothPart<float>&);
+template void bend_by_links(const ClothModel<double>&, ClothPart<double>&);
 
 }  // namespace weft

@@ -21,9 +21,10 @@ namespace weft {
 /// A held strip does not bend: a triangle inside it has its slope, and what lies beside it turns
 /// about their common edge. A triangle that the border cuts bends only beyond that, where it has
 /// the curvature of the whole turn: its rigidity is divided by its free part.
+///
+/// Gives the part its links, and the curvatures that these are made of if it damps bending.
 /// @param part  of the model; its mesh must be flat at rest, and its `material` gives the threads
 template <class Real>
-std::vector<BendingLink> mesh_bending_links(const ClothModel<Real>& model,
-                                            const ClothPart<Real>& part);
+void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part);
 
 }  // namespace weft

@@ -209,6 +209,14 @@ void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
   }
 }
 
+/// Edges stretch and shear in one, and have the larger of both relaxation times.
+template <class Real>
+void add_edge_damping(ClothModel<Real>& model, ClothPart<Real>& part) {
+  const FabricDef& f = part.fabric;
+  const double time = std::max({f.stretch_damping, f.shear_damping, least_relaxation_time(part)});
+  add_spring_damping({time, time, time}, model, part);
+}
+
 /// Adds one membrane triangle per triangle, at rest as it lies and with the material's directions.
 template <class Real>
 void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
@@ -248,10 +256,10 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   if (model.hinges.empty() || !(wanted || (may && most <= kFlatRestAngle))) return;
   ClothPart<Real>& part = model.parts.front();
   part.bends_by_links = true;
-  part.bending_links = mesh_bending_links(model, part);
+  part.bending_time = static_cast<Real>(part.fabric.bending_damping);
+  bend_by_links(model, part);
   model.hinges.clear();
   part.hinges = {};
-  part.bending_stencils = part.bending_links.size();
   bound_quadratic_bending(model, part);
 }
 
@@ -321,7 +329,7 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   if (triangles)
     bound_membrane(model, part);
   else
-    add_spring_damping(model, part, fabric.damping_ratio);
+    add_edge_damping(model, part);
   choose_bending(def, model);
   return model;
 }

@@ -21,7 +21,8 @@ void soften(double softness, ClothModel<Real>& model) {
     MembraneTensor<Real>& tensor = part.membrane_tensor;
     for (Real* number : {&tensor.warp, &tensor.weft, &tensor.coupling, &tensor.shear})
       *number *= stiffness;
-    tensor.relaxation_time /= damping;
+    tensor.stretch_time /= damping;
+    tensor.shear_time /= damping;
     part.bounds.membrane_omega2 *= softness;
     part.bounds.membrane_shear_omega2 *= softness;
     part.bounds.membrane_damping_rate *= root;
@@ -30,7 +31,8 @@ void soften(double softness, ClothModel<Real>& model) {
     springs.warp *= stiffness;
     springs.weft *= stiffness;
     springs.shear *= stiffness;
-    springs.damping_per_stiffness /= damping;
+    for (Real* time : {&springs.warp_time, &springs.weft_time, &springs.shear_time})
+      *time /= damping;
   }
 }
 

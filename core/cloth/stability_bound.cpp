@@ -101,21 +101,21 @@ void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part) {
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part) {
   assert(part.particles.end() <= model.particle_count());
-  std::vector<double> row_sum(model.mass.size(), 0);
+  std::vector<double> rows(model.mass.size(), 0);
   if (!part.bending_links.empty()) {
-    part.bounds.bending_omega2 = largest(rows_of_links(model, part), model);
-    part.bounds.bending_damping_rate = 0;
-    return;
+    rows = rows_of_links(model, part);
+  } else {
+    visit_bending_stencils(
+        part, [&](double k, const Index* corners, const double* weights, int count) {
+          double sum = 0;
+          for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
+          for (int n = 0; n < count; ++n)
+            rows[static_cast<std::size_t>(corners[n])] += k * std::abs(weights[n]) * sum;
+        });
   }
-  visit_bending_stencils(
-      part, [&](double k, const Index* corners, const double* weights, int count) {
-        double sum = 0;
-        for (int n = 0; n < count; ++n) sum += std::abs(weights[n]);
-        for (int n = 0; n < count; ++n)
-          row_sum[static_cast<std::size_t>(corners[n])] += k * std::abs(weights[n]) * sum;
-      });
-  part.bounds.bending_omega2 = largest(row_sum, model);
-  part.bounds.bending_damping_rate = 0;
+  part.bounds.bending_omega2 = largest(rows, model);
+  part.bounds.bending_damping_rate =
+      static_cast<double>(part.bending_time) * part.bounds.bending_omega2;
 }
 
 template void bound_quadratic_bending(const ClothModel<float>&, ClothPart<float>&);
@@ -151,22 +151,35 @@ template void bound_damped_area(const ClothModel<float>&, ClothPart<float>&);
 template void bound_damped_area(const ClothModel<double>&, ClothPart<double>&);
 
 template <class Real>
-void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio) {
-  assert(damping_ratio >= 0);
-  if (part.bounds.membrane_omega2 <= 0) return;
-  const double beta = 2 * damping_ratio / std::sqrt(part.bounds.membrane_omega2);
+double least_relaxation_time(const ClothPart<Real>& part) {
+  if (part.bounds.membrane_omega2 <= 0) return 0;
+  return 2 * part.fabric.damping_ratio / std::sqrt(part.bounds.membrane_omega2);
+}
+
+template double least_relaxation_time(const ClothPart<float>&);
+template double least_relaxation_time(const ClothPart<double>&);
+
+template <class Real>
+void add_spring_damping(const SpringTimes& times, ClothModel<Real>& model, ClothPart<Real>& part) {
+  assert(times.warp >= 0 && times.weft >= 0 && times.shear >= 0);
+  assert(model.spring_kinds.size() == model.springs.size());
   for (Index k = part.springs.first; k < part.springs.end(); ++k) {
     Spring<Real>& spring = model.springs[static_cast<std::size_t>(k)];
-    spring.damping = static_cast<Real>(beta * static_cast<double>(spring.stiffness));
+    const SpringKind kind = model.spring_kinds[static_cast<std::size_t>(k)];
+    const double time = kind == SpringKind::weft    ? times.weft
+                        : kind == SpringKind::shear ? times.shear
+                                                    : times.warp;
+    spring.damping = static_cast<Real>(time * static_cast<double>(spring.stiffness));
   }
-  part.bounds.membrane_damping_rate = beta * part.bounds.membrane_omega2;
+  part.bounds.membrane_damping_rate =
+      std::max({times.warp, times.weft, times.shear}) * part.bounds.membrane_omega2;
 }
 
 template void bound_springs(const ClothModel<float>&, ClothPart<float>&);
 template void bound_springs(const ClothModel<double>&, ClothPart<double>&);
 template void bound_hinges(const ClothModel<float>&, ClothPart<float>&);
 template void bound_hinges(const ClothModel<double>&, ClothPart<double>&);
-template void add_spring_damping(ClothModel<float>&, ClothPart<float>&, double);
-template void add_spring_damping(ClothModel<double>&, ClothPart<double>&, double);
+template void add_spring_damping(const SpringTimes&, ClothModel<float>&, ClothPart<float>&);
+template void add_spring_damping(const SpringTimes&, ClothModel<double>&, ClothPart<double>&);
 
 }  // namespace weft

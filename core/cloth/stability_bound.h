@@ -33,6 +33,7 @@ void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part);
 
 /// The same of its quadratic form, in place of hinges: each stencil w with energy k/2 |w x|^2
 /// adds k |w_i| sum|w| to the Gershgorin rows of its particles; the links of a mesh are those rows.
+/// Its dashpots take at most tau times that.
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);
 
@@ -44,10 +45,20 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
 template <class Real>
 void bound_damped_area(const ClothModel<Real>& model, ClothPart<Real>& part);
 
-/// Gives every spring of a part the dashpot c = beta k with beta = 2 zeta / omega of the membrane's
-/// highest mode. Without it a shaken cloth keeps the energy of its high modes forever
+/// Relaxation time that gives a part's highest membrane mode the damping ratio of its fabric, 2
+/// zeta / omega [s]. Without it a shaken cloth keeps the energy of its high modes forever
 /// (tests/laws/shaking_test.cpp).
 template <class Real>
-void add_spring_damping(ClothModel<Real>& model, ClothPart<Real>& part, double damping_ratio);
+double least_relaxation_time(const ClothPart<Real>& part);
+
+/// c/k of springs by their kind [s].
+struct SpringTimes {
+  double warp = 0, weft = 0, shear = 0;
+};
+
+/// Gives the springs of a part their dashpots, and bounds the rate of these. Springs that are
+/// neither warp, weft nor shear have the warp's.
+template <class Real>
+void add_spring_damping(const SpringTimes& times, ClothModel<Real>& model, ClothPart<Real>& part);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 
+#include "core/forces/bending_damping.h"
 #include "core/forces/constants.h"
 #include "core/forces/membrane.h"
 #include "core/geometry/hinge_angle.h"
@@ -54,10 +55,11 @@ double triangle_loss(const MembraneTensor<Real>& tensor, const MembraneTriangle<
   const StrainChange change = strain_change(t, strain, displacement);
   const auto warp = static_cast<double>(tensor.warp), weft = static_cast<double>(tensor.weft),
              coupling = static_cast<double>(tensor.coupling);
-  return static_cast<double>(t.area) * static_cast<double>(tensor.relaxation_time) *
-         ((warp * rate.u + coupling * rate.v) * change.u +
-          (weft * rate.v + coupling * rate.u) * change.v +
-          static_cast<double>(tensor.shear) * rate.shear * change.shear);
+  const double stretches = (warp * rate.u + coupling * rate.v) * change.u +
+                           (weft * rate.v + coupling * rate.u) * change.v;
+  const double shears = static_cast<double>(tensor.shear) * rate.shear * change.shear;
+  return static_cast<double>(t.area) * (static_cast<double>(tensor.stretch_time) * stretches +
+                                        static_cast<double>(tensor.shear_time) * shears);
 }
 
 template <class Real>
@@ -89,6 +91,7 @@ double dashpot_loss(const ClothModel<Real>& model, const Vec3Array<Real>& x,
   if (which == Dashpots::hinges) return sum;
   for (const Spring<Real>& s : model.springs) sum += spring_loss(s, x, v, displacement);
   for (const ClothPart<Real>& part : model.parts) {
+    sum += bending_loss(part, x, v, displacement);
     for (Index n = part.membrane.first; n < part.membrane.end(); ++n)
       sum += triangle_loss(part.membrane_tensor, model.membrane[static_cast<std::size_t>(n)], x, v,
                            displacement);

@@ -21,13 +21,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// @param from, to  offsets of a spring's ends from its site in the row
 template <class Real>
 HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real rest_length,
-                                GridCoefficient stiffness, std::ptrdiff_t from, std::ptrdiff_t to,
-                                Real* factor) {
+                                Real damping_time, GridCoefficient stiffness, std::ptrdiff_t from,
+                                std::ptrdiff_t to, Real* factor) {
   using D = GridTag<Real>;
   const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const SpringLaw<D> law{hn::Set(d, Real(1)), hn::Set(d, rest_length),
-                         hn::Set(d, g.springs.damping_per_stiffness),
+  const SpringLaw<D> law{hn::Set(d, Real(1)), hn::Set(d, rest_length), hn::Set(d, damping_time),
                          hn::Set(d, Real(kSmallestSquaredLength))};
   const Real* const x = g.motion + r * g.pitch();
   const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
@@ -37,6 +36,39 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
     const auto speed = load(d, v + to + c, g.line) - load(d, v + from + c, g.line);
     hn::StoreU(spring(d, law, hn::LoadU(d, k + c), delta, speed), d, factor + c);
   }
+}
+
+/// The same of one kind of bending stencil: its stiffness, larger by its dashpot's share while it
+/// bends further. See bending_damping.h.
+/// @param at  offsets of its particles from the site in the row, with weights 1 -1 -1 1
+template <class Real>
+HWY_INLINE void compute_bends(const GridView<Real>& g, std::ptrdiff_t r, GridCoefficient stiffness,
+                              const std::ptrdiff_t (&at)[4], Real* factor) {
+  using D = GridTag<Real>;
+  const D d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto time = hn::Set(d, g.bending_time), smallest = hn::Set(d, Real(kSmallestSquaredBend));
+  const Real* const x = g.motion + r * g.pitch();
+  const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
+  const Real* const k = g.row[r].coefficients + stiffness * g.line;
+  for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
+    const auto value = [&](const Real* from) HWY_ATTR {
+      return (load(d, from + at[0] + c, g.line) - load(d, from + at[1] + c, g.line)) -
+             (load(d, from + at[2] + c, g.line) - load(d, from + at[3] + c, g.line));
+    };
+    const auto bend = value(x), rate = value(v);
+    const auto growth = hn::Div(fused_dot(d, bend, rate), fused_dot(d, bend, bend, smallest));
+    const auto own = hn::LoadU(d, k + c);
+    hn::StoreU(fused(d, hn::Mul(own, time), growth, own), d, factor + c);
+  }
+}
+
+/// Where the factors of a kind of bending stencil are: without dashpots they are its stiffness.
+template <class Real>
+HWY_INLINE const Real* bends_of(const GridView<Real>& g, std::ptrdiff_t r,
+                                GridCoefficient stiffness, int line) {
+  if (g.bending_time > 0) return g.scratch + (kBendLine + line) * g.scratch_line();
+  return g.row[r].coefficients + stiffness * g.line;
 }
 
 /// Lines of scratch for the forces on a row. A force on the next column, or the one after it, is
@@ -50,6 +82,7 @@ struct ForceLines {
   Real* carry;                            ///< on the row below, per component
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
+  const Real *twist, *bend_u, *bend_v;    ///< factors of the bending stencils
   std::ptrdiff_t step;                    ///< from component to component
 
   HWY_INLINE ForceLines(const GridView<Real>& g, std::ptrdiff_t r) : step(g.scratch_line()) {
@@ -62,6 +95,9 @@ struct ForceLines {
     bent = at + 3 * step;
     corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
     corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
+    twist = bends_of(g, r, kTwist, 0);
+    bend_u = bends_of(g, r, kBendU, 1);
+    bend_v = bends_of(g, r, kBendV, 2);
   }
 };
 
@@ -70,10 +106,15 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
                                 const ForceLines<Real>& to) {
   const GridSprings<Real>& s = g.springs;
   const std::ptrdiff_t below = g.pitch();
-  compute_factors(g, r, s.rest_warp, kWarp, 0, 1, to.along);
-  compute_factors(g, r, s.rest_weft, kWeft, 0, below, to.down);
-  compute_factors(g, r, s.rest_shear, kShear, 0, below + 1, to.falling);
-  compute_factors(g, r, s.rest_shear, kShear, 1, below, to.rising);
+  compute_factors(g, r, s.rest_warp, s.warp_time, kWarp, 0, 1, to.along);
+  compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
+  compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
+  compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
+  if (!(g.bending_time > 0)) return;
+  Real* const bends = g.scratch + kBendLine * g.scratch_line();
+  compute_bends(g, r, kTwist, {below + 1, below, 1, 0}, bends);
+  compute_bends(g, r, kBendU, {2, 1, 1, 0}, bends + to.step);
+  compute_bends(g, r, kBendV, {2 * below, below, below, 0}, bends + 2 * to.step);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed
@@ -87,7 +128,6 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const std::ptrdiff_t line = g.line, pitch = g.pitch();
   const V two = hn::Set(d, Real(2));
-  const Real* const k = g.row[r].coefficients;
   const Real* const x = g.motion + r * pitch + component * line;
   const std::ptrdiff_t own = component * to.step;
   Real *const carry = to.carry + own, *const bent = to.bent + own;
@@ -100,12 +140,12 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
     const V falling = hn::Sub(xe, x0), rising = hn::Sub(xd, xr);
     const V f_along = hn::LoadU(d, to.along + c), f_down = hn::LoadU(d, to.down + c),
             f_falling = hn::LoadU(d, to.falling + c), f_rising = hn::LoadU(d, to.rising + c);
-    const V twist = hn::Mul(hn::Sub(hn::Sub(xe, xd), along), hn::LoadU(d, k + kTwist * line + c));
+    const V twist = hn::Mul(hn::Sub(hn::Sub(xe, xd), along), hn::LoadU(d, to.twist + c));
     // The stencils centred one column to the right and one row below.
-    const V bend_right = hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2), xr), along),
-                                 hn::LoadU(d, k + kBendU * line + c));
+    const V bend_right =
+        hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2), xr), along), hn::LoadU(d, to.bend_u + c));
     const V bend_below = hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2 * pitch), xd), down),
-                                 hn::LoadU(d, k + kBendV * line + c));
+                                 hn::LoadU(d, to.bend_v + c));
     const V bend_here = hn::LoadU(d, bent + c);
     hn::StoreU(bend_below, d, bent + c);
 

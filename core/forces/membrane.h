@@ -65,10 +65,10 @@ template <class Real>
 MembraneStress<Real> membrane_stress(const MembraneTensor<Real>& c, const MembraneTriangle<Real>& t,
                                      const MembraneStrain<Real>& e, const Vec3<Real>& rate_u,
                                      const Vec3<Real>& rate_v) {
-  const Real tau = c.relaxation_time;
+  const Real tau = c.stretch_time;
   const Real u = e.u + tau * (e.w_u.dot(rate_u) * e.per_u);
   const Real v = e.v + tau * (e.w_v.dot(rate_v) * e.per_v);
-  const Real shear = e.shear + tau * (e.w_v.dot(rate_u) + e.w_u.dot(rate_v));
+  const Real shear = e.shear + c.shear_time * (e.w_v.dot(rate_u) + e.w_u.dot(rate_v));
   MembraneStress<Real> s;
   s.u = t.area * (c.warp * u + c.coupling * v);
   s.v = t.area * (c.weft * v + c.coupling * u);

@@ -19,13 +19,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class D>
 struct MembraneLaw {
   using V = hn::Vec<D>;
-  V warp, weft, coupling, shear, relaxation_time, one, half, smallest, least;
+  V warp, weft, coupling, shear, stretch_time, shear_time, one, half, smallest, least;
 
   template <class Real>
   HWY_INLINE MembraneLaw(D d, const MembraneTensor<Real>& c)
       : warp(hn::Set(d, c.warp)), weft(hn::Set(d, c.weft)), coupling(hn::Set(d, c.coupling)),
-        shear(hn::Set(d, c.shear)), relaxation_time(hn::Set(d, c.relaxation_time)),
-        one(hn::Set(d, Real(1))), half(hn::Set(d, Real(0.5))),
+        shear(hn::Set(d, c.shear)), stretch_time(hn::Set(d, c.stretch_time)),
+        shear_time(hn::Set(d, c.shear_time)), one(hn::Set(d, Real(1))), half(hn::Set(d, Real(0.5))),
         smallest(hn::Set(d, Real(kSmallestSquaredStretch))),
         least(hn::Set(d, Real(kLeastDeterminant))) {}
 };
@@ -67,15 +67,15 @@ struct Strained {
     strain = {hn::Sub(long_u, law.one), hn::Sub(long_v, law.one), fused_dot(tag, w_u, w_v)};
   }
 
-  /// Rates of the strains, times the relaxation time.
+  /// Rates of the strains, times their relaxation times.
   HWY_INLINE StrainLanes<V> rates(D tag, const MembraneLaw<D>& law, const TriangleShape<V>& shape,
                                   const CornerDifferences<V>& v) const {
     const Triple<V> rate_u = along(tag, v, shape.u1, shape.u2),
                     rate_v = along(tag, v, shape.v1, shape.v2);
-    const V tau = law.relaxation_time, common = hn::Mul(tau, hn::Mul(inverse, determinant));
+    const V common = hn::Mul(law.stretch_time, hn::Mul(inverse, determinant));
     return {hn::Mul(hn::Mul(common, long_v), fused_dot(tag, w_u, rate_u)),
             hn::Mul(hn::Mul(common, long_u), fused_dot(tag, w_v, rate_v)),
-            hn::Mul(tau, fused_dot(tag, w_v, rate_u, fused_dot(tag, w_u, rate_v)))};
+            hn::Mul(law.shear_time, fused_dot(tag, w_v, rate_u, fused_dot(tag, w_u, rate_v)))};
   }
 
   /// What corners 1 and 2 pull with at these strains: minus their forces; the formulas of

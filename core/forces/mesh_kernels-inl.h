@@ -45,7 +45,7 @@ struct PairLanes {
   using V = hn::Vec<D>;
 
   MembraneLaw<D> law;
-  V per_substep;             ///< relaxation time over the substep
+  V stretches, shears;       ///< relaxation times over the substep
   const MeshOffset* corner;  ///< of the first lane
   const Real* shape;
   Real* strain;
@@ -68,11 +68,11 @@ struct PairLanes {
     Real* const kept = strain + 3 * t * kMeshGroup;
     StrainLanes<V> e = now.strain;
     if constexpr (Remembered) {
-      const auto grown = [&](V strain_now, int n) HWY_ATTR {
+      const auto grown = [&](V strain_now, int n, V substeps) HWY_ATTR {
         const V before = hn::LoadU(d, kept + n * kMeshGroup);
-        return fused(d, per_substep, hn::Sub(strain_now, before), strain_now);
+        return fused(d, substeps, hn::Sub(strain_now, before), strain_now);
       };
-      e = {grown(e.u, 0), grown(e.v, 1), grown(e.shear, 2)};
+      e = {grown(e.u, 0, stretches), grown(e.v, 1, stretches), grown(e.shear, 2, shears)};
     } else {
       const StrainLanes<V> rates = now.rates(d, law, own, {v1, at(v, 2 + t) - v0});
       e = {hn::Add(e.u, rates.u), hn::Add(e.v, rates.v), hn::Add(e.shear, rates.shear)};
@@ -126,10 +126,11 @@ HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const PairPlace<Real>& at
   using V = typename Lanes::V;
   const typename Lanes::D d;
   const MembraneLaw<typename Lanes::D> law(d, mesh.tensor);
-  const V per_substep = hn::Set(d, mesh.tensor.relaxation_time * mesh.substeps_per_second);
+  const V stretches = hn::Set(d, mesh.tensor.stretch_time * mesh.substeps_per_second),
+          shears = hn::Set(d, mesh.tensor.shear_time * mesh.substeps_per_second);
   Real* const slots[kPairCorners] = {ring.next(), ring.next(), ring.next(), ring.next()};
   for (int k = 0; k < kMeshGroup; k += static_cast<int>(hn::Lanes(d))) {
-    const Lanes pair{law, per_substep, at.corner + k, at.shape + k, at.strain + k, last};
+    const Lanes pair{law, stretches, shears, at.corner + k, at.shape + k, at.strain + k, last};
     const auto x0 = pair.at(x, 0);
     const Triple<V> from[3] = {pair.at(x, 1) - x0, pair.at(x, 2) - x0, pair.at(x, 3) - x0};
     Triple<V> v0{}, v1{};

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "core/forces/bending_damping.h"
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
@@ -44,9 +45,11 @@ template <class Real>
 void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
   const ClothPart<Real>& part = tick.part(p);
   evaluate_membrane(tick, p, velocity);
-  if (part.hinges.count == 0) return;
-  const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
+  if (part.hinges.count == 0 && part.bending_time == 0) return;
+  const StageTimer timer(tick.profile, Stage::bending,
+                         size_of(part.hinges) + part.curvatures.stiffness.size());
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
+  add_bending_damping_forces(part, tick.state.x, velocity, tick.work.internal);
 }
 
 /// Forces of sling impulses and air. Grids store them as their external forces; the arrays of the

@@ -99,7 +99,9 @@ struct VerletWorkspace {
   /// Whether a part is kicked in one pass with its forces, without sweeps.
   bool kicks_at_once(const ClothModel<Real>& model, std::size_t part) const {
     assert(part < grids.size() && part < meshes.size());
-    return grids[part].fits() || (meshes[part].fits() && model.parts[part].hinges.count == 0);
+    const ClothPart<Real>& cloth = model.parts[part];
+    const bool damped = cloth.bending_time > 0;
+    return grids[part].fits() || (meshes[part].fits() && cloth.hinges.count == 0 && !damped);
   }
 
   /// Size of the arrays [B].

@@ -4,6 +4,7 @@
 
 #include <cassert>
 
+#include "core/forces/bending_damping.h"
 #include "core/forces/force_pass.h"
 
 namespace weft {
@@ -21,6 +22,8 @@ void add_pin_reactions(const ClothModel<Real>& model, const ClothState<Real>& st
   add_membrane_forces(model, state.x, state.v, force);
   add_hinge_forces(model, state.x, state.v, force);
   add_quadratic_bending_forces(model, state.x, force);
+  for (const ClothPart<Real>& part : model.parts)
+    add_bending_damping_forces(part, state.x, state.v, force);
   if (surroundings.air)
     add_air_forces(model, surroundings.wind, surroundings.air_density, state.x, state.v, force);
   for (const ContactPoint& contact : reactions.contacts) {

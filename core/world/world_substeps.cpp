@@ -65,7 +65,7 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
         stretched_membrane_omega2(part.bounds, longest_thread(model_, part, state_.x));
     bound.omega2 += part.bounds.membrane_omega2 + stretched;
     bound.damping_rate += part.bounds.membrane_damping_rate +
-                          static_cast<double>(part.membrane_tensor.relaxation_time) * stretched;
+                          static_cast<double>(part.membrane_tensor.shear_time) * stretched;
   }
   if (is_calm(environment)) return bound;
   double speed2 = 0;

@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/commands/convert_damping.h"
 #include "server/commands/list_scenes.h"
 #include "server/commands/log_sink.h"
 #include "server/commands/serve.h"
@@ -38,6 +39,8 @@ Examples:
   weft serve --scene my.json                      a scene of your own; weft scenes --schema
   weft scenes                                     what there is
   weft scenes --json flag                         one as a file to start from
+  weft fabric --set fabric=wool --mode bending --length 0.05 --decay-time 0.5
+                                                  the damping of a strip that was seen to swing
 
 Exit codes: 0 done, 1 failed, 2 what was asked for is refused; simulate: 3 something crossed, 4 a
 tick took too long; 5 output could not be written
@@ -164,6 +167,21 @@ void add_scenes(CLI::App& app, ScenesOptions& o) {
   add_switch(scenes, "--schema", o.schema, "Print the JSON Schema of scene files");
 }
 
+void add_fabric(CLI::App& app, FabricOptions& o, std::vector<std::string>& settings) {
+  CLI::App& fabric =
+      *app.add_subcommand("fabric", "Convert a fabric's damping from and to what can be measured");
+  fabric.add_option("--set", settings, "Setting of the fabric as key=value; may be repeated");
+  fabric.add_option("--mode", o.mode,
+                    "First mode of a strip along the warp: stretch, shear (both held at both ends) "
+                    "or bending (held level at one end)");
+  add_number(fabric, "--length", o.length, kStripLengths, "Length of the strip in metres (0.2)");
+  add_number(fabric, "--decay-time", o.decay_time, kDecayTimes,
+             "Seconds in which its amplitude fell to 1/e");
+  add_number(fabric, "--loss-factor", o.loss_factor, kLossFactors,
+             "Energy lost in a cycle over 2 pi times that of the mode");
+  add_switch(fabric, "--json", o.json, "Print JSON");
+}
+
 /// One line that names the error and the allowed values.
 std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string allowed;
@@ -205,11 +223,13 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   ServerOptions serve_options;
   SimulateOptions simulate_options;
-  std::vector<std::string> serve_settings, simulate_settings;
+  FabricOptions fabric_options;
+  std::vector<std::string> serve_settings, simulate_settings, fabric_settings;
   ScenesOptions scenes_options;
   add_serve(app, serve_options, serve_settings);
   add_simulate(app, simulate_options, simulate_settings);
   add_scenes(app, scenes_options);
+  add_fabric(app, fabric_options, fabric_settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -226,6 +246,9 @@ int run(int argc, char** argv) {
     serve_options.settings.push_back(split_setting(text));
   for (const std::string& text : simulate_settings)
     simulate_options.settings.push_back(split_setting(text));
+  for (const std::string& text : fabric_settings)
+    fabric_options.settings.push_back(split_setting(text));
+  if (app.got_subcommand("fabric")) return convert_damping(fabric_options);
   if (app.got_subcommand("scenes")) return list_scenes(scenes_options);
   if (app.got_subcommand("simulate")) return simulate(simulate_options);
   validate(serve_options);

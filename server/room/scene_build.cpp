@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/world/cost.h"
+#include "core/world/mesh_damping.h"
 #include "core/world/object_repair.h"
 #include "core/world/pin_extent.h"
 #include "core/world/spring_hold.h"
@@ -48,6 +49,8 @@ std::vector<SceneNotice> notices_of(const ServedWorld& world,
     notices.push_back({"springs_slack", describe(slack)});
   if (const auto pins = coarse_pins(world); !pins.empty())
     notices.push_back({"pins_coarse", describe(pins), false});
+  for (const MeshDamping& damping : damping_of_meshes(world))
+    notices.push_back({"damping_of_mesh", describe(damping), false});
   return notices;
 }
 

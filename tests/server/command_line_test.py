@@ -55,6 +55,9 @@ class CommandLine(unittest.TestCase):
             (["simulate", "--ticks", "1e3"], "--ticks = 1e3: allowed is a whole number"),
             (["simulate", "--json=3"], "--json takes no value"),
             (["simulate", "-x"], "unknown option -x"),
+            (["fabric", "--decay-time", "1"], "--mode = (nothing): allowed is the mode that was measured"),
+            (["fabric", "--mode", "twist"], "stretch, shear or bending"),
+            (["fabric", "--length", "0"], "--length = 0: allowed is a number from 0.001 to 100"),
             (["simulate", "--out", "/nowhere/cloth.obj"], "--out = /nowhere/cloth.obj: allowed is"),
             (["simulate", "--set", "=3"], "key=value"),
             (["simulate", "--set", "fabric.shear="], "fabric.shear = (nothing)"),
@@ -114,6 +117,20 @@ class CommandLine(unittest.TestCase):
                     "energy", "strain", "deepest_penetration", "hash", "solver", "substeps", "divergences"):
             self.assertIn(key, result)
         self.assertGreater(result["stages"]["stretch"]["work"], 0)
+
+    def test_a_measured_decay_is_converted_to_the_relaxation_time_that_has_it(self):
+        strip = ("fabric", "--set", "fabric=wool", "--mode", "bending", "--length", "0.05", "--json")
+        found = json.loads(run(*strip, "--decay-time", "0.5").stdout)["modes"][0]
+        # (1.8751 / 5 cm)^2 sqrt(sigma g c^3 / sigma) with c = 19 mm
+        omega = (1.8751040687 / 0.05) ** 2 * (9.81 * 0.019**3) ** 0.5
+        self.assertAlmostEqual(found["frequency_hz"], omega / (2 * 3.14159265), delta=1e-4)
+        self.assertAlmostEqual(found["relaxation_time_s"], 2 / (omega**2 * 0.5), delta=1e-5)
+        back = ("--set", f"fabric.bending_damping={found['relaxation_time_s']!r}")
+        again = json.loads(run(*strip, *back).stdout)["modes"][0]
+        self.assertAlmostEqual(again["decay_time_s"], 0.5, delta=1e-6)
+        loss = json.loads(run(*strip, "--loss-factor", repr(again["loss_factor"])).stdout)["modes"][0]
+        self.assertAlmostEqual(loss["relaxation_time_s"], found["relaxation_time_s"], delta=1e-8)
+        self.assertIn("fabric.bending_damping=0\n", run("fabric").stdout)
 
     def test_the_cantilever_test_measures_the_bending_length_of_its_fabric(self):
         result = json.loads(run("simulate", "--scene", "cantilever-test", "--set", "fabric=denim",

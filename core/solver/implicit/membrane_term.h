@@ -36,7 +36,8 @@ class MembraneTerm {
     const Vec3<Real> v1 = v[1] - v[0], v2 = v[2] - v[0];
     forces_ = membrane_forces(
         t, membrane_stress<Real>(c, t, e, gradient_u(t, v1, v2), gradient_v(t, v1, v2)));
-    const Real factor = t.area * (1 + c.relaxation_time * rate), shear = factor * c.shear;
+    const Real factor = t.area * (1 + c.stretch_time * rate),
+               shear = t.area * (1 + c.shear_time * rate) * c.shear;
     const Vec3<Real> u = e.w_u * e.per_u, w = e.w_v * e.per_v;
     uu_ = u * u.transpose() * (factor * c.warp) + e.w_v * e.w_v.transpose() * shear;
     vv_ = w * w.transpose() * (factor * c.weft) + e.w_u * e.w_u.transpose() * shear;

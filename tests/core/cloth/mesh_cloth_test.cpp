@@ -180,7 +180,6 @@ TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hin
   for (const auto& change : std::vector<void (*)(ClothDef&)>{
            [](ClothDef& d) { d.mesh->mesh.positions[20][2] += 0.001; },
            [](ClothDef& d) { d.rest_angle = 0.1; },
-           [](ClothDef& d) { d.fabric.bending_damping = 1e-6; },
            [](ClothDef& d) { d.bending_model = BendingModel::hinges; },
            [](ClothDef& d) { d.bending_model = BendingModel::sine_hinges; }}) {
     ClothDef def = flat;

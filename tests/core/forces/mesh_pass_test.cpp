@@ -235,7 +235,8 @@ TEST_CASE(
   def.fabric.damping_ratio = 1;
   const ClothModel<double> model = build_cloth<double>(def);
   ClothModel<double> undamped = model;
-  undamped.parts[0].membrane_tensor.relaxation_time = 0;
+  undamped.parts[0].membrane_tensor.stretch_time = 0;
+  undamped.parts[0].membrane_tensor.shear_time = 0;
   std::vector<double> inverse_mass;
   for (const double mass : model.mass) inverse_mass.push_back(1 / mass);
   const KickedParticles<double> particles{inverse_mass.data(), nullptr};
