@@ -32,4 +32,18 @@ inline constexpr double kCalmRenewal = 0.9;
 /// could let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
 inline constexpr double kCalmClearance = 0.999;
 
+// The moduli of XPBD.
+
+/// Strain with which they are computed [1]. Larger: strains are no longer small. Smaller: what is
+/// added to the squared length of springs counts.
+inline constexpr double kProbedStrain = 1e-4;
+
+/// Side of the square in the middle of a grid whose springs count [cells]. Larger: the border comes
+/// nearer. Smaller: fewer springs to average over; it is even, as colours are.
+inline constexpr int kProbedCells = 8;
+
+/// Edges between the border of a mesh and the triangles that count, if it is wide enough [1].
+/// Larger: fewer triangles. Smaller: the border counts.
+inline constexpr int kMostRings = 8;
+
 }  // namespace weft

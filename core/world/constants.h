@@ -74,6 +74,25 @@ inline constexpr int kSleepTicksAhead = 2;
 /// it. Larger: scenes that sag out pass without a warning. Smaller: warnings for what holds.
 inline constexpr double kMostHangingStrain = 0.15;
 
+/// Share of a modulus below which XPBD counts as softer than asked for [1]. Larger: warnings for
+/// what nobody sees. Smaller: cloth is a tenth too soft and nothing is said.
+inline constexpr double kLeastModulusShare = 0.95;
+
+/// Side of the grid on which its moduli are computed [cells]. Larger: it takes longer. Smaller: the
+/// border counts.
+inline constexpr int kModulusCells = 32;
+
+/// Strain of a mesh's triangles in its uv up to which these count as where it lies flat [1].
+/// Larger: distorted uv pass, and the moduli are off by as much. Smaller: those of rounded files
+/// are unknown.
+inline constexpr double kUvStrain = 0.01;
+
+/// Springs that may be relaxed to compute the moduli of a cloth once, some hundredths of a second,
+/// and what a triangle counts for [1]. Larger: scenes are built more slowly, as they are computed
+/// up to a dozen times. Smaller: those of large meshes, or of many sweeps, are not known.
+inline constexpr double kMostProbedSprings = 4e6;
+inline constexpr double kSpringsOfTriangle = 8;
+
 /// Energy without a source that a hard case may gain, as a fraction of the energy in play [1].
 /// Larger: a solver that heats cloth passes. Smaller: rounding fails a case.
 inline constexpr double kMostEnergyExcess = 0.01;

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/world/cost.h"
+#include "core/world/effective_moduli.h"
 #include "core/world/mesh_damping.h"
 #include "core/world/object_repair.h"
 #include "core/world/pin_extent.h"
@@ -47,6 +48,8 @@ std::vector<SceneNotice> notices_of(const ServedWorld& world,
   for (const std::string& repair : repairs) notices.push_back({"mesh_repaired", repair});
   for (const SlackSprings& slack : slack_springs(world))
     notices.push_back({"springs_slack", describe(slack)});
+  for (const std::string& softer : describe(effective_moduli(world)))
+    notices.push_back({"softer_than_fabric", softer});
   if (const auto pins = coarse_pins(world); !pins.empty())
     notices.push_back({"pins_coarse", describe(pins), false});
   for (const MeshDamping& damping : damping_of_meshes(world))
