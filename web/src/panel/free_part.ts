@@ -1,7 +1,7 @@
 import { element } from './element.js';
 
 const MARGIN = 12; // between panels and what is framed [pixels]
-const MIDDLE = 0.5; // of the width, where what is framed is; a corner beside it covers nothing
+const MIDDLE = 0.44; // of the width, where what is framed is; a corner beside it covers nothing
 const MOST_ABOVE = 0.25;
 const MOST_BELOW = 0.4;
 
