@@ -207,6 +207,14 @@ void share_force(const std::vector<Index>& particles, const std::vector<Real>& w
 }  // namespace
 
 template <class Real>
+void fit_hand(const ClothModel<Real>& model, Grab<Real>& grab) {
+  if (grab.def.mode != GrabMode::live) return;
+  const double stiffness = grab.def.stiffness, per_mass = inverse_held_mass(model, grab);
+  grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(stiffness / per_mass));
+  grab.bound = {stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
+}
+
+template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs) {
   assert(state.x.size() == model.mass.size());
@@ -229,13 +237,8 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   grab.offset = hit - weighted_mean(grab, state.x);
   grab.target = def.target.cast<Real>();
   grab.path_begin = grab.path_end = hit;
-  if (def.mode == GrabMode::live) {
-    const double per_mass = inverse_held_mass(model, grab);
-    grab.damping = static_cast<Real>(2 * kGrabDampingRatio * std::sqrt(def.stiffness / per_mass));
-    grab.bound = {def.stiffness * per_mass, static_cast<double>(grab.damping) * per_mass};
-  }
-  grabs.list.push_back(std::move(grab));
-  return grabs.list.back().id;
+  fit_hand(model, grab);
+  return grabs.list.emplace_back(std::move(grab)).id;
 }
 
 template <class Real>
@@ -375,6 +378,7 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
 #define WEFT_INSTANTIATE(Real)                                                               \
   template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&, \
                            Grabs<Real>&);                                                    \
+  template void fit_hand(const ClothModel<Real>&, Grab<Real>&);                              \
   template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                               \
   template bool remove_grab(GrabId, Grabs<Real>&);                                           \
   template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,        \

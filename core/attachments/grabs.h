@@ -89,6 +89,10 @@ template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,
                 Grabs<Real>& grabs);
 
+/// Damping and bound of a live hand, for the masses that it holds. Call when they have changed.
+template <class Real>
+void fit_hand(const ClothModel<Real>& model, Grab<Real>& grab);
+
 /// Moves the target; the hand moves there in a straight line over the coming tick, as far as
 /// lead_hands allows. Throws DefinitionError if the target is out of range. False if there is no
 /// such grab.

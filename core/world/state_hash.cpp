@@ -73,11 +73,25 @@ std::vector<double> numbers_of(const EnvironmentDef& environment) {
   return numbers;
 }
 
+std::vector<double> numbers_of(const FabricDef& fabric) {
+  std::vector<double> numbers;
+  visit_fields_of_fabric(fabric,
+                         [&numbers](const FieldInfo&, double value) { numbers.push_back(value); });
+  return numbers;
+}
+
 /// Conditions that are as defined add nothing.
 void feed(XXH64_state_t& hash, const Conditions& conditions) {
   const std::vector<double> present = numbers_of(conditions.present);
   if (present != numbers_of(conditions.defined)) feed(hash, present.data(), present.size());
   if (conditions.softness != 1) feed(hash, &conditions.softness, 1);
+  assert(conditions.cloths.size() == conditions.scene_fabrics.size());
+  for (std::size_t k = 0; k < conditions.cloths.size(); ++k) {
+    std::vector<double> fabric = numbers_of(conditions.cloths[k].fabric);
+    if (fabric == numbers_of(conditions.scene_fabrics[k])) continue;
+    fabric.push_back(static_cast<double>(k));
+    feed(hash, fabric.data(), fabric.size());
+  }
 }
 
 }  // namespace

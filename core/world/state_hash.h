@@ -5,6 +5,7 @@
 #include "core/attachments/grabs.h"
 #include "core/attachments/gripper.h"
 #include "core/attachments/pins.h"
+#include "core/cloth/cloth_def.h"
 #include "core/cloth/cloth_state.h"
 #include "core/contact/colliders/collider_state.h"
 #include "core/forces/air/environment.h"
@@ -13,17 +14,19 @@
 
 namespace weft {
 
-/// Present environment and softness of a world, with the scene's environment for comparison.
+/// Present environment, softness and fabrics of a world, with those of the scene for comparison.
 struct Conditions {
   const EnvironmentDef& present;
   const EnvironmentDef& defined;
-  double softness = 1;  ///< see World::set_softness
+  double softness = 1;                          ///< see World::set_softness
+  const std::vector<ClothDef>& cloths;          ///< with their present fabrics
+  const std::vector<FabricDef>& scene_fabrics;  ///< one for each
 };
 
 /// XXH64 over the bits of everything that determines the future of a world: positions, velocities,
 /// pin counts of particles, grabs with their targets, colliders that moved or have a command,
-/// grippers, sleeping cloths, an environment or softness that differs from the scene's, and the
-/// tick unless all cloths sleep.
+/// grippers, sleeping cloths, an environment, softness or fabric that differs from the scene's, and
+/// the tick unless all cloths sleep.
 /// @param asleep  for each cloth 1 if it sleeps
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,

@@ -35,6 +35,13 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                        runtime.executor);
 }
 
+template <class Real>
+Sleep<Real> make_sleep(const WorldDef& def, const ClothModel<Real>& model) {
+  const bool together =
+      solver_of(def) == SolverKind::relaxation || contact_of(def) == ContactModel::seed;
+  return Sleep<Real>(model, def.sleep, 1 / def.tick_rate, together);
+}
+
 /// The definition after validation, with the jaws of grippers among its colliders; nothing is built
 /// from an invalid one.
 WorldDef validated(WorldDef def) {
@@ -70,25 +77,35 @@ void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
-      model_(build_cloths<Real>(cloths_to_build(def_))),
-      contact_(make_contact(def_, model_, runtime)), account_(total_mass(model_)),
-      sleep_(model_, def.sleep, tick_seconds(),
-             solver_of(def) == SolverKind::relaxation || contact_of(def) == ContactModel::seed) {
+      model_(build_cloths<Real>(cloths_to_build(def_))), account_(total_mass(model_)),
+      sleep_(make_sleep(def_, model_)) {
+  for (const ClothDef& cloth : def_.cloths) scene_fabrics_.push_back(cloth.fabric);
   if (def_.start) validate(*def_.start, model_.mass.size());
   state_ = state_at(def_.start, model_);
-  for (const ClothPart<Real>& part : model_.parts)
-    thickest_ = std::max(thickest_, part.fabric.thickness);
   refuse_too_stiff();
-  const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
-  if (contact_of(def_) == ContactModel::seed && something_to_meet)
-    seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
-  if (has_guard(def_)) guard_.emplace(model_, runtime_.executor);
+  build_contact();
   prepare_solver();
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);
   pick_tree_.build(boxes);
   reset();
   refuse_too_stiff();  // clamps stiffen
+}
+
+/// Builds what decides on meeting, rest and runaway energy, for the present model.
+template <class Real>
+void World<Real>::build_contact() {
+  contact_ = make_contact(def_, model_, runtime_);
+  contact_.log_impulses(measures_forces_ || energy_);
+  sleep_ = make_sleep(def_, model_);
+  account_ = EnergyAccount(total_mass(model_));
+  thickest_ = 0;
+  for (const ClothPart<Real>& part : model_.parts)
+    thickest_ = std::max(thickest_, part.fabric.thickness);
+  const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
+  if (contact_of(def_) == ContactModel::seed && something_to_meet)
+    seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
+  if (has_guard(def_)) guard_.emplace(model_, runtime_.executor);
 }
 
 /// Throws DefinitionError if a tick would take too many substeps.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -151,14 +152,21 @@ class World {
   void set_softness(double softness);
   double softness() const { return softness_; }
 
+  /// The same world with a cloth of another fabric, in motion: positions, velocities, pins, hands
+  /// and objects stay, contact forgets the past, and a reset keeps the fabric. This world is
+  /// unchanged, so its owner may still refuse the other one, e.g. for its cost. Throws
+  /// DefinitionError if the fabric cannot be built on this mesh or takes too many substeps.
+  /// @param cloth  its index, below the number of cloths
+  std::unique_ptr<World> with_fabric(std::size_t cloth, const FabricDef& fabric) const;
+
   /// First triangle of the cloth that the ray meets, from either side.
   /// @param direction  of any length but zero
   /// Throws DefinitionError if the ray is not finite or has no direction.
   std::optional<ClothHit> pick(const Vec3d& origin, const Vec3d& direction) const;
 
   /// Hash of everything besides the definition that determines the future: positions, velocities,
-  /// pins, grabs, poses of moving colliders, changed environment and softness, tick. Excludes the
-  /// tick while all cloths sleep.
+  /// pins, grabs, poses of moving colliders, changed environment, softness and fabrics, tick.
+  /// Excludes the tick while all cloths sleep.
   std::uint64_t hash() const;
   /// The hash before the tick that runs. Callable at stop points of `step` alone, where the present
   /// state is that of half a tick.
@@ -251,6 +259,8 @@ class World {
   void renew_clamps();
   void weave_hinges(std::size_t part);
   void refuse_jaw(std::size_t collider) const;
+  void take_fabric(std::size_t cloth, const FabricDef& fabric);
+  void build_contact();
   void masses_changed();
   void sleep_changed();
   void wake(Index particle);
@@ -292,6 +302,7 @@ class World {
   Runtime runtime_;
   ClothModel<Real> model_;
   double softness_ = 1;
+  std::vector<FabricDef> scene_fabrics_;  ///< of each cloth, as the scene defined it
   ClothState<Real> state_;
   struct Motion {
     Vec3Array<Real> x, v;

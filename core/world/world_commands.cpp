@@ -236,7 +236,8 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 template <class Real>
 std::uint64_t World<Real>::hash() const {
   return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, sleep_.asleep(),
-                    {environment_, def_.environment, softness_}, tick_);
+                    {environment_, def_.environment, softness_, def_.cloths, scene_fabrics_},
+                    tick_);
 }
 
 template <class Real>
@@ -247,8 +248,8 @@ std::uint64_t World<Real>::hash_before_tick() const {
   environment.wind = before.wind;
   const Sleep<Real>& sleep = before.sleep ? *before.sleep : sleep_;
   return state_hash(before.state, before.pins, before.grabs, def_.colliders, before.colliders,
-                    before.grippers, sleep.asleep(), {environment, def_.environment, softness_},
-                    tick_);
+                    before.grippers, sleep.asleep(),
+                    {environment, def_.environment, softness_, def_.cloths, scene_fabrics_}, tick_);
 }
 
 template <class Real>

@@ -1,0 +1,140 @@
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/world/world.h"
+#include "tests/support/worlds.h"
+
+// A cloth that becomes another fabric while it moves.
+
+using namespace weft;
+
+namespace {
+
+FabricDef heavy_fabric() {
+  FabricDef fabric;
+  fabric.areal_density = 0.5;
+  fabric.stretch_warp = 2000;
+  fabric.stretch_weft = 900;
+  fabric.shear = 90;
+  fabric.bending_warp = fabric.bending_weft = 2e-4;
+  fabric.damping_ratio = 0.2;
+  fabric.friction = 0.1;
+  return fabric;
+}
+
+/// A cloth that swings from its upper border against a ball, and rubs on it.
+WorldDef swinging(SolverKind solver) {
+  ClothDef cloth = test::flat_cloth(11, 11, 0.5, 0.5);
+  cloth.bending_model = BendingModel::hinges;
+  cloth.origin = Vec3d(0, 1, 0);
+  WorldDef def;
+  def.cloths = {cloth};
+  def.solver.kind = solver;
+  def.pins = {{EdgeStrip{Side::top, 0.06}, 0, "cloth"}};
+  def.colliders = {{"ball", SphereDef{Vec3d(0.25, 0.75, 0.3), 0.15}}};
+  return def;
+}
+
+void step(World<float>& world, int ticks) {
+  for (int tick = 0; tick < ticks; ++tick) world.step();
+}
+
+StartDef start_of(const World<float>& world) {
+  StartDef start;
+  for (const Vec3f& x : world.state().x) start.x.push_back(x.cast<double>());
+  for (const Vec3f& v : world.state().v) start.v.push_back(v.cast<double>());
+  return start;
+}
+
+}  // namespace
+
+TEST_CASE("a fabric changed in motion has the future of a scene of it that starts in this state") {
+  const auto solver = GENERATE(SolverKind::verlet, SolverKind::implicit, SolverKind::relaxation);
+  CAPTURE(static_cast<int>(solver));
+  WorldDef def = swinging(solver);
+  World<float> before(def);
+  step(before, 40);
+  const auto changed = before.with_fabric(0, heavy_fabric());
+  def.cloths[0].fabric = heavy_fabric();
+  def.start = start_of(before);
+  World<float> loaded(def);
+  for (int tick = 0; tick < 60; ++tick) {
+    changed->step();
+    loaded.step();
+    REQUIRE(changed->state().x == loaded.state().x);
+    REQUIRE(changed->state().v == loaded.state().v);
+  }
+  CHECK(changed->report().substeps == loaded.report().substeps);
+  World<float> unchanged(swinging(solver));
+  step(unchanged, 100);
+  CHECK(changed->state().x != unchanged.state().x);
+}
+
+TEST_CASE("trying a fabric on leaves the world as it was, and a refused one is named") {
+  World<float> world(swinging(SolverKind::verlet)), untouched(swinging(SolverKind::verlet));
+  step(world, 20);
+  step(untouched, 20);
+  world.with_fabric(0, heavy_fabric());
+  FabricDef wrong = heavy_fabric();
+  wrong.areal_density = -1;
+  try {
+    world.with_fabric(0, wrong);
+    FAIL("a negative density was taken");
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "fabric.areal_density");
+  }
+  FabricDef stiff = heavy_fabric();
+  stiff.areal_density = 1e-3;
+  stiff.stretch_warp = stiff.stretch_weft = stiff.shear = 1e6;
+  WorldDef fine = swinging(SolverKind::verlet);
+  fine.cloths[0].rows = fine.cloths[0].columns = 31;
+  CHECK_THROWS_AS(World<float>(fine).with_fabric(0, stiff), DefinitionError);
+  step(world, 20);
+  step(untouched, 20);
+  CHECK(world.hash() == untouched.hash());
+}
+
+TEST_CASE("a fabric unlike the scene's is in the hash, survives a reset, and may be taken back") {
+  const World<float> world(swinging(SolverKind::verlet));
+  const auto changed = world.with_fabric(0, heavy_fabric());
+  CHECK(changed->hash() != world.hash());
+  changed->step();
+  changed->reset();
+  CHECK(changed->def().cloths[0].fabric.areal_density == 0.5);
+  const auto back = changed->with_fabric(0, world.def().cloths[0].fabric);
+  CHECK(back->hash() == world.hash());
+}
+
+TEST_CASE("a change of one cloth's fabric moves no other cloth") {
+  WorldDef def = swinging(SolverKind::verlet);
+  def.cloths.push_back(test::flat_cloth(9, 9, 0.4, 0.4));
+  def.cloths[1].name = "other";
+  def.cloths[1].origin = Vec3d(5, 1, 0);
+  World<float> world(def);
+  step(world, 20);
+  const auto changed = world.with_fabric(0, heavy_fabric());
+  const auto first = static_cast<std::size_t>(world.model().parts[1].particles.first);
+  changed->step();
+  world.step();
+  const double dt = world.tick_seconds();
+  for (std::size_t i = first; i < world.state().x.size(); ++i)
+    CHECK((changed->state().x[i] - world.state().x[i]).norm() < 1e-3 * dt);
+}
+
+TEST_CASE("a hand keeps its grip through a change of fabric, with the damping of the new masses") {
+  World<float> world(swinging(SolverKind::verlet));
+  const ClothHit hit = *world.pick(Vec3d(0.25, 5, 0.4), -Vec3d::UnitY());
+  GrabDef def;
+  def.triangle = hit.triangle;
+  def.barycentric = hit.barycentric;
+  def.target = hit.position;
+  const GrabId id = world.grab(def);
+  const auto changed = world.with_fabric(0, heavy_fabric());
+  REQUIRE(changed->grabs().list.size() == 1);
+  CHECK(changed->grabs().list[0].id == id);
+  WorldDef of_it = swinging(SolverKind::verlet);
+  of_it.cloths[0].fabric = heavy_fabric();
+  World<float> made(of_it);
+  made.grab(def);
+  CHECK(changed->grabs().list[0].damping == made.grabs().list[0].damping);
+}
