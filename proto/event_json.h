@@ -5,18 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/events.h"
+#include "proto/messages/command_writer.h"
 
 // Parts of events that answers to `query` repeat. Included only by the encoders.
 
 namespace weft::proto {
 
-nlohmann::ordered_json json_of(const Strain& strain);
-nlohmann::ordered_json json_of(const Energy& energy);
-nlohmann::ordered_json json_of(const Crossings& crossings);
-nlohmann::ordered_json json_of(const State& state);
-nlohmann::ordered_json json_of(const ViewerInfo& viewer);
-nlohmann::ordered_json json_of(const PinInfo& pin);
-nlohmann::ordered_json json_of(const GrabInfo& grab);
+template <Described Part>
+nlohmann::ordered_json json_of(const Part& part) {
+  return CommandWriter::json_of(part);
+}
 
 template <class Item>
 nlohmann::ordered_json json_of(const std::vector<Item>& items) {

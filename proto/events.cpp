@@ -84,105 +84,14 @@ Json json_of_collider(const ColliderInfo& collider) {
   return out;
 }
 
-Json json_of_guarantee(const Guarantee& guarantee) {
-  return {{"state", name_of(guarantee.state)},
-          {"covers", guarantee.covers},
-          {"pairs", guarantee.pairs},
-          {"reasons", guarantee.reasons}};
+template <class Event>
+std::string encode_event(const Event& event) {
+  Json out = {{"op", Event::kOp}};
+  put_fields(out, event);
+  return text_of(out);
 }
 
 }  // namespace
-
-const char* name_of(GuaranteeState state) {
-  static constexpr std::array kStates = {"held", "bad_start", "void", "none"};
-  return kStates[static_cast<std::size_t>(state)];
-}
-
-Json json_of(const Strain& strain) {
-  return {{"largest", strain.largest}, {"p99", strain.p99}};
-}
-
-Json json_of(const Energy& energy) {
-  return {{"kinetic", energy.kinetic},
-          {"stretch", energy.stretch},
-          {"bending", energy.bending},
-          {"gravity", energy.gravity},
-          {"total", energy.total}};
-}
-
-Json json_of(const Crossings& crossings) {
-  Json out = {{"count", crossings.count}, {"tick", crossings.tick}, {"smallest_gap", nullptr}};
-  put_if(out, "smallest_gap", crossings.smallest_gap);
-  return out;
-}
-
-Json json_of(const State& state) {
-  return {{"tick", state.tick},
-          {"time", state.time},
-          {"paused", state.paused},
-          {"speed", state.speed},
-          {"pace", state.pace},
-          {"softness", state.softness},
-          {"budget_ms", state.budget_ms},
-          {"over_budget", name_of(state.over_budget)},
-          {"scene", state.scene},
-          {"tick_rate", state.tick_rate},
-          {"gravity", state.gravity},
-          {"wind", state.wind},
-          {"gust_speed", state.gust_speed},
-          {"gust_length", state.gust_length},
-          {"air_density", state.air_density},
-          {"still_air", state.still_air},
-          {"drag", state.drag},
-          {"fans", CommandWriter::json_of(state.fans)},
-          {"fabric", state.fabric},
-          {"solver", state.solver},
-          {"substeps", state.substeps},
-          {"particles", state.particles},
-          {"step_ms", state.step_ms},
-          {"real_time_factor", state.real_time_factor},
-          {"sleeping", {{"islands", state.sleeping.islands}, {"cloths", state.sleeping.cloths}}},
-          {"guarantee", json_of_guarantee(state.guarantee)},
-          {"crossings", state.crossings ? json_of(*state.crossings) : Json()},
-          {"strain", json_of(state.strain)},
-          {"energy", json_of(state.energy)}};
-}
-
-Json json_of(const ViewerInfo& viewer) {
-  Json out = {{"id", viewer.id},
-              {"name", viewer.name},
-              {"color", viewer.color},
-              {"role", viewer.role},
-              {"camera", nullptr}};
-  if (viewer.camera) put_fields(out["camera"], *viewer.camera);
-  return out;
-}
-
-Json json_of(const PinInfo& pin) {
-  Json out = {{"id", pin.id},         {"viewer", pin.viewer},     {"particle", pin.particle},
-              {"radius", pin.radius}, {"position", pin.position}, {"count", pin.count}};
-  if (pin.target) {
-    out["target"] = *pin.target;
-    out["behind"] = pin.behind;
-  }
-  return out;
-}
-
-Json json_of(const GrabInfo& grab) {
-  Json out = {{"id", grab.id},
-              {"viewer", grab.viewer},
-              {"drag", grab.drag},
-              {"triangle", grab.point.triangle},
-              {"barycentric", grab.point.barycentric},
-              {"radius", grab.radius},
-              {"stiffness", grab.stiffness},
-              {"max_force", grab.max_force},
-              {"held", grab.held},
-              {"target", grab.target},
-              {"mode", name_of(grab.mode)}};
-  put_if(out, "force", grab.force);
-  return out;
-}
 
 std::string encode_welcome(const Welcome& welcome) {
   return text_of({{"op", "welcome"},
@@ -224,9 +133,7 @@ std::string encode_mesh(const MeshAnnouncement& mesh) {
 }
 
 std::string encode_state(const State& state) {
-  Json out = {{"op", "state"}};
-  out.update(json_of(state));
-  return text_of(out);
+  return encode_event(state);
 }
 
 std::string encode_roster(const std::vector<ViewerInfo>& viewers) {
@@ -242,21 +149,11 @@ std::string encode_grabs(std::uint64_t tick, const std::vector<GrabInfo>& grabs)
 }
 
 std::string encode_notice(const Notice& notice) {
-  static constexpr std::array kLevels = {"info", "warning", "error"};
-  Json out = {{"op", "notice"},
-              {"level", kLevels[static_cast<std::size_t>(notice.level)]},
-              {"code", notice.code},
-              {"message", notice.message}};
-  put_if(out, "tick", notice.tick);
-  put_if(out, "viewer", notice.viewer);
-  put_if(out, "drag", notice.drag);
-  put_if(out, "count", notice.count);
-  put_if(out, "value", notice.value);
-  return text_of(out);
+  return encode_event(notice);
 }
 
 std::string encode_bye(const Bye& bye) {
-  return text_of({{"op", "bye"}, {"code", bye.code}, {"reason", bye.reason}});
+  return encode_event(bye);
 }
 
 std::string hash_text(std::uint64_t hash) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "proto/commands.h"
+#include "proto/hash_text.h"
 #include "proto/types.h"
 
 // Messages that the server sends unasked. README.md section 4 gives the meaning of each field.
@@ -100,16 +102,39 @@ struct MeshAnnouncement {
 
 struct Strain {
   double largest = 0, p99 = 0;
+
+  static constexpr const char* kName = "Strain";
+  static void describe(auto& io, auto& strain) {
+    io.required(Field{"largest", "of an edge, relative"}, strain.largest);
+    io.required(Field{"p99", "which one edge in a hundred exceeds"}, strain.p99);
+  }
 };
 
 struct Energy {
   double kinetic = 0, stretch = 0, bending = 0, gravity = 0, total = 0;  ///< [J]
+
+  static constexpr const char* kName = "Energy";
+  static void describe(auto& io, auto& energy) {
+    io.required(Field{"kinetic", "", {}, "J"}, energy.kinetic);
+    io.required(Field{"stretch", "of the membrane", {}, "J"}, energy.stretch);
+    io.required(Field{"bending", "", {}, "J"}, energy.bending);
+    io.required(Field{"gravity", "above the height 0", {}, "J"}, energy.gravity);
+    io.required(Field{"total", "", {}, "J"}, energy.total);
+  }
 };
 
 /// Cloths at rest, which are not stepped until something acts on them.
 struct Sleeping {
   std::uint32_t islands = 0;  ///< groups of touching cloths that sleep and wake together
   std::vector<std::string> cloths;
+
+  static constexpr const char* kName = "Sleeping";
+  static void describe(auto& io, auto& sleeping) {
+    io.required(Field{"islands", "groups of touching cloths that sleep and wake together"},
+                sleeping.islands);
+    io.required(Field{"cloths", "by name; no frames are sent while all of them rest"},
+                sleeping.cloths);
+  }
 };
 
 /// Intersections of cloths' edges and triangles, with each other and with objects.
@@ -117,6 +142,18 @@ struct Crossings {
   std::uint64_t count = 0;
   std::uint64_t tick = 0;              ///< of the state in which they were counted
   std::optional<double> smallest_gap;  ///< least contact distance then [m]; empty: nothing is near
+
+  static constexpr const char* kName = "Crossings";
+  static void describe(auto& io, auto& crossings) {
+    io.required(Field{"count", "edges of cloth that pass through something"}, crossings.count);
+    io.required(Field{"tick", "of the count"}, crossings.tick);
+    io.nullable(Field{"smallest_gap",
+                      "least contact distance then, negative inside an object; null: nothing is "
+                      "near",
+                      {},
+                      "m"},
+                crossings.smallest_gap);
+  }
 };
 
 /// Whether the promise of no crossings holds.
@@ -127,14 +164,23 @@ enum class GuaranteeState : std::uint8_t {
   none,       ///< the contact promises nothing
 };
 
-/// The word on the wire.
-const char* name_of(GuaranteeState state);
+template <>
+inline constexpr std::array<const char*, 4> kWords<GuaranteeState> = {"held", "bad_start", "void",
+                                                                      "none"};
 
 struct Guarantee {
   GuaranteeState state = GuaranteeState::held;
   std::vector<std::string> covers;   ///< the words "objects" and "cloth", as far as it covers them
   std::uint64_t pairs = 0;           ///< number of feature pairs without a promise
   std::vector<std::string> reasons;  ///< in words; none if it is held
+
+  static constexpr const char* kName = "Guarantee";
+  static void describe(auto& io, auto& guarantee) {
+    io.required(Field{"state", "whether the promise of no crossings holds"}, guarantee.state);
+    io.required(Field{"covers", "`objects`, `cloth` or both"}, guarantee.covers);
+    io.required(Field{"pairs", "of features, without a promise"}, guarantee.pairs);
+    io.required(Field{"reasons", "in words; none if the promise holds"}, guarantee.reasons);
+  }
 };
 
 struct State {
@@ -152,6 +198,7 @@ struct State {
   double drag = 0;
   std::vector<Fan> fans;
   std::string fabric, solver;
+  std::vector<FabricChange> fabrics;  ///< of each cloth, every value
   std::uint32_t substeps = 0;
   std::uint32_t particles = 0;
   double step_ms = 0;
@@ -161,12 +208,60 @@ struct State {
   std::optional<Crossings> crossings;  ///< as last counted
   Strain strain;
   Energy energy;
+
+  static constexpr const char* kOp = "state";
+  static void describe(auto& io, auto& state) {
+    io.required(Field{"tick", ""}, state.tick);
+    io.required(Field{"time", "simulated", {}, "s"}, state.time);
+    io.required(Field{"paused", ""}, state.paused);
+    io.required(Field{"speed", "simulated time per real time that was asked for"}, state.speed);
+    io.required(Field{"pace", "fraction of `speed` at which time passes"}, state.pace);
+    io.required(Field{"softness", "fraction of their stiffness that the springs have"},
+                state.softness);
+    io.required(Field{"budget_ms", "for each tick that is due; 0: no bound", {}, "ms"},
+                state.budget_ms);
+    io.required(Field{"over_budget", "what gives way beyond it"}, state.over_budget);
+    io.required(Field{"scene", "its name"}, state.scene);
+    io.required(Field{"tick_rate", "", {}, "1/s"}, state.tick_rate);
+    io.required(Field{"gravity", "acceleration", {}, "m/s²"}, state.gravity);
+    io.required(Field{"wind", "mean velocity", {}, "m/s"}, state.wind);
+    io.required(Field{"gust_speed", "typical speed of the gusts", {}, "m/s"}, state.gust_speed);
+    io.required(Field{"gust_length", "size of an eddy", {}, "m"}, state.gust_length);
+    io.required(Field{"air_density", "", {}, "kg/m³"}, state.air_density);
+    io.required(Field{"still_air", "air resists without wind too"}, state.still_air);
+    io.required(Field{"drag", "uniform damping of velocities", {}, "1/s"}, state.drag);
+    io.required(Field{"fans", "all local winds"}, state.fans);
+    io.required(Field{"fabric", "names of all cloths' fabrics"}, state.fabric);
+    io.required(Field{"fabrics", "of each cloth, every value; without `preset` if it is of none"},
+                state.fabrics);
+    io.required(Field{"solver", "its name"}, state.solver);
+    io.required(Field{"substeps", "of the last tick"}, state.substeps);
+    io.required(Field{"particles", "of all cloths"}, state.particles);
+    io.required(Field{"step_ms", "median time of a tick", {}, "ms"}, state.step_ms);
+    io.required(Field{"real_time_factor", "simulated per real time that is reached"},
+                state.real_time_factor);
+    io.required(Field{"sleeping", "cloths at rest, which are not stepped"}, state.sleeping);
+    io.required(Field{"guarantee", "whether the promise holds that cloth passes through nothing"},
+                state.guarantee);
+    io.nullable(Field{"crossings", "as last counted; null before the first count"},
+                state.crossings);
+    io.required(Field{"strain", "of the springs"}, state.strain);
+    io.required(Field{"energy", ""}, state.energy);
+  }
 };
 
 struct ViewerInfo {
   ViewerId id = 0;
   std::string name, color, role;
   std::optional<Camera> camera;
+  static constexpr const char* kName = "Viewer";
+  static void describe(auto& io, auto& viewer) {
+    io.required(Field{"id", "its number"}, viewer.id);
+    io.required(Field{"name", ""}, viewer.name);
+    io.required(Field{"color", "`#rrggbb`"}, viewer.color);
+    io.required(Field{"role", "what it may do"}, viewer.role);
+    io.nullable(Field{"camera", "where it looks from, as last told"}, viewer.camera);
+  }
 };
 
 struct PinInfo {
@@ -178,6 +273,18 @@ struct PinInfo {
   std::uint32_t count = 0;     ///< number of particles held
   std::optional<Vec3> target;  ///< target of a moving pin [m]
   bool behind = false;         ///< its particles lag behind the target
+  static constexpr const char* kName = "Pin";
+  static void describe(auto& io, auto& pin) {
+    io.required(Field{"id", ""}, pin.id);
+    io.required(Field{"viewer", "its owner; 0: the scene"}, pin.viewer);
+    io.required(Field{"particle", "the centre of its disc"}, pin.particle);
+    io.required(Field{"radius", "of the disc", {}, "m"}, pin.radius);
+    io.required(Field{"position", "of its particle", {}, "m"}, pin.position);
+    io.required(Field{"count", "particles that it holds"}, pin.count);
+    io.optional(Field{"target", "of a moving pin", {}, "m"}, pin.target);
+    io.only_if(pin.target.has_value(), "moving pins",
+               Field{"behind", "whether its particles lag behind"}, pin.behind, true);
+  }
 };
 
 struct GrabInfo {
@@ -189,9 +296,26 @@ struct GrabInfo {
   Vec3 held{}, target{};
   DragMode mode = DragMode::live;
   std::optional<Vec3> force;  ///< on the cloth [N]; only in answers to `query`
+  static constexpr const char* kName = "Grab";
+  static void describe(auto& io, auto& grab) {
+    io.required(Field{"id", "the room's number"}, grab.id);
+    io.required(Field{"viewer", "its owner; 0: the scene"}, grab.viewer);
+    io.required(Field{"drag", "the owner's number"}, grab.drag);
+    io.required(kHeldTriangle, grab.point.triangle);
+    io.required(kHeldWeights, grab.point.barycentric);
+    io.required(Field{"radius", "of the held disc", {}, "m"}, grab.radius);
+    io.required(Field{"stiffness", "", {}, "N/m"}, grab.stiffness);
+    io.required(Field{"max_force", "", {}, "N"}, grab.max_force);
+    io.required(Field{"held", "the point of the cloth", {}, "m"}, grab.held);
+    io.required(Field{"target", "where it is pulled to", {}, "m"}, grab.target);
+    io.required(Field{"mode", ""}, grab.mode);
+    io.optional(Field{"force", "on the cloth; in answers to `query`", {}, "N"}, grab.force);
+  }
 };
 
 enum class NoticeLevel : std::uint8_t { info, warning, error };
+template <>
+inline constexpr std::array<const char*, 3> kWords<NoticeLevel> = {"info", "warning", "error"};
 
 struct Notice {
   NoticeLevel level = NoticeLevel::info;
@@ -201,11 +325,29 @@ struct Notice {
   std::optional<std::uint32_t> drag;
   std::optional<std::uint64_t> count;
   std::optional<double> value;
+
+  static constexpr const char* kOp = "notice";
+  static void describe(auto& io, auto& notice) {
+    io.required(Field{"level", ""}, notice.level);
+    io.required(Field{"code", "what has happened"}, notice.code);
+    io.required(Field{"message", "for people"}, notice.message);
+    io.optional(Field{"tick", "when"}, notice.tick);
+    io.optional(Field{"viewer", "that caused it"}, notice.viewer);
+    io.optional(Field{"drag", "of `lease_expired`"}, notice.drag);
+    io.optional(Field{"count", "of `frames_dropped`"}, notice.count);
+    io.optional(Field{"value", "that holds now"}, notice.value);
+  }
 };
 
 struct Bye {
   std::uint16_t code = 1001;  ///< the close code that follows
   std::string reason;
+
+  static constexpr const char* kOp = "bye";
+  static void describe(auto& io, auto& bye) {
+    io.required(Field{"code", "the close code that follows"}, bye.code);
+    io.required(Field{"reason", "for people"}, bye.reason);
+  }
 };
 
 std::string encode_welcome(const Welcome& welcome);
@@ -216,9 +358,6 @@ std::string encode_pins(std::uint64_t tick, const std::vector<PinInfo>& pins);
 std::string encode_grabs(std::uint64_t tick, const std::vector<GrabInfo>& grabs);
 std::string encode_notice(const Notice& notice);
 std::string encode_bye(const Bye& bye);
-
-/// 16 hexadecimal digits, the form of hashes in messages and URLs.
-std::string hash_text(std::uint64_t hash);
 
 /// Path of a mesh over HTTP, e.g. "/api/v1/mesh/4fd1c2a09b7e6d35".
 std::string mesh_url(std::uint64_t hash);

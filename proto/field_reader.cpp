@@ -1,5 +1,6 @@
 #include "proto/field_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -158,8 +159,22 @@ bool FieldReader::read_object_text(const char* key, std::string& text) {
   return true;
 }
 
-void FieldReader::read_objects(const char* key, std::size_t most,
-                               const std::function<void(FieldReader&)>& read_one) {
+void FieldReader::read_inner(const std::string& path, const json& node,
+                             const std::function<void(FieldReader&)>& read_it) {
+  if (!node.is_object()) return fail_type(path, node, "an object");
+  FieldReader inner(node);
+  read_it(inner);
+  if (inner.ok()) return;
+  Error error = *inner.error();
+  error.field = error.field.empty() ? path : path + "." + error.field;
+  fail(std::move(error));
+}
+
+void FieldReader::read_object(const char* key, const std::function<void(FieldReader&)>& read_it) {
+  if (const json* node = require(key)) read_inner(key, *node, read_it);
+}
+
+void FieldReader::read_list(const char* key, std::size_t most, const ReadItem& read_item) {
   const json* node = require(key);
   if (node == nullptr) return;
   if (!node->is_array()) return fail_type(key, *node, "an array");
@@ -168,16 +183,25 @@ void FieldReader::read_objects(const char* key, std::size_t most,
          std::string(key) + " must have at most " + std::to_string(most) + " entries");
     return;
   }
-  for (std::size_t k = 0; k < node->size() && ok(); ++k) {
-    const std::string path = std::string(key) + "[" + std::to_string(k) + "]";
-    if (!(*node)[k].is_object()) return fail_type(path, (*node)[k], "an object");
-    FieldReader inner((*node)[k]);
-    read_one(inner);
-    if (inner.ok()) continue;
-    Error error = *inner.error();
-    error.field = path + "." + error.field;
-    fail(std::move(error));
-  }
+  for (std::size_t k = 0; k < node->size() && ok(); ++k)
+    read_item(std::string(key) + "[" + std::to_string(k) + "]", (*node)[k]);
+}
+
+void FieldReader::read_objects(const char* key, std::size_t most,
+                               const std::function<void(FieldReader&)>& read_one) {
+  read_list(key, most,
+            [&](const std::string& path, const json& node) { read_inner(path, node, read_one); });
+}
+
+void FieldReader::read_words(const char* key, std::size_t most, std::span<const char* const> words,
+                             const std::function<void(std::size_t)>& add) {
+  read_list(key, most, [&](const std::string& path, const json& node) {
+    if (!node.is_string()) return fail_type(path, node, "a string");
+    const auto& word = node.get_ref<const std::string&>();
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found == words.end()) return fail(word_error(path, word, {words.begin(), words.end()}));
+    add(static_cast<std::size_t>(found - words.begin()));
+  });
 }
 
 void FieldReader::read_id(const char* key, std::optional<Id>& value) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -70,10 +71,18 @@ class FieldReader {
     if (ok()) value = std::move(present);
   }
 
+  /// An object; errors name its field, as in "fabric.shear".
+  void read_object(const char* key, const std::function<void(FieldReader&)>& read_it);
+
   /// An array of at most `most` objects; `read_one` gets a reader for each. Errors name the index,
   /// as in "fans[1].speed".
   void read_objects(const char* key, std::size_t most,
                     const std::function<void(FieldReader&)>& read_one);
+
+  /// An array of at most `most` words of a list; `add` gets the place of each. Errors name the
+  /// index, as in "observe[1]".
+  void read_words(const char* key, std::size_t most, std::span<const char* const> words,
+                  const std::function<void(std::size_t)>& add);
 
   /// An integer from 0 to 2^53 or a string of 1 to kMostIdBytes bytes; may be absent.
   void read_id(const char* key, std::optional<Id>& value);
@@ -84,6 +93,10 @@ class FieldReader {
   void fail(ErrorCode code, const char* key, std::string message, std::string hint = {});
 
  private:
+  void read_inner(const std::string& path, const nlohmann::json& node,
+                  const std::function<void(FieldReader&)>& read_it);
+  using ReadItem = std::function<void(const std::string& path, const nlohmann::json&)>;
+  void read_list(const char* key, std::size_t most, const ReadItem& read_item);
   const nlohmann::json* find(const char* key) const;
   const nlohmann::json* require(const char* key);
   template <std::size_t N>

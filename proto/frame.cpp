@@ -34,6 +34,24 @@ bool is_finite(const ReactionSample& reaction) {
   return all_finite(reaction.force);
 }
 
+bool is_finite(const GripperSample& gripper) {
+  return all_finite(gripper.position) && all_finite(gripper.rotation) &&
+         all_finite(gripper.reaction) && std::isfinite(gripper.opening) &&
+         std::isfinite(gripper.force);
+}
+
+/// Passes each list of samples of a frame to `visit` with the kind of its section, in the order of
+/// the sections.
+template <class AnyFrame, class Visitor>
+void visit_samples(AnyFrame& frame, Visitor&& visit) {
+  visit(kGrabs, frame.grabs);
+  visit(kApplied, frame.applied);
+  visit(kPoses, frame.poses);
+  visit(kContacts, frame.contacts);
+  visit(kReactions, frame.reactions);
+  visit(kGrippers, frame.grippers);
+}
+
 template <class Sample>
 bool read_samples(std::span<const std::byte> payload, std::vector<Sample>& samples) {
   samples = read_array<Sample>(payload);
@@ -42,25 +60,21 @@ bool read_samples(std::span<const std::byte> payload, std::vector<Sample>& sampl
                      [](const Sample& sample) { return is_finite(sample); });
 }
 
+/// Three finite numbers per vertex.
+bool read_vectors(const Section& section, std::uint32_t vertices, std::vector<float>& vectors) {
+  if (section.payload.size() != std::size_t{vertices} * sizeof(Vec3f)) return false;
+  vectors = read_array<float>(section.payload);
+  return all_finite(vectors);
+}
+
 bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) {
-  switch (section.kind) {
-    case kPositions:
-      if (section.payload.size() != std::size_t{vertices} * sizeof(Vec3f)) return false;
-      frame.positions = read_array<float>(section.payload);
-      return all_finite(frame.positions);
-    case kGrabs:
-      return read_samples(section.payload, frame.grabs);
-    case kApplied:
-      return read_samples(section.payload, frame.applied);
-    case kPoses:
-      return read_samples(section.payload, frame.poses);
-    case kContacts:
-      return read_samples(section.payload, frame.contacts);
-    case kReactions:
-      return read_samples(section.payload, frame.reactions);
-    default:
-      return true;
-  }
+  if (section.kind == kPositions) return read_vectors(section, vertices, frame.positions);
+  if (section.kind == kVelocities) return read_vectors(section, vertices, frame.velocities);
+  bool fits = true;
+  visit_samples(frame, [&](SectionKind kind, auto& samples) {
+    if (kind == section.kind) fits = read_samples(section.payload, samples);
+  });
+  return fits;
 }
 
 /// What is wrong with the fixed part of a frame; null if nothing is.
@@ -77,28 +91,20 @@ const char* fault_of(const BinaryHeader& common, const FrameFields& fields) {
   return key == (fields.reference == fields.sequence) ? nullptr : "a key frame builds on no other";
 }
 
-template <class Sample>
-void put_samples(BinaryWriter& writer, SectionKind kind, std::span<const Sample> samples) {
-  if (!samples.empty()) writer.put_section(kind, 0, samples);
-}
-
 }  // namespace
 
 void encode_frame(const FrameView& frame, Bytes& out) {
   const FrameHeader& h = frame.header;
   BinaryWriter writer(out, BinaryType::frame, 0, h.flags);
-  std::uint32_t sections = 1;
-  for (const bool empty : {frame.grabs.empty(), frame.applied.empty(), frame.poses.empty(),
-                           frame.contacts.empty(), frame.reactions.empty()})
-    sections += empty ? 0 : 1;
+  std::uint32_t sections = frame.velocities.empty() ? 1 : 2;
+  visit_samples(frame, [&](SectionKind, auto& samples) { sections += samples.empty() ? 0U : 1U; });
   writer.put(FrameFields{h.tick, h.time, h.server_time, h.sequence, h.reference, h.epoch,
                          static_cast<std::uint32_t>(frame.positions.size() / 3), 0, sections});
   writer.put_section(kPositions, 0, frame.positions);
-  put_samples(writer, kGrabs, frame.grabs);
-  put_samples(writer, kApplied, frame.applied);
-  put_samples(writer, kPoses, frame.poses);
-  put_samples(writer, kContacts, frame.contacts);
-  put_samples(writer, kReactions, frame.reactions);
+  visit_samples(frame, [&](SectionKind kind, auto& samples) {
+    if (!samples.empty()) writer.put_section(kind, 0, samples);
+  });
+  if (!frame.velocities.empty()) writer.put_section(kVelocities, 0, frame.velocities);
   writer.finish();
 }
 

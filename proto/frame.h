@@ -18,6 +18,7 @@ enum FrameFlag : std::uint8_t {
   kFrameKey = 1,   ///< needs no other frame
   kFrameJump = 2,  ///< the state was replaced; do not interpolate to it
   kFramePaused = 4,
+  kFrameObserved = 8,  ///< has what `observe` of an `advance` asked for
 };
 
 struct FrameHeader {
@@ -85,6 +86,19 @@ struct ReactionSample {
 };
 static_assert(sizeof(ReactionSample) == 20);
 
+/// A gripper at the end of the tick.
+struct GripperSample {
+  std::uint32_t jaw = 0;       ///< its left jaw's index in the text message; the right one follows
+  std::uint32_t gripping = 0;  ///< 1 if it presses something, else 0
+  Vec3f position{};            ///< of its middle [m]
+  Quatf rotation{};            ///< from its definition
+  float opening = 0;           ///< between its jaws [m]
+  float force = 0;             ///< most that each jaw presses with [N]
+  Vec3f reaction{};            ///< of the cloth on both jaws, mean of the tick [N]
+  bool operator==(const GripperSample&) const = default;
+};
+static_assert(sizeof(GripperSample) == 56);
+
 /// The input of the encoder; the caller owns the arrays.
 struct FrameView {
   FrameHeader header;
@@ -94,6 +108,8 @@ struct FrameView {
   std::span<const PoseSample> poses;
   std::span<const ContactSample> contacts;
   std::span<const ReactionSample> reactions;
+  std::span<const float> velocities = {};  ///< three per vertex [m/s], finite; or none
+  std::span<const GripperSample> grippers = {};
 };
 
 /// Writes codec f32. `out` keeps its capacity from frame to frame, so a steady stream allocates
@@ -109,6 +125,8 @@ struct Frame {
   std::vector<PoseSample> poses;
   std::vector<ContactSample> contacts;
   std::vector<ReactionSample> reactions;
+  std::vector<float> velocities;  ///< three per vertex [m/s]; empty if it does not tell them
+  std::vector<GripperSample> grippers;
 };
 
 /// Accepts exactly what README.md allows of codec f32, with finite positions. Never reads outside

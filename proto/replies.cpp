@@ -20,63 +20,9 @@ Json json_of(const ViewerCamera& camera) {
   return out;
 }
 
-Json json_of(const StageWork& stage) {
-  return {{"stage", stage.stage}, {"milliseconds", stage.milliseconds}, {"work", stage.work}};
-}
-
-Json json_of(const TreeInfo& tree) {
-  return {{"tree", tree.tree}, {"levels", tree.levels}};
-}
-
-Json json_of(const ColliderPose& collider) {
-  return {{"name", collider.name},         {"position", collider.position},
-          {"rotation", collider.rotation}, {"force", collider.force},
-          {"blocked", collider.blocked},   {"voided", collider.voided}};
-}
-
 Json json_of(const Measurements& measurements) {
   Json out = Json::object();
   for (const auto& [name, value] : measurements.values) out[name] = value;
-  return out;
-}
-
-Json json_of(const ContactInfo& c) {
-  Json out = Json::object();
-  put_if(out, "collider", c.collider);
-  out["particles"] = c.particles;
-  out["weights"] = c.weights;
-  out["point"] = c.point;
-  out["normal"] = c.normal;
-  out["gap"] = c.gap;
-  out["normal_force"] = c.normal_force;
-  out["friction"] = c.friction;
-  return out;
-}
-
-Json json_of(const PinForce& pin) {
-  return {{"pin", pin.pin}, {"force", pin.force}};
-}
-
-Json json_of(const GrabForce& grab) {
-  return {{"grab", grab.grab}, {"viewer", grab.viewer}, {"force", grab.force}};
-}
-
-Json json_of(const ColliderForce& collider) {
-  return {{"collider", collider.collider}, {"force", collider.force}};
-}
-
-Json json_of(const GripperInfo& gripper) {
-  return {{"name", gripper.name},         {"position", gripper.position},
-          {"rotation", gripper.rotation}, {"opening", gripper.opening},
-          {"force", gripper.force},       {"gripping", gripper.gripping},
-          {"reaction", gripper.reaction}};
-}
-
-Json json_of(const ReactionInfo& reactions) {
-  Json out = Json::object();
-  if (reactions.pins) out["pins"] = json_of(*reactions.pins);
-  out["grabs"] = json_of(reactions.grabs);
-  out["colliders"] = json_of(reactions.colliders);
   return out;
 }
 
@@ -108,91 +54,15 @@ struct ReplyWriter {
     out["tick"] = tick;
   }
 
-  void operator()(const DoneReply& r) { start(r.command, r.tick); }
-  void operator()(const HelloReply& r) {
-    out["command"] = "hello";
-    out["viewer"] = r.viewer;
-    out["name"] = r.name;
-    out["color"] = r.color;
-    out["role"] = r.role;
+  static const char* command_of(const DoneReply& reply) { return reply.command; }
+  static const char* command_of(const PauseReply& reply) {
+    return reply.paused ? "pause" : "resume";
   }
-  void operator()(const PickReply& r) {
-    start("pick", r.tick);
-    out["hit"] = nullptr;
-    if (!r.hit) return;
-    out["hit"] = {{"triangle", r.hit->point.triangle},
-                  {"barycentric", r.hit->point.barycentric},
-                  {"position", r.hit->position},
-                  {"particle", r.hit->particle},
-                  {"distance", r.hit->distance}};
-  }
-  void operator()(const DragReply& r) {
-    start("drag", r.tick);
-    out["drag"] = r.drag;
-    out["grab"] = r.grab;
-    put_if(out, "target", r.target);
-    put_if(out, "impulse", r.impulse);
-  }
-  void operator()(const PinReply& r) {
-    start("pin", r.tick);
-    out["pin"] = r.pin;
-    out["particle"] = r.particle;
-    out["count"] = r.count;
-  }
-  void operator()(const ReleaseReply& r) {
-    start("release", r.tick);
-    out["released"] = r.released;
-  }
-  void operator()(const PauseReply& r) {
-    start(r.paused ? "pause" : "resume", r.tick);
-    out["paused"] = r.paused;
-  }
-  void operator()(const StepReply& r) {
-    start("step", r.tick);
-    out["until"] = r.until;
-  }
-  void operator()(const SpeedReply& r) {
-    start("speed", r.tick);
-    out["speed"] = r.speed;
-  }
-  void operator()(const MoveReply& r) {
-    start("move", r.tick);
-    std::visit([this](const auto& collider) { out["collider"] = collider; }, r.collider);
-  }
-  void operator()(const MovePinReply& r) {
-    start("move", r.tick);
-    out["pin"] = r.pin;
-    out["position"] = r.position;
-  }
-  void operator()(const GripperReply& r) {
-    start("gripper", r.tick);
-    out["gripper"] = r.gripper;
-  }
-  void operator()(const AdvanceReply& r) {
-    start("advance", r.tick);
-    out["hash"] = hash_text(r.hash);
-  }
-  void operator()(const HashReply& r) {
-    start("hash", r.tick);
-    out["hash"] = hash_text(r.hash);
-  }
-  void operator()(const PingReply& r) {
-    out["command"] = "ping";
-    out["t"] = r.t;
-    out["received"] = r.received;
-    out["sent"] = r.sent;
-  }
-  void operator()(const LoadReply& r) {
-    start("load", r.tick);
-    out["scene"] = r.scene;
-    out["epoch"] = r.epoch;
-  }
-  void operator()(const ViewReply& r) {
-    out["command"] = "view";
-    out["hz"] = r.hz;
-    out["codec"] = name_of(r.codec);
-    if (r.codec == Codec::packed) out["error"] = r.error;
-    out["forces"] = r.forces;
+  static const char* command_of(const auto& reply) { return reply.kOp; }
+
+  void operator()(const Described auto& reply) {
+    out["command"] = command_of(reply);
+    put_fields(out, reply);
   }
   void operator()(const VectorsReply& r) {  // the data is appended as text
     start("query", r.tick);

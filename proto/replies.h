@@ -16,15 +16,26 @@
 
 namespace weft::proto {
 
+/// The command's place in the order.
+inline constexpr Field kReplyTick{"tick", "the command's place in the order: after it"};
+
 /// Of a command without further results: camera, reset, set.
 struct DoneReply {
   const char* command = "";
   std::uint64_t tick = 0;
+  static void describe(auto& io, auto& reply) { io.required(kReplyTick, reply.tick); }
 };
 
 struct HelloReply {
   ViewerId viewer = 0;
   std::string name, color, role;
+  static constexpr const char* kOp = "hello";
+  static void describe(auto& io, auto& reply) {
+    io.required(Field{"viewer", "its number"}, reply.viewer);
+    io.required(Field{"name", "in force"}, reply.name);
+    io.required(Field{"color", "in force"}, reply.color);
+    io.required(Field{"role", "what it may do"}, reply.role);
+  }
 };
 
 struct ClothHit {
@@ -32,11 +43,24 @@ struct ClothHit {
   Vec3 position{};
   std::uint32_t particle = 0;
   double distance = 0;  ///< [m]
+  static constexpr const char* kName = "Hit";
+  static void describe(auto& io, auto& hit) {
+    io.required(kHeldTriangle, hit.point.triangle);
+    io.required(kHeldWeights, hit.point.barycentric);
+    io.required(Field{"position", "of the point", {}, "m"}, hit.position);
+    io.required(Field{"particle", "its nearest corner"}, hit.particle);
+    io.required(Field{"distance", "along the ray", {}, "m"}, hit.distance);
+  }
 };
 
 struct PickReply {
   std::uint64_t tick = 0;
   std::optional<ClothHit> hit;
+  static constexpr const char* kOp = "pick";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.nullable(Field{"hit", "null: the ray meets no cloth"}, reply.hit);
+  }
 };
 
 struct DragReply {
@@ -45,67 +69,139 @@ struct DragReply {
   std::uint32_t grab = 0;       ///< the room's
   std::optional<Vec3> target;   ///< [m]; of a start
   std::optional<Vec3> impulse;  ///< [N s]; of a sling that was fired
+  static constexpr const char* kOp = "drag";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"drag", "the viewer's number"}, reply.drag);
+    io.required(Field{"grab", "the room's number of the hand"}, reply.grab);
+    io.optional(Field{"target", "of a start", {}, "m"}, reply.target);
+    io.optional(Field{"impulse", "of a sling that was fired", {}, "N s"}, reply.impulse);
+  }
 };
 
 struct PinReply {
   std::uint64_t tick = 0;
   std::uint32_t pin = 0, particle = 0, count = 0;
+  static constexpr const char* kOp = "pin";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"pin", "its id"}, reply.pin);
+    io.required(Field{"particle", "its centre"}, reply.particle);
+    io.required(Field{"count", "particles that it holds"}, reply.count);
+  }
 };
 
 struct ReleaseReply {
   std::uint64_t tick = 0;
   std::vector<std::uint32_t> released;
+  static constexpr const char* kOp = "release";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"released", "ids of the pins that are gone"}, reply.released);
+  }
 };
 
 /// Of pause and of resume.
 struct PauseReply {
   std::uint64_t tick = 0;
   bool paused = false;
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"paused", "whether the room is"}, reply.paused);
+  }
 };
 
 struct StepReply {
   std::uint64_t tick = 0, until = 0;
+  static constexpr const char* kOp = "step";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"until", "tick at which the room stands still again"}, reply.until);
+  }
 };
 
 struct SpeedReply {
   std::uint64_t tick = 0;
   double speed = 1;
+  static constexpr const char* kOp = "speed";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"speed", "simulated per real time"}, reply.speed);
+  }
 };
 
 struct MoveReply {
   std::uint64_t tick = 0;
   ColliderRef collider;  ///< as in the command
+  static constexpr const char* kOp = "move";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"collider", "as in the command"}, reply.collider);
+  }
 };
 
 struct MovePinReply {
   std::uint64_t tick = 0;
   std::uint32_t pin = 0;
   Vec3 position{};  ///< of its middle particle, now [m]
+  static constexpr const char* kOp = "move";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"pin", "its id"}, reply.pin);
+    io.required(Field{"position", "where it was", {}, "m"}, reply.position);
+  }
 };
 
 struct GripperReply {
   std::uint64_t tick = 0;
   std::string gripper;
+  static constexpr const char* kOp = "gripper";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"gripper", "its name"}, reply.gripper);
+  }
 };
 
 struct AdvanceReply {
   std::uint64_t tick = 0, hash = 0;
+  static constexpr const char* kOp = "advance";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.hash(Field{"hash", "of the state"}, reply.hash);
+  }
 };
 
 struct HashReply {
   std::uint64_t tick = 0, hash = 0;
+  static constexpr const char* kOp = "hash";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.hash(Field{"hash", "of the state"}, reply.hash);
+  }
 };
 
 struct PingReply {
   double t = 0;         ///< as sent
   double received = 0;  ///< server's clock [s]
   double sent = 0;      ///< server's clock [s]
+  static constexpr const char* kOp = "ping";
+  static void describe(auto& io, auto& reply) {
+    io.required(Field{"t", "as sent"}, reply.t);
+    io.required(Field{"received", "by the server's clock", {}, "s"}, reply.received);
+    io.required(Field{"sent", "by the server's clock", {}, "s"}, reply.sent);
+  }
 };
 
 struct LoadReply {
   std::uint64_t tick = 0;
   std::string scene;
   std::uint32_t epoch = 0;
+  static constexpr const char* kOp = "load";
+  static void describe(auto& io, auto& reply) {
+    io.required(kReplyTick, reply.tick);
+    io.required(Field{"scene", "its name"}, reply.scene);
+    io.required(Field{"epoch", "of its mesh"}, reply.epoch);
+  }
 };
 
 struct ViewReply {
@@ -113,6 +209,14 @@ struct ViewReply {
   Codec codec = Codec::f32;
   bool forces = false;
   double error = 0;  ///< bound of packed frames [m]
+  static constexpr const char* kOp = "view";
+  static void describe(auto& io, auto& reply) {
+    io.required(Field{"hz", "most frames a second"}, reply.hz);
+    io.required(Field{"codec", "of the positions in frames"}, reply.codec);
+    io.only_if(reply.codec == Codec::packed, "packed",
+               Field{"error", "most that a vertex may be off", {}, "m"}, reply.error, true);
+    io.required(Field{"forces", "contacts and reactions in the frames"}, reply.forces);
+  }
 };
 
 /// Positions, velocities or boxes as JSON, `components` values per row. Only encode_reply reads the
@@ -141,12 +245,23 @@ struct StageWork {
   std::string stage;
   double milliseconds = 0;
   std::uint64_t work = 0;
+  static constexpr const char* kName = "StageWork";
+  static void describe(auto& io, auto& work) {
+    io.required(Field{"stage", "of the tick"}, work.stage);
+    io.required(Field{"milliseconds", "", {}, "ms"}, work.milliseconds);
+    io.required(Field{"work", "items done"}, work.work);
+  }
 };
 
 /// A hierarchy of boxes.
 struct TreeInfo {
   std::string tree;
   std::uint32_t levels = 0;
+  static constexpr const char* kName = "Tree";
+  static void describe(auto& io, auto& tree) {
+    io.required(Field{"tree", "its name"}, tree.tree);
+    io.required(Field{"levels", "of boxes"}, tree.levels);
+  }
 };
 
 /// The present pose of a collider.
@@ -157,6 +272,15 @@ struct ColliderPose {
   Vec3 force{};          ///< of the cloth on it while it moves, mean of the last tick [N]
   bool blocked = false;  ///< held back in the last tick by cloth that cannot yield
   bool voided = false;   ///< has moved on through cloth since the start
+  static constexpr const char* kName = "ColliderPose";
+  static void describe(auto& io, auto& pose) {
+    io.required(Field{"name", ""}, pose.name);
+    io.required(Field{"position", "of the pivot", {}, "m"}, pose.position);
+    io.required(Field{"rotation", "relative to the mesh message"}, pose.rotation);
+    io.required(Field{"force", "of the cloth on it while it moves", {}, "N"}, pose.force);
+    io.required(Field{"blocked", "held back in the last tick"}, pose.blocked);
+    io.required(Field{"voided", "has moved on through cloth"}, pose.voided);
+  }
 };
 
 /// A contact of the cloth with an object, or with itself.
@@ -168,22 +292,49 @@ struct ContactInfo {
   double gap = 0;                        ///< from the mid-surface to the other side [m]
   double normal_force = 0;               ///< on the cloth, along the normal [N]
   Vec3 friction{};                       ///< on the cloth, tangential [N]
+  static constexpr const char* kName = "Contact";
+  static void describe(auto& io, auto& contact) {
+    io.optional(Field{"collider", "absent: the other side is cloth too"}, contact.collider);
+    io.required(Field{"particles", "of the cloth"}, contact.particles);
+    io.required(Field{"weights", "sum 1; negative on the other side"}, contact.weights);
+    io.required(Field{"point", "on the mid-surface", {}, "m"}, contact.point);
+    io.required(Field{"normal", "unit, out of the other side"}, contact.normal);
+    io.required(Field{"gap", "from the mid-surface", {}, "m"}, contact.gap);
+    io.required(Field{"normal_force", "on the cloth", {}, "N"}, contact.normal_force);
+    io.required(Field{"friction", "on the cloth", {}, "N"}, contact.friction);
+  }
 };
 
 struct PinForce {
   std::uint32_t pin = 0;
   Vec3 force{};  ///< of the pin on the cloth [N]
+  static constexpr const char* kName = "PinForce";
+  static void describe(auto& io, auto& pin) {
+    io.required(Field{"pin", "its id"}, pin.pin);
+    io.required(Field{"force", "on the cloth", {}, "N"}, pin.force);
+  }
 };
 
 struct GrabForce {
   std::uint32_t grab = 0;
   ViewerId viewer = 0;
   Vec3 force{};  ///< of the hand on the cloth [N]
+  static constexpr const char* kName = "GrabForce";
+  static void describe(auto& io, auto& grab) {
+    io.required(Field{"grab", "its number"}, grab.grab);
+    io.required(Field{"viewer", "its owner"}, grab.viewer);
+    io.required(Field{"force", "on the cloth", {}, "N"}, grab.force);
+  }
 };
 
 struct ColliderForce {
   std::string collider;
   Vec3 force{};  ///< of the cloth on it [N]
+  static constexpr const char* kName = "ColliderForce";
+  static void describe(auto& io, auto& collider) {
+    io.required(Field{"collider", "its name"}, collider.collider);
+    io.required(Field{"force", "of the cloth on it", {}, "N"}, collider.force);
+  }
 };
 
 /// Forces between the cloth and its supports.
@@ -191,6 +342,12 @@ struct ReactionInfo {
   std::optional<std::vector<PinForce>> pins;  ///< absent if the solver does not know them
   std::vector<GrabForce> grabs;
   std::vector<ColliderForce> colliders;
+  static constexpr const char* kName = "Reactions";
+  static void describe(auto& io, auto& reactions) {
+    io.optional(Field{"pins", "absent if the solver does not know them"}, reactions.pins);
+    io.required(Field{"grabs", "of hands"}, reactions.grabs);
+    io.required(Field{"colliders", ""}, reactions.colliders);
+  }
 };
 
 /// The present state of a gripper.
@@ -202,6 +359,16 @@ struct GripperInfo {
   double force = 0;       ///< most that each jaw presses with [N]
   bool gripping = false;  ///< the jaws are stopped by the cloth between them, and press it
   Vec3 reaction{};        ///< of the cloth on both jaws together, mean of the last tick [N]
+  static constexpr const char* kName = "GripperState";
+  static void describe(auto& io, auto& gripper) {
+    io.required(Field{"name", ""}, gripper.name);
+    io.required(Field{"position", "of its middle", {}, "m"}, gripper.position);
+    io.required(Field{"rotation", "from its definition"}, gripper.rotation);
+    io.required(Field{"opening", "between its jaws", {}, "m"}, gripper.opening);
+    io.required(Field{"force", "most that each jaw presses with", {}, "N"}, gripper.force);
+    io.required(Field{"gripping", "it presses something"}, gripper.gripping);
+    io.required(Field{"reaction", "of the cloth on both jaws", {}, "N"}, gripper.reaction);
+  }
 };
 
 /// Measurements of the scene's test, by names that end in their unit; empty for other scenes.

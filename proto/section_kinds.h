@@ -13,6 +13,8 @@ enum SectionKind : std::uint16_t {
   kContacts = 5,
   kReactions = 6,
   kPackedPositions = 7,
+  kVelocities = 8,
+  kGrippers = 9,
   kRestPositions = 16,
   kTriangles = 17,
   kUv = 18,

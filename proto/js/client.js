@@ -168,7 +168,7 @@ export class WeftClient extends Session {
   }
 
   /**
-   * @param {Partial<import('./messages.js').Settings>} values
+   * @param {import('./messages.js').SetCommand} values
    * @param {Call} [call]
    */
   set(values, call) {
@@ -177,8 +177,9 @@ export class WeftClient extends Session {
 
   /**
    * @param {number} n
-   * @param {{frames?: import('./messages.js').AdvanceFrames}} [options]  which of its frames this
-   *   viewer gets, regardless of its `hz`; by default those that its `hz` allows
+   * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  `frames`: which of its frames this
+   *   viewer gets, regardless of its `hz`; by default those that its `hz` allows. `observe`: what
+   *   the frame of its last tick has; the event `frame` with `observed` brings it before the result
    * @param {Call} [call]
    */
   advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {

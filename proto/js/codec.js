@@ -13,6 +13,14 @@ import {
   readTick,
 } from './bytes.js';
 import { readOrder } from './order.js';
+import {
+  readApplied,
+  readContacts,
+  readGrabs,
+  readGrippers,
+  readPoses,
+  readReactions,
+} from './samples.js';
 
 export { ProtocolError } from './bytes.js';
 
@@ -24,20 +32,13 @@ const VERSION = 1;
 const FRAME_BYTES = 64;
 const MESH_BYTES = 32;
 const DATA_BYTES = 40;
-const GRAB_BYTES = 36;
-const APPLIED_BYTES = 8;
-const POSE_BYTES = 32;
-const CONTACT_BYTES = 52;
-const REACTION_BYTES = 20;
-const NO_COLLIDER = 0xffffffff;
-/** @type {('pin' | 'collider')[]} */
-const REACTION_OF = ['pin', 'collider'];
 const MOST_COMPONENTS = 16;
 const FLOAT32 = 0;
 const PACKED = 2;
 const FLAG_KEY = 1;
 const FLAG_JUMP = 2;
 const FLAG_PAUSED = 4;
+const FLAG_OBSERVED = 8;
 
 const KIND = {
   positions: 1,
@@ -47,6 +48,8 @@ const KIND = {
   contacts: 5,
   reactions: 6,
   packedPositions: 7,
+  velocities: 8,
+  grippers: 9,
   restPositions: 16,
   triangles: 17,
   uv: 18,
@@ -78,97 +81,6 @@ function readTriangles(view, section, count, vertices) {
   for (let i = 0; i < indices.length; ++i)
     demand(indices[i] < vertices, 'an index is out of range');
   return indices;
-}
-
-/**
- * @param {DataView} view
- * @param {Section} section
- */
-function readGrabs(view, section) {
-  demand(section.length % GRAB_BYTES === 0, 'a section does not fit');
-  const grabs = [];
-  for (let at = section.offset; at < section.offset + section.length; at += GRAB_BYTES) {
-    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 7);
-    demandFinite(numbers);
-    const [hx, hy, hz, tx, ty, tz, force] = numbers;
-    grabs.push({
-      id: view.getUint32(at, true),
-      viewer: view.getUint32(at + 4, true),
-      held: [hx, hy, hz],
-      target: [tx, ty, tz],
-      force,
-    });
-  }
-  return grabs;
-}
-
-/**
- * @param {DataView} view
- * @param {Section} section
- */
-function readApplied(view, section) {
-  demand(section.length % APPLIED_BYTES === 0, 'a section does not fit');
-  const applied = [];
-  for (let at = section.offset; at < section.offset + section.length; at += APPLIED_BYTES)
-    applied.push({ viewer: view.getUint32(at, true), number: view.getUint32(at + 4, true) });
-  return applied;
-}
-
-/**
- * @param {DataView} view
- * @param {Section} section
- */
-function readPoses(view, section) {
-  demand(section.length % POSE_BYTES === 0, 'a section does not fit');
-  const poses = [];
-  for (let at = section.offset; at < section.offset + section.length; at += POSE_BYTES) {
-    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 4, 7);
-    demandFinite(numbers);
-    const [x, y, z, ...rotation] = numbers;
-    poses.push({ collider: view.getUint32(at, true), position: [x, y, z], rotation });
-  }
-  return poses;
-}
-
-/**
- * @param {DataView} view
- * @param {Section} section
- */
-function readContacts(view, section) {
-  demand(section.length % CONTACT_BYTES === 0, 'a section does not fit');
-  const contacts = [];
-  for (let at = section.offset; at < section.offset + section.length; at += CONTACT_BYTES) {
-    const collider = view.getUint32(at, true);
-    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 11);
-    demandFinite(numbers);
-    const all = [...numbers];
-    contacts.push({
-      collider: collider === NO_COLLIDER ? null : collider,
-      particle: view.getUint32(at + 4, true),
-      point: all.slice(0, 3),
-      normal: all.slice(3, 6),
-      gap: numbers[6],
-      normalForce: numbers[7],
-      friction: all.slice(8, 11),
-    });
-  }
-  return contacts;
-}
-
-/**
- * @param {DataView} view
- * @param {Section} section
- */
-function readReactions(view, section) {
-  demand(section.length % REACTION_BYTES === 0, 'a section does not fit');
-  const reactions = [];
-  for (let at = section.offset; at < section.offset + section.length; at += REACTION_BYTES) {
-    const of = view.getUint32(at, true);
-    const force = new Float32Array(view.buffer, view.byteOffset + at + 8, 3);
-    demandFinite(force);
-    reactions.push({ of: REACTION_OF[of] ?? of, id: view.getUint32(at + 4, true), force: [...force] });
-  }
-  return reactions;
 }
 
 /** @type {Unpack} */
@@ -220,11 +132,14 @@ function readFrame(message, unpack) {
   const poses = find(KIND.poses);
   const contacts = find(KIND.contacts);
   const reactions = find(KIND.reactions);
+  const velocities = find(KIND.velocities);
+  const grippers = find(KIND.grippers);
   return {
     type: 'frame',
     flags,
     jump: (flags & FLAG_JUMP) !== 0,
     paused: (flags & FLAG_PAUSED) !== 0,
+    observed: (flags & FLAG_OBSERVED) !== 0,
     tick: readTick(view, 16),
     time,
     serverTime,
@@ -236,6 +151,8 @@ function readFrame(message, unpack) {
     poses: poses ? readPoses(view, poses) : [],
     contacts: contacts ? readContacts(view, contacts) : [],
     reactions: reactions ? readReactions(view, reactions) : [],
+    velocities: velocities ? readFloats(view, velocities, header.vertices * 3) : null,
+    grippers: grippers ? readGrippers(view, grippers) : [],
     positions: positions(),
   };
 }

@@ -1,5 +1,8 @@
 // Types of the messages of weft.v1. proto/README.md gives the meaning and unit of each field.
 
+import type { AdvanceCommand, DragCommand1, QueryCommand } from './commands.js';
+import type { Grab, Pin, Viewer } from './parts.js';
+
 export type Vec3 = [number, number, number];
 export type {
   Cloth,
@@ -9,34 +12,28 @@ export type {
   MeshAnnouncement,
   View,
 } from './announcement.js';
-export type QueryWhat =
-  | 'positions'
-  | 'velocities'
-  | 'energies'
-  | 'strain'
-  | 'pins'
-  | 'grabs'
-  | 'camera'
-  | 'roster'
-  | 'state'
-  | 'work'
-  | 'trees'
-  | 'boxes'
-  | 'colliders'
-  | 'measurements'
-  | 'contacts'
-  | 'reactions'
-  | 'grippers'
-  | 'crossings';
+export type {
+  Bye,
+  Camera,
+  Crossings,
+  Energy,
+  Fabric,
+  Fan,
+  Grab,
+  Guarantee,
+  Hit,
+  Notice,
+  Pin,
+  State,
+  Strain,
+  Tree,
+  Viewer,
+} from './parts.js';
+export type { SetCommand } from './commands.js';
+export type QueryWhat = QueryCommand['what'];
 
 /** The frames of an `advance` that its viewer gets, regardless of its `hz`. */
-export type AdvanceFrames = 'none' | 'last' | 'all';
-
-/** A hierarchy of boxes. */
-export interface Tree {
-  tree: string;
-  levels: number;
-}
+export type AdvanceFrames = NonNullable<AdvanceCommand['frames']>;
 
 export interface Welcome {
   op: 'welcome';
@@ -57,121 +54,9 @@ export interface Welcome {
   capabilities: string[];
 }
 
-export interface Energy {
-  kinetic: number;
-  stretch: number;
-  bending: number;
-  gravity: number;
-  total: number;
-}
-
-export interface Strain {
-  largest: number;
-  p99: number;
-}
-
-/** A local wind. */
-export interface Fan {
-  position: Vec3;
-  direction: Vec3;
-  speed?: number;
-  radius?: number;
-  spread?: number;
-  reach?: number;
-}
-
-/** The values of `set`. */
-export interface Settings extends Environment {
-  softness: number;
-  budget_ms: number;
-  over_budget: 'slow' | 'soften';
-}
-
-export interface Environment {
-  gravity: Vec3;
-  wind: Vec3;
-  gust_speed: number;
-  gust_length: number;
-  air_density: number;
-  still_air: boolean;
-  drag: number;
-  fans: Fan[];
-}
-
-/** Whether the promise that cloth crosses nothing holds. */
-export interface Guarantee {
-  state: 'held' | 'bad_start' | 'void' | 'none';
-  covers: ('objects' | 'cloth')[];
-  /** Number of feature pairs without a promise. */
-  pairs: number;
-  /** In words; none if the promise holds. */
-  reasons: string[];
-}
-
-/** Intersections of cloths' edges and triangles, with each other and with objects. */
-export interface Crossings {
-  count: number;
-  /** Tick of the count. */
-  tick: number;
-  /** Least contact distance then [m], negative inside an object; null if nothing is near. */
-  smallest_gap: number | null;
-}
-
-export interface State extends Settings {
-  op: 'state';
-  tick: number;
-  time: number;
-  paused: boolean;
-  speed: number;
-  pace: number;
-  scene: string;
-  tick_rate: number;
-  fabric: string;
-  solver: string;
-  substeps: number;
-  particles: number;
-  step_ms: number;
-  real_time_factor: number;
-  /** Cloths at rest, which are not stepped; no frames are sent while all of them rest. */
-  sleeping: { islands: number; cloths: string[] };
-  guarantee: Guarantee;
-  /** As last counted; null before the first count. */
-  crossings: Crossings | null;
-  strain: Strain;
-  energy: Energy;
-}
-
-export interface Camera {
-  position: Vec3;
-  target: Vec3;
-  up: Vec3;
-  fov: number;
-}
-
-export interface Viewer {
-  id: number;
-  name: string;
-  color: string;
-  role: string;
-  camera: Camera | null;
-}
-
 export interface Roster {
   op: 'roster';
   viewers: Viewer[];
-}
-
-export interface Pin {
-  id: number;
-  viewer: number;
-  particle: number;
-  radius: number;
-  position: Vec3;
-  count: number;
-  /** Target of a moving pin. */
-  target?: Vec3;
-  /** Whether its particles lag behind the target. */
-  behind?: boolean;
 }
 
 export interface Pins {
@@ -180,45 +65,10 @@ export interface Pins {
   pins: Pin[];
 }
 
-export interface Grab {
-  id: number;
-  /** 0: the scene's own. */
-  viewer: number;
-  /** The viewer's number, or the index in the scene's list of hands. */
-  drag: number;
-  triangle: number;
-  barycentric: Vec3;
-  radius: number;
-  stiffness: number;
-  max_force: number;
-  held: Vec3;
-  target: Vec3;
-  mode: 'live' | 'sling';
-  force?: Vec3;
-}
-
 export interface Grabs {
   op: 'grabs';
   tick: number;
   grabs: Grab[];
-}
-
-export interface Notice {
-  op: 'notice';
-  level: 'info' | 'warning' | 'error';
-  code: string;
-  message: string;
-  tick?: number;
-  viewer?: number;
-  drag?: number;
-  count?: number;
-  value?: number;
-}
-
-export interface Bye {
-  op: 'bye';
-  code: number;
-  reason: string;
 }
 
 export interface Limit {
@@ -248,26 +98,13 @@ export interface Result {
   [field: string]: any;
 }
 
-/** A point of the cloth, as returned by `pick`. */
-export interface Hit {
-  triangle: number;
-  barycentric: Vec3;
-  position: Vec3;
-  particle: number;
-  distance: number;
-}
-
 /** Where to hold: a point of a triangle, or a particle. */
 export type Hold = { triangle: number; barycentric: Vec3 } | { particle: number };
 
-export interface DragOptions {
-  target?: Vec3;
-  radius?: number;
-  stiffness?: number;
-  max_force?: number;
-  /** A sling leaves the cloth alone until its release; then it gives its force for 0.1 s. */
-  mode?: 'live' | 'sling';
-}
+export type DragOptions = Omit<
+  DragCommand1,
+  'phase' | 'drag' | 'particle' | 'triangle' | 'barycentric'
+>;
 
 /** A hand at the tick of a frame. */
 export interface GrabSample {
@@ -300,6 +137,29 @@ export interface Frame {
   contacts: ContactSample[];
   /** Forces on the cloth's supports, if `view` asked for `forces`. */
   reactions: ReactionSample[];
+  /** It has what `observe` of an `advance` asked for. */
+  observed: boolean;
+  /** Three values per vertex [m/s], if `observe` asked for them. */
+  velocities: Float32Array | null;
+  /** If `observe` asked for them. */
+  grippers: GripperSample[];
+}
+
+export interface GripperSample {
+  /** Index in `MeshAnnouncement.colliders` of its left jaw; the right one follows. */
+  jaw: number;
+  /** It presses something. */
+  gripping: boolean;
+  /** Of its middle [m]. */
+  position: number[];
+  /** From its definition, unit quaternion x, y, z, w. */
+  rotation: number[];
+  /** Between its jaws [m]. */
+  opening: number;
+  /** Most that each jaw presses with [N]. */
+  force: number;
+  /** Of the cloth on both jaws, mean of the tick [N]. */
+  reaction: number[];
 }
 
 export interface ContactSample {

@@ -68,6 +68,18 @@ class CommandReader {
                      });
   }
   template <Worded Enum>
+  void read(const Field& field, std::vector<Enum>& list) {
+    in_.read_words(field.name, static_cast<std::size_t>(field.range.maximum), kWords<Enum>,
+                   [&list](std::size_t place) { list.push_back(static_cast<Enum>(place)); });
+  }
+  template <Described Value>
+  void read(const Field& field, Value& value) {
+    in_.read_object(field.name, [&value](FieldReader& in) {
+      CommandReader inner(in);
+      Value::describe(inner, value);
+    });
+  }
+  template <Worded Enum>
   void read(const Field& field, Enum& value) {
     in_.read(field.name, value, kWords<Enum>);
   }

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/hash_text.h"
 #include "proto/messages/field.h"
 #include "proto/messages/hold_commands.h"
 
@@ -30,6 +31,11 @@ class CommandWriter {
   void optional(const Field& field, const Value& value) {
     put(field, value);
   }
+  template <class Value>
+  void nullable(const Field& field, const std::optional<Value>& value) {
+    out_[field.name] = value ? json_of(*value) : Json();
+  }
+  void hash(const Field& field, std::uint64_t value) { out_[field.name] = hash_text(value); }
   void flag(const Field& field, bool value, bool usual) {
     if (value != usual) put(field, value);
   }

@@ -10,7 +10,8 @@
 
 // What commands consist of. Each is a struct with
 //
-//   static constexpr const char* kOp     its word in `op`
+//   static constexpr const char* kOp     its word in `op`; a part of a message has kName, the name
+//                                        of its type in declarations
 //   static void describe(io, self)       names its fields once
 //
 // and everything else walks that: the reader (command_reader.h) and the writer (command_writer.h).
@@ -19,6 +20,8 @@
 //   required(Field, value)         always there
 //   optional(Field, value)         may be absent: a std::optional is empty then, and any other
 //                                  value keeps what its struct gives it
+//   nullable(Field, value)         of messages of the server: null if the std::optional is empty
+//   hash(Field, value)             of messages of the server: 16 hexadecimal digits
 //   flag(Field, value, usual)      a bool that is absent if it is `usual`
 //   only_if(condition, of, Field, value, required)   a field of `of` alone
 //   constant(name, what)           tells this form of an `op` from its others; absent if false

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/error.h"
 #include "proto/limits.h"
@@ -39,6 +40,7 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 
   static constexpr const char* kOp = "camera";
+  static constexpr const char* kName = "Camera";
   static void describe(auto& io, auto& camera) {
     io.required(Field{"position", "of the eye", kPositionRange, "m"}, camera.position);
     io.required(Field{"target", "what it looks at; not the same point", kPositionRange, "m"},
@@ -93,9 +95,16 @@ enum class AdvanceFrames : std::uint8_t { none, last, all };
 template <>
 inline constexpr std::array<const char*, 3> kWords<AdvanceFrames> = {"none", "last", "all"};
 
+/// What the frame of an `advance`'s last tick tells beside positions.
+enum class Observed : std::uint8_t { positions, velocities, contacts, reactions, grippers };
+template <>
+inline constexpr std::array<const char*, 5> kWords<Observed> = {
+    "positions", "velocities", "contacts", "reactions", "grippers"};
+
 struct Advance {
   std::uint32_t n = 1;
   std::optional<AdvanceFrames> frames;
+  std::optional<std::vector<Observed>> observe;
   bool operator==(const Advance&) const = default;
 
   static constexpr const char* kOp = "advance";
@@ -105,6 +114,11 @@ struct Advance {
                       "its frames that its viewer gets, whatever its `hz`; by default "
                       "those that its `hz` allows"},
                 advance.frames);
+    io.optional(Field{"observe",
+                      "what the frame of its last tick has, beside positions; then `frames` is at "
+                      "least `last`",
+                      {0, kWords<Observed>.size()}},
+                advance.observe);
   }
 };
 

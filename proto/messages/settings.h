@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "proto/limits.h"
@@ -22,6 +23,7 @@ struct Fan {
   double reach = 1.5;
   bool operator==(const Fan&) const = default;
 
+  static constexpr const char* kName = "Fan";
   static void describe(auto& io, auto& fan) {
     io.required(Field{"position", "centre of the disc that its air leaves", kPositionRange, "m"},
                 fan.position);
@@ -41,6 +43,40 @@ enum class OverBudget : std::uint8_t { slow, soften };
 template <>
 inline constexpr std::array<const char*, 2> kWords<OverBudget> = {"slow", "soften"};
 
+/// What a cloth is made of; omitted values stay as they are, or as in the preset.
+struct FabricChange {
+  std::optional<std::string> preset;
+  std::optional<double> areal_density, stretch_warp, stretch_weft, shear, bending_warp,
+      bending_weft, damping_ratio, bending_damping, thickness, friction;
+  bool operator==(const FabricChange&) const = default;
+
+  static constexpr const char* kName = "Fabric";
+  static void describe(auto& io, auto& fabric) {
+    io.optional(
+        Field{"preset", "all values of this one", {1, kMostSceneBytes}, "bytes", Form::bytes},
+        fabric.preset);
+    io.optional(Field{"areal_density", "mass per area", kArealDensityRange, "kg/m²"},
+                fabric.areal_density);
+    io.optional(Field{"stretch_warp", "stiffness along u", kStretchRange, "N/m"},
+                fabric.stretch_warp);
+    io.optional(Field{"stretch_weft", "stiffness along v", kStretchRange, "N/m"},
+                fabric.stretch_weft);
+    io.optional(Field{"shear", "stiffness", kStretchRange, "N/m"}, fabric.shear);
+    io.optional(Field{"bending_warp", "rigidity along u", kBendingRange, "N m"},
+                fabric.bending_warp);
+    io.optional(Field{"bending_weft", "rigidity along v", kBendingRange, "N m"},
+                fabric.bending_weft);
+    io.optional(Field{"damping_ratio", "of the highest mode of stretch", kDampingRatioRange},
+                fabric.damping_ratio);
+    io.optional(Field{"bending_damping", "per rigidity", kBendingDampingRange, "s"},
+                fabric.bending_damping);
+    io.optional(Field{"thickness", "distance from objects in contact", kThicknessRange, "m"},
+                fabric.thickness);
+    io.optional(Field{"friction", "Coulomb's coefficient", kFrictionRange}, fabric.friction);
+    io.one_at_least("fabric has nothing to set");
+  }
+};
+
 /// All are applied or, if one is refused, none.
 struct Set {
   std::optional<Vec3> gravity, wind;
@@ -50,6 +86,8 @@ struct Set {
   std::optional<std::vector<Fan>> fans;
   std::optional<double> softness, budget_ms;
   std::optional<OverBudget> over_budget;
+  std::optional<FabricChange> fabric;
+  std::optional<ColliderRef> cloth;  ///< absent: the first
   bool operator==(const Set&) const = default;
 
   static constexpr const char* kOp = "set";
@@ -68,7 +106,13 @@ struct Set {
     io.optional(Field{"budget_ms", "for each tick that is due; 0: no bound", kBudgetRange, "ms"},
                 set.budget_ms);
     io.optional(Field{"over_budget", "what gives way beyond it"}, set.over_budget);
+    io.optional(Field{"fabric", "of one cloth"}, set.fabric);
     io.one_at_least("set has nothing to set");
+    io.only_if(set.fabric.has_value(), "fabric",
+               Field{"cloth",
+                     "whose fabric: its name, or its place in the list of `mesh`; the "
+                     "first by default"},
+               set.cloth, false);
   }
 };
 

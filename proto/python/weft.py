@@ -124,8 +124,9 @@ class CommandError(WeftError):
 
 _FRAME, _MESH, _DATA, _ACK = 1, 2, 3, 4
 _VERSION = 1
-_KEY, _JUMP, _PAUSED = 1, 2, 4
+_KEY, _JUMP, _PAUSED, _OBSERVED = 1, 2, 4, 8
 _POSITIONS, _GRABS, _APPLIED, _POSES, _CONTACTS, _REACTIONS, _PACKED_POSITIONS = 1, 2, 3, 4, 5, 6, 7
+_VELOCITIES, _GRIPPERS = 8, 9
 _REST, _TRIANGLES, _UV, _COLLIDER_POSITIONS, _COLLIDER_TRIANGLES, _ORDER = 16, 17, 18, 19, 20, 21
 _FLOAT32, _PACKED = 0, 2  # codecs of frames
 _COMMON = struct.Struct("<BBBBIII")
@@ -138,6 +139,7 @@ _APPLIED_ENTRY = struct.Struct("<II")
 _POSE = struct.Struct("<I7f")
 _CONTACT = struct.Struct("<II11f")
 _REACTION = struct.Struct("<II3f")
+_GRIPPER = struct.Struct("<II12f")
 _NO_COLLIDER = 2**32 - 1
 _REACTION_OF = {0: "pin", 1: "collider"}
 _ACK_FIELDS = struct.Struct("<BBHI")
@@ -202,6 +204,19 @@ class ReactionSample:
 
 
 @dataclass(frozen=True)
+class GripperSample:
+    """A gripper at the end of a tick."""
+
+    jaw: int  # its left jaw's index in the list of the `mesh` message; the right one follows
+    gripping: bool
+    position: tuple[float, float, float]  # of its middle [m]
+    rotation: tuple[float, float, float, float]  # from its definition, unit quaternion x, y, z, w
+    opening: float  # between its jaws [m]
+    force: float  # most that each jaw presses with [N]
+    reaction: tuple[float, float, float]  # of the cloth on both jaws, mean of the tick [N]
+
+
+@dataclass(frozen=True)
 class Frame:
     """Positions of the vertices at a tick."""
 
@@ -218,6 +233,8 @@ class Frame:
     poses: dict[int, Pose]  # by the collider's index in the list of the `mesh` message
     contacts: tuple[ContactSample, ...]  # if `view` asked for forces
     reactions: tuple[ReactionSample, ...]  # if `view` asked for forces
+    velocities: Any = None  # one row of 3 per vertex [m/s], if `observe` asked for them
+    grippers: tuple[GripperSample, ...] = ()  # if `observe` asked for them
 
     @property
     def jump(self) -> bool:
@@ -227,6 +244,11 @@ class Frame:
     @property
     def paused(self) -> bool:
         return bool(self.flags & _PAUSED)
+
+    @property
+    def observed(self) -> bool:
+        """It has what `observe` of an `advance` asked for."""
+        return bool(self.flags & _OBSERVED)
 
 
 @dataclass(frozen=True)
@@ -378,6 +400,20 @@ def _reaction(entry: tuple) -> ReactionSample:
     return ReactionSample(_REACTION_OF.get(of, of), id_, tuple(force))
 
 
+def _gripper(entry: tuple) -> GripperSample:
+    jaw, gripping, *numbers = entry
+    _demand(all(map(math.isfinite, numbers)), "a number is not finite")
+    return GripperSample(
+        jaw=jaw,
+        gripping=bool(gripping),
+        position=tuple(numbers[0:3]),
+        rotation=tuple(numbers[3:7]),
+        opening=numbers[7],
+        force=numbers[8],
+        reaction=tuple(numbers[9:12]),
+    )
+
+
 def decode_frame(message: bytes) -> Frame:
     """Reads a frame in codec `f32`; those in `packed` build on each other and need a FrameDecoder."""
     return _decode_frame(message, None)
@@ -397,6 +433,7 @@ def _decode_frame(message: bytes, unpack: Callable | None) -> Frame:
     fits = key and step == 0 if codec == _FLOAT32 else math.isfinite(step) and step > 0
     _demand(fits, "the step does not fit the codec")
     sections = _read_sections(message, start, count)
+    velocities = sections.get((_VELOCITIES, 0))
     frame = Frame(
         tick=tick,
         time=time,
@@ -411,6 +448,8 @@ def _decode_frame(message: bytes, unpack: Callable | None) -> Frame:
         poses=dict(map(_pose, _entries(sections.get((_POSES, 0)), _POSE))),
         contacts=tuple(map(_contact, _entries(sections.get((_CONTACTS, 0)), _CONTACT))),
         reactions=tuple(map(_reaction, _entries(sections.get((_REACTIONS, 0)), _REACTION))),
+        velocities=_rows(velocities, "f", vertices, 3) if velocities is not None else None,
+        grippers=tuple(map(_gripper, _entries(sections.get((_GRIPPERS, 0)), _GRIPPER))),
     )
     if codec == _FLOAT32:
         positions = _rows(sections.get((_POSITIONS, 0)), "f", vertices, 3)
@@ -706,6 +745,11 @@ def _hold_fields(hold) -> dict:
     return {name: hold[name] for name in names}
 
 
+def _listed(vector):
+    """A vector as it can be sent; what lists itself, as numpy's do, is sent as it is."""
+    return vector if vector is None or hasattr(vector, "tolist") else list(vector)
+
+
 def _without_none(fields: dict) -> dict:
     return {name: value for name, value in fields.items() if value is not None}
 
@@ -775,6 +819,7 @@ class Client:
         self.mesh: dict | None = None
         self.mesh_data: MeshData | None = None
         self._packed: FrameDecoder | None = None  # of the present mesh
+        self._observation: Frame | None = None  # the last frame that an `advance` observed
         self.frame: Frame | None = None
         self.state: dict | None = None
         self.roster: dict | None = None
@@ -902,6 +947,103 @@ class Client:
         fields["target"] = None if target is None else list(target)
         return Drag(self, number, {**_hold_fields(hold), **_without_none(fields)}, timeout)
 
+    # --- commands that follow from their fields: written by proto/generate.py ---
+
+    async def camera(
+        self, position: Iterable[float], target: Iterable[float], *, up: Iterable[float] | None = None,
+        fov: float | None = None, timeout=_CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Stores where this viewer looks from, so that others may follow.
+
+        position: of the eye [m]; 3 × ±10000
+        target: what it looks at; not the same point [m]; 3 × ±10000
+        up: a direction; 3 × ±10000
+        fov: vertical angle of view [degrees]; 1 to 179
+        """
+        fields = {"position": _listed(position), "target": _listed(target), "up": _listed(up), "fov": fov}
+        return await self.request("camera", timeout=timeout, **_without_none(fields))
+
+    async def pause(self, *, timeout=_CLIENTS) -> dict:
+        """Stops the room's clock."""
+        return await self.request("pause", timeout=timeout)
+
+    async def resume(self, *, timeout=_CLIENTS) -> dict:
+        """Lets the room's clock run."""
+        return await self.request("resume", timeout=timeout)
+
+    async def step(self, n: int = 1, *, timeout=_CLIENTS) -> dict:
+        """Lets ticks pass in a paused room.
+
+        n: ticks; 1 to 600
+        """
+        fields = {"n": n}
+        return await self.request("step", timeout=timeout, **_without_none(fields))
+
+    async def reset(self, *, timeout=_CLIENTS) -> dict:
+        """Back to the scene's start."""
+        return await self.request("reset", timeout=timeout)
+
+    async def speed(self, speed: float, *, timeout=_CLIENTS) -> dict:
+        """Sets how fast time passes.
+
+        speed: simulated per real time; 0.01 to 10
+        """
+        fields = {"speed": speed}
+        return await self.request("speed", timeout=timeout, **_without_none(fields))
+
+    async def gripper(
+        self, name: str, *, opening: float | None = None, force: float | None = None,
+        position: Iterable[float] | None = None, rotation: Iterable[float] | None = None, speed: float | None = None,
+        turn_speed: float | None = None, timeout=_CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Opens, closes (opening=0) or moves a gripper; omitted values stay as they are.
+
+        name: of the gripper; 1 to 56 bytes
+        opening: between its jaws; 0 closes on what is there [m]; 0 to 1
+        force: with which each jaw presses [N]; 0 to 1000
+        position: target of its middle [m]; 3 × ±1000
+        rotation: relative to its definition; without it, as it is now; unit quaternion
+        speed: of its middle, at most [m/s]; 0.001 to 20
+        turn_speed: at most [rad/s]; 0.001 to 60
+        """
+        fields = {
+            "name": name, "opening": opening, "force": force, "position": _listed(position),
+            "rotation": _listed(rotation), "speed": speed, "turn_speed": turn_speed,
+        }  # fmt: skip
+        return await self.request("gripper", timeout=timeout, **_without_none(fields))
+
+    async def set(
+        self, *, gravity: Iterable[float] | None = None, wind: Iterable[float] | None = None,
+        gust_speed: float | None = None, gust_length: float | None = None, air_density: float | None = None,
+        still_air: bool | None = None, drag: float | None = None, fans: list[dict] | None = None,
+        softness: float | None = None, budget_ms: float | None = None, over_budget: str | None = None,
+        fabric: dict | None = None, cloth: str | int | None = None, timeout=_CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Changes forces, settings and fabric of the room; omitted values stay as they are.
+
+        gravity: acceleration [m/s²]; 3 × ±1000
+        wind: mean velocity [m/s]; 3 × ±100
+        gust_speed: typical speed of the gusts [m/s]; 0 to 100
+        gust_length: size of an eddy [m]; 0.01 to 100
+        air_density: of the air [kg/m³]; 0 to 1000
+        still_air: air resists without wind too; true or false
+        drag: uniform damping of velocities [1/s]; 0 to 1000
+        fans: all local winds; list of at most 4
+        softness: fraction of the springs' stiffness; 0.01 to 1
+        budget_ms: for each tick that is due; 0: no bound [ms]; 0 to 1000
+        over_budget: what gives way beyond it; slow or soften
+        fabric: of one cloth
+        cloth: whose fabric: its name, or its place in the list of mesh; the first by default
+        """
+        fields = {
+            "gravity": _listed(gravity), "wind": _listed(wind), "gust_speed": gust_speed, "gust_length": gust_length,
+            "air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans, "softness": softness,
+            "budget_ms": budget_ms, "over_budget": over_budget, "fabric": fabric, "cloth": cloth,
+        }  # fmt: skip
+        return await self.request("set", timeout=timeout, **_without_none(fields))
+
+    # --- the others ---
+
     async def pin(self, hold, *, radius: float | None = None, timeout=_CLIENTS) -> dict:
         fields = {**_hold_fields(hold), **_without_none({"radius": radius})}
         return await self.request("pin", timeout=timeout, **fields)
@@ -912,28 +1054,6 @@ class Client:
         """Removes one pin, those of a particle, or all."""
         fields = {"pin": pin, "particle": particle, "all": all}
         return await self.request("release", timeout=timeout, **_without_none(fields))
-
-    async def camera(
-        self, position, target, *, up=None, fov: float | None = None, timeout=_CLIENTS
-    ) -> dict:
-        fields = {"position": list(position), "target": list(target), "fov": fov}
-        fields["up"] = None if up is None else list(up)
-        return await self.request("camera", timeout=timeout, **_without_none(fields))
-
-    async def pause(self, *, timeout=_CLIENTS) -> dict:
-        return await self.request("pause", timeout=timeout)
-
-    async def resume(self, *, timeout=_CLIENTS) -> dict:
-        return await self.request("resume", timeout=timeout)
-
-    async def step(self, n: int = 1, *, timeout=_CLIENTS) -> dict:
-        return await self.request("step", timeout=timeout, n=n)
-
-    async def reset(self, *, timeout=_CLIENTS) -> dict:
-        return await self.request("reset", timeout=timeout)
-
-    async def speed(self, speed: float, *, timeout=_CLIENTS) -> dict:
-        return await self.request("speed", timeout=timeout, speed=speed)
 
     async def move(
         self, what: str | int | dict, position=None, rotation=None, *, speed=None, turn_speed=None,
@@ -951,38 +1071,24 @@ class Client:
         fields |= {"seconds": seconds, "max_force": max_force, "stop": stop}
         return await self.request("move", timeout=timeout, **_without_none(fields))
 
-    async def gripper(
-        self, name: str, *, opening=None, force=None, position=None, rotation=None, speed=None,
-        turn_speed=None, timeout=_CLIENTS,
+    async def advance(
+        self, n: int, *, frames: str | None = None, observe: Iterable[str] | None = None, timeout=_CLIENTS
     ) -> dict:  # fmt: skip
-        """Opens, closes (opening=0) or moves a gripper; omitted values stay as they are."""
-        fields = {"opening": opening, "force": force, "speed": speed, "turn_speed": turn_speed}
-        fields["position"] = None if position is None else list(position)
-        fields["rotation"] = None if rotation is None else list(rotation)
-        return await self.request("gripper", timeout=timeout, name=name, **_without_none(fields))
-
-    async def set(
-        self, *, gravity=None, wind=None, gust_speed=None, gust_length=None, air_density=None, still_air=None,
-        drag=None, fans=None, softness=None, budget_ms=None, over_budget=None, timeout=_CLIENTS,
-    ) -> dict:  # fmt: skip
-        """Changes forces and settings of the room; omitted values stay as they are."""
-        fields = {"gravity": gravity, "wind": wind, "gust_speed": gust_speed, "gust_length": gust_length}
-        fields |= {"air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans}
-        fields |= {"softness": softness, "budget_ms": budget_ms, "over_budget": over_budget}
-        return await self.request("set", timeout=timeout, **_without_none(fields))
-
-    async def advance(self, n: int, *, frames: str | None = None, timeout=_CLIENTS) -> dict:
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
 
         `frames` says which of its frames this viewer gets, regardless of its `hz`: "all", "last" or "none";
         by default those that its `hz` allows. They arrive before the result, so that `frame` is then the
-        last tick's.
+        last tick's. `observe` lists what else to tell of the last tick ("velocities", "contacts", "reactions",
+        "grippers"): `observation` of the result is its frame with them.
         """
         if timeout is _CLIENTS:
             ticks = n if _is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
         fields = _without_none({"frames": frames})
-        return await self.request("advance", timeout=timeout, n=n, **fields)
+        if observe is not None:
+            fields["observe"] = list(observe)
+        result = await self.request("advance", timeout=timeout, n=n, **fields)
+        return result if observe is None else {**result, "observation": self._observation}
 
     async def query(
         self,
@@ -1210,6 +1316,8 @@ class Client:
             return "", None  # of an earlier mesh
         _demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")
         self.frame = message
+        if message.observed:
+            self._observation = message
         return "frame", message
 
     def _decode(self, content: bytes) -> Frame | MeshData | Data:

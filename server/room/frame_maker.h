@@ -23,10 +23,15 @@ class FrameMaker {
   std::vector<proto::AppliedCommand>& applied() { return applied_; }
   /// Contacts and reactions are in its second encoding, if they are measured.
   Frame make(const ServedWorld& world, const Holds& holds, const Facts& facts);
+  /// One with what `advance` observes, in the same encoding.
+  SharedBytes make_observed(const ServedWorld& world, const Holds& holds, const Facts& facts,
+                            const std::vector<proto::Observed>& observe);
   /// Frames made.
   std::uint64_t count() const { return count_; }
 
  private:
+  proto::FrameView view(const ServedWorld& world, const Holds& holds, const Facts& facts);
+
   std::uint32_t sequence_ = 0;
   std::uint64_t count_ = 0;
   std::vector<proto::GrabSample> grabs_;
@@ -34,6 +39,7 @@ class FrameMaker {
   std::vector<proto::AppliedCommand> applied_;
   std::vector<proto::ContactSample> contacts_;
   std::vector<proto::ReactionSample> reactions_;
+  std::vector<proto::GripperSample> grippers_;
 };
 
 }  // namespace weft::server

@@ -18,8 +18,8 @@ struct Advance {
   proto::ViewerId viewer = 0;
   std::optional<proto::Id> id;
   std::uint32_t left = 0;
-  std::optional<proto::AdvanceFrames> frames;  ///< for its viewer, regardless of its `hz`
-  double taken = 0;                            ///< when it was last free to continue [s]
+  proto::Advance wanted;
+  double taken = 0;     ///< when it was last free to continue [s]
   bool paused = false;  ///< by a viewer, within the tick that runs and ends it
 };
 

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/translate/translate_settings.h"
 
 namespace weft::server {
 namespace {

@@ -198,6 +198,7 @@ class Room {
   void measure_forces();
   bool frames_stand() const;
   double next_frame() const;
+  FrameMaker::Facts frame_facts();
   Frame encode_frame();
   void publish(double now);
   void show_to(proto::ViewerId viewer);

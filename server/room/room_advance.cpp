@@ -39,8 +39,9 @@ bool Room::frames_wait(const Viewer& viewer) const {
 
 /// Whether the viewer of the advance asked for the frame of the coming tick.
 bool Room::shows_next_tick() const {
-  return order_.advance->frames == proto::AdvanceFrames::all ||
-         (order_.advance->frames == proto::AdvanceFrames::last && order_.advance->left == 1);
+  const proto::Advance& wanted = order_.advance->wanted;
+  const bool last = wanted.frames == proto::AdvanceFrames::last || wanted.observe;
+  return wanted.frames == proto::AdvanceFrames::all || (last && order_.advance->left == 1);
 }
 
 bool Room::advance_waits() const {
@@ -49,6 +50,13 @@ bool Room::advance_waits() const {
 
 void Room::show_advanced() {
   const Viewer& viewer = viewers_.at(order_.advance->viewer);
+  const auto& observe = order_.advance->wanted.observe;
+  if (observe && order_.advance->left == 0) {
+    const FrameMaker::Facts facts = frame_facts();
+    return output_.send(order_.advance->viewer,
+                        {frame_maker_.make_observed(*world_, holds_, facts, *observe), true,
+                         Topic::frame, viewer.ticket});
+  }
   const Frame frame = encode_frame();
   const bool full = viewer.wants_forces && frame.with_forces;
   output_.send(order_.advance->viewer,

@@ -1,11 +1,43 @@
-// Keeps a room within its time budget.
+// What `set` sets in a room, and how it keeps within its time budget.
 
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "core/definition.h"
+#include "core/world/cost.h"
 #include "server/room/room.h"
+#include "server/translate/translate_settings.h"
 
 namespace weft::server {
+
+Room::Outcome Room::apply(proto::ViewerId, const proto::Set& command) {
+  const EnvironmentDef environment = with_settings(world_->environment(), command);
+  validate(environment);
+  const auto fabric = fabric_wanted(*world_, command);
+  if (!fabric) return fabric.error();
+  const std::optional<FabricWanted>& wanted = *fabric;
+  std::unique_ptr<ServedWorld> changed;  // replaces the present world once nothing can fail
+  const auto change = [&] { changed = world_->with_fabric(wanted->cloth, wanted->fabric); };
+  if (wanted && !within_limit(change, kBetweenTicks)) throw Stopped();
+  check_cost((changed ? changed : world_)->cost_in(environment), wanted ? "fabric" : "set",
+             "environment");
+  if (changed) {
+    world_ = std::move(changed);
+    mesh_.cloths[wanted->cloth].thickness = wanted->fabric.thickness;  // for who joins later
+    frames_.note_command();
+  }
+  world_->set_environment(environment);
+  if (command.softness) {
+    time_.set_softness(*command.softness);
+    world_->set_softness(*command.softness);
+  }
+  if (command.softness || command.budget_ms || command.over_budget)
+    ask_for_budget(with_settings(time_.budget().budget(), command));
+  news_.state = true;
+  if (measures_forces_) frames_.note_command();  // the forces of the coming tick have changed
+  return proto::Reply(proto::DoneReply{"set", world_->tick()});
+}
 
 /// Applies the keeper's decisions as commands of the room itself. Ticks of `advance` have no clock
 /// and do not count.

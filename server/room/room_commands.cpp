@@ -267,22 +267,6 @@ Room::Outcome Room::apply(ViewerId, const proto::Gripper& command) {
   return proto::Reply(proto::GripperReply{world_->tick(), command.gripper});
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::Set& command) {
-  const EnvironmentDef environment = with_settings(world_->environment(), command);
-  validate(environment);
-  check_cost(world_->cost_in(environment), "set", "environment");
-  world_->set_environment(environment);
-  if (command.softness) {
-    time_.set_softness(*command.softness);
-    world_->set_softness(*command.softness);
-  }
-  if (command.softness || command.budget_ms || command.over_budget)
-    ask_for_budget(with_settings(time_.budget().budget(), command));
-  news_.state = true;
-  if (measures_forces_) frames_.note_command();  // the forces of the coming tick have changed
-  return proto::Reply(proto::DoneReply{"set", world_->tick()});
-}
-
 Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
   if (!paused()) return not_paused();
   if (order_.advance) return advancing_error();
@@ -290,9 +274,10 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);
   caller.stalled = caller.stalled && frames_wait(caller);
-  if (caller.stalled && command.frames) return stalled_error();
-  order_.advance = Advance{viewer, std::nullopt, command.n, command.frames, clock_()};
-  frames_.begin_advance(command.frames ? viewer : 0);
+  const bool shown = command.frames || command.observe;
+  if (caller.stalled && shown) return stalled_error();
+  order_.advance = Advance{viewer, std::nullopt, command.n, command, clock_()};
+  frames_.begin_advance(shown ? viewer : 0);
   return proto::Reply(proto::AdvanceReply{});
 }
 

@@ -8,12 +8,24 @@
 // When a room sends frames and announces changes, and what they contain.
 
 namespace weft::server {
+namespace {
+
+bool observes_forces(const proto::Advance& advance) {
+  return advance.observe &&
+         std::any_of(advance.observe->begin(), advance.observe->end(), [](proto::Observed what) {
+           return what == proto::Observed::contacts || what == proto::Observed::reactions;
+         });
+}
+
+}  // namespace
 
 /// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
   bool wanted = output_.wants_forces();
-  if (order_.advance &&
-      order_.advance->frames.value_or(proto::AdvanceFrames::none) != proto::AdvanceFrames::none) {
+  if (order_.advance && order_.advance->left <= 1)
+    wanted = wanted || observes_forces(order_.advance->wanted);
+  if (order_.advance && order_.advance->wanted.frames.value_or(proto::AdvanceFrames::none) !=
+                            proto::AdvanceFrames::none) {
     const auto caller = viewers_.find(order_.advance->viewer);
     wanted = wanted || (caller != viewers_.end() && caller->second.wants_forces);
   }
@@ -116,16 +128,22 @@ void Room::show_to(proto::ViewerId viewer) {
   output_.offer_frame(std::move(frame));
 }
 
-/// A frame of the present state.
-Frame Room::encode_frame() {
+/// What a frame of the present state tells besides the world, whose forces are then measured if
+/// they are wanted.
+FrameMaker::Facts Room::frame_facts() {
   measure_forces();
   within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
   std::vector<proto::AppliedCommand>& applied = frame_maker_.applied();
   applied.clear();
   for (const auto& [id, viewer] : viewers_)
     if (viewer.applied > 0) applied.push_back({id, viewer.applied});
-  return frame_maker_.make(*world_, holds_,
-                           {frames_.jumped(), paused(), time_.last_tick_done(), epoch_});
+  return {frames_.jumped(), paused(), time_.last_tick_done(), epoch_};
+}
+
+/// A frame of the present state.
+Frame Room::encode_frame() {
+  const FrameMaker::Facts facts = frame_facts();
+  return frame_maker_.make(*world_, holds_, facts);
 }
 
 void Room::notify(proto::NoticeLevel level, const char* code, std::string message,

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <utility>
 
-#include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/strain.h"
 #include "core/error.h"
+#include "server/translate/translate_settings.h"
 
 namespace weft::server {
 namespace {
@@ -49,19 +49,6 @@ std::vector<float> uv_of(const ClothModel<float>& model) {
       for (std::size_t i = 0; i < 2; ++i) out.push_back((point[i] - low[i]) / (high[i] - low[i]));
   }
   return out;
-}
-
-/// Names of all cloths' fabrics, without duplicates.
-std::string fabric_names(const std::vector<ClothDef>& cloths) {
-  std::vector<std::string> names;
-  std::string text;
-  for (const ClothDef& cloth : cloths) {
-    const std::string name = fabric_name(cloth.fabric);
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    names.push_back(name);
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
 }
 
 struct ShapeWriter {
@@ -155,35 +142,6 @@ GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
   return def;
 }
 
-EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set) {
-  if (set.gravity) environment.gravity = from_wire(*set.gravity);
-  if (set.wind) environment.wind = from_wire(*set.wind);
-  if (set.gust_speed) environment.gust_speed = *set.gust_speed;
-  if (set.gust_length) environment.gust_length = *set.gust_length;
-  if (set.air_density) environment.air_density = *set.air_density;
-  if (set.still_air) environment.still_air = *set.still_air;
-  if (set.drag) environment.damping = *set.drag;
-  if (set.fans) {
-    environment.fans.clear();
-    for (const proto::Fan& f : *set.fans)
-      environment.fans.push_back(
-          {from_wire(f.position), from_wire(f.direction), f.speed, f.radius, f.spread, f.reach});
-  }
-  return environment;
-}
-
-BudgetDef with_settings(BudgetDef budget, const proto::Set& set) {
-  if (set.budget_ms) budget.milliseconds = *set.budget_ms;
-  if (set.over_budget)
-    budget.remedy =
-        *set.over_budget == proto::OverBudget::soften ? OverBudget::soften : OverBudget::slow;
-  return budget;
-}
-
-proto::OverBudget to_wire(OverBudget remedy) {
-  return remedy == OverBudget::soften ? proto::OverBudget::soften : proto::OverBudget::slow;
-}
-
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit) {
   if (!hit) return std::nullopt;
   proto::ClothHit out;
@@ -201,22 +159,11 @@ proto::Energy to_wire(const Energies& energies) {
 
 proto::State state_of(const ServedWorld& world) {
   proto::State state;
-  const EnvironmentDef& environment = world.environment();
   state.tick = world.tick();
   state.time = static_cast<double>(world.tick()) * world.tick_seconds();
   state.scene = world.def().name;
   state.tick_rate = world.def().tick_rate;
-  state.gravity = to_wire(environment.gravity);
-  state.wind = to_wire(environment.wind);
-  state.gust_speed = environment.gust_speed;
-  state.gust_length = environment.gust_length;
-  state.air_density = environment.air_density;
-  state.still_air = environment.still_air;
-  state.drag = environment.damping;
-  state.fabric = fabric_names(world.def().cloths);
-  for (const FanDef& f : environment.fans)
-    state.fans.push_back(
-        {to_wire(f.position), to_wire(f.direction), f.speed, f.radius, f.spread, f.reach});
+  tell_settings(world, state);
   state.solver = solver_name(world.def());
   state.substeps = static_cast<std::uint32_t>(world.report().substeps);
   state.particles = static_cast<std::uint32_t>(world.model().mass.size());

@@ -42,13 +42,6 @@ Index nearest_corner(const ServedWorld& world, const proto::SurfacePoint& point)
 GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
                  const proto::SurfacePoint& point);
 
-/// The environment with the command's settings.
-EnvironmentDef with_settings(EnvironmentDef environment, const proto::Set& set);
-
-/// The budget with the command's settings.
-BudgetDef with_settings(BudgetDef budget, const proto::Set& set);
-proto::OverBudget to_wire(OverBudget remedy);
-
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
 proto::Energy to_wire(const Energies& energies);
 proto::State state_of(const ServedWorld& world);  ///< without the room's own values

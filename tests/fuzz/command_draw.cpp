@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "proto/limits.h"
+#include "tests/fuzz/field_draw.h"
 
 namespace weft::fuzz {
 namespace {
@@ -93,24 +94,13 @@ class CommandDraw {
     if (some()) gripper.turn_speed = number(kTurnSpeedRange, 2);
   }
   void operator()(Set& set) {
-    set.still_air = some();
-    if (some()) set.gravity = vector(kGravityRange);
-    if (some()) set.wind = vector(kWindRange);
-    if (some()) set.gust_speed = number(kGustSpeedRange, 2);
-    if (some()) set.gust_length = number(kGustLengthRange, 0.6);
-    if (some()) set.air_density = number(kAirDensityRange, 1.225);
-    if (some()) set.drag = number(kDragRange, 0.5);
-    if (some()) {
-      set.fans.emplace();
-      for (std::size_t k = dice_.below(kMostFans + 1); k > 0; --k) set.fans->push_back(fan());
-    }
-    if (some()) set.softness = number(kSoftnessRange, 1);
-    if (some()) set.budget_ms = number(kBudgetRange, 10);
-    if (some()) set.over_budget = some() ? OverBudget::soften : OverBudget::slow;
+    FieldDraw fields(dice_, wild_);
+    Set::describe(fields, set);
   }
   void operator()(Advance& advance) {
+    FieldDraw fields(dice_, wild_);
+    Advance::describe(fields, advance);
     advance.n = count(kAdvanceRange, 8);
-    if (some()) advance.frames = static_cast<AdvanceFrames>(dice_.below(3));
   }
   void operator()(Query& query) {
     query.what = static_cast<QueryWhat>(dice_.below(static_cast<int>(QueryWhat::crossings) + 1));
@@ -183,16 +173,6 @@ class CommandDraw {
     if (which < names.size()) return names[which];
     if (which < names.size() + grippers.size()) return grippers[which - names.size()] + ".left";
     return "nothing";
-  }
-  Fan fan() {
-    Fan fan;
-    fan.position = place();
-    fan.direction = direction();
-    if (some()) fan.speed = number(kFanSpeedRange, 5);
-    if (some()) fan.radius = number(kFanRadiusRange, 0.25);
-    if (some()) fan.spread = number(kFanSpreadRange, 0.2);
-    if (some()) fan.reach = number(kFanReachRange, 1.5);
-    return fan;
   }
 
   Dice dice_;

@@ -75,6 +75,15 @@ std::vector<ReactionSample> reactions_of(const json& content) {
   return reactions;
 }
 
+std::vector<GripperSample> grippers_of(const json& content) {
+  std::vector<GripperSample> grippers;
+  for (const json& g : content["grippers"])
+    grippers.push_back({g["jaw"], g["gripping"].get<bool>() ? 1U : 0U, vec3_of(g["position"]),
+                        g["rotation"].get<Quatf>(), g["opening"], g["force"],
+                        vec3_of(g["reaction"])});
+  return grippers;
+}
+
 SceneMesh mesh_of(const json& content) {
   SceneMesh mesh;
   mesh.rest_positions = content["rest_positions"].get<std::vector<float>>();
@@ -127,10 +136,12 @@ TEST_CASE("Golden frames are read bit for bit and written byte for byte") {
     CHECK(frame->poses == poses_of(content));
     CHECK(frame->contacts == contacts_of(content));
     CHECK(frame->reactions == reactions_of(content));
+    CHECK(frame->velocities == content["velocities"].get<std::vector<float>>());
+    CHECK(frame->grippers == grippers_of(content));
     if (!content["encoder_writes_it"]) return;
     Bytes written(3);  // what is in the buffer before does not matter
     encode_frame({frame->header, frame->positions, frame->grabs, frame->applied, frame->poses,
-                  frame->contacts, frame->reactions},
+                  frame->contacts, frame->reactions, frame->velocities, frame->grippers},
                  written);
     CHECK(written == message);
   });

@@ -85,6 +85,7 @@ State state() {
   s.air_density = 1.225;
   s.drag = 0.1;
   s.fabric = "default";
+  s.fabrics = {{{}, 0.2, 400, 400, 40, 1e-5, 1e-5, 0.05, 0, 0.004, 0.4}};
   s.solver = "verlet";
   s.substeps = 8;
   s.particles = 600;

@@ -198,5 +198,78 @@ TEST_CASE("frames of advances that are not read do not pile up, whichever are as
   CHECK(t.clock.now < 110);  // stalled once
 }
 
+/// The frame that tells what an `advance` to the floor observes.
+proto::Frame observed(TestRoom& t, const std::string& observe) {
+  t.output.kept_frames.clear();
+  const json result = t.say(1, R"({"op":"advance","id":7,"n":40,"observe":[)" + observe + "]}");
+  REQUIRE(result["op"] == "result");
+  REQUIRE(t.output.kept_frames.size() == 1);
+  CHECK(t.output.kept_frames[0].first == 1);
+  proto::Frame frame = decoded(t.output.kept_frames[0].second);
+  CHECK(frame.header.tick == result["tick"]);
+  CHECK((frame.header.flags & proto::kFrameObserved) != 0);
+  return frame;
+}
+
+/// A cloth that has been dropped on a ball.
+void drop(TestRoom& t) {
+  t.join(1);
+  t.join(2);
+  t.say(1, R"({"op":"release","particle":0})");
+  t.say(1, R"({"op":"advance","n":30})");
+}
+
+std::vector<float> numbers_of(std::span<const float> values) {
+  return {values.begin(), values.end()};
+}
+
+TEST_CASE("an advance tells its last state to the bit, as much of it as it was asked to observe") {
+  TestRoom t;
+  drop(t);
+  const proto::Frame all = observed(t, R"("velocities","contacts","reactions","grippers")");
+  CHECK(all.positions == numbers_of(floats_of(t.room->world().state().x)));
+  CHECK(all.velocities == numbers_of(floats_of(t.room->world().state().v)));
+  REQUIRE_FALSE(all.reactions.empty());
+  const proto::Frame one = observed(t, R"("velocities")");
+  CHECK(one.velocities == numbers_of(floats_of(t.room->world().state().v)));
+  CHECK(one.contacts.empty());
+  CHECK(one.reactions.empty());
+  const proto::Frame places = observed(t, R"("positions")");
+  CHECK(places.positions == numbers_of(floats_of(t.room->world().state().x)));
+  CHECK(places.velocities.empty());
+}
+
+TEST_CASE("forces that an advance observes are those that its ticks' frames would have") {
+  TestRoom t, watched;
+  drop(t);
+  drop(watched);
+  const proto::Frame seen = observed(t, R"("contacts","reactions")");
+  Noted wish;
+  wish.forces = true;
+  watched.room->take({1, 0, wish});
+  watched.say(1, R"({"op":"advance","n":40,"frames":"last"})");
+  REQUIRE(watched.output.kept_frames.size() == 1);
+  const proto::Frame shown = decoded(watched.output.kept_frames[0].second);
+  REQUIRE_FALSE(shown.reactions.empty());
+  CHECK(seen.contacts == shown.contacts);
+  CHECK(seen.reactions == shown.reactions);
+  CHECK(t.room->world().hash() == watched.room->world().hash());
+}
+
+TEST_CASE("to observe changes no result, and nothing of it goes to others") {
+  TestRoom t, blind;
+  drop(t);
+  drop(blind);
+  observed(t, R"("contacts","velocities")");
+  blind.say(1, R"({"op":"advance","n":40})");
+  CHECK(t.room->world().hash() == blind.room->world().hash());
+  for (const Frame& frame : t.output.offered)
+    CHECK((decoded(text_of({frame.bytes, true})).header.flags & proto::kFrameObserved) == 0);
+  const json error = json::parse(proto::encode_error(
+      proto::parse_request(R"({"op":"advance","n":1,"observe":["positions","colour"]})").error()));
+  CHECK(error["code"] == "unknown_value");
+  CHECK(error["field"] == "observe[1]");
+}
+
 }  // namespace
 }  // namespace weft::server

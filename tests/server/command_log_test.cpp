@@ -24,7 +24,7 @@ TEST_CASE("the log keeps its newest entries and says by the index that older one
 
 TEST_CASE("a log that lost only an advance without ticks still tells the whole history") {
   CommandLog log(2);
-  log.add(0, 1, CommandOrigin::viewer, proto::Advance{5, std::nullopt});
+  log.add(0, 1, CommandOrigin::viewer, proto::Advance{5, std::nullopt, std::nullopt});
   log.shorten_advance(5);
   log.add(0, 1, CommandOrigin::viewer, proto::Command(proto::Pause{}));
   log.add(0, 1, CommandOrigin::viewer, proto::Command(proto::Resume{}));
@@ -36,8 +36,8 @@ TEST_CASE("a log that lost only an advance without ticks still tells the whole h
 TEST_CASE("an advance that ends early counts in the log as the ticks that it made") {
   const std::uint32_t left = GENERATE(0u, 1u, 7u, 10u);
   CommandLog log;
-  log.add(3, 1, CommandOrigin::viewer, proto::Advance{4, std::nullopt});
-  log.add(7, 1, CommandOrigin::viewer, proto::Advance{10, std::nullopt});
+  log.add(3, 1, CommandOrigin::viewer, proto::Advance{4, std::nullopt, std::nullopt});
+  log.add(7, 1, CommandOrigin::viewer, proto::Advance{10, std::nullopt, std::nullopt});
   log.add(9, 2, CommandOrigin::viewer, proto::Pause{});
   log.shorten_advance(left);
   std::vector<std::uint32_t> made;

@@ -275,23 +275,6 @@ TEST_CASE("another hand on a held particle is refused, the holder's own is not")
         "drag_exists");
 }
 
-TEST_CASE("reset brings back the scene's pins and tick 0, and keeps what was set") {
-  TestRoom t;
-  t.join(1);
-  const std::string start = hash_of(*t.room);
-  t.say(1, R"({"op":"set","gravity":[0,-1,0]})");
-  t.say(1, R"({"op":"release","all":true})");
-  t.say(1, R"({"op":"drag","phase":"start","particle":38})");
-  t.say(1, R"({"op":"advance","n":30})");
-  CHECK(t.say(1, R"({"op":"reset","id":1})")["tick"] == 0);
-  CHECK(hash_of(*t.room) != start);  // gravity is still another one
-  CHECK(t.output.last("pins")["pins"].size() == 2);
-  CHECK(t.output.last("grabs")["grabs"].empty());
-  CHECK(t.output.last("state")["gravity"][1] == -1);
-  t.say(1, R"({"op":"set","gravity":[0,-9.81,0]})");
-  CHECK(hash_of(*t.room) == start);
-}
-
 TEST_CASE("the frame after a reset is marked as a jump, the next one is not") {
   TestRoom t;
   t.join(1);

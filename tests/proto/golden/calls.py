@@ -43,6 +43,7 @@ CLIENT_CALLS = [
          sends={"op": "set", "wind": [3, 0, 0], "still_air": True}),
     call("advance", 600, sends={"op": "advance", "n": 600}),
     call("advance", 1, frames="last", sends={"op": "advance", "n": 1, "frames": "last"}),
+    call("advance", 10, observe=["velocities"], sends={"op": "advance", "n": 10, "observe": ["velocities"]}),
     call("query", "camera", viewer=4, sends={"op": "query", "what": "camera", "viewer": 4}),
     call("query", "boxes", tree="edges", level=3, sends={
         "op": "query", "what": "boxes", "tree": "edges", "level": 3}),

@@ -134,6 +134,8 @@ ACCEPTED = [
     accepted('{"op":"advance","n":1,"frames":"all"}', op="advance", n=1, frames="all"),
     accepted('{"op":"advance","n":2,"frames":"last"}', op="advance", n=2, frames="last"),
     accepted('{"op":"advance","n":3,"frames":"none"}', op="advance", n=3, frames="none"),
+    accepted('{"op":"advance","n":4,"observe":["velocities","grippers"]}', op="advance", n=4,
+             observe=["velocities", "grippers"]),
     accepted('{"op":"query","what":"energies"}', op="query", what="energies", format="json"),
     accepted(
         '{"op":"query","what":"velocities","format":"f64"}',

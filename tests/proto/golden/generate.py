@@ -18,6 +18,7 @@ import refusals
 from samples import (
     APPLIED_NUMBERS,
     GRID,
+    GRIPPING,
     HANDS,
     MOVED,
     REACTING,
@@ -27,6 +28,7 @@ from samples import (
     contact_bytes,
     grab_bytes,
     grid,
+    gripper_bytes,
     pose_bytes,
     reaction_bytes,
 )
@@ -43,8 +45,9 @@ from sealing import (
 
 FRAME, MESH, DATA, ACK = 1, 2, 3, 4
 POSITIONS, GRABS, APPLIED, POSES, CONTACTS, REACTIONS = 1, 2, 3, 4, 5, 6
+VELOCITIES, GRIPPERS = 8, 9
 REST, TRIANGLES, UV, COLLIDER_POSITIONS, COLLIDER_TRIANGLES = 16, 17, 18, 19, 20
-KEY, JUMP, PAUSED = 1, 2, 4
+KEY, JUMP, PAUSED, OBSERVED = 1, 2, 4, 8
 FLOAT32_MAX, FLOAT32_LEAST = 2.0**127 * (2 - 2.0**-23), 2.0**-149
 NAN, INFINITY = float("nan"), float("inf")
 
@@ -58,6 +61,8 @@ def frame(
     poses=(),
     contacts=(),
     reactions=(),
+    grippers=(),
+    velocities=(),
     extra_before=(),
     extra_after=(),
 ):
@@ -73,6 +78,10 @@ def frame(
         sections.append(section(CONTACTS, 0, contact_bytes(contacts)))
     if reactions:
         sections.append(section(REACTIONS, 0, reaction_bytes(reactions)))
+    if grippers:
+        sections.append(section(GRIPPERS, 0, gripper_bytes(grippers)))
+    if velocities:
+        sections.append(section(VELOCITIES, 0, floats(velocities)))
     sections += extra_after
     body = frame_body(header, len(positions) // 3, sections)
     content = {
@@ -106,6 +115,13 @@ def frame(
             for c in contacts
         ],
         "reactions": [dict(r, force=round_float(r["force"])) for r in reactions],
+        "velocities": round_float(velocities),
+        "grippers": [
+            {k: round_float(v) if isinstance(v, list) else v for k, v in dict(
+                g, opening=round_float([g["opening"]])[0], force=round_float([g["force"]])[0]
+            ).items()}
+            for g in grippers
+        ],
     }
     return name, message(FRAME, body, flags=header["flags"]), content
 
@@ -176,6 +192,11 @@ def accepted():
     yield frame("frame_poses", frame_header(tick=7), GRID[0], HANDS[:1], (), MOVED)
     yield frame(
         "frame_forces", frame_header(tick=8), GRID[0], (), (), (), TOUCHING, REACTING
+    )
+    moving = [0.01 * i - 0.05 for i in range(len(GRID[0]))]
+    yield frame(
+        "frame_observed", frame_header(flags=KEY | PAUSED | OBSERVED, tick=60), GRID[0],
+        HANDS[:1], (), (), TOUCHING, REACTING, GRIPPING, moving,
     )
     extremes = [FLOAT32_MAX, -FLOAT32_MAX, FLOAT32_LEAST, -0.0, 1.0 / 3.0, -1e-20]
     yield frame("frame_jump", frame_header(flags=KEY | JUMP, epoch=7, tick=2**53 - 1), extremes)
@@ -258,6 +279,14 @@ def refused_frames(good):
     yield "a force is infinite", built(
         positions, section(REACTIONS, 0, reaction_bytes([bad_reaction]))
     )
+    gripping = section(GRIPPERS, 0, gripper_bytes(GRIPPING)[:-8])
+    yield "a gripper cut off", built(positions, gripping)
+    bad_gripper = dict(GRIPPING[0], opening=NAN)
+    yield "an opening is NaN", built(positions, section(GRIPPERS, 0, gripper_bytes([bad_gripper])))
+    slow = floats([0.5] * (len(GRID[0]) - 3))
+    yield "velocities of too few", built(positions, section(VELOCITIES, 0, slow))
+    fast = floats([INFINITY] + [0.5] * (len(GRID[0]) - 1))
+    yield "a velocity is infinite", built(positions, section(VELOCITIES, 0, fast))
     yield "applied cut off", built(positions, section(APPLIED, 0, b"\0" * 12))
 
 

@@ -172,9 +172,7 @@ def refused_fields():
     yield refuse('{"op":"move","pin":1,"position":[0,1,0],"stop":true}', "conflicting_fields",
                  field="position", value=[0, 1, 0])
     yield refuse('{"op":"move","pin":1,"stop":1}', "wrong_type", field="stop", value=1)
-    yield refuse('{"op":"set"}', "missing_field", command="set", limit={"allowed": [
-        "gravity", "wind", "gust_speed", "gust_length", "air_density", "still_air", "drag", "fans",
-        "softness", "budget_ms", "over_budget"]})
+    yield refuse('{"op":"set"}', "missing_field", command="set")
     yield refuse('{"op":"set","winds":[1,0,0]}', "missing_field")
     yield refuse('{"op":"set","fans":{}}', "wrong_type", field="fans", value={})
     yield refuse('{"op":"set","fans":[3]}', "wrong_type", field="fans[0]", value=3)

@@ -45,6 +45,22 @@ def reaction_bytes(reactions):
     )
 
 
+def gripper_bytes(grippers):
+    return b"".join(
+        struct.pack(
+            "<II12f",
+            g["jaw"],
+            g["gripping"],
+            *g["position"],
+            *g["rotation"],
+            g["opening"],
+            g["force"],
+            *g["reaction"],
+        )
+        for g in grippers
+    )
+
+
 HANDS = [
     dict(id=17, viewer=3, held=[0.1, 0.9, 0.2], target=[0.2, 1.1, 0.4], force=12.5),
     dict(id=4294967295, viewer=4, held=[0.0, 0.0, 0.0], target=[-1e4, 1e4, 0.0], force=50.0),
@@ -80,6 +96,27 @@ REACTING = [
     dict(of="pin", id=7, force=[0.1, 0.98, -0.2]),
     dict(of="collider", id=0, force=[0.0, -0.5, 0.0]),
     dict(of=77, id=3, force=[1.0, 2.0, 3.0]),
+]
+
+GRIPPING = [
+    dict(
+        jaw=4,
+        gripping=True,
+        position=[0.28, 0.9, 0.0],
+        rotation=[0.0, 0.6, 0.0, 0.8],
+        opening=0.008,
+        force=5.0,
+        reaction=[0.1, -0.8, 0.0],
+    ),
+    dict(
+        jaw=6,
+        gripping=False,
+        position=[-1000.0, 1e-3, 1000.0],
+        rotation=[0.0, 0.0, 0.0, 1.0],
+        opening=1.0,
+        force=0.0,
+        reaction=[0.0, 0.0, 0.0],
+    ),
 ]
 
 

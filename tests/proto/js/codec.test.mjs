@@ -44,6 +44,9 @@ test('golden frames are read bit for bit', () => {
     const named = frame.contacts.map(({ normalForce, ...rest }) => ({ ...rest, normal_force: normalForce }));
     assert.deepEqual(named, content.contacts);
     assert.deepEqual(frame.reactions, content.reactions);
+    sameFloats(frame.velocities ?? [], content.velocities);
+    assert.deepEqual(frame.grippers, content.grippers);
+    assert.equal(frame.observed, (flags & 8) !== 0);
   }
 });
 

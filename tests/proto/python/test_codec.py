@@ -84,6 +84,10 @@ class WithoutNumpy(unittest.TestCase):
             self.assertEqual(contacts, content["contacts"])
             reactions = [as_told(reaction) for reaction in frame.reactions]
             self.assertEqual(reactions, content["reactions"])
+            velocities = [] if frame.velocities is None else flat(frame.velocities)
+            self.assertEqual(float_bits(velocities), float_bits(content["velocities"]))
+            self.assertEqual([as_told(gripper) for gripper in frame.grippers], content["grippers"])
+            self.assertEqual(frame.observed, bool(content["header"]["flags"] & 8))
 
     def test_golden_meshes_are_read(self):
         for content, message in self.each("mesh"):

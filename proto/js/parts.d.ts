@@ -1,0 +1,346 @@
+// Written by proto/generate.py from the descriptions in proto/messages. Do not edit.
+
+import type { Vec3 } from './messages.js';
+
+export interface Fan {
+  /** centre of the disc that its air leaves [m]; 3 × ±10000 */
+  position: Vec3;
+  /** of the jet, any length but 0; 3 × ±10000 */
+  direction: Vec3;
+  /** in the core of the jet [m/s]; 0 to 50 */
+  speed?: number;
+  /** of the disc [m]; 0.01 to 10 */
+  radius?: number;
+  /** growth of the jet's radius per distance; 0 to 2 */
+  spread?: number;
+  /** length of the core [m]; 0.01 to 100 */
+  reach?: number;
+}
+
+export interface Fabric {
+  /** all values of this one; 1 to 64 bytes */
+  preset?: string;
+  /** mass per area [kg/m²]; 0.001 to 100 */
+  areal_density?: number;
+  /** stiffness along u [N/m]; 0 to 1 000 000 */
+  stretch_warp?: number;
+  /** stiffness along v [N/m]; 0 to 1 000 000 */
+  stretch_weft?: number;
+  /** stiffness [N/m]; 0 to 1 000 000 */
+  shear?: number;
+  /** rigidity along u [N m]; 0 to 10 */
+  bending_warp?: number;
+  /** rigidity along v [N m]; 0 to 10 */
+  bending_weft?: number;
+  /** of the highest mode of stretch; 0 to 1 */
+  damping_ratio?: number;
+  /** per rigidity [s]; 0 to 10 */
+  bending_damping?: number;
+  /** distance from objects in contact [m]; 0.0001 to 0.1 */
+  thickness?: number;
+  /** Coulomb's coefficient; 0 to 10 */
+  friction?: number;
+}
+
+export interface Hit {
+  /** to hold it at a point of this triangle; 0 to 2147483647 */
+  triangle: number;
+  /** of that point; sum 1 within 0.001; 3 × 0 to 1 */
+  barycentric: Vec3;
+  /** of the point [m] */
+  position: Vec3;
+  /** its nearest corner */
+  particle: number;
+  /** along the ray [m] */
+  distance: number;
+}
+
+export interface Sleeping {
+  /** groups of touching cloths that sleep and wake together */
+  islands: number;
+  /** by name; no frames are sent while all of them rest */
+  cloths: string[];
+}
+
+export interface Guarantee {
+  /** whether the promise of no crossings holds; `held` or `bad_start` or `void` or `none` */
+  state: 'held' | 'bad_start' | 'void' | 'none';
+  /** `objects`, `cloth` or both */
+  covers: string[];
+  /** of features, without a promise */
+  pairs: number;
+  /** in words; none if the promise holds */
+  reasons: string[];
+}
+
+export interface Crossings {
+  /** edges of cloth that pass through something */
+  count: number;
+  /** of the count */
+  tick: number;
+  /** least contact distance then, negative inside an object; null: nothing is near [m] */
+  smallest_gap: number | null;
+}
+
+export interface Strain {
+  /** of an edge, relative */
+  largest: number;
+  /** which one edge in a hundred exceeds */
+  p99: number;
+}
+
+export interface Energy {
+  kinetic: number;
+  /** of the membrane [J] */
+  stretch: number;
+  bending: number;
+  /** above the height 0 [J] */
+  gravity: number;
+  total: number;
+}
+
+export interface Camera {
+  /** of the eye [m]; 3 × ±10000 */
+  position: Vec3;
+  /** what it looks at; not the same point [m]; 3 × ±10000 */
+  target: Vec3;
+  /** a direction; 3 × ±10000 */
+  up?: Vec3;
+  /** vertical angle of view [degrees]; 1 to 179 */
+  fov?: number;
+}
+
+export interface PinForce {
+  /** its id */
+  pin: number;
+  /** on the cloth [N] */
+  force: Vec3;
+}
+
+export interface GrabForce {
+  /** its number */
+  grab: number;
+  /** its owner */
+  viewer: number;
+  /** on the cloth [N] */
+  force: Vec3;
+}
+
+export interface ColliderForce {
+  /** its name */
+  collider: string;
+  /** of the cloth on it [N] */
+  force: Vec3;
+}
+
+export interface Viewer {
+  /** its number */
+  id: number;
+  name: string;
+  /** `#rrggbb` */
+  color: string;
+  /** what it may do */
+  role: string;
+  /** where it looks from, as last told */
+  camera: Camera | null;
+}
+
+export interface Pin {
+  id: number;
+  /** its owner; 0: the scene */
+  viewer: number;
+  /** the centre of its disc */
+  particle: number;
+  /** of the disc [m] */
+  radius: number;
+  /** of its particle [m] */
+  position: Vec3;
+  /** particles that it holds */
+  count: number;
+  /** of a moving pin [m] */
+  target?: Vec3;
+  /** whether its particles lag behind; `true` or `false` */
+  behind?: boolean;
+}
+
+export interface Grab {
+  /** the room's number */
+  id: number;
+  /** its owner; 0: the scene */
+  viewer: number;
+  /** the owner's number */
+  drag: number;
+  /** to hold it at a point of this triangle; 0 to 2147483647 */
+  triangle: number;
+  /** of that point; sum 1 within 0.001; 3 × 0 to 1 */
+  barycentric: Vec3;
+  /** of the held disc [m] */
+  radius: number;
+  stiffness: number;
+  max_force: number;
+  /** the point of the cloth [m] */
+  held: Vec3;
+  /** where it is pulled to [m] */
+  target: Vec3;
+  mode: 'live' | 'sling';
+  /** on the cloth; in answers to `query` [N] */
+  force?: Vec3;
+}
+
+export interface StageWork {
+  /** of the tick */
+  stage: string;
+  milliseconds: number;
+  /** items done */
+  work: number;
+}
+
+export interface Tree {
+  /** its name */
+  tree: string;
+  /** of boxes */
+  levels: number;
+}
+
+export interface ColliderPose {
+  name: string;
+  /** of the pivot [m] */
+  position: Vec3;
+  /** relative to the mesh message */
+  rotation: number[];
+  /** of the cloth on it while it moves [N] */
+  force: Vec3;
+  /** held back in the last tick; `true` or `false` */
+  blocked: boolean;
+  /** has moved on through cloth; `true` or `false` */
+  voided: boolean;
+}
+
+export interface Contact {
+  /** absent: the other side is cloth too */
+  collider?: string;
+  /** of the cloth */
+  particles: number[];
+  /** sum 1; negative on the other side */
+  weights: number[];
+  /** on the mid-surface [m] */
+  point: Vec3;
+  /** unit, out of the other side */
+  normal: Vec3;
+  /** from the mid-surface [m] */
+  gap: number;
+  /** on the cloth [N] */
+  normal_force: number;
+  /** on the cloth [N] */
+  friction: Vec3;
+}
+
+export interface Reactions {
+  /** absent if the solver does not know them */
+  pins?: PinForce[];
+  /** of hands */
+  grabs: GrabForce[];
+  colliders: ColliderForce[];
+}
+
+export interface GripperState {
+  name: string;
+  /** of its middle [m] */
+  position: Vec3;
+  /** from its definition */
+  rotation: number[];
+  /** between its jaws [m] */
+  opening: number;
+  /** most that each jaw presses with [N] */
+  force: number;
+  /** it presses something; `true` or `false` */
+  gripping: boolean;
+  /** of the cloth on both jaws [N] */
+  reaction: Vec3;
+}
+
+export interface State {
+  op: 'state';
+  tick: number;
+  /** simulated [s] */
+  time: number;
+  paused: boolean;
+  /** simulated time per real time that was asked for */
+  speed: number;
+  /** fraction of `speed` at which time passes */
+  pace: number;
+  /** fraction of their stiffness that the springs have */
+  softness: number;
+  /** for each tick that is due; 0: no bound [ms] */
+  budget_ms: number;
+  /** what gives way beyond it; `slow` or `soften` */
+  over_budget: 'slow' | 'soften';
+  /** its name */
+  scene: string;
+  tick_rate: number;
+  /** acceleration [m/s²] */
+  gravity: Vec3;
+  /** mean velocity [m/s] */
+  wind: Vec3;
+  /** typical speed of the gusts [m/s] */
+  gust_speed: number;
+  /** size of an eddy [m] */
+  gust_length: number;
+  air_density: number;
+  /** air resists without wind too; `true` or `false` */
+  still_air: boolean;
+  /** uniform damping of velocities [1/s] */
+  drag: number;
+  /** all local winds */
+  fans: Fan[];
+  /** names of all cloths' fabrics */
+  fabric: string;
+  /** of each cloth, every value; without `preset` if it is of none */
+  fabrics: Fabric[];
+  /** its name */
+  solver: string;
+  /** of the last tick */
+  substeps: number;
+  /** of all cloths */
+  particles: number;
+  /** median time of a tick [ms] */
+  step_ms: number;
+  /** simulated per real time that is reached */
+  real_time_factor: number;
+  /** cloths at rest, which are not stepped */
+  sleeping: Sleeping;
+  /** whether the promise holds that cloth passes through nothing */
+  guarantee: Guarantee;
+  /** as last counted; null before the first count */
+  crossings: Crossings | null;
+  /** of the springs */
+  strain: Strain;
+  energy: Energy;
+}
+
+export interface Notice {
+  op: 'notice';
+  level: 'info' | 'warning' | 'error';
+  /** what has happened */
+  code: string;
+  /** for people */
+  message: string;
+  /** when */
+  tick?: number;
+  /** that caused it */
+  viewer?: number;
+  /** of `lease_expired` */
+  drag?: number;
+  /** of `frames_dropped` */
+  count?: number;
+  /** that holds now */
+  value?: number;
+}
+
+export interface Bye {
+  op: 'bye';
+  /** the close code that follows */
+  code: number;
+  /** for people */
+  reason: string;
+}
