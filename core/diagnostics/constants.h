@@ -40,4 +40,15 @@ inline constexpr double kLargestGamma = 1000;
 /// more exact (the angle is solved to 1e-5 rad), and slower: time is steps times halvings squared.
 inline constexpr int kElasticaSteps = 500, kElasticaHalvings = 36;
 
+// Errors from repetitions of a run.
+
+/// Least observed order that is extrapolated [1]. Larger: contact, whose order is about a half, is
+/// not measured. Smaller: runs that do not approach each other get an error all the same.
+inline constexpr double kLeastOrder = 0.5;
+
+/// An error is told until noise exceeds both this fraction of it and this multiple of the noise at
+/// the start [1]. Larger: errors are told that are partly chance. Smaller: figures end while they
+/// still hold.
+inline constexpr double kNoiseFraction = 1.0 / 3, kNoiseGrowth = 10;
+
 }  // namespace weft

@@ -42,6 +42,16 @@ inline constexpr long kHandSubstepFactor = 2, kEnoughHandSubsteps = 40;
 /// such ticks stay with implicit, which loses waves in them. Smaller: longer ticks.
 inline constexpr double kShortestForVerlet = 1.0 / 120000;
 
+/// Most times the usual substeps that a run may be repeated with [1]. Larger: rounding in float
+/// exceeds what a finer step gains. Smaller: errors have no reference to be checked against.
+inline constexpr int kMostRefinement = 16;
+
+// Repetitions that tell a run's error.
+
+/// Noise in the starting positions of one repetition [m rms]. Larger: smooth runs appear chaotic.
+/// Smaller: rounding in float hides it at a metre from the origin.
+inline constexpr double kStartNoise = 1e-6;
+
 // Recovery.
 
 /// Retries of a diverged tick, each with twice the substeps of the one before. More: fewer cloths

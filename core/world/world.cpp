@@ -274,8 +274,9 @@ void World<Real>::advance_or_recover(int substeps) {
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
     implicit_.violent = implicit_.touching = false;
-    implicit_.refuses =
-        without_loss <= kMostSubsteps && tick_seconds() >= without_loss * kShortestForVerlet;
+    // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
+    implicit_.refuses = without_loss <= kMostSubsteps &&
+                        refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
     if (touching_ && implicit_.refuses) {
       kind = SolverKind::verlet;
       substeps = without_loss;

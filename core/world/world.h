@@ -159,6 +159,11 @@ class World {
   /// @param cloth  its index, below the number of cloths
   std::unique_ptr<World> with_fabric(std::size_t cloth, const FabricDef& fabric) const;
 
+  /// Takes `factor` times the substeps that it would take, from the coming tick on: for repetitions
+  /// that tell a run's error in time (run_error.h). The hash leaves it out.
+  /// @param factor  1 to kMostRefinement
+  void refine_substeps(int factor);
+
   /// First triangle of the cloth that the ray meets, from either side.
   /// @param direction  of any length but zero
   /// Throws DefinitionError if the ray is not finite or has no direction.
@@ -303,6 +308,7 @@ class World {
   ClothModel<Real> model_;
   double softness_ = 1;
   std::vector<FabricDef> scene_fabrics_;  ///< of each cloth, as the scene defined it
+  int refinement_ = 1;                    ///< factor on the substeps
   ClothState<Real> state_;
   struct Motion {
     Vec3Array<Real> x, v;

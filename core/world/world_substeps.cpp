@@ -16,7 +16,7 @@ int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environm
   assert(kind != SolverKind::automatic);
   if (kind == SolverKind::implicit) {
     const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
-    return std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
+    return refinement_ * std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
   }
   const int fewest =
       kind == SolverKind::relaxation ? def_.relaxation.substeps : def_.solver.min_substeps;
@@ -26,7 +26,13 @@ int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environm
         count, substeps_for(stability_bound(part, kind, environment), tick_seconds(), fewest));
   if (!grabs_.list.empty())
     count = std::max(count, substeps_for_hands(kind, environment, count, fewest));
-  return static_cast<int>(std::min<long>(count, kMostSubsteps + 1));
+  return static_cast<int>(std::min<long>(refinement_ * count, kMostSubsteps + 1));
+}
+
+template <class Real>
+void World<Real>::refine_substeps(int factor) {
+  assert(factor >= 1 && factor <= kMostRefinement);
+  refinement_ = factor;
 }
 
 /// Hands do not need more substeps than the cloth for stability, but with more of them cloth that a
@@ -90,6 +96,7 @@ TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
 
 #define WEFT_INSTANTIATE(Real)                                                                \
   template int World<Real>::choose_substeps(SolverKind, const EnvironmentDef&) const;         \
+  template void World<Real>::refine_substeps(int);                                            \
   template long World<Real>::substeps_for_hands(SolverKind, const EnvironmentDef&, long, int) \
       const;                                                                                  \
   template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind,    \

@@ -134,6 +134,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
              "Ticks between two records of it (1)");
   add_switch(simulate, "--balance", o.balance,
              "Measure what each cause did to the cloth's energy; takes longer");
+  add_switch(simulate, "--error", o.error,
+             "Repeat the run with finer steps, with noise and on a finer mesh, and tell its error");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,

@@ -20,6 +20,7 @@
 #include "core/world/verdict.h"
 #include "core/world/world.h"
 #include "server/clock.h"
+#include "server/commands/error_of_run.h"
 #include "server/commands/series.h"
 #include "server/commands/start_file.h"
 #include "server/options.h"
@@ -112,8 +113,10 @@ void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Mea
   m.broken_promises += broken_promises(world, found);
 }
 
+/// @param error  repetitions that go along with it; null: none
 /// @returns nothing if a tick was given up
-std::optional<Measurement> run(World<float>& world, const SimulateOptions& options) {
+std::optional<Measurement> run(World<float>& world, const SimulateOptions& options,
+                               ErrorOfRun* error) {
   WorkLimit limit(options.tick_limit);
   const LimitWatch watch(limit);
   Measurement m;
@@ -129,6 +132,7 @@ std::optional<Measurement> run(World<float>& world, const SimulateOptions& optio
     if (!measure_tick(world, limit, m)) return std::nullopt;
     promise.note_tick(world);
     if (series) series->note_tick(world);
+    if (error) error->step();
     if (judged) m.verdict.look(world);
     if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
@@ -201,7 +205,7 @@ Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
 }
 
 Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m,
-             const std::vector<std::string>& notices) {
+             const std::vector<std::string>& notices, const ErrorOfRun* error) {
   const double simulated = options.ticks * world.tick_seconds();
   std::vector<float> scratch;
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
@@ -236,7 +240,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
         {"gravity", energy.gravity},
         {"total", energy.total()}}},
       {"balance", balance_summary(world)},
-      {"error", "not measured"},
+      {"error", error ? error->summary() : Json("not measured")},
       {"strain",
        {{"largest", strain.largest}, {"p99", strain.p99}, {"largest_of_run", m.largest_strain}}},
       {"measurements", measured},
@@ -358,7 +362,12 @@ int simulate(const SimulateOptions& options) {
     notices.push_back(notice.message);
     if (notice.warns) std::fprintf(stderr, "weft: %s\n", notice.message.c_str());
   }
-  const std::optional<Measurement> measured = run(world, options);
+  std::optional<ErrorOfRun> error;
+  if (options.error) {
+    error.emplace(def, Runtime{options.threads > 1 ? &pool : nullptr, nullptr});
+    std::fprintf(stderr, "weft: %s\n", error->cost_told_before(world).c_str());
+  }
+  const std::optional<Measurement> measured = run(world, options, error ? &*error : nullptr);
   if (!measured) {
     std::fprintf(stderr,
                  "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
@@ -368,7 +377,7 @@ int simulate(const SimulateOptions& options) {
     return kHalted;
   }
   const Measurement& measurement = *measured;
-  const Json result = summary(options, world, measurement, notices);
+  const Json result = summary(options, world, measurement, notices, error ? &*error : nullptr);
   if (options.json)
     std::printf("%s\n", result.dump(2).c_str());
   else

@@ -19,6 +19,7 @@ struct SimulateOptions {
   std::string series;    ///< .npy file for what happens (series.h); empty: none
   int series_every = 1;  ///< ticks between two of its records, 1 to 10,000,000
   bool balance = false;  ///< measures the work of all that acts; a run then takes longer
+  bool error = false;    ///< repeats the run beside itself and tells its error (run_error.h)
   bool json = false;     ///< summary as one JSON object instead of a table
   int threads = 1;       ///< 1 to 64
   /// Crossings and penetrations are checked every so many ticks, and after the last, 1 to

@@ -132,6 +132,25 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(loss["relaxation_time_s"], found["relaxation_time_s"], delta=1e-8)
         self.assertIn("fabric.bending_damping=0\n", run("fabric").stdout)
 
+    def test_errors_of_a_run_are_told_on_request_and_change_no_bit_of_it(self):
+        arguments = ("simulate", "--scene", "cantilever-test", "--ticks", "6")
+        plain = json.loads(run(*arguments, "--json").stdout)
+        self.assertEqual(plain["error"], "not measured")
+        asked = run(*arguments, "--json", "--error")
+        self.assertRegex(asked.stderr, r"--error repeats the run: about [1-9][0-9.]+ times its cost besides")
+        told = json.loads(asked.stdout)
+        self.assertEqual(told["hash"], plain["hash"])
+        positions = told["error"]["time"]["positions"]
+        self.assertEqual((positions["unit"], positions["until"]), ("m", 0.1))
+        self.assertIn(f"time: positions {positions['error']:.2g} m until 0.1 s", told["error"]["summary"])
+        rows = (("--set", "cloth.rows=21"), ("--set", "cloth.columns=67"))
+        finer = json.loads(run(*arguments, "--json", *rows[0], *rows[1]).stdout)
+        # At least the difference at the end; that of the runs in float is off by their rounding.
+        self.assertGreater(1.2 * told["error"]["space"]["energy"]["error"],
+                           abs(finer["energy"]["total"] - told["energy"]["total"]))
+        self.assertGreater(told["error"]["space"]["energy"]["error"], 0)
+        self.assertRegex(run(*arguments, "--error").stdout, r"(?m)^error\.summary +time: positions ")
+
     def test_the_cantilever_test_measures_the_bending_length_of_its_fabric(self):
         result = json.loads(run("simulate", "--scene", "cantilever-test", "--set", "fabric=denim",
                                 "--ticks", "180", "--json").stdout)
