@@ -14,7 +14,7 @@ namespace weft::server {
 /// contacts of large scenes are refused.
 inline constexpr double kBetweenTicks = 0.4;
 
-/// Longest mesh message [bytes], which everyone who joins is sent: 9 s at 30 Mbit/s. All cloth of
+/// Longest mesh message [bytes], which each new viewer is sent: 9 s at 30 Mbit/s. All cloth of
 /// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller:
 /// fine meshes are refused.
 inline constexpr std::size_t kMostMeshBytes = std::size_t{32} << 20U;

@@ -35,7 +35,7 @@ extern "C" void end_without_unfinished_files(int signal) {
   ::raise(signal);  // now with its usual effect: SA_RESETHAND
 }
 
-/// Leaves signals alone that are ignored or that somebody else attends to.
+/// Leaves signals alone that are ignored or that other code attends to.
 void attend_to_endings() {
   for (const int signal : kEndings) {
     struct sigaction action {};

@@ -85,7 +85,7 @@ inline constexpr int kSleepTicksAhead = 2;
 inline constexpr double kMostHangingStrain = 0.15;
 
 /// Share of a modulus below which XPBD counts as softer than asked for [1]. Larger: warnings for
-/// what nobody sees. Smaller: cloth is a tenth too soft and nothing is said.
+/// what no eye sees. Smaller: cloth is a tenth too soft and nothing is said.
 inline constexpr double kLeastModulusShare = 0.95;
 
 /// Side of the grid on which its moduli are computed [cells]. Larger: it takes longer. Smaller: the

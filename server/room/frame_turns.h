@@ -23,7 +23,7 @@ class FrameTurns {
   bool jumped() const { return jumped_; }
 
   /// Changes by earlier commands are shown together with those of the coming ticks.
-  /// @param viewer  has the frames of these ticks already, or declined them; 0: nobody
+  /// @param viewer  has the frames of these ticks already, or declined them; 0: none
   void begin_advance(proto::ViewerId viewer) {
     advanced_ = advanced_ || commanded_;
     commanded_ = false;

@@ -43,7 +43,7 @@ class Holds {
   /// 0: the scene itself.
   proto::ViewerId owner(PinId pin) const;
 
-  /// Nobody holds anything.
+  /// No viewer holds anything.
   void clear();
 
  private:

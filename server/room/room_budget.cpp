@@ -24,7 +24,8 @@ Room::Outcome Room::apply(proto::ViewerId, const proto::Set& command) {
              "environment");
   if (changed) {
     world_ = std::move(changed);
-    mesh_.cloths[wanted->cloth].thickness = wanted->fabric.thickness;  // for who joins later
+    mesh_.cloths[wanted->cloth].thickness =
+        wanted->fabric.thickness;  // for viewers that join later
     frames_.note_command();
   }
   world_->set_environment(environment);

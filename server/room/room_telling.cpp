@@ -47,7 +47,7 @@ bool Room::frames_stand() const {
   return !ticking() || world_->report().rested;
 }
 
-/// When a frame to all is due [s]; infinity if nobody wants one.
+/// When a frame to all is due [s]; infinity if no viewer wants one.
 double Room::next_frame() const {
   return output_.wants_frames() ? frames_.next(frames_stand())
                                 : std::numeric_limits<double>::infinity();

@@ -16,7 +16,7 @@
 namespace weft::server {
 namespace {
 
-/// Throws CostError if everyone who joins would have to be sent too much.
+/// Throws CostError if each viewer that joins would have to be sent too much.
 void check_mesh_bytes(const WorldDef& def) {
   const std::size_t bytes = proto::mesh_data_bytes(mesh_size(def));
   if (bytes <= kMostMeshBytes) return;
