@@ -17,8 +17,8 @@ struct Hand {
   double heard = 0;  ///< [s]
 };
 
-/// Which viewer holds the cloth where: hands, in the order in which they took hold, and who set
-/// which pin.
+/// Which viewer holds the cloth where: hands, in the order in which they took hold, and the viewer
+/// that set each pin.
 class Holds {
  public:
   const std::vector<Hand>& hands() const { return hands_; }
