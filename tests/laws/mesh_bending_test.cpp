@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
-#include "core/cloth/bending_stencil.h"
 #include "core/forces/force_pass.h"
+#include "tests/laws/bending_matrix.h"
 #include "tests/support/sheets_of_triangles.h"
 #include "tests/support/worlds.h"
 
@@ -63,14 +63,7 @@ Eigen::VectorXd squared_frequencies(Cut cut, int cells) {
   def.fabric.areal_density = 1;
   const ClothModel<double> model = build_cloth<double>(def);
   const auto n = static_cast<Eigen::Index>(model.mass.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  visit_bending_stencils(model.parts[0],
-                         [&](double k, const Index* corners, const double* weights, int count) {
-                           for (int a = 0; a < count; ++a) {
-                             for (int b = 0; b < count; ++b)
-                               matrix(corners[a], corners[b]) += k * weights[a] * weights[b];
-                           }
-                         });
+  Eigen::MatrixXd matrix = test::bending_matrix(model);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double root = std::sqrt(model.mass[static_cast<std::size_t>(i)]);
     matrix.row(i) /= root;

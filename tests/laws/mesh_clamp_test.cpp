@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include "core/cloth/bending_stencil.h"
+#include "tests/laws/bending_matrix.h"
 #include "tests/support/sheets_of_triangles.h"
 #include "tests/support/worlds.h"
 
@@ -58,14 +58,7 @@ double deflection(const Overhang& sheet) {
   const World<double> world(sheet.world());
   const ClothModel<double>& model = world.model();
   const auto n = static_cast<Eigen::Index>(model.mass.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  visit_bending_stencils(model.parts[0],
-                         [&](double k, const Index* corners, const double* weights, int count) {
-                           for (int a = 0; a < count; ++a) {
-                             for (int b = 0; b < count; ++b)
-                               matrix(corners[a], corners[b]) += k * weights[a] * weights[b];
-                           }
-                         });
+  Eigen::MatrixXd matrix = test::bending_matrix(model);
   Eigen::VectorXd load(n);
   for (Eigen::Index i = 0; i < n; ++i)
     load[i] = model.mass[static_cast<std::size_t>(i)] / model.parts[0].fabric.areal_density;
