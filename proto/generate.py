@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes what follows from the descriptions of the messages (proto/messages): the declarations in js/commands.d.ts,
-js/results.d.ts and js/parts.d.ts, the commands of the Python client, and the tables of README.md.
+js/results.d.ts and js/parts.d.ts, python/weft/commands.py, and the tables of README.md.
 
 Usage: generate.py PROGRAM [--check]. PROGRAM is weft_messages, which prints the descriptions. With --check nothing is
 written; it fails if a file is not what it would write.
@@ -188,7 +188,7 @@ def python_method(command):
             placed.append(f"{field['name']}: {python_type(field['type'])} = {field['default']!r}")
         else:
             named.append(f"{field['name']}: {python_type(field['type'])} | None = None")
-    arguments = ["self", *placed, "*", *named, "timeout=_CLIENTS"]
+    arguments = ["self", *placed, "*", *named, "timeout=CLIENTS"]
     head = f"    async def {op}({', '.join(arguments)}) -> dict:"
     if len(head) <= WIDTH:
         yield head
@@ -209,7 +209,7 @@ def python_method(command):
         yield f'        return await self.request("{op}", timeout=timeout)'
         return
     listed = ("vector", "rotation")
-    values = [f'"{f["name"]}": ' + (f"_listed({f['name']})" if f["type"] in listed else f["name"]) for f in fields]
+    values = [f'"{f["name"]}": ' + (f"listed({f['name']})" if f["type"] in listed else f["name"]) for f in fields]
     body = "fields = {" + ", ".join(values) + "}"
     if len(body) + 8 <= WIDTH:
         yield "        " + body
@@ -217,14 +217,29 @@ def python_method(command):
         yield "        fields = {"
         yield from wrapped(values, " " * 12)
         yield "        }  # fmt: skip"
-    yield f'        return await self.request("{op}", timeout=timeout, **_without_none(fields))'
+    yield f'        return await self.request("{op}", timeout=timeout, **without_none(fields))'
 
 
-def methods(messages):
+PYTHON_HEAD = '''"""Commands that follow from their fields. Written by proto/generate.py from the descriptions in proto/messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .fields import listed, without_none
+from .session import Session
+from .timeouts import CLIENTS
+
+
+class Commands(Session):
+    """Commands that follow from their fields."""'''
+
+
+def python_commands(messages):
+    yield PYTHON_HEAD
     for command in messages["commands"]:
         if command["op"] in SUMMARIES:
-            yield from python_method(command)
-            yield ""
+            yield from ("", *python_method(command))
 
 
 # --- tables ---
@@ -267,11 +282,7 @@ def written(messages):
     yield PROTO / "js/commands.d.ts", "\n".join(command_declarations(messages)) + "\n"
     yield PROTO / "js/results.d.ts", "\n".join(result_declarations(messages)) + "\n"
     yield PROTO / "js/parts.d.ts", "\n".join(part_declarations(messages)) + "\n"
-    client = PROTO / "python/weft.py"
-    start = "    # --- commands that follow from their fields: written by proto/generate.py ---\n\n"
-    end = "    # --- the others ---\n"
-    inner = "\n".join(methods(messages)) + "\n"
-    yield client, between(client.read_text(encoding="utf-8"), start, end, inner)
+    yield PROTO / "python/weft/commands.py", "\n".join(python_commands(messages)) + "\n"
     page = PROTO / "README.md"
     text = page.read_text(encoding="utf-8")
     for name, rows in tables(messages).items():

@@ -14,7 +14,7 @@ SCRIPT = {".ts", ".js", ".mjs"}
 CODE = CPP | SCRIPT | {".py", ".cmake", ".css", ".html"}
 LONGEST_FILE = 400
 # Files that people copy into their own work as one piece.
-ONE_PIECE = {"proto/python/weft.py", "tests/server/hostile_client_test.py", "tests/proto/js/client.test.mjs"}
+ONE_PIECE = {"tests/server/hostile_client_test.py", "tests/proto/js/client.test.mjs"}
 ONLY_WITH_ASSIMP = "core/geometry/mesh_file.cpp"
 
 # The flag by which whoever owns a thread ends the work on it.

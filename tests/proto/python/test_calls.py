@@ -34,9 +34,9 @@ class CallsTest(unittest.IsolatedAsyncioTestCase):
             await self.client.set(drag=1j)
         self.assertEqual(len(self.server.heard), 1)
 
-    @unittest.skipIf(weft.numpy is None, "numpy is not installed")
+    @unittest.skipIf(weft.packages.numpy is None, "numpy is not installed")
     async def test_numpys_numbers_and_vectors_are_taken_wherever_plain_ones_are(self):
-        np = weft.numpy
+        np = weft.packages.numpy
         self.server.answers = {
             "pick": [{"hit": None}], "query": [{"data": []}], "drag": [{"grab": 1, "target": [0, 0, 0]}],
         }
@@ -109,7 +109,7 @@ class CallsTest(unittest.IsolatedAsyncioTestCase):
                 task.cancel()
 
     async def test_what_waits_for_its_turn_when_the_connection_is_lost_is_not_sent_on_the_next(self):
-        with mock.patch.object(weft, "FIRST_PAUSE", 0.02):
+        with mock.patch.object(weft.pace, "FIRST_PAUSE", 0.02):
             async with weft.connect(self.server.url, reconnect=True) as client:
                 welcomed = asyncio.Event()
                 client.on("welcome", lambda _: welcomed.set())
@@ -130,7 +130,7 @@ class PaceTest(unittest.IsolatedAsyncioTestCase):
         chance = random.Random(7)
         for limit in (1, 3, 50, 1000, 1e6):
             for patience in (0, 0.5, 2):  # mean time between two that are asked for, in that of the limit
-                pace, times, now = weft._Pace(limit), [], 100.0
+                pace, times, now = weft.pace.Pace(limit), [], 100.0
                 tokens, last = limit, now  # of the server's bucket: as many at once as in a second
                 for _ in range(5000):
                     now += patience / limit * chance.expovariate(1) if patience else 0

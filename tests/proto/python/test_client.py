@@ -14,7 +14,7 @@ HANDS = golden.read("frame_hands.bin")  # epoch 1, 6 vertices, tick 2^40 + 5
 
 class WithoutWebsocketsTest(unittest.TestCase):
     def test_a_python_without_the_package_is_told_which_one_is_missing(self):
-        with mock.patch.object(weft, "websockets", None):
+        with mock.patch.object(weft.packages, "websockets", None):
             with self.assertRaisesRegex(ImportError, "python3-websockets"):
                 weft.open("ws://127.0.0.1:1/ws")
 
@@ -196,7 +196,7 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
 
     async def test_a_drag_starts_moves_repeats_its_target_and_ends(self):
         self.server.answers = {"drag": [{"drag": 1, "grab": 17, "target": [1, 2, 3]}]}
-        with mock.patch.object(weft, "REPEAT_SECONDS", 0.01):
+        with mock.patch.object(weft.drag, "REPEAT_SECONDS", 0.01):
             async with self.client.drag(HIT, radius=0.05) as hand:
                 self.assertEqual(hand.grab, 17)
                 await self.server.until(lambda: len(self.server.of("drag")) >= 3)

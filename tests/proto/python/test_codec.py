@@ -49,10 +49,10 @@ class WithoutNumpy(unittest.TestCase):
     numpy = None
 
     def setUp(self):
-        weft.numpy = self.numpy
+        weft.packages.numpy = self.numpy
 
     def tearDown(self):
-        weft.numpy = numpy
+        weft.packages.numpy = numpy
 
     def each(self, type_=None):
         for name, content, message in golden.messages():

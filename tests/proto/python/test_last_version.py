@@ -54,15 +54,15 @@ class LastVersion(unittest.TestCase):
     def test_a_decoder_that_knows_no_new_section_reads_all_others_of_the_frame(self):
         message = golden.read("frame_observed.bin")
         now = weft.decode_frame(message)
-        newer = {"_VELOCITIES": 60000, "_GRIPPERS": 60001}  # kinds that the last version did not know
-        kept = {name: getattr(weft, name) for name in newer}
+        newer = {"VELOCITIES": 60000, "GRIPPERS": 60001}  # kinds that the last version did not know
+        kept = {name: getattr(weft.layout, name) for name in newer}
         try:
             for name, kind in newer.items():
-                setattr(weft, name, kind)
+                setattr(weft.layout, name, kind)
             then = weft.decode_frame(message)
         finally:
             for name, kind in kept.items():
-                setattr(weft, name, kind)
+                setattr(weft.layout, name, kind)
         self.assertIsNone(then.velocities)
         self.assertEqual(then.grippers, ())
         for name in ("tick", "grabs", "contacts", "reactions", "applied"):

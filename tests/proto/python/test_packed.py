@@ -50,7 +50,7 @@ class PackedTest(unittest.TestCase):
         self.check_streams()
 
     def test_golden_frames_are_read_without_numpy(self):
-        with mock.patch.object(weft, "numpy", None):
+        with mock.patch.object(weft.packages, "numpy", None):
             self.check_streams()
 
     def test_each_frame_that_breaks_a_rule_is_refused_and_changes_nothing(self):

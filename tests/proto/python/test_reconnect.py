@@ -13,7 +13,7 @@ HANDS = golden.read("frame_hands.bin")
 
 class ReconnectTest(unittest.IsolatedAsyncioTestCase):
     async def asyncSetUp(self):
-        self.enterContext(mock.patch.object(weft, "FIRST_PAUSE", 0.02))
+        self.enterContext(mock.patch.object(weft.pace, "FIRST_PAUSE", 0.02))
         self.server = await self.enterAsyncContext(PlayedServer())
 
     async def join(self, **options):
@@ -62,7 +62,7 @@ class ReconnectTest(unittest.IsolatedAsyncioTestCase):
 
     async def test_between_two_connections_nothing_is_sent(self):
         client = await self.join()
-        with mock.patch.object(weft, "FIRST_PAUSE", 60):
+        with mock.patch.object(weft.pace, "FIRST_PAUSE", 60):
             await self.cut()
             with self.assertRaises(weft.ConnectionLost):
                 while True:
@@ -76,7 +76,7 @@ class ReconnectTest(unittest.IsolatedAsyncioTestCase):
     async def test_a_hand_is_lost_with_its_connection(self):
         client = await self.join()
         self.server.answers = {"drag": [{"grab": 17, "target": [1, 2, 3]}]}
-        with mock.patch.object(weft, "REPEAT_SECONDS", 0.01):
+        with mock.patch.object(weft.drag, "REPEAT_SECONDS", 0.01):
             async with client.drag(7) as hand:
                 await self.cut()
                 await self.back()
@@ -156,10 +156,10 @@ class ReconnectTest(unittest.IsolatedAsyncioTestCase):
 
 class PauseTest(unittest.TestCase):
     def test_pauses_double_from_a_quarter_of_a_second_to_eight_with_jitter_down_to_half(self):
-        longest = [weft._pause_before(attempt, 1) for attempt in range(8)]
+        longest = [weft.pace.pause_before(attempt, 1) for attempt in range(8)]
         self.assertEqual(longest, [0.25, 0.5, 1, 2, 4, 8, 8, 8])
-        self.assertEqual([weft._pause_before(attempt, 0) for attempt in range(8)], [p / 2 for p in longest])
-        self.assertEqual(weft._pause_before(10**6, 1), 8)
+        self.assertEqual([weft.pace.pause_before(attempt, 0) for attempt in range(8)], [p / 2 for p in longest])
+        self.assertEqual(weft.pace.pause_before(10**6, 1), 8)
 
 
 if __name__ == "__main__":

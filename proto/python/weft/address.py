@@ -1,0 +1,19 @@
+"""Addresses of servers."""
+
+from urllib.parse import urlsplit
+
+from .errors import WeftError
+
+
+def socket_address(url: str) -> str:
+    """The address of a server's socket; the argument may be that of its page."""
+    scheme = {"http": "ws", "https": "wss"}
+    try:
+        parts = urlsplit(url)
+        known = parts.scheme in ("ws", "wss", *scheme) and parts.hostname and parts.port != 0
+    except ValueError:  # an invalid port
+        known = False
+    if not known:
+        raise WeftError(f"{url!r} is no address of a server: give one as ws://127.0.0.1:8080/ws, or that of its page")
+    path = parts.path if parts.path not in ("", "/") else "/ws"
+    return parts._replace(scheme=scheme.get(parts.scheme, parts.scheme), path=path, fragment="").geturl()

@@ -1,0 +1,106 @@
+"""Commands that follow from their fields. Written by proto/generate.py from the descriptions in proto/messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .fields import listed, without_none
+from .session import Session
+from .timeouts import CLIENTS
+
+
+class Commands(Session):
+    """Commands that follow from their fields."""
+
+    async def camera(
+        self, position: Iterable[float], target: Iterable[float], *, up: Iterable[float] | None = None,
+        fov: float | None = None, timeout=CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Stores where this viewer looks from, so that others may follow.
+
+        position: of the eye [m]; 3 × ±10000
+        target: what it looks at; not the same point [m]; 3 × ±10000
+        up: a direction; 3 × ±10000
+        fov: vertical angle of view [degrees]; 1 to 179
+        """
+        fields = {"position": listed(position), "target": listed(target), "up": listed(up), "fov": fov}
+        return await self.request("camera", timeout=timeout, **without_none(fields))
+
+    async def pause(self, *, timeout=CLIENTS) -> dict:
+        """Stops the room's clock."""
+        return await self.request("pause", timeout=timeout)
+
+    async def resume(self, *, timeout=CLIENTS) -> dict:
+        """Lets the room's clock run."""
+        return await self.request("resume", timeout=timeout)
+
+    async def step(self, n: int = 1, *, timeout=CLIENTS) -> dict:
+        """Lets ticks pass in a paused room.
+
+        n: ticks; 1 to 600
+        """
+        fields = {"n": n}
+        return await self.request("step", timeout=timeout, **without_none(fields))
+
+    async def reset(self, *, timeout=CLIENTS) -> dict:
+        """Back to the scene's start."""
+        return await self.request("reset", timeout=timeout)
+
+    async def speed(self, speed: float, *, timeout=CLIENTS) -> dict:
+        """Sets how fast time passes.
+
+        speed: simulated per real time; 0.01 to 10
+        """
+        fields = {"speed": speed}
+        return await self.request("speed", timeout=timeout, **without_none(fields))
+
+    async def gripper(
+        self, name: str, *, opening: float | None = None, force: float | None = None,
+        position: Iterable[float] | None = None, rotation: Iterable[float] | None = None, speed: float | None = None,
+        turn_speed: float | None = None, timeout=CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Opens, closes (opening=0) or moves a gripper; omitted values stay as they are.
+
+        name: of the gripper; 1 to 56 bytes
+        opening: between its jaws; 0 closes on what is there [m]; 0 to 1
+        force: with which each jaw presses [N]; 0 to 1000
+        position: target of its middle [m]; 3 × ±1000
+        rotation: relative to its definition; without it, as it is now; unit quaternion
+        speed: of its middle, at most [m/s]; 0.001 to 20
+        turn_speed: at most [rad/s]; 0.001 to 60
+        """
+        fields = {
+            "name": name, "opening": opening, "force": force, "position": listed(position),
+            "rotation": listed(rotation), "speed": speed, "turn_speed": turn_speed,
+        }  # fmt: skip
+        return await self.request("gripper", timeout=timeout, **without_none(fields))
+
+    async def set(
+        self, *, gravity: Iterable[float] | None = None, wind: Iterable[float] | None = None,
+        gust_speed: float | None = None, gust_length: float | None = None, air_density: float | None = None,
+        still_air: bool | None = None, drag: float | None = None, fans: list[dict] | None = None,
+        softness: float | None = None, budget_ms: float | None = None, over_budget: str | None = None,
+        fabric: dict | None = None, cloth: str | int | None = None, timeout=CLIENTS,
+    ) -> dict:  # fmt: skip
+        """Changes forces, settings and fabric of the room; omitted values stay as they are.
+
+        gravity: acceleration [m/s²]; 3 × ±1000
+        wind: mean velocity [m/s]; 3 × ±100
+        gust_speed: typical speed of the gusts [m/s]; 0 to 100
+        gust_length: size of an eddy [m]; 0.01 to 100
+        air_density: of the air [kg/m³]; 0 to 1000
+        still_air: air resists without wind too; true or false
+        drag: uniform damping of velocities [1/s]; 0 to 1000
+        fans: all local winds; list of at most 4
+        softness: fraction of the springs' stiffness; 0.01 to 1
+        budget_ms: for each tick that is due; 0: no bound [ms]; 0 to 1000
+        over_budget: what gives way beyond it; slow or soften
+        fabric: of one cloth
+        cloth: whose fabric: its name, or its place in the list of mesh; the first by default
+        """
+        fields = {
+            "gravity": listed(gravity), "wind": listed(wind), "gust_speed": gust_speed, "gust_length": gust_length,
+            "air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans, "softness": softness,
+            "budget_ms": budget_ms, "over_budget": over_budget, "fabric": fabric, "cloth": cloth,
+        }  # fmt: skip
+        return await self.request("set", timeout=timeout, **without_none(fields))

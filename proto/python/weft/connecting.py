@@ -1,0 +1,85 @@
+"""Joining a server."""
+
+from __future__ import annotations
+
+import asyncio
+
+from . import packages
+from .address import socket_address
+from .client import Client
+from .errors import ConnectionLost, ProtocolError
+from .timeouts import CALL_SECONDS
+
+SUBPROTOCOL = "weft.v1"
+MOST_MESSAGE_BYTES = 256 * 2**20
+
+
+class Connecting:
+    """Result of `connect`: gives a client if awaited, and one that closes itself in `async with`."""
+
+    def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool, call_timeout: float | None):
+        self._url, self._hello, self._timeout, self._reconnect = socket_address(url), hello, timeout, reconnect
+        self._call_timeout = call_timeout
+        self._client: Client | None = None
+
+    async def _dial(self):
+        """A socket that speaks weft.v1."""
+        if packages.websockets is None:
+            raise ImportError("no package `websockets` for this Python: Debian has it as python3-websockets, "
+                              "for /usr/bin/python3")
+        try:
+            socket = await packages.websockets.connect(
+                self._url,
+                subprotocols=[SUBPROTOCOL],
+                compression=None,
+                max_size=MOST_MESSAGE_BYTES,
+                open_timeout=self._timeout,
+                close_timeout=self._timeout,
+            )
+        except (OSError, asyncio.TimeoutError, packages.websockets.InvalidHandshake) as error:
+            raise ConnectionLost(1006, f"no connection to {self._url}: {error}") from error
+        if socket.subprotocol != SUBPROTOCOL:
+            await socket.close(4002)
+            raise ProtocolError(f"the server does not speak {SUBPROTOCOL}")
+        return socket
+
+    async def _connect(self) -> Client:
+        socket = await self._dial()
+        self._client = Client(socket, self._dial, self._hello, self._reconnect, self._call_timeout)
+        try:
+            try:
+                await asyncio.wait_for(self._client._ready(), self._timeout)
+            except asyncio.TimeoutError as error:
+                raise ConnectionLost(1006, "the server does not begin") from error
+            if any(self._hello.values()):
+                await self._client.hello(**self._hello)
+        except BaseException:
+            await self._client.close()
+            raise
+        return self._client
+
+    def __await__(self):
+        return self._connect().__await__()
+
+    async def __aenter__(self) -> Client:
+        return await self._connect()
+
+    async def __aexit__(self, *error) -> None:
+        await self._client.close()
+
+
+def connect(
+    url: str,
+    *,
+    name: str | None = None,
+    color: str | None = None,
+    timeout: float = 10,
+    reconnect: bool = False,
+    call_timeout: float | None = CALL_SECONDS,
+) -> Connecting:
+    """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
+
+    `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
+    `timeout` [s] bounds joining, `call_timeout` each answer by default; None: no bound.
+    """
+    return Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout)

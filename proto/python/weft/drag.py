@@ -1,0 +1,83 @@
+"""Hands that hold the cloth."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from .errors import CommandError, ConnectionLost
+from .fields import without_none
+from .timeouts import CLIENTS
+
+if TYPE_CHECKING:
+    from .client import Client
+
+REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.5
+
+
+class Drag:
+    """A hand that pulls the cloth towards a target. It repeats the target while it holds."""
+
+    def __init__(self, client: Client, number: int, start: dict, timeout=CLIENTS):
+        self._client, self._start, self._target = client, start, start.get("target")
+        self._timeout = timeout
+        self._repeater: asyncio.Task | None = None
+        self._connection = client._connections
+        self.number = number
+        self.grab: int | None = None  # the room's number, once it holds
+
+    async def start(self) -> Drag:
+        self._connection = self._client._connections
+        fields = {"phase": "start", "drag": self.number, **self._start}
+        result = await self._client.request("drag", timeout=self._timeout, **fields)
+        self.grab = result["grab"]
+        if self._target is None:
+            self._target = result.get("target")
+        self._repeater = asyncio.create_task(self._repeat())
+        return self
+
+    async def move(self, target: Iterable[float]) -> dict:
+        """Pulls towards another point [m]; returns when the command has its place in a tick."""
+        self._target = list(target)
+        if self._is_lost():
+            raise ConnectionLost(1006, "the hand was lost with its connection")
+        fields = {"phase": "move", "drag": self.number, "target": self._target}
+        return await self._client.request("drag", timeout=self._timeout, **fields)
+
+    async def end(self, *, fire=None) -> dict | None:
+        """Lets go; a sling then gives its impulse, unless fire is False."""
+        if self._repeater is None:
+            return None
+        self._repeater.cancel()
+        self._repeater = None
+        if self._is_lost():
+            return None
+        fields = {"phase": "end", "drag": self.number, **without_none({"fire": fire})}
+        return await self._client.request("drag", timeout=self._timeout, **fields)
+
+    def _is_lost(self) -> bool:
+        return self._connection != self._client._connections
+
+    async def _repeat(self) -> None:
+        while True:
+            await asyncio.sleep(REPEAT_SECONDS)
+            if self._is_lost():
+                return
+            fields = {"phase": "move", "drag": self.number, "target": self._target}
+            try:
+                await self._client.post("drag", **fields)
+            except ConnectionLost:
+                return
+
+    async def __aenter__(self) -> Drag:
+        return await self.start()
+
+    async def __aexit__(self, *error) -> None:
+        try:
+            await self.end()
+        except ConnectionLost:
+            pass
+        except CommandError as refusal:  # the server let go before
+            if refusal.code != "unknown_drag":
+                raise
