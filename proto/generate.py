@@ -1,19 +1,23 @@
 #!/usr/bin/python3
 """Writes what follows from the descriptions of the messages (proto/messages): the declarations in js/commands.d.ts,
-js/results.d.ts and js/parts.d.ts, python/weft/commands.py, and the tables of README.md.
+js/results.d.ts and js/parts.d.ts, those of the Python client with its commands in both forms, the version of both
+packages, and the tables of README.md.
 
 Usage: generate.py PROGRAM [--check]. PROGRAM is weft_messages, which prints the descriptions. With --check nothing is
 written; it fails if a file is not what it would write.
 """
 
 import json
+import re
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
 
+from descriptions import NUMBERS, described, objects_of, type_name, unit_text, value_text
+from generate_blocking import blocking_commands
+from generate_python import python_commands, python_messages, python_results
+
 PROTO = Path(__file__).parent
-WIDTH = 118  # of a line of Python
 SUMMARIES = {  # of the commands whose methods in Python follow from their fields alone
     "camera": "Stores where this viewer looks from, so that others may follow.",
     "pause": "Stops the room's clock.",
@@ -25,57 +29,11 @@ SUMMARIES = {  # of the commands whose methods in Python follow from their field
     "set": "Changes forces, settings and fabric of the room; omitted values stay as they are.",
 }
 TABLES = {"hello", "camera", "gripper", "set", "advance", "view"}  # that README.md has
-NUMBERS = {"number": "number", "integer": "number"}
 SCRIPT = {
     **NUMBERS, "boolean": "boolean", "string": "string", "vector": "Vec3", "rotation": "number[]",
     "name_or_place": "string | number", "name_or_object": "string | object",
 }
-PYTHON = {
-    "number": "float", "integer": "int", "boolean": "bool", "string": "str", "vector": "Iterable[float]",
-    "rotation": "Iterable[float]", "name_or_place": "str | int", "name_or_object": "str | dict",
-}
-
-
-def number_text(value):
-    return f"{value:.15g}" if abs(value) < 1e6 or value % 1e5 else f"{value:,.0f}".replace(",", " ")
-
-
-def value_text(field):
-    """The values that a field may have, in words."""
-    kind = field.get("type")
-    if isinstance(kind, dict) and "words" in kind:
-        return " or ".join(f"`{word}`" for word in kind["words"])
-    if isinstance(kind, dict) and "list" in kind and isinstance(kind["list"], dict) and "words" in kind["list"]:
-        return "list of " + ", ".join(f"`{word}`" for word in kind["list"]["words"])
-    if "range" not in field:
-        return {"boolean": "`true` or `false`"}.get(kind, "") if isinstance(kind, str) else ""
-    least, most = (number_text(end) for end in field["range"])
-    if isinstance(kind, dict):
-        return f"list of at most {most}"
-    span = f"±{most}" if least == "-" + most else f"{least} to {most}"
-    if kind in ("string", "name_or_object"):
-        return f"{span} {field['unit']}"
-    return {"vector": f"3 × {span}", "rotation": "unit quaternion"}.get(kind, span)
-
-
-def unit_text(field):
-    """The unit in brackets; that of a length stands with its values."""
-    return f" [{field['unit']}]" if field.get("unit") and field["type"] not in ("string", "name_or_object") else ""
-
-
-def wrapped(items, indent):
-    """Lines of items with commas between them, none of which is broken."""
-    lines = textwrap.wrap(", ".join(item.replace(" ", "\0") for item in items) + ",", WIDTH, initial_indent=indent,
-                          subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
-    return [line.replace("\0", " ") for line in lines]
-
-
-def described(field):
-    """Meaning, unit and values of a field in one line."""
-    unit = unit_text(field)
-    values = value_text(field)
-    return f"{field['meaning']}{unit}" + (f"; {values}" if values else "")
-
+HEAD = "// Written by proto/generate.py from the descriptions in proto/messages. Do not edit."
 
 # --- declarations ---
 
@@ -101,26 +59,6 @@ def script_fields(fields, loose=False):
         null = " | null" if field.get("nullable") else ""
         mark = "" if field.get("required") and not loose else "?"
         yield f"  {field['name']}{mark}: {script_type(field['type'])}{null};"
-
-
-def objects_of(fields):
-    """All types of objects in some fields, by name."""
-    found = {}
-    for field in fields:
-        kind = field.get("type")
-        while isinstance(kind, dict) and "list" in kind:
-            kind = kind["list"]
-        if isinstance(kind, dict) and "object" in kind:
-            found |= objects_of(kind["fields"])
-            found[kind["object"]] = kind["fields"]
-    return found
-
-
-def type_name(op):
-    return "".join(part.capitalize() for part in op.split("_"))
-
-
-HEAD = "// Written by proto/generate.py from the descriptions in proto/messages. Do not edit."
 
 
 def part_declarations(messages):
@@ -167,81 +105,6 @@ def result_declarations(messages):
             yield from (*script_fields(fields), "}")
 
 
-# --- the Python client ---
-
-
-def python_type(kind):
-    if isinstance(kind, str):
-        return PYTHON[kind]
-    if "words" in kind:
-        return "str"
-    return f"list[{python_type(kind['list'])}]" if "list" in kind else "dict"
-
-
-def python_method(command):
-    fields, op = command["fields"], command["op"]
-    placed, named = [], []
-    for field in fields:
-        if field.get("required"):
-            placed.append(f"{field['name']}: {python_type(field['type'])}")
-        elif len(fields) == 1:
-            placed.append(f"{field['name']}: {python_type(field['type'])} = {field['default']!r}")
-        else:
-            named.append(f"{field['name']}: {python_type(field['type'])} | None = None")
-    arguments = ["self", *placed, "*", *named, "timeout=CLIENTS"]
-    head = f"    async def {op}({', '.join(arguments)}) -> dict:"
-    if len(head) <= WIDTH:
-        yield head
-    else:
-        yield f"    async def {op}("
-        yield from wrapped(arguments, " " * 8)
-        yield "    ) -> dict:  # fmt: skip"
-    if fields:
-        yield f'        """{SUMMARIES[op]}'
-        yield ""
-        for field in fields:
-            line = f"{field['name']}: {described(field)}".replace("`", "")
-            yield from textwrap.wrap(line, WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 12)
-        yield '        """'
-    else:
-        yield f'        """{SUMMARIES[op]}"""'
-    if not fields:
-        yield f'        return await self.request("{op}", timeout=timeout)'
-        return
-    listed = ("vector", "rotation")
-    values = [f'"{f["name"]}": ' + (f"listed({f['name']})" if f["type"] in listed else f["name"]) for f in fields]
-    body = "fields = {" + ", ".join(values) + "}"
-    if len(body) + 8 <= WIDTH:
-        yield "        " + body
-    else:
-        yield "        fields = {"
-        yield from wrapped(values, " " * 12)
-        yield "        }  # fmt: skip"
-    yield f'        return await self.request("{op}", timeout=timeout, **without_none(fields))'
-
-
-PYTHON_HEAD = '''"""Commands that follow from their fields. Written by proto/generate.py from the descriptions in proto/messages."""
-
-from __future__ import annotations
-
-from collections.abc import Iterable
-
-from .fields import listed, without_none
-from .session import Session
-from .timeouts import CLIENTS
-
-
-class Commands(Session):
-    """Commands that follow from their fields."""'''
-
-
-def python_commands(messages):
-    yield PYTHON_HEAD
-    for command in messages["commands"]:
-        if command["op"] in SUMMARIES:
-            yield from ("", *python_method(command))
-
-
 # --- tables ---
 
 
@@ -277,12 +140,31 @@ def between(text, start, end, inner):
     return head + start + inner + end + rest.partition(end)[2]
 
 
+def version():
+    """The project's, of which the packages have theirs."""
+    text = (PROTO.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"^project\(weft VERSION ([\d.]+)", text, re.MULTILINE)[1]
+
+
+def python_files(messages):
+    client = PROTO / "python/weft"
+    commands = "\n".join(python_commands(messages, SUMMARIES)) + "\n"
+    sources = {"commands": commands}
+    sources |= {name: (client / f"{name}.py").read_text(encoding="utf-8") for name in ("session", "queries", "client")}
+    yield client / "messages.py", "\n".join(python_messages(messages)) + "\n"
+    yield client / "results.py", "\n".join(python_results(messages)) + "\n"
+    yield client / "commands.py", commands
+    yield client / "blocking_commands.py", "\n".join(blocking_commands(sources)) + "\n"
+    about = '"""The project\'s version. Written by proto/generate.py from CMakeLists.txt."""'
+    yield client / "version.py", f'{about}\n\n__version__ = "{version()}"\n'
+
+
 def written(messages):
     """All files that follow from the descriptions, with their content."""
     yield PROTO / "js/commands.d.ts", "\n".join(command_declarations(messages)) + "\n"
     yield PROTO / "js/results.d.ts", "\n".join(result_declarations(messages)) + "\n"
     yield PROTO / "js/parts.d.ts", "\n".join(part_declarations(messages)) + "\n"
-    yield PROTO / "python/weft/commands.py", "\n".join(python_commands(messages)) + "\n"
+    yield from python_files(messages)
     page = PROTO / "README.md"
     text = page.read_text(encoding="utf-8")
     for name, rows in tables(messages).items():

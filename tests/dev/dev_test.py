@@ -35,6 +35,7 @@ done
     "clang-format-14": "",
     "clang-tidy-14": "",
 }
+CHECKS = "tests/proto/types"
 NGINX = "tests/web/support/nginx.sh"
 SERVER = """
 port="$*"
@@ -69,7 +70,9 @@ class DevScript(unittest.TestCase):
         shutil.copy(ROOT / "dev", self.tree / "dev")
         (self.tree / NGINX).parent.mkdir(parents=True)
         shutil.copy(ROOT / NGINX, self.tree / NGINX)
-        (self.tree / "web" / "package-lock.json").write_text("{}")
+        for folder in ("web", CHECKS):
+            (self.tree / folder).mkdir(parents=True, exist_ok=True)
+            (self.tree / folder / "package-lock.json").write_text("{}")
         for name, text in (("calls", ""), ("missing", ""), ("node-version", "v18.20.4\n"),
                            ("ninja-status", "0"), ("ctest-status", "0")):
             (self.machine / name).write_text(text)
@@ -167,6 +170,16 @@ class DevScript(unittest.TestCase):
         (self.tree / "web" / "package-lock.json").write_text('{"new": 1}')
         self.dev("setup")
         self.assertEqual(len(self.calls("npm")), 1)
+
+    def test_testing_installs_the_type_checker_and_running_does_not(self):
+        self.dev("setup")
+        self.assertFalse((self.tree / CHECKS / "node_modules").exists())
+        self.calls("npm")
+        self.dev("test")
+        self.assertEqual(len(self.calls("npm")), 1)
+        self.assertTrue((self.tree / CHECKS / "node_modules").is_dir())
+        self.dev("test")
+        self.assertEqual(len(self.calls("npm")), 0)
 
     def test_run_prints_one_line_and_ends_with_the_server(self):
         process = self.start("run", "--scene", "flag", "--port", "4321")

@@ -40,6 +40,7 @@ from .packed import FrameDecoder
 from .samples import (
     ColliderMesh, ContactSample, Data, Frame, GrabSample, GripperSample, Hit, MeshData, Pose, ReactionSample, Rows,
 )  # fmt: skip
+from .version import __version__
 
 if sys.byteorder != "little":
     raise ImportError("weft reads little-endian data as it is and needs such a machine")
@@ -47,6 +48,6 @@ if sys.byteorder != "little":
 __all__ = [
     "CallTimeout", "Client", "ColliderMesh", "CommandError", "ConnectionLost", "ContactSample", "Data", "Drag",
     "Frame", "FrameDecoder", "GrabSample", "GripperSample", "Hit", "MeshData", "Pose", "ProtocolError",
-    "ReactionSample", "Rows", "SUBPROTOCOL", "SyncClient", "SyncDrag", "WeftError", "connect", "decode_binary",
-    "decode_data", "decode_frame", "decode_mesh", "encode_ack", "open",
+    "ReactionSample", "Rows", "SUBPROTOCOL", "SyncClient", "SyncDrag", "WeftError", "__version__", "connect",
+    "decode_binary", "decode_data", "decode_frame", "decode_mesh", "encode_ack", "open",
 ]  # fmt: skip

@@ -12,7 +12,7 @@ def socket_address(url: str) -> str:
         parts = urlsplit(url)
         known = parts.scheme in ("ws", "wss", *scheme) and parts.hostname and parts.port != 0
     except ValueError:  # an invalid port
-        known = False
+        parts, known = urlsplit(""), False
     if not known:
         raise WeftError(f"{url!r} is no address of a server: give one as ws://127.0.0.1:8080/ws, or that of its page")
     path = parts.path if parts.path not in ("", "/") else "/ws"

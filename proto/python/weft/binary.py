@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import layout
+from .errors import ProtocolError
 from .frames import decode_frame
 from .meshes import decode_mesh
 from .reading import demand, padded, read_common, rows_of
@@ -18,14 +19,15 @@ def decode_data(message: bytes) -> Data:
     demand(len(message) == start + padded(size), "the values do not fit")
     demand(not any(message[start + size :]), "padding is not zero")
     payload = memoryview(message)[start : start + size]
-    return Data(tick, transfer, components, rows_of(payload, "fd"[codec], count, components))
+    return Data(tick, transfer, components, rows_of(payload, "d" if codec else "f", count, components))
 
 
 def decode_binary(message: bytes) -> Frame | MeshData | Data:
     """Reads any binary message of a server. Raises ProtocolError and nothing else on the bytes."""
     decoders = {layout.FRAME: decode_frame, layout.MESH: decode_mesh, layout.DATA: decode_data}
     decode = decoders.get(message[0] if message else 0)
-    demand(decode is not None, "unknown type")
+    if decode is None:
+        raise ProtocolError("unknown type")
     return decode(message)
 
 

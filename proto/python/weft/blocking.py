@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-import asyncio
-import functools
-import threading
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Literal
 
-from .client import Client
+from .announcement import Grabs, Mesh, Pins, Roster, Welcome
+from .blocking_commands import BlockingCommands
 from .connecting import connect
 from .drag import Drag
-from .timeouts import CALL_SECONDS
+from .errors import ConnectionLost
+from .fields import Hold
+from .messages import State
+from .results import DragResult
+from .samples import Frame, MeshData
+from .timeouts import CALL_SECONDS, CLIENTS
 
 
 class SyncDrag:
@@ -22,56 +25,51 @@ class SyncDrag:
 
     @property
     def grab(self) -> int | None:
+        """The room's number of it, once it holds."""
         return self._drag.grab
 
     def start(self) -> SyncDrag:
+        """Takes hold."""
         self._owner._run(self._drag.start())
         return self
 
-    def move(self, target: Iterable[float]) -> dict:
+    def move(self, target: Iterable[float]) -> DragResult:
+        """Pulls towards another point [m]; returns when the command has its place in a tick."""
         return self._owner._run(self._drag.move(target))
 
-    def end(self, *, fire=None) -> dict | None:
+    def end(self, *, fire: bool | None = None) -> DragResult | None:
+        """Lets go; a sling then gives its impulse, unless fire is False."""
         return self._owner._run(self._drag.end(fire=fire))
 
     def __enter__(self) -> SyncDrag:
         return self.start()
 
-    def __exit__(self, *error) -> None:
+    def __exit__(self, *error: object) -> None:
         self._owner._run(self._drag.__aexit__(*error))
 
 
-class SyncClient:
+class SyncClient(BlockingCommands):
     """A client whose commands block; its event loop runs in a thread of its own.
 
     It has the commands and properties of `Client`. Listeners are called in that thread.
     """
 
     def __init__(
-        self, url: str, *, name=None, color=None, timeout: float = 10, reconnect=False,
-        call_timeout: float | None = CALL_SECONDS,
+        self, url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10,
+        reconnect: bool = False, call_timeout: float | None = CALL_SECONDS,
     ):  # fmt: skip
-        self._loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=self._loop.run_forever, name="weft", daemon=True)
-        self._thread.start()
+        super().__init__()
         try:
             joining = connect(
                 url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
             )
-            self._client: Client = self._run(joining._connect())
+            self._client = self._run(joining._connect())
         except BaseException:
             self._stop()
             raise
 
-    def _run(self, coroutine):
-        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result()
-
-    def _stop(self) -> None:
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join()
-        self._loop.close()
-
     def close(self) -> None:
+        """Leaves the server."""
         if not self._loop.is_closed():
             self._run(self._client.close())
             self._stop()
@@ -79,44 +77,95 @@ class SyncClient:
     def __enter__(self) -> SyncClient:
         return self
 
-    def __exit__(self, *error) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
-    def drag(self, hold, **options) -> SyncDrag:
-        return SyncDrag(self, self._client.drag(hold, **options))
+    def drag(
+        self, hold: Hold, *, target: Iterable[float] | None = None, radius: float | None = None,
+        stiffness: float | None = None, max_force: float | None = None,
+        mode: Literal["live", "sling"] | None = None, timeout: float | None = CLIENTS,
+    ) -> SyncDrag:  # fmt: skip
+        """A hand; it takes hold with `with` or `start()`. The arguments are those of `Client.drag`."""
+        drag = self._client.drag(
+            hold, target=target, radius=radius, stiffness=stiffness, max_force=max_force, mode=mode, timeout=timeout
+        )
+        return SyncDrag(self, drag)
+
+    def frames(self) -> Iterator[Frame]:
+        """Newest frames as long as the connection lasts; a slow loop misses some."""
+        while True:
+            try:
+                yield self.next_frame(timeout=None)
+            except ConnectionLost:
+                return
 
     def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
+        """Calls `listener`, in the client's thread, with each message of this name."""
         return self._client.on(name, listener)
 
-    def __getattr__(self, name: str):
-        if name in _PROPERTIES:
-            return getattr(self._client, name)
-        raise AttributeError(name)
+    # --- what the server has told, each None before the first ---
 
+    @property
+    def welcome(self) -> Welcome | None:
+        return self._client.welcome
 
-_PROPERTIES = frozenset(
-    ("viewer", "welcome", "mesh", "mesh_data", "frame", "state", "roster", "pins", "grabs", "sleeping",
-     "all_asleep", "call_timeout")
-)
+    @property
+    def mesh(self) -> Mesh:
+        """The text message."""
+        return self._client.mesh
 
+    @property
+    def mesh_data(self) -> MeshData:
+        return self._client.mesh_data
 
-def _blocking(method):
-    @functools.wraps(method)
-    def call(self, *args, **options):
-        return self._run(method(self._client, *args, **options))
+    @property
+    def frame(self) -> Frame | None:
+        """The newest."""
+        return self._client.frame
 
-    return call
+    @property
+    def state(self) -> State | None:
+        return self._client.state
 
+    @property
+    def roster(self) -> Roster | None:
+        return self._client.roster
 
-for _name in (
-    "request post hello pick pin release camera pause resume step reset speed move gripper set advance "
-    "query hash load view ping next_frame frame_at until_asleep"
-).split():
-    setattr(SyncClient, _name, _blocking(getattr(Client, _name)))
+    @property
+    def pins(self) -> Pins | None:
+        return self._client.pins
+
+    @property
+    def grabs(self) -> Grabs | None:
+        return self._client.grabs
+
+    @property
+    def viewer(self) -> int:
+        """Own number among the viewers; 0 before `welcome`."""
+        return self._client.viewer
+
+    @property
+    def sleeping(self) -> tuple[str, ...]:
+        """Cloths that have come to rest, as the newest `state` names them."""
+        return self._client.sleeping
+
+    @property
+    def all_asleep(self) -> bool:
+        """Whether all cloths sleep."""
+        return self._client.all_asleep
+
+    @property
+    def call_timeout(self) -> float | None:
+        """For an answer or a frame [s]; None: no bound."""
+        return self._client.call_timeout
+
+    @call_timeout.setter
+    def call_timeout(self, seconds: float | None) -> None:
+        self._client.call_timeout = seconds
 
 
 def open(
-    url: str, *, name=None, color=None, timeout: float = 10, reconnect=False,
+    url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10, reconnect: bool = False,
     call_timeout: float | None = CALL_SECONDS,
 ) -> SyncClient:  # fmt: skip
     """Joins a server, blocking; use it with `with`. The arguments are those of `connect`."""

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Iterable
+from collections.abc import AsyncIterator, Iterable, Mapping
+from typing import Any, Literal, overload
 
-from .commands import Commands
 from .drag import Drag
 from .errors import ConnectionLost
-from .fields import hold_fields, is_number, without_none
-from .samples import Frame, Hit
+from .fields import Hold, hold_fields, is_number, listed, without_none
+from .queries import Queries
+from .results import (
+    AdvanceResult, HelloResult, LoadResult, MoveResult1, MoveResult2, PinResult, ReleaseResult, ViewResult,
+)  # fmt: skip
+from .samples import Frame, Hit, Observation
 from .timeouts import ADVANCE_SECONDS, ADVANCE_TICK_SECONDS, CLIENTS, LOAD_SECONDS
 
 
-class Client(Commands):
+class Client(Queries):
     """A viewer of a Weft server. Make one with `connect`.
 
     With `reconnect` it joins again by itself, with growing pauses, when the connection is lost; commands
@@ -29,17 +33,16 @@ class Client(Commands):
     messages `state`, `roster`, `pins`, `grabs`; each is None before the first.
     """
 
-
     @property
     def sleeping(self) -> tuple[str, ...]:
         """Cloths that have come to rest and are not stepped, as the newest `state` names them. That message
         may come a little after the answer to a command; `query("state")` asks for it."""
-        return tuple((self.state or {}).get("sleeping", {}).get("cloths", ()))
+        return tuple(self.state["sleeping"]["cloths"]) if self.state else ()
 
     @property
     def all_asleep(self) -> bool:
         """Whether all cloths sleep; no frame comes then until something wakes one or an object moves."""
-        return bool(self.sleeping) and len(self.sleeping) == len(self.mesh["cloths"])
+        return bool(self.sleeping) and self.mesh is not None and len(self.sleeping) == len(self.mesh["cloths"])
 
     async def until_asleep(self, *, timeout: float | None = None) -> None:
         """Waits until all cloths sleep, in a running room whose scene lets them (`sleep.after`)."""
@@ -47,16 +50,19 @@ class Client(Commands):
 
     # --- commands (section 5 of the specification) ---
 
-    async def hello(self, *, name: str | None = None, color: str | None = None, timeout=CLIENTS) -> dict:
+    async def hello(
+        self, *, name: str | None = None, color: str | None = None, timeout: float | None = CLIENTS
+    ) -> HelloResult:
+        """Name and colour ("#rrggbb") of this viewer."""
         fields = without_none({"name": name, "color": color})
         self._hello.update(fields)
         return await self.request("hello", timeout=timeout, **fields)
 
     async def pick(
-        self, origin: Iterable[float], direction: Iterable[float], *, timeout=CLIENTS
+        self, origin: Iterable[float], direction: Iterable[float], *, timeout: float | None = CLIENTS
     ) -> Hit | None:
         """The point where a ray meets the cloth."""
-        ray = {"origin": list(origin), "direction": list(direction)}
+        ray = {"origin": listed(origin), "direction": listed(direction)}
         hit = (await self.request("pick", timeout=timeout, **ray))["hit"]
         if hit is None:
             return None
@@ -69,8 +75,10 @@ class Client(Commands):
         )
 
     def drag(
-        self, hold, *, target=None, radius=None, stiffness=None, max_force=None, mode=None, timeout=CLIENTS
-    ) -> Drag:
+        self, hold: Hold, *, target: Iterable[float] | None = None, radius: float | None = None,
+        stiffness: float | None = None, max_force: float | None = None,
+        mode: Literal["live", "sling"] | None = None, timeout: float | None = CLIENTS,
+    ) -> Drag:  # fmt: skip
         """A hand; it takes hold with `async with` or `await start()`.
 
         `hold` is a Hit, a particle's number, or a dict with `particle` or `triangle` and
@@ -78,40 +86,58 @@ class Client(Commands):
         for each of its commands.
         """
         number, self._next_drag = self._next_drag, self._next_drag + 1
-        fields = {"radius": radius, "stiffness": stiffness, "max_force": max_force, "mode": mode}
+        fields: dict[str, Any] = {"radius": radius, "stiffness": stiffness, "max_force": max_force, "mode": mode}
         fields["target"] = None if target is None else list(target)
         return Drag(self, number, {**hold_fields(hold), **without_none(fields)}, timeout)
 
-    async def pin(self, hold, *, radius: float | None = None, timeout=CLIENTS) -> dict:
+    async def pin(
+        self, hold: Hold, *, radius: float | None = None, timeout: float | None = CLIENTS
+    ) -> PinResult:
+        """Fixes a disc of the fabric of some radius [m] where it is now."""
         fields = {**hold_fields(hold), **without_none({"radius": radius})}
         return await self.request("pin", timeout=timeout, **fields)
 
     async def release(
-        self, *, pin: int | None = None, particle: int | None = None, all=None, timeout=CLIENTS
-    ) -> dict:
+        self, *, pin: int | None = None, particle: int | None = None, all: Literal[True] | None = None,
+        timeout: float | None = CLIENTS,
+    ) -> ReleaseResult:  # fmt: skip
         """Removes one pin, those of a particle, or all."""
         fields = {"pin": pin, "particle": particle, "all": all}
         return await self.request("release", timeout=timeout, **without_none(fields))
 
     async def move(
-        self, what: str | int | dict, position=None, rotation=None, *, speed=None, turn_speed=None,
-        force=None, release=None, seconds=None, max_force=None, stop=None, timeout=CLIENTS,
-    ) -> dict:  # fmt: skip
+        self, what: str | int | Mapping[str, int], position: Iterable[float] | None = None,
+        rotation: Iterable[float] | None = None, *, speed: float | None = None, turn_speed: float | None = None,
+        force: bool | None = None, release: Literal[True] | None = None, seconds: float | None = None,
+        max_force: float | None = None, stop: Literal[True] | None = None, timeout: float | None = CLIENTS,
+    ) -> MoveResult1 | MoveResult2:  # fmt: skip
         """Sends a collider, by its name or as {"collider": its place in the list of the mesh message}, to a
         pose at bounded speed, or back to its keyframes (release=True);
         or a pin, by its id, to a position, at bounded speed or within some seconds, or fixes it where it is
         on its way (stop=True)."""
-        named = isinstance(what, dict)
-        fields = dict(what) if named else {"pin" if is_number(what) else "collider": what}
-        fields["position"] = None if position is None else list(position)
-        fields["rotation"] = None if rotation is None else list(rotation)
+        if isinstance(what, Mapping):
+            fields: dict[str, Any] = dict(what)
+        else:
+            fields = {"pin" if is_number(what) else "collider": what}
+        fields |= {"position": listed(position), "rotation": listed(rotation)}
         fields |= {"speed": speed, "turn_speed": turn_speed, "force": force, "release": release}
         fields |= {"seconds": seconds, "max_force": max_force, "stop": stop}
         return await self.request("move", timeout=timeout, **without_none(fields))
 
+    @overload
     async def advance(
-        self, n: int, *, frames: str | None = None, observe: Iterable[str] | None = None, timeout=CLIENTS
-    ) -> dict:  # fmt: skip
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: None = None,
+        timeout: float | None = CLIENTS,
+    ) -> AdvanceResult: ...  # fmt: skip
+    @overload
+    async def advance(
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: Iterable[str],
+        timeout: float | None = CLIENTS,
+    ) -> Observation: ...  # fmt: skip
+    async def advance(
+        self, n: int, *, frames: str | None = None, observe: Iterable[str] | None = None,
+        timeout: float | None = CLIENTS,
+    ) -> Any:  # fmt: skip
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
 
         `frames` says which of its frames this viewer gets, regardless of its `hz`: "all", "last" or "none";
@@ -122,45 +148,33 @@ class Client(Commands):
         if timeout is CLIENTS:
             ticks = n if is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
-        fields = without_none({"frames": frames})
-        if observe is not None:
-            fields["observe"] = list(observe)
+        fields = without_none({"frames": frames, "observe": None if observe is None else list(observe)})
         result = await self.request("advance", timeout=timeout, n=n, **fields)
         return result if observe is None else {**result, "observation": self._observation}
 
-    async def query(
-        self,
-        what: str,
-        *,
-        format: str | None = None,
-        viewer: int | None = None,
-        tree: str | None = None,
-        level: int | None = None,
-        timeout=CLIENTS,
-    ):
-        """The data of a query; a `Data` if the format is "f32" or "f64"."""
-        options = without_none({"format": format, "viewer": viewer, "tree": tree, "level": level})
-        return (await self.request("query", timeout=timeout, what=what, **options))["data"]
-
-    async def hash(self, *, timeout=CLIENTS) -> str:
+    async def hash(self, *, timeout: float | None = CLIENTS) -> str:
+        """Hash of all that decides the future of the scene."""
         return (await self.request("hash", timeout=timeout))["hash"]
 
-    async def load(self, scene: str | dict, *, timeout=CLIENTS) -> dict:
+    async def load(
+        self, scene: str | Mapping[str, Any], *, timeout: float | None = CLIENTS
+    ) -> LoadResult:
+        """Replaces the scene, by its name or by a whole scene as a dict."""
         if timeout is CLIENTS:
             timeout = LOAD_SECONDS
         return await self.request("load", timeout=timeout, scene=scene)
 
     async def view(
-        self, *, hz: float | None = None, codec: str | None = None, error: float | None = None,
-        forces: bool | None = None, timeout=CLIENTS,
-    ) -> dict:  # fmt: skip
+        self, *, hz: float | None = None, codec: Literal["f32", "packed"] | None = None, error: float | None = None,
+        forces: bool | None = None, timeout: float | None = CLIENTS,
+    ) -> ViewResult:  # fmt: skip
         """What frames are sent. With codec="packed" they take about a byte a vertex, off by at most `error` [m]
         (1e-4), and some time to decode in Python."""
         fields = without_none({"hz": hz, "codec": codec, "error": error, "forces": forces})
         self._view.update(fields)
         return await self.request("view", timeout=timeout, **fields)
 
-    async def ping(self, *, timeout=CLIENTS) -> tuple[float, float]:
+    async def ping(self, *, timeout: float | None = CLIENTS) -> tuple[float, float]:
         """Round trip, and the server's clock minus this client's [s]."""
         now = asyncio.get_running_loop().time
         sent = now()
@@ -171,25 +185,21 @@ class Client(Commands):
 
     # --- frames ---
 
-    async def next_frame(self, *, timeout=CLIENTS) -> Frame:
+    async def next_frame(self, *, timeout: float | None = CLIENTS) -> Frame:
         """The next frame; none is sent while nothing changes: all cloths sleep, or the room is paused."""
         before = self.frame
-        await self._in_time("next_frame", timeout, self._until(lambda: self.frame is not before))
-        return self.frame
+        return await self._in_time("next_frame", timeout, self._frame_where(lambda frame: frame is not before))
 
-    async def frame_at(self, tick: int, *, timeout=CLIENTS) -> Frame:
+    async def frame_at(self, tick: int, *, timeout: float | None = CLIENTS) -> Frame:
         """The first frame from now on whose tick is at least this one."""
-        reached = self._until(lambda: self.frame is not None and self.frame.tick >= tick)
-        await self._in_time("frame_at", timeout, reached)
-        return self.frame
+        return await self._in_time("frame_at", timeout, self._frame_where(lambda frame: frame.tick >= tick))
 
     async def frames(self) -> AsyncIterator[Frame]:
         """Newest frames as long as the connection lasts; a slow loop misses some."""
         last = self.frame
         while True:
             try:
-                await self._until(lambda: self.frame is not last)
+                last = await self._frame_where(lambda frame, before=last: frame is not before)
             except ConnectionLost:
                 return
-            last = self.frame
             yield last

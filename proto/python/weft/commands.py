@@ -1,10 +1,15 @@
-"""Commands that follow from their fields. Written by proto/generate.py from the descriptions in proto/messages."""
+"""Commands that follow from their fields. Written by proto/generate.py from proto/messages."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Literal
 
-from .fields import listed, without_none
+from .fields import known, listed, without_none
+from .messages import Fabric, Fan
+from .results import (
+    CameraResult, GripperResult, PauseResult, ResetResult, ResumeResult, SetResult, SpeedResult, StepResult,
+)  # fmt: skip
 from .session import Session
 from .timeouts import CLIENTS
 
@@ -14,8 +19,8 @@ class Commands(Session):
 
     async def camera(
         self, position: Iterable[float], target: Iterable[float], *, up: Iterable[float] | None = None,
-        fov: float | None = None, timeout=CLIENTS,
-    ) -> dict:  # fmt: skip
+        fov: float | None = None, timeout: float | None = CLIENTS,
+    ) -> CameraResult:  # fmt: skip
         """Stores where this viewer looks from, so that others may follow.
 
         position: of the eye [m]; 3 × ±10000
@@ -26,15 +31,15 @@ class Commands(Session):
         fields = {"position": listed(position), "target": listed(target), "up": listed(up), "fov": fov}
         return await self.request("camera", timeout=timeout, **without_none(fields))
 
-    async def pause(self, *, timeout=CLIENTS) -> dict:
+    async def pause(self, *, timeout: float | None = CLIENTS) -> PauseResult:
         """Stops the room's clock."""
         return await self.request("pause", timeout=timeout)
 
-    async def resume(self, *, timeout=CLIENTS) -> dict:
+    async def resume(self, *, timeout: float | None = CLIENTS) -> ResumeResult:
         """Lets the room's clock run."""
         return await self.request("resume", timeout=timeout)
 
-    async def step(self, n: int = 1, *, timeout=CLIENTS) -> dict:
+    async def step(self, n: int = 1, *, timeout: float | None = CLIENTS) -> StepResult:
         """Lets ticks pass in a paused room.
 
         n: ticks; 1 to 600
@@ -42,11 +47,11 @@ class Commands(Session):
         fields = {"n": n}
         return await self.request("step", timeout=timeout, **without_none(fields))
 
-    async def reset(self, *, timeout=CLIENTS) -> dict:
+    async def reset(self, *, timeout: float | None = CLIENTS) -> ResetResult:
         """Back to the scene's start."""
         return await self.request("reset", timeout=timeout)
 
-    async def speed(self, speed: float, *, timeout=CLIENTS) -> dict:
+    async def speed(self, speed: float, *, timeout: float | None = CLIENTS) -> SpeedResult:
         """Sets how fast time passes.
 
         speed: simulated per real time; 0.01 to 10
@@ -57,8 +62,8 @@ class Commands(Session):
     async def gripper(
         self, name: str, *, opening: float | None = None, force: float | None = None,
         position: Iterable[float] | None = None, rotation: Iterable[float] | None = None, speed: float | None = None,
-        turn_speed: float | None = None, timeout=CLIENTS,
-    ) -> dict:  # fmt: skip
+        turn_speed: float | None = None, timeout: float | None = CLIENTS,
+    ) -> GripperResult:  # fmt: skip
         """Opens, closes (opening=0) or moves a gripper; omitted values stay as they are.
 
         name: of the gripper; 1 to 56 bytes
@@ -78,10 +83,11 @@ class Commands(Session):
     async def set(
         self, *, gravity: Iterable[float] | None = None, wind: Iterable[float] | None = None,
         gust_speed: float | None = None, gust_length: float | None = None, air_density: float | None = None,
-        still_air: bool | None = None, drag: float | None = None, fans: list[dict] | None = None,
-        softness: float | None = None, budget_ms: float | None = None, over_budget: str | None = None,
-        fabric: dict | None = None, cloth: str | int | None = None, timeout=CLIENTS,
-    ) -> dict:  # fmt: skip
+        still_air: bool | None = None, drag: float | None = None, fans: list[Fan] | None = None,
+        softness: float | None = None, budget_ms: float | None = None,
+        over_budget: Literal["slow", "soften"] | None = None, fabric: Fabric | None = None,
+        cloth: str | int | None = None, timeout: float | None = CLIENTS,
+    ) -> SetResult:  # fmt: skip
         """Changes forces, settings and fabric of the room; omitted values stay as they are.
 
         gravity: acceleration [m/s²]; 3 × ±1000
@@ -100,7 +106,8 @@ class Commands(Session):
         """
         fields = {
             "gravity": listed(gravity), "wind": listed(wind), "gust_speed": gust_speed, "gust_length": gust_length,
-            "air_density": air_density, "still_air": still_air, "drag": drag, "fans": fans, "softness": softness,
-            "budget_ms": budget_ms, "over_budget": over_budget, "fabric": fabric, "cloth": cloth,
+            "air_density": air_density, "still_air": still_air, "drag": drag, "fans": known(Fan, "fans", fans),
+            "softness": softness, "budget_ms": budget_ms, "over_budget": over_budget,
+            "fabric": known(Fabric, "fabric", fabric), "cloth": cloth,
         }  # fmt: skip
         return await self.request("set", timeout=timeout, **without_none(fields))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Generator
+from typing import Any
 
 from . import packages
 from .address import socket_address
@@ -17,12 +19,12 @@ MOST_MESSAGE_BYTES = 256 * 2**20
 class Connecting:
     """Result of `connect`: gives a client if awaited, and one that closes itself in `async with`."""
 
-    def __init__(self, url: str, hello: dict, timeout: float, reconnect: bool, call_timeout: float | None):
+    def __init__(self, url: str, hello: dict[str, Any], timeout: float, reconnect: bool, call_timeout: float | None):
         self._url, self._hello, self._timeout, self._reconnect = socket_address(url), hello, timeout, reconnect
         self._call_timeout = call_timeout
         self._client: Client | None = None
 
-    async def _dial(self):
+    async def _dial(self) -> Any:
         """A socket that speaks weft.v1."""
         if packages.websockets is None:
             raise ImportError("no package `websockets` for this Python: Debian has it as python3-websockets, "
@@ -58,14 +60,15 @@ class Connecting:
             raise
         return self._client
 
-    def __await__(self):
+    def __await__(self) -> Generator[Any, None, Client]:
         return self._connect().__await__()
 
     async def __aenter__(self) -> Client:
         return await self._connect()
 
-    async def __aexit__(self, *error) -> None:
-        await self._client.close()
+    async def __aexit__(self, *error: object) -> None:
+        if self._client is not None:
+            await self._client.close()
 
 
 def connect(

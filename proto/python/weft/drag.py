@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .errors import CommandError, ConnectionLost
 from .fields import without_none
+from .results import DragResult
 from .timeouts import CLIENTS
 
 if TYPE_CHECKING:
@@ -19,15 +20,16 @@ REPEAT_SECONDS = 0.4  # a hand at rest repeats its target; the lease asks for 0.
 class Drag:
     """A hand that pulls the cloth towards a target. It repeats the target while it holds."""
 
-    def __init__(self, client: Client, number: int, start: dict, timeout=CLIENTS):
+    def __init__(self, client: Client, number: int, start: dict[str, Any], timeout: float | None = CLIENTS):
         self._client, self._start, self._target = client, start, start.get("target")
         self._timeout = timeout
-        self._repeater: asyncio.Task | None = None
+        self._repeater: asyncio.Task[None] | None = None
         self._connection = client._connections
         self.number = number
         self.grab: int | None = None  # the room's number, once it holds
 
     async def start(self) -> Drag:
+        """Takes hold."""
         self._connection = self._client._connections
         fields = {"phase": "start", "drag": self.number, **self._start}
         result = await self._client.request("drag", timeout=self._timeout, **fields)
@@ -37,7 +39,7 @@ class Drag:
         self._repeater = asyncio.create_task(self._repeat())
         return self
 
-    async def move(self, target: Iterable[float]) -> dict:
+    async def move(self, target: Iterable[float]) -> DragResult:
         """Pulls towards another point [m]; returns when the command has its place in a tick."""
         self._target = list(target)
         if self._is_lost():
@@ -45,7 +47,7 @@ class Drag:
         fields = {"phase": "move", "drag": self.number, "target": self._target}
         return await self._client.request("drag", timeout=self._timeout, **fields)
 
-    async def end(self, *, fire=None) -> dict | None:
+    async def end(self, *, fire: bool | None = None) -> DragResult | None:
         """Lets go; a sling then gives its impulse, unless fire is False."""
         if self._repeater is None:
             return None
@@ -73,7 +75,7 @@ class Drag:
     async def __aenter__(self) -> Drag:
         return await self.start()
 
-    async def __aexit__(self, *error) -> None:
+    async def __aexit__(self, *error: object) -> None:
         try:
             await self.end()
         except ConnectionLost:

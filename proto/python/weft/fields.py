@@ -2,35 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeGuard
+
 from .samples import Hit
 
+# Where to hold: what `pick` found, a particle's number, or a dict with `particle`, or `triangle` and `barycentric`.
+Hold = Hit | int | Mapping[str, Any]
 
-def is_number(value) -> bool:
+
+def is_number(value: object) -> TypeGuard[int]:
     """Whether it is a whole number, also one of numpy."""
     return hasattr(value, "__index__")
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """Converts numpy's numbers and arrays, and any type with their `tolist`, for JSON."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"a value of type {type(value).__name__} cannot be sent")
 
 
-def hold_fields(hold) -> dict:
-    """Fields that tell where to hold, from a Hit, a particle's number, or a dict with them."""
+def hold_fields(hold: Hold) -> dict[str, Any]:
+    """Fields that tell where to hold."""
     if is_number(hold):
         return {"particle": hold}
     if isinstance(hold, Hit):
         return {"triangle": hold.triangle, "barycentric": list(hold.barycentric)}
+    assert isinstance(hold, Mapping)
     names = ("triangle", "barycentric") if "triangle" in hold else ("particle",)
     return {name: hold[name] for name in names}
 
 
-def listed(vector):
+def listed(vector: Iterable[float] | None) -> Any:
     """A vector as it can be sent; what lists itself, as numpy's do, is sent as it is."""
     return vector if vector is None or hasattr(vector, "tolist") else list(vector)
 
 
-def without_none(fields: dict) -> dict:
+def known(kind: type, name: str, value: Any) -> Any:
+    """The value, a dict of such a kind or a list of some, or a TypeError that names a field that it has not: the
+    server ignores what it does not know, so that a misspelt field would do nothing."""
+    for part in value if isinstance(value, (list, tuple)) else [value]:
+        unknown = sorted(set(part) - set(kind.__annotations__)) if isinstance(part, Mapping) else []
+        if unknown:
+            has = ", ".join(kind.__annotations__)
+            raise TypeError(f"{name} has no field {unknown[0]!r}; it has {has}")
+    return value
+
+
+def without_none(fields: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in fields.items() if value is not None}

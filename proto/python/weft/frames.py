@@ -6,6 +6,7 @@ import math
 import struct
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any, cast
 
 from . import layout
 from .reading import demand, read_common, read_sections, rows_of
@@ -47,7 +48,7 @@ def _contact(entry: tuple) -> ContactSample:
 def _reaction(entry: tuple) -> ReactionSample:
     of, id_, *force = entry
     demand(all(map(math.isfinite, force)), "a number is not finite")
-    return ReactionSample(layout.REACTION_OF.get(of, of), id_, tuple(force))
+    return ReactionSample(layout.REACTION_OF.get(of) or of, id_, tuple(force))
 
 
 def _gripper(entry: tuple) -> GripperSample:
@@ -69,7 +70,7 @@ def decode_frame(message: bytes) -> Frame:
     return decode_frame_by(message, None)
 
 
-def decode_frame_by(message: bytes, unpack: Callable | None) -> Frame:
+def decode_frame_by(message: bytes, unpack: Callable[[Frame, float, int, bytes], Any] | None) -> Frame:
     """`unpack` makes positions of the header and the packed ones; it is called last, as it has effects."""
     start = layout.COMMON.size + layout.FRAME_FIELDS.size
     codec, flags = read_common(message, layout.FRAME, start, layout.PACKED)
@@ -92,7 +93,7 @@ def decode_frame_by(message: bytes, unpack: Callable | None) -> Frame:
         reference=reference,
         epoch=epoch,
         flags=flags,
-        positions=None,
+        positions=cast(Any, None),  # until the end
         grabs=tuple(map(_grab, _entries(sections.get((layout.GRABS, 0)), layout.GRAB))),
         applied=dict(_entries(sections.get((layout.APPLIED, 0)), layout.APPLIED_ENTRY)),
         poses=dict(map(_pose, _entries(sections.get((layout.POSES, 0)), layout.POSE))),
@@ -101,7 +102,7 @@ def decode_frame_by(message: bytes, unpack: Callable | None) -> Frame:
         velocities=rows_of(velocities, "f", vertices, 3) if velocities is not None else None,
         grippers=tuple(map(_gripper, _entries(sections.get((layout.GRIPPERS, 0)), layout.GRIPPER))),
     )
-    if codec == layout.FLOAT32:
+    if unpack is None or codec == layout.FLOAT32:
         positions = rows_of(sections.get((layout.POSITIONS, 0)), "f", vertices, 3)
     else:
         demand((layout.PACKED_POSITIONS, 0) in sections, "the frame has no positions")

@@ -21,6 +21,6 @@ CONTACT = struct.Struct("<II11f")
 REACTION = struct.Struct("<II3f")
 GRIPPER = struct.Struct("<II12f")
 NO_COLLIDER = 2**32 - 1
-REACTION_OF = {0: "pin", 1: "collider"}
+REACTION_OF: dict[int, str] = {0: "pin", 1: "collider"}
 ACK_FIELDS = struct.Struct("<BBHI")
 TICK_END = 2**53

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from . import layout
+from .errors import ProtocolError
 from .order import read_order
 from .reading import demand, read_common, read_sections, rows_of
 from .samples import ColliderMesh, MeshData
 
 
-def _triangles(payload: memoryview | None, count: int, vertices: int):
+def _triangles(payload: memoryview | None, count: int, vertices: int) -> Any:
     rows = rows_of(payload, "I", count, 3)
-    demand(max(payload.cast("I"), default=-1) < vertices, "an index is out of range")
+    demand(max((payload or memoryview(b"")).cast("I"), default=-1) < vertices, "an index is out of range")
     return rows
 
 
-def _collider(sections: dict, index: int) -> ColliderMesh:
+def _collider(sections: dict[tuple[int, int], memoryview], index: int) -> ColliderMesh:
     corners = sections[layout.COLLIDER_POSITIONS, index]
     faces = sections.get((layout.COLLIDER_TRIANGLES, index))
-    demand(faces is not None, "a collider has no triangles")
+    if faces is None:
+        raise ProtocolError("a collider has no triangles")
     vertices = len(corners) // 12
     positions = rows_of(corners, "f", vertices, 3)
     return ColliderMesh(index, positions, _triangles(faces, len(faces) // 12, vertices))
@@ -42,7 +46,7 @@ def decode_mesh(message: bytes) -> MeshData:
     )
 
 
-def _order_rows(payload: memoryview | None, vertices: int):
+def _order_rows(payload: memoryview | None, vertices: int) -> Any:
     """Checked too: each vertex once, each neighbour before."""
     if payload is None:
         return None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from .reading import demand
 
@@ -21,7 +22,7 @@ def read_order(rows) -> tuple[list[int], list[tuple[int, int, int]]]:
     return vertices, near
 
 
-def grid_order(cloths: Iterable[dict], count: int) -> tuple[list[int], list[tuple[int, int, int]]]:
+def grid_order(cloths: Iterable[Mapping[str, Any]], count: int) -> tuple[list[int], list[tuple[int, int, int]]]:
     near = []
     for cloth in cloths:
         first, vertices = cloth["first_vertex"], cloth["vertices"]

@@ -1,13 +1,15 @@
 """The packages that are used where they are installed."""
 
-try:
-    import numpy
-except ImportError:  # optional; everything works without it
-    numpy = None
-
-try:
-    import websockets
-except ImportError:  # only the decoders work without it
-    websockets = None
+from importlib import import_module
+from typing import Any
 
 
+def _installed(name: str) -> Any:
+    try:
+        return import_module(name)
+    except ImportError:
+        return None
+
+
+numpy: Any = _installed("numpy")  # optional; everything works without it
+websockets: Any = _installed("websockets")  # only the decoders work without it

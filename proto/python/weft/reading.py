@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import struct
+from typing import Any, Literal, cast
 
 from . import layout, packages
 from .errors import ProtocolError
@@ -63,10 +64,10 @@ def read_sections(message: bytes, offset: int, count: int) -> dict[tuple[int, in
     return sections
 
 
-def rows_of(payload: memoryview | None, format_: str, count: int, width: int):
-    """Exactly `count` rows of finite numbers."""
-    fits = payload is not None and len(payload) == count * width * struct.calcsize(format_)
-    demand(fits, "a section does not fit")
+def rows_of(payload: memoryview | None, format_: Literal["f", "d", "I"], count: int, width: int) -> Any:
+    """Exactly `count` rows of finite numbers, which share the memory of the message."""
+    if payload is None or len(payload) != count * width * struct.calcsize(format_):
+        raise ProtocolError("a section does not fit")
     flat = payload.cast(format_)
     np = packages.numpy
     if np is not None:
@@ -74,6 +75,6 @@ def rows_of(payload: memoryview | None, format_: str, count: int, width: int):
         finite = format_ == "I" or bool(np.isfinite(rows).all())
         rows = rows.reshape(count, width)
     else:
-        rows, finite = Rows(flat, width), format_ == "I" or all(map(math.isfinite, flat))
+        rows, finite = Rows(cast(memoryview, flat), width), format_ == "I" or all(map(math.isfinite, flat))
     demand(finite, "a number is not finite")
     return rows

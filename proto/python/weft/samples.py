@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 from . import layout
+from .results import AdvanceResult
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
+
+# Rows of numbers: a numpy array that shares the memory of its message; `Rows` where numpy is not installed.
+Floats: TypeAlias = "NDArray[numpy.float32]"
+Indices: TypeAlias = "NDArray[numpy.uint32]"
+Numbers: TypeAlias = "NDArray[Any]"
 
 
-class Rows(Sequence):
+class Rows(Sequence[tuple[Any, ...]]):
     """Rows of numbers, read-only; `flat` is all of them as a memoryview."""
 
     def __init__(self, flat: memoryview, width: int):
@@ -18,7 +28,11 @@ class Rows(Sequence):
     def __len__(self) -> int:
         return len(self.flat) // self.width
 
-    def __getitem__(self, index):
+    @overload
+    def __getitem__(self, index: int) -> tuple[Any, ...]: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[tuple[Any, ...]]: ...
+    def __getitem__(self, index: int | slice) -> Any:
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         start = range(len(self))[index] * self.width
@@ -90,13 +104,13 @@ class Frame:
     reference: int
     epoch: int
     flags: int
-    positions: Any  # one row of 3 per vertex [m]
+    positions: Floats  # one row of 3 per vertex [m]
     grabs: tuple[GrabSample, ...]
     applied: dict[int, int]  # viewer to the number of its last included message
     poses: dict[int, Pose]  # by the collider's index in the list of the `mesh` message
     contacts: tuple[ContactSample, ...]  # if `view` asked for forces
     reactions: tuple[ReactionSample, ...]  # if `view` asked for forces
-    velocities: Any = None  # one row of 3 per vertex [m/s], if `observe` asked for them
+    velocities: Floats | None = None  # one row of 3 per vertex [m/s], if `observe` asked for them
     grippers: tuple[GripperSample, ...] = ()  # if `observe` asked for them
 
     @property
@@ -117,19 +131,19 @@ class Frame:
 @dataclass(frozen=True)
 class ColliderMesh:
     collider: int  # index in the list of the `mesh` message
-    positions: Any  # one row of 3 per vertex [m]
-    triangles: Any  # one row of 3 per triangle
+    positions: Floats  # one row of 3 per vertex [m]
+    triangles: Indices  # one row of 3 per triangle
 
 
 @dataclass(frozen=True)
 class MeshData:
     """Everything constant during an epoch."""
 
-    rest_positions: Any  # one row of 3 per vertex [m]
-    triangles: Any  # one row of 3 per triangle
-    uv: Any  # one row of 2 per vertex
+    rest_positions: Floats  # one row of 3 per vertex [m]
+    triangles: Indices  # one row of 3 per triangle
+    uv: Floats  # one row of 2 per vertex
     colliders: tuple[ColliderMesh, ...]
-    order: Any = None  # one row of 4 per vertex, of the codec `packed`; None: all cloths are grids
+    order: Indices | None = None  # one row of 4 per vertex, of the codec `packed`; None: all cloths are grids
 
 
 @dataclass(frozen=True)
@@ -139,7 +153,7 @@ class Data:
     tick: int
     transfer: int
     components: int
-    values: Any  # one row of `components` each
+    values: Numbers  # one row of `components` each
 
 
 @dataclass(frozen=True)
@@ -151,3 +165,9 @@ class Hit:
     position: tuple[float, float, float]
     particle: int  # the nearest corner
     distance: float  # along the ray [m]
+
+
+class Observation(AdvanceResult):
+    """The answer to an `advance` that observes."""
+
+    observation: Frame  # of its last tick

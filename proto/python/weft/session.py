@@ -6,17 +6,21 @@ import asyncio
 import json
 import random
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from . import layout, packages
+from .announcement import Grabs, Mesh, Pins, Roster, Welcome
 from .binary import decode_binary, encode_ack
 from .errors import CallTimeout, CommandError, ConnectionLost, ProtocolError, WeftError
 from .fields import plain, without_none
+from .messages import State
 from .pace import USUAL_RATE, Pace, pause_before
 from .packed import FrameDecoder
 from .reading import demand
 from .samples import Data, Frame, MeshData
 from .timeouts import CALL_SECONDS, CLIENTS
+
+Value = TypeVar("Value")
 
 FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # a new attempt would fail alike
 
@@ -26,34 +30,37 @@ class Session:
     what the server tells is kept and told on. `Client` says what its calls mean."""
 
     def __init__(
-        self, socket, dial: Callable[[], Awaitable], hello: dict, reconnect: bool,
+        self, socket: Any, dial: Callable[[], Awaitable[Any]], hello: dict[str, Any], reconnect: bool,
         call_timeout: float | None = CALL_SECONDS,
     ):  # fmt: skip
         self._socket, self._dial = socket, dial
         self.call_timeout = call_timeout  # for an answer or a frame [s]; None: no bound
         self._pace, self._turn = Pace(), asyncio.Lock()
-        self._hello, self._view = without_none(hello), {}  # repeated after a reconnection
+        self._hello = without_none(hello)  # repeated after a reconnection
+        self._view: dict[str, Any] = {}  # the same
         self._reconnect = reconnect
-        self._redial: asyncio.Task | None = None
+        self._redial: asyncio.Task[None] | None = None
         self._connections = 1
         self._attempts = 0  # to connect again since the last welcome
-        self._waiting: dict[int, asyncio.Future] = {}
-        self._transfers: dict[int, tuple[asyncio.Future, dict]] = {}
+        self._waiting: dict[int, asyncio.Future[Any]] = {}
+        self._transfers: dict[int, tuple[asyncio.Future[Any], dict[str, Any]]] = {}
         self._listeners: dict[str, list[Callable[[Any], None]]] = {}
         self._next_id = self._next_drag = 1
         self._changed = asyncio.Condition()
         self._lost: WeftError | None = None  # why there is no connection now
         self._ended = False  # and none will follow
-        self.welcome: dict | None = None
-        self.mesh: dict | None = None
-        self.mesh_data: MeshData | None = None
+        self.welcome: Welcome | None = None
+        # Both are there before anyone gets the client, as `connect` waits for them.
+        self.mesh: Mesh = None  # type: ignore[assignment]
+        self.mesh_data: MeshData = None  # type: ignore[assignment]
+        self._announced: Mesh | None = None  # a mesh whose data is on the way
         self._packed: FrameDecoder | None = None  # of the present mesh
         self._observation: Frame | None = None  # the last frame that an `advance` observed
         self.frame: Frame | None = None
-        self.state: dict | None = None
-        self.roster: dict | None = None
-        self.pins: dict | None = None
-        self.grabs: dict | None = None
+        self.state: State | None = None
+        self.roster: Roster | None = None
+        self.pins: Pins | None = None
+        self.grabs: Grabs | None = None
         self._reader = asyncio.create_task(self._read())
 
     @property
@@ -69,17 +76,18 @@ class Session:
         return lambda: listeners.remove(listener)
 
     async def close(self) -> None:
+        """Leaves the server."""
         self._reconnect = False
         if self._redial is not None:
             self._redial.cancel()
         await self._socket.close()
         await self._reader
 
-    async def request(self, op: str, *, timeout=CLIENTS, **fields) -> dict:
+    async def request(self, op: str, *, timeout: float | None = CLIENTS, **fields: Any) -> Any:
         """Sends any command and waits for its result."""
         return await self._in_time(op, timeout, self._ask(op, fields))
 
-    async def _ask(self, op: str, fields: dict) -> dict:
+    async def _ask(self, op: str, fields: dict[str, Any]) -> Any:
         if self._lost:
             raise self._lost
         id_, self._next_id = self._next_id, self._next_id + 1
@@ -93,24 +101,25 @@ class Session:
             if answer.done() and not answer.cancelled():
                 answer.exception()  # retrieved, even if sending failed first
 
-    async def _in_time(self, what: str, timeout, waiting: Awaitable):
+    async def _in_time(self, what: str, timeout: float | None, waiting: Awaitable[Value]) -> Value:
         """Its result, or CallTimeout."""
         seconds = self.call_timeout if timeout is CLIENTS else timeout
+        bound = asyncio.timeout(seconds)
         try:
-            async with asyncio.timeout(seconds) as bound:
+            async with bound:
                 return await waiting
         except TimeoutError as error:
             if not bound.expired():
                 raise
-            raise CallTimeout(what, seconds) from error
+            raise CallTimeout(what, seconds or 0) from error
 
-    async def post(self, op: str, **fields) -> None:
+    async def post(self, op: str, **fields: Any) -> None:
         """Sends a command without waiting for an answer."""
         if self._lost:
             raise self._lost
         await self._send(op, **fields)
 
-    async def _send(self, op: str, **fields) -> None:
+    async def _send(self, op: str, **fields: Any) -> None:
         text = json.dumps({"op": op, **fields}, allow_nan=False, default=plain)
         socket = self._socket
         async with self._turn:  # so that no message overtakes another
@@ -130,7 +139,13 @@ class Session:
         async with self._changed:
             await self._changed.wait_for(lambda: condition() or self._ended)
         if not condition():
-            raise self._lost
+            raise self._lost or ConnectionLost(1006, "the connection was closed")
+
+    async def _frame_where(self, holds: Callable[[Frame], bool]) -> Frame:
+        """The newest frame once this holds of it."""
+        await self._until(lambda: self.frame is not None and holds(self.frame))
+        assert self.frame is not None
+        return self.frame
 
     async def _ready(self) -> None:
         """Waits for the messages that a client needs to begin."""
@@ -138,8 +153,9 @@ class Session:
 
     async def _read(self) -> None:
         while True:
-            self._lose(await self._read_socket())
-            if not self._reconnect or self._is_final(self._lost):
+            lost = await self._read_socket()
+            self._lose(lost)
+            if not self._reconnect or self._is_final(lost):
                 break
             try:
                 self._redial = asyncio.ensure_future(self._join_again())
@@ -162,7 +178,7 @@ class Session:
     def _is_final(lost: WeftError) -> bool:
         return isinstance(lost, ConnectionLost) and lost.code in FINAL_CODES
 
-    def _why(self) -> dict:
+    def _why(self) -> dict[str, Any]:
         lost = self._lost
         if isinstance(lost, ConnectionLost):
             return {"code": lost.code, "reason": lost.reason}
@@ -222,7 +238,7 @@ class Session:
         async with self._changed:
             self._changed.notify_all()
 
-    def _tell(self, name: str, value) -> None:
+    def _tell(self, name: str, value: Any) -> None:
         for listener in list(self._listeners.get(name, ())):
             try:
                 listener(value)
@@ -238,7 +254,7 @@ class Session:
         demand(isinstance(message, dict), "a text message is no object")
         op = message.get("op", "")
         if op == "mesh":
-            self.mesh, self.mesh_data = message, None
+            self._announced = message
             return "", None  # reported when its data has arrived
         if op == "result":
             return self._answer(message)
@@ -252,8 +268,8 @@ class Session:
             self._pace.set_limit(limit, asyncio.get_running_loop().time())
         return op, message
 
-    def _answer(self, message: dict) -> tuple[str, Any]:
-        answer = self._waiting.get(message.get("id"))
+    def _answer(self, message: dict[str, Any]) -> tuple[str, Any]:
+        answer = self._waiting.get(message.get("id", 0))
         if answer is not None and not answer.done():
             if "binary" in message:
                 self._transfers[message["binary"]["transfer"]] = (answer, message)
@@ -261,8 +277,8 @@ class Session:
                 answer.set_result(message)
         return "result", message
 
-    def _refuse(self, message: dict) -> tuple[str, Any]:
-        answer, error = self._waiting.get(message.get("id")), CommandError(message)
+    def _refuse(self, message: dict[str, Any]) -> tuple[str, Any]:
+        answer, error = self._waiting.get(message.get("id", 0)), CommandError(message)
         if answer is None or answer.done():
             return "refused", error
         answer.set_exception(error)
@@ -271,17 +287,17 @@ class Session:
     async def _take_binary(self, content: bytes) -> tuple[str, Any]:
         message = self._decode(content)
         if isinstance(message, Data):
-            answer, result = self._transfers.pop(message.transfer, (None, None))
+            answer, result = self._transfers.pop(message.transfer, (None, {}))
             if answer is not None and not answer.done():
                 answer.set_result({**result, "data": message})
             return "data", message
         if isinstance(message, MeshData):
-            self._check_mesh(message)
-            self.mesh_data, self._packed = message, None
+            self.mesh, self.mesh_data = self._fitting(message), message
+            self._announced = self._packed = None
             return "mesh", message
         await self._socket.send(encode_ack(message.sequence))
-        if self.mesh_data is None or self.mesh["epoch"] != message.epoch:
-            return "", None  # of an earlier mesh
+        if self.mesh is None or self.mesh["epoch"] != message.epoch:
+            return "", None  # of another mesh
         demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")
         self.frame = message
         if message.observed:
@@ -290,19 +306,23 @@ class Session:
 
     def _decode(self, content: bytes) -> Frame | MeshData | Data:
         packed = content[:1] == bytes([layout.FRAME]) and content[2:3] == bytes([layout.PACKED])
-        if not packed or self.mesh_data is None:
+        if not packed or self.mesh is None:
             return decode_binary(content)
         if self._packed is None:  # now that one is needed: making it takes a while
             self._packed = FrameDecoder(self.mesh["cloths"], self.mesh_data)
         return self._packed.decode(content)
 
-    def _check_mesh(self, data: MeshData) -> None:
-        demand(self.mesh is not None, "a mesh came unannounced")
-        kinds = [collider["kind"] for collider in self.mesh["colliders"]]
+    def _fitting(self, data: MeshData) -> Mesh:
+        """The message that announced a mesh."""
+        mesh = self._announced
+        if mesh is None:
+            raise ProtocolError("a mesh came unannounced")
+        kinds = [collider["kind"] for collider in mesh["colliders"]]
         fits = (
-            len(data.rest_positions) == self.mesh["vertices"]
-            and len(data.triangles) == self.mesh["triangles"]
+            len(data.rest_positions) == mesh["vertices"]
+            and len(data.triangles) == mesh["triangles"]
             and [c.collider for c in data.colliders]
             == [i for i, kind in enumerate(kinds) if kind == "mesh"]
         )
         demand(fits, "the mesh is not the one announced")
+        return mesh

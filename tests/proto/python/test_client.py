@@ -94,6 +94,15 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
                 await self.client.set(**values)
         self.assertEqual(self.server.heard, [])
 
+    async def test_a_field_of_a_dict_that_there_is_none_of_is_named_and_nothing_is_sent(self):
+        fan = {"position": [0, 1, 2], "direction": [0, 0, -1]}
+        for values, word in (({"fabric": {"frction": 0.2}}, "frction"), ({"fans": [fan, {**fan, "sped": 1}]}, "sped")):
+            with self.assertRaisesRegex(TypeError, word):
+                await self.client.set(**values)
+        self.assertEqual(self.server.heard, [])
+        await self.client.set(fans=[fan], fabric={"preset": "silk"})
+        self.assertEqual(len(self.server.heard), 1)
+
     async def test_nan_is_not_sent(self):
         with self.assertRaises(ValueError):
             await self.client.speed(float("nan"))

@@ -162,6 +162,12 @@ class WithNumpy(WithoutNumpy):
             self.assertIsInstance(rows, numpy.ndarray)
             self.assertEqual((rows.dtype, rows.ndim, rows.shape[1]), (kind, 2, width))
 
+    def test_arrays_share_the_memory_of_their_message(self):
+        for content, message in self.each("frame"):
+            frame, content_of_it = weft.decode_frame(message), numpy.frombuffer(message, numpy.uint8)
+            if len(frame.positions):
+                self.assertTrue(numpy.shares_memory(frame.positions, content_of_it))
+
 
 class RowsAreASequence(unittest.TestCase):
     def test_of_tuples(self):
