@@ -140,6 +140,18 @@ test('a paused frame is shown as it is, at once', () => {
   assert.equal(playback.sample(10, false), false);
 });
 
+test('a frame of a moment that is shown already is shown too: hands move in a room that stands', () => {
+  const playback = new Playback(1);
+  const hand = (x) => ({ id: 1, viewer: 2, held: [0, 0, 0], target: [x, 0, 0], force: 0 });
+  for (let tick = 0; tick < 9; tick++) playback.push(frame_at(tick), tick * PERIOD);
+  for (const x of [1, 2]) {
+    playback.push(frame_at(9, { paused: true, grabs: [hand(x)] }), 1 + x);
+    assert.equal(playback.sample(1 + x, false), true);
+    assert.deepEqual(playback.grabs, [hand(x)]);
+    assert.equal(playback.sample(1.5 + x, false), false);
+  }
+});
+
 test('a jump is not interpolated to', () => {
   const playback = new Playback(1);
   for (let tick = 0; tick < 9; tick++) {

@@ -25,6 +25,7 @@ export class Playback {
   private interval = 1 / 60; // between frames [s]
   private jitter = 0; // by which frames arrive late [s]
   private pace = new HoldingPace();
+  private renewed = false; // the newest frame's moment was shown before as it was then
 
   constructor(vertices: number) {
     this.positions = new Float32Array(vertices * 3);
@@ -34,6 +35,7 @@ export class Playback {
   push(frame: Frame, now: number): void {
     const last = this.frames.at(-1);
     if (frame.jump || (last && frame.serverTime < last.serverTime)) this.forget();
+    else if (last?.serverTime === frame.serverTime) return this.renew(frame);
     else if (last) this.measure(frame, last, now);
     this.offset = Math.min(this.offset, now - frame.serverTime);
     this.frames.push(frame);
@@ -71,9 +73,16 @@ export class Playback {
         ? before + this.pace.step(elapsed, behind)
         : this.follow(now, elapsed, newest);
     this.shown_time = Math.max(before, newest.paused ? newest.serverTime : follow());
-    if (this.shown_time === before) return false;
+    if (this.shown_time === before && !this.renewed) return false;
+    this.renewed = false;
     this.show();
     return true;
+  }
+
+  /** Between two ticks hands move and objects are placed: the same moment looks different. */
+  private renew(frame: Frame): void {
+    this.frames[this.frames.length - 1] = frame;
+    this.renewed = true;
   }
 
   private measure(frame: Frame, last: Frame, now: number): void {
