@@ -5,6 +5,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 const { Fans } = await import_page_module('view/fans');
 const { FabricCircle } = await import_page_module('view/fabric_circle');
+const { label_left } = await import_page_module('view/hands');
 const { HandLatency } = await import_page_module('hold/hand_latency');
 const { MarkDot, MarkLine, OrbitCamera } = await import_page_module('view/marks', 'view/camera');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
@@ -48,6 +49,17 @@ test('the latency is that of movements while a hand holds in a running room, onc
   meter.watch(false, 6.6);
   meter.watch(true, 6.7);
   assert.equal(meter.shown(101.3, 6.8), null, 'the hand let go meanwhile');
+});
+
+test('a label stays in the picture as long as its mark is there, beside and not upon it', () => {
+  for (const picture of [390, 1280]) {
+    for (let mark = 0; mark <= picture; mark += 5) {
+      const left = label_left(mark, 110, picture);
+      assert.ok(left >= 0 && left + 110 <= picture, `${left} beside ${mark}`);
+      assert.ok(left > mark || left + 110 < mark, `${left} upon ${mark}`);
+    }
+    assert.ok(label_left(picture + 1, 110, picture) > picture, 'its mark is outside');
+  }
 });
 
 test('a ray through a point of a triangle meets it there, from both sides', () => {

@@ -74,6 +74,7 @@ class HandMark {
   private target = new MarkDot(TARGET_RADIUS, 23);
   private label = document.createElement('span');
   private force: number | null = null; // as written [N]
+  private label_width = 0; // of what is written; 0: not measured yet [pixels]
 
   constructor(labels: HTMLElement) {
     for (const mark of this.parts) this.group.add(mark.group);
@@ -87,7 +88,22 @@ class HandMark {
     this.target.set(hand.target, camera, height);
     for (const part of this.parts) part.color = hand.color;
     this.write(hand);
-    place_label(this.label, hand, camera, width, height);
+    this.place_label(hand, camera, width, height);
+  }
+
+  /** Beside the target of somebody's hand, beside the line of the own one. */
+  private place_label(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
+    const { label } = this;
+    const target = new Vector3(...hand.target);
+    const place = hand.own ? target.clone().add(new Vector3(...hand.held)).multiplyScalar(0.5) : target;
+    const point = place.project(camera);
+    label.hidden = Math.abs(point.z) > 1 || label.textContent === '';
+    if (label.hidden) return;
+    this.label_width ||= label.offsetWidth;
+    const above = hand.finger ? FINGER_OFFSET : 0;
+    const at = { x: ((point.x + 1) / 2) * width, y: ((1 - point.y) / 2) * height - above };
+    const x = label_left(at.x, this.label_width, width);
+    label.style.transform = `translate(${x.toFixed(1)}px, ${at.y.toFixed(1)}px) translateY(-50%)`;
   }
 
   dispose(): void {
@@ -112,7 +128,9 @@ class HandMark {
     if (!steady) this.force = force;
     const words = [own ? '' : name, this.force === null ? '' : force_text(this.force)];
     const text = words.filter(Boolean).join(' · ');
-    if (label.textContent !== text) label.textContent = text;
+    if (label.textContent === text) return;
+    label.textContent = text;
+    this.label_width = 0;
   }
 }
 
@@ -121,19 +139,13 @@ function force_text(force: number): string {
   return `${force.toFixed(force < 9.95 ? 1 : 0)} N`;
 }
 
-/** Beside the target of somebody's hand, beside the line of the own one. */
-function place_label(
-  label: HTMLElement,
-  hand: Hand,
-  camera: PerspectiveCamera,
-  width: number,
-  height: number,
-): void {
-  const target = new Vector3(...hand.target);
-  const place = hand.own ? target.clone().add(new Vector3(...hand.held)).multiplyScalar(0.5) : target;
-  const point = place.project(camera);
-  label.hidden = Math.abs(point.z) > 1 || label.textContent === '';
-  const x = ((point.x + 1) / 2) * width + LABEL_OFFSET;
-  const y = ((1 - point.y) / 2) * height - (hand.finger ? FINGER_OFFSET : 0);
-  label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
+/**
+ * Where a label begins: to the right of a mark, or to its left where it would leave the picture. Beside a
+ * mark that is itself outside it leaves the picture too.
+ * @param mark where that is; all in pixels from the picture's left edge
+ */
+export function label_left(mark: number, label: number, picture: number): number {
+  const right = mark + LABEL_OFFSET;
+  const fits = right + label <= picture || mark > picture;
+  return fits ? right : Math.max(0, mark - LABEL_OFFSET - label);
 }
