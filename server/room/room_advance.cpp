@@ -78,6 +78,7 @@ void Room::finish_advance(const std::optional<proto::Error>& error) {
   const Advance done = *order_.advance;
   order_.advance.reset();
   order_.log.shorten_advance(done.left);
+  frames_.note_advance();  // ticks of sleeping cloth make no frames, but viewers see where it ends
   if (error)
     output_.send(done.viewer, text_message(proto::encode_error(*error)));
   else

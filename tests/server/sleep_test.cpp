@@ -110,6 +110,22 @@ TEST_CASE("advance through sleep gives the hash that ticks by the clock give") {
   CHECK(reply["hash"] == proto::hash_text(clocked.room->world().hash()));
 }
 
+TEST_CASE("the last tick of an advance is shown, even if its cloth fell asleep before it") {
+  SleepyRoom t(true);
+  t.tell(1, R"({"op":"advance","id":1,"n":600})");
+  while (t.room->advancing()) {
+    t.room->advance_until(t.clock.now);  // one tick
+    t.clock.now += t.room->tick_interval();
+    t.room->finish_turn();
+  }
+  t.clock.now += t.room->tick_interval();
+  t.room->finish_turn();
+  REQUIRE(t.room->world().report().rested);
+  const auto last = proto::decode_frame(std::as_bytes(std::span(t.output.frames.back())));
+  REQUIRE(last);
+  CHECK(last->header.tick == t.room->world().tick());
+}
+
 TEST_CASE("ticks of a sleeping room are counted, as such") {
   SleepyRoom t;
   t.fall_asleep();
