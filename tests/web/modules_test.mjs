@@ -9,6 +9,7 @@ const { label_left } = await import_page_module('view/hands');
 const { HandLatency } = await import_page_module('hold/hand_latency');
 const { MarkDot, MarkLine, OrbitCamera } = await import_page_module('view/marks', 'view/camera');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
+const { creased_geometry } = await import_page_module('view/creased');
 const { smooth_normals } = await import_page_module('view/normals');
 
 test('a fan stays where the own hand put it until the server has answered', async () => {
@@ -183,4 +184,34 @@ test('a circle at the edge of the cloth follows the edge', () => {
     const on_edge = Math.min(x, y) < 1e-6;
     assert.ok(on_edge || Math.abs(Math.hypot(x, y) - 0.25) < 1e-6);
   }
+});
+
+/** Cosine of the largest angle between normals that a geometry has at one place. */
+function least_agreement(geometry) {
+  const [points, normals] = [geometry.getAttribute('position'), geometry.getAttribute('normal')];
+  let least = 1;
+  const at = (attribute, k) => [attribute.getX(k), attribute.getY(k), attribute.getZ(k)];
+  for (let i = 0; i < points.count; i++) {
+    for (let k = 0; k < i; k++) {
+      if (Math.hypot(...at(points, i).map((value, axis) => value - at(points, k)[axis])) > 1e-6) continue;
+      const dot = at(normals, i).reduce((sum, value, axis) => sum + value * at(normals, k)[axis], 0);
+      least = Math.min(least, dot);
+    }
+  }
+  return least;
+}
+
+test('a steep bump of small angles has no seam, and a sharp edge stays one', () => {
+  const sides = 12; // of a cone: next to each other at 26 degrees, opposite ones at 120
+  const points = [0, 0, 1];
+  for (let k = 0; k < sides; k++) {
+    const angle = (2 * Math.PI * k) / sides;
+    points.push(Math.cos(angle) / Math.sqrt(3), Math.sin(angle) / Math.sqrt(3), 0);
+  }
+  const cone = Array.from({ length: sides }, (_, k) => [0, 1 + k, 1 + ((k + 1) % sides)]).flat();
+  const bump = creased_geometry(Float32Array.from(points), Uint32Array.from(cone));
+  assert.ok(least_agreement(bump) > 1 - 1e-6);
+  const bottom = Array.from({ length: sides - 2 }, (_, k) => [1, 3 + k, 2 + k]).flat();
+  const solid = creased_geometry(Float32Array.from(points), Uint32Array.from([...cone, ...bottom]));
+  assert.ok(least_agreement(solid) < Math.cos((50 * Math.PI) / 180), 'its rim');
 });

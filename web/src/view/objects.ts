@@ -1,7 +1,6 @@
 import {
   Box3,
   BoxGeometry,
-  BufferAttribute,
   BufferGeometry,
   CapsuleGeometry,
   Group,
@@ -11,11 +10,10 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { creased_geometry } from './creased.js';
 import { inner_offset } from './normals.js';
 import { ObjectLook } from './object_look.js';
 import type { Collider, MeshData, PoseSample, Vec3 } from '../../../proto/js/messages.js';
-
-const SMOOTH_ANGLE = Math.cos((50 * Math.PI) / 180); // sharper edges stay edges
 
 /** The objects that cloth can touch, except the ground. */
 export class Objects {
@@ -179,36 +177,4 @@ function place_object(mesh: Mesh, collider: Collider): void {
   const axis = new Vector3(...collider.b).sub(a);
   mesh.position.copy(a).addScaledVector(axis, 0.5);
   mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
-}
-
-/** Smooth where faces meet at small angles, sharp at edges, where corners have separate normals. */
-function creased_geometry(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
-  const corner = (index: number) => new Vector3().fromArray(positions, triangles[index] * 3);
-  const faces: Vector3[] = []; // as long as twice the area
-  const around = new Map<number, number[]>();
-  for (let t = 0; t < triangles.length; t += 3) {
-    const a = corner(t);
-    faces.push(corner(t + 1).sub(a).cross(corner(t + 2).sub(a)));
-    for (let i = 0; i < 3; i++) {
-      const vertex = triangles[t + i];
-      around.set(vertex, [...(around.get(vertex) ?? []), t / 3]);
-    }
-  }
-  const directions = faces.map((face) => face.clone().normalize());
-  const points = new Float32Array(triangles.length * 3);
-  const normals = new Float32Array(triangles.length * 3);
-  const normal = new Vector3();
-  for (let index = 0; index < triangles.length; index++) {
-    corner(index).toArray(points, index * 3);
-    const own = directions[Math.floor(index / 3)];
-    normal.set(0, 0, 0);
-    for (const face of around.get(triangles[index]) ?? []) {
-      if (own.dot(directions[face]) > SMOOTH_ANGLE) normal.add(faces[face]);
-    }
-    normal.normalize().toArray(normals, index * 3);
-  }
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(points, 3));
-  geometry.setAttribute('normal', new BufferAttribute(normals, 3));
-  return geometry;
 }
