@@ -16,6 +16,7 @@ const { round_of } = await import_page_module('view/round');
 const { Hem } = await import_page_module('view/hem');
 const { even_normals, smooth_normals } = await import_page_module('view/normals');
 const { fabric_extent } = await import_page_module('view/rest_shape');
+const { WeftWays } = await import_page_module('view/weft_ways');
 const { DepthOrder } = await import_page_module('view/depth_order');
 
 const { ShaderLib } = require_package('three');
@@ -128,10 +129,10 @@ test('the renderer’s shader has every part that the fabric’s replaces', () =
   const { vertexShader, fragmentShader } = ShaderLib.physical;
   const shader = { uniforms: {}, vertexShader, fragmentShader };
   material.onBeforeCompile(shader);
-  for (const part of ['fabric_place = uv', 'faceforward(world_normal']) {
+  for (const part of ['fabric_place = uv', 'normalMatrix * weft', 'faceforward(world_normal']) {
     assert.ok(shader.vertexShader.includes(part), part);
   }
-  const parts = ['uniform vec3 back_color', '> 1.0) discard', 'weave_seen', '? back_roughness', 'tbn * vec3(slope'];
+  const parts = ['uniform vec3 back_color', 'weft_way - dot(weft_way', '> 1.0) discard', 'weave_seen', '? back_roughness', 'tbn * vec3(slope'];
   for (const part of [...parts, 'RE_Direct_Fabric', 'getIBLIrradiance(-', 'pow(clear']) {
     assert.ok(shader.fragmentShader.includes(part), part);
   }
@@ -163,6 +164,28 @@ test('of a cloth bent to a cylinder the finer mesh is 20 times rounder than the 
     assert.ok(error < flatness / 20, `${error} of ${flatness}`);
     const facing = normals[i] * Math.sin(turn) + normals[i + 2] * Math.cos(turn);
     assert.ok(Math.abs(facing) > Math.cos(0.01), `${facing}`);
+  }
+});
+
+test('the weft of a bent cloth lies in it and across its bend, whichever way uv and triangles turn', () => {
+  const wave = (u, v) => [u, v, 0.1 * Math.sin(4 * (u + v))];
+  const slope = (u, v) => 0.4 * Math.cos(4 * (u + v));
+  for (const mirrored of [false, true]) {
+    const { positions, uv, triangles } = grid(33, wave);
+    const given = mirrored ? uv.map((value, k) => (k % 2 ? 1 - value : value)) : uv;
+    const weft = new WeftWays(triangles, given, uv.length / 2);
+    let filled = 0;
+    weft.update(positions, () => (filled += 1));
+    assert.equal(filled, 1);
+    for (let k = 0; k < uv.length / 2; k++) {
+      const [u, v] = uv.subarray(k * 2, k * 2 + 2);
+      if (Math.min(u, v, 1 - u, 1 - v) < 0.01) continue; // at borders triangles lie on one side only
+      const way = weft.attribute.array.subarray(k * 3, k * 3 + 3);
+      const true_way = [1, 0, slope(u, v)];
+      const along = way.reduce((sum, value, axis) => sum + value * true_way[axis], 0);
+      const cosine = along / Math.hypot(...way) / Math.hypot(...true_way);
+      assert.ok(cosine > Math.cos(0.02), `${way} at ${u}, ${v}`);
+    }
   }
 });
 

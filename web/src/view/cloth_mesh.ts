@@ -14,6 +14,7 @@ import { round_of } from './round.js';
 import { roundness, Subdivision } from './subdivision.js';
 import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
+import { WeftWays } from './weft_ways.js';
 
 const MOST_TRIANGLES = 40_000; // drawn by subdivision; larger meshes are fine enough by themselves
 const MOST_LEVELS = 2;
@@ -45,12 +46,13 @@ export class ClothMesh {
   private fine: Subdivision;
   private pieces: Piece[];
   private weaves = new Map<string, Weave>();
+  private weft: WeftWays | null = null; // if a cloth has need of it
   /** How far the surface may leave the simulated one: at particles if it is round, and everywhere now [m]. */
   private largest_reach: Float32Array;
   private reach: Float32Array;
   private edges: Float32Array;
 
-  constructor(private cloths: Cloth[], data: MeshData) {
+  constructor(private cloths: Cloth[], private data: MeshData) {
     this.triangles = data.triangles;
     const coarse = data.restPositions.length / 3;
     const cells = cells_of(data.triangles, data.uv);
@@ -83,6 +85,7 @@ export class ClothMesh {
       const { weave, edge } = finish_of(look);
       if (!this.weaves.has(weave)) this.weaves.set(weave, weave_of(weave));
       piece.mesh.material = fabric_material(look, colors[k], this.weaves.get(weave)!, piece.cut);
+      if (piece.mesh.material.anisotropy > 0) this.show_weft(piece);
       (piece.index.array as Uint32Array).set(piece.triangles);
       piece.index.needsUpdate = true;
       const { first_vertex, vertices, thickness } = this.cloths[k];
@@ -90,6 +93,19 @@ export class ClothMesh {
       this.edges.fill(half, first_vertex, first_vertex + vertices);
     }
     this.fine.interpolate(this.edges, 1);
+    this.place_weft();
+  }
+
+  private show_weft({ mesh }: Piece): void {
+    this.weft ??= new WeftWays(this.triangles, this.data.uv, this.positions.count);
+    mesh.geometry.setAttribute('weft', this.weft.attribute);
+  }
+
+  private place_weft(): void {
+    this.weft?.update(this.positions.array as Float32Array, (ways) => {
+      this.fine.interpolate(ways, 3);
+      for (const { hem } of this.pieces) hem.copy(ways, 3);
+    });
   }
 
   /** @param particles three values per vertex of the simulated cloths [m] */
@@ -102,6 +118,7 @@ export class ClothMesh {
     if (this.fine.levels > 0) this.limit(even_normals(this.shaded, of_particles));
     this.fine.refine(positions, normals, this.reach);
     for (const { hem } of this.pieces) hem.place(positions, normals, this.edges);
+    this.place_weft();
     this.positions.needsUpdate = this.normals.needsUpdate = true;
   }
 

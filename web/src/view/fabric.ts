@@ -54,7 +54,7 @@ export function fabric_material(
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
-      .replace('void main() {', 'varying vec2 fabric_place;\nvoid main() {\nfabric_place = uv;')
+      .replace('void main() {', PLACE_IN_CLOTH)
       .replace('#include <shadowmap_vertex>', SHADOW_TOWARDS_LIGHT);
     shader.fragmentShader = [...FRAGMENT].reduce(
       (text, [chunk, code]) => text.replace(chunk, code),
@@ -104,6 +104,19 @@ function uniforms_of(
   };
 }
 
+const PLACE_IN_CLOTH = `
+  varying vec2 fabric_place;
+  #ifdef USE_ANISOTROPY
+    attribute vec3 weft;
+    varying vec3 weft_way;
+  #endif
+  void main() {
+    fabric_place = uv;
+    #ifdef USE_ANISOTROPY
+      weft_way = normalMatrix * weft;
+    #endif
+`;
+
 /**
  * Shadows are looked up slightly on the side of the cloth that their light falls on. On the other
  * side the cloth would lie in its own shadow, and no light would pass through it. A light's way is
@@ -132,6 +145,9 @@ const DECLARATIONS = `
   uniform vec3 back_color, cloth_size, seam_color, stripe_color;
   uniform vec4 disc;
   varying vec2 fabric_place;
+  #ifdef USE_ANISOTROPY
+    varying vec3 weft_way;
+  #endif
   /** How much of a pixel a stripe covers, from distances in its period. */
   float stripe(float from_middle, float half_width, float pixel) {
     float reach = max(pixel, 1e-4);
@@ -180,6 +196,22 @@ const DYE = `
   diffuseColor.rgb = mix(diffuseColor.rgb, seam_color, seam);
 `;
 
+/**
+ * Near an outline, the mean of neighbours' normals may look away from the eye where the surface does not.
+ * Bent to the horizon, it shades the outline as what is beside it, and not as if lit from behind.
+ */
+const SMOOTH_FRAME = `
+  #include <normal_fragment_begin>
+  vec3 to_eye = normalize(vViewPosition);
+  normal = normalize(normal - min(dot(normal, to_eye), 0.0) * to_eye);
+  #ifdef USE_ANISOTROPY
+    tbn[0] = normalize(weft_way - dot(weft_way, normal) * normal);
+    vec3 warp_way = cross(normal, tbn[0]);
+    tbn[1] = dot(warp_way, tbn[1]) < 0.0 ? -warp_way : warp_way;
+  #endif
+  tbn[2] = nonPerturbedNormal = normal;
+`;
+
 const RELIEF = `
   vec2 slope = (weave.rg * 2.0 - 1.0) * normalScale * weave_seen;
   normal = normalize(tbn * vec3(slope, sqrt(max(0.1, 1.0 - dot(slope, slope)))));
@@ -219,6 +251,7 @@ const FRAGMENT = new Map([
   ['#include <color_fragment>', DYE],
   ['#include <roughnessmap_fragment>',
     'float roughnessFactor = gl_FrontFacing ? back_roughness : roughness;'],
+  ['#include <normal_fragment_begin>', SMOOTH_FRAME],
   ['#include <normal_fragment_maps>', RELIEF],
   ['#include <lights_physical_pars_fragment>', LIGHT_THROUGH],
   ['#include <lights_fragment_maps>', SURROUNDINGS_THROUGH],
