@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "proto/field_reader.h"
 #include "proto/messages/field.h"
+#include "proto/messages/field_reader.h"
 #include "proto/messages/hold_commands.h"
 
 // The walker that fills a command from the fields of a JSON object. The first thing that is wrong

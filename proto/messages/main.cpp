@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-#include "proto/commands.h"
-#include "proto/events.h"
+#include "proto/messages/commands.h"
 #include "proto/messages/document.h"
-#include "proto/replies.h"
+#include "proto/messages/events.h"
+#include "proto/messages/replies.h"
 
 namespace weft::proto {
 namespace {

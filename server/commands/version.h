@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proto/http.h"
+#include "proto/messages/http.h"
 
 namespace weft::server {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "proto/codec/packed_frame.h"
+#include "proto/frames/packed_frame.h"
 #include "server/message.h"
 
 namespace weft::server {

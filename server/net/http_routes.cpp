@@ -8,7 +8,7 @@
 
 #include <boost/beast/http/rfc7230.hpp>
 
-#include "proto/events.h"
+#include "proto/messages/events.h"
 #include "server/origin.h"
 #include "server/scene/scene_schema.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "proto/events.h"
+#include "proto/messages/events.h"
 
 namespace weft::server {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/http.h"
+#include "proto/messages/http.h"
 #include "server/clock.h"
 #include "server/metrics.h"
 #include "server/net/connection_count.h"

@@ -11,8 +11,8 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 
-#include "proto/data.h"
-#include "proto/replies.h"
+#include "proto/messages/data.h"
+#include "proto/messages/replies.h"
 #include "server/net/close_codes.h"
 #include "server/net/lingering_close.h"
 #include "server/net/rate_limit.h"

@@ -12,7 +12,7 @@
 #include <boost/beast/http/rfc7230.hpp>
 #include <xxhash.h>
 
-#include "proto/events.h"
+#include "proto/messages/events.h"
 
 namespace weft::server {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 
 namespace weft::server {
 

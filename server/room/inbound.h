@@ -4,7 +4,7 @@
 #include <optional>
 #include <variant>
 
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 
 namespace weft::server {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "proto/error.h"
-#include "proto/events.h"
-#include "proto/frame.h"
-#include "proto/replies.h"
+#include "proto/frames/frame.h"
+#include "proto/messages/events.h"
+#include "proto/messages/replies.h"
 #include "server/clock.h"
 #include "server/constants.h"
 #include "server/metrics.h"

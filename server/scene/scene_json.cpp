@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "proto/field_reader.h"
-#include "proto/strict_json.h"
+#include "proto/messages/field_reader.h"
+#include "proto/messages/strict_json.h"
 
 namespace weft::server {
 

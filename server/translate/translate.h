@@ -10,12 +10,12 @@
 #include "core/error.h"
 #include "core/world/world.h"
 #include "proto/codec/order.h"
-#include "proto/commands.h"
-#include "proto/data.h"
-#include "proto/events.h"
-#include "proto/frame.h"
-#include "proto/mesh.h"
-#include "proto/replies.h"
+#include "proto/frames/frame.h"
+#include "proto/frames/mesh.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/data.h"
+#include "proto/messages/events.h"
+#include "proto/messages/replies.h"
 
 // The only place where the types of the wire meet those of the physics.
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/world/reactions.h"
-#include "proto/frame.h"
-#include "proto/replies.h"
+#include "proto/frames/frame.h"
+#include "proto/messages/replies.h"
 #include "server/translate/translate.h"
 
 // Contacts and forces of the cloth, in types of the wire.

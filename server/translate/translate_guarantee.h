@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/world/crossing_counter.h"
-#include "proto/events.h"
+#include "proto/messages/events.h"
 #include "server/translate/translate.h"
 
 // Whether nothing crosses, as counted and as promised, in types of the wire.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/world/world_def.h"
-#include "proto/mesh.h"
+#include "proto/frames/mesh.h"
 
 // How large the mesh message of a scene will be, in types of the wire.
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 #include "tests/fuzz/dice.h"
 #include "tests/fuzz/scene_draw.h"
 

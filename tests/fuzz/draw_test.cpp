@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/error.h"
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 #include "server/room/scene_build.h"
 #include "server/scene/scene_library.h"
 #include "server/scene/scene_schema.h"

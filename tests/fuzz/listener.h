@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "server/room/room_output.h"
 #include "tests/fuzz/run.h"
 

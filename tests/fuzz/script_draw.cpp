@@ -4,7 +4,7 @@
 #include <utility>
 #include <variant>
 
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 #include "tests/fuzz/command_draw.h"
 #include "tests/fuzz/scene_draw.h"
 

@@ -44,7 +44,9 @@ FLOORS = ("math", "geometry", "cloth", "forces", "contact", "attachments", "diag
           "scenes")
 # Folders of the server, the same.
 SERVER_FLOORS = ("scene", "translate", "room", "net", "commands")
-FLOORS_OF = {"core": FLOORS, "server": SERVER_FLOORS}
+# Folders of proto, the same.
+PROTO_FLOORS = ("codec", "frames", "messages")
+FLOORS_OF = {"core": FLOORS, "proto": PROTO_FLOORS, "server": SERVER_FLOORS}
 # Folders of the page, the lowest first; files beside the folders join them and are above all.
 PAGE_FLOORS = ("wire", "view", "hold", "panel")
 CLOCK_USE = re.compile(r"std::chrono|\b(clock_gettime|gettimeofday|random_device)\b")
@@ -111,7 +113,7 @@ def opens_with_its_purpose(text):
 
 
 def floor_of(name):
-    """The height of a file of core or server; -1 beside the folders."""
+    """The height of a file of core, proto or server; -1 beside the folders."""
     top, *folders = PurePosixPath(name).parts[:-1]
     floors = FLOORS_OF.get(top, ())
     return floors.index(folders[0]) if folders and folders[0] in floors else -1

@@ -8,9 +8,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/data.h"
-#include "proto/frame.h"
-#include "proto/mesh.h"
+#include "proto/frames/frame.h"
+#include "proto/frames/mesh.h"
+#include "proto/messages/data.h"
 #include "tests/proto/golden.h"
 #include "tests/proto/guarded_bytes.h"
 

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/codec/packed_frame.h"
+#include "proto/frames/packed_frame.h"
 #include "tests/proto/golden.h"
 #include "tests/proto/guarded_bytes.h"
 #include "tests/proto/packed_streams.h"

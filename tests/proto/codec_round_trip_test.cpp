@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/codec/packed_frame.h"
+#include "proto/frames/packed_frame.h"
 
 // Scenes of any cloths in any motion, coded and decoded as between a server and its viewer.
 

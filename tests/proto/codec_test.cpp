@@ -12,8 +12,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/codec/packed_frame.h"
-#include "proto/mesh.h"
+#include "proto/frames/mesh.h"
+#include "proto/frames/packed_frame.h"
 #include "tests/proto/golden.h"
 #include "tests/proto/guarded_bytes.h"
 #include "tests/proto/packed_streams.h"

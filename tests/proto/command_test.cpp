@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
-#include "proto/replies.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/replies.h"
 #include "tests/proto/golden.h"
 
 using namespace weft::proto;

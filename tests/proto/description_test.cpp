@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
-#include "proto/replies.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/replies.h"
 
 // What a description says of a command is what its reader does.
 

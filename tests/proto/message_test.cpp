@@ -8,11 +8,11 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/data.h"
-#include "proto/events.h"
-#include "proto/http.h"
-#include "proto/mesh.h"
-#include "proto/replies.h"
+#include "proto/frames/mesh.h"
+#include "proto/messages/data.h"
+#include "proto/messages/events.h"
+#include "proto/messages/http.h"
+#include "proto/messages/replies.h"
 #include "tests/proto/golden.h"
 
 using namespace weft::proto;

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/mesh.h"
+#include "proto/frames/mesh.h"
 #include "tests/proto/golden.h"
 
 namespace weft::test {

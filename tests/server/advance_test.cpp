@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 // Which frames the ticks of an `advance` make.

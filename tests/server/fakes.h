@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "proto/commands.h"
+#include "proto/messages/commands.h"
 #include "server/net/viewer_channel.h"
 #include "server/room/room.h"
 #include "server/room/room_output.h"

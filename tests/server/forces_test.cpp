@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 // Contacts and forces, asked for once and in frames.

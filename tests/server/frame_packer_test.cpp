@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/codec/packed_frame.h"
+#include "proto/frames/packed_frame.h"
 #include "server/net/hub.h"
 #include "tests/server/fakes.h"
 

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 // How many frames a room makes and how often it tells what has changed, whatever its viewers send.

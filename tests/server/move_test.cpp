@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 // Objects and pins that a viewer moves.

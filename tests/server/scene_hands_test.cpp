@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 // Hands that belong to the scene, as viewers see them.

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/scenes/scenes.h"
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 #include "tests/server/fakes.h"
 
 namespace weft::server {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/binary.h"
-#include "proto/data.h"
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
+#include "proto/messages/data.h"
 
 namespace weft::load {
 

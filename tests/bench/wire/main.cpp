@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "proto/codec/packed_frame.h"
-#include "proto/mesh.h"
+#include "proto/frames/mesh.h"
+#include "proto/frames/packed_frame.h"
 #include "tests/bench/wire/recording.h"
 
 // What a frame costs on the wire: bytes a vertex and CPU time, of the codec `packed` and of simpler

@@ -1,4 +1,4 @@
-#include "proto/mesh.h"
+#include "proto/frames/mesh.h"
 
 #define XXH_INLINE_ALL
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <xxhash.h>
 
 #include "proto/codec/order.h"
-#include "proto/section_kinds.h"
+#include "proto/frames/section_kinds.h"
 #include "proto/types.h"
 
 namespace weft::proto {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
-#include "proto/field_reader.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/field_reader.h"
 
 namespace weft::proto {
 namespace {

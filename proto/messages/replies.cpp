@@ -1,4 +1,4 @@
-#include "proto/replies.h"
+#include "proto/messages/replies.h"
 
 #include <array>
 #include <charconv>
@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/data.h"
-#include "proto/event_json.h"
-#include "proto/json_output.h"
+#include "proto/messages/data.h"
+#include "proto/messages/event_json.h"
+#include "proto/messages/json_output.h"
 
 namespace weft::proto {
 

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
-#include "proto/json_output.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/json_output.h"
 
 namespace weft::proto {
 

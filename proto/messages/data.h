@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "proto/binary.h"
-#include "proto/commands.h"
 #include "proto/error.h"
+#include "proto/messages/commands.h"
 
 // The binary message `data`, which answers a binary query, and the client's `ack`. README.md
 // sections 7 and 8.

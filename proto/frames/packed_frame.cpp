@@ -1,10 +1,10 @@
-#include "proto/codec/packed_frame.h"
+#include "proto/frames/packed_frame.h"
 
 #include <cassert>
 #include <cmath>
 #include <utility>
 
-#include "proto/section_kinds.h"
+#include "proto/frames/section_kinds.h"
 
 namespace weft::proto::codec {
 

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/events.h"
 #include "proto/messages/command_writer.h"
+#include "proto/messages/events.h"
 
 // Parts of events that answers to `query` repeat. Included only by the encoders.
 

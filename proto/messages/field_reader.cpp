@@ -1,4 +1,4 @@
-#include "proto/field_reader.h"
+#include "proto/messages/field_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
 #include "proto/messages/command_writer.h"
+#include "proto/messages/commands.h"
 
 // Parts that several messages share. Included only by the encoders.
 

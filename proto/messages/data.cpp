@@ -1,4 +1,4 @@
-#include "proto/data.h"
+#include "proto/messages/data.h"
 
 #include <algorithm>
 #include <cmath>

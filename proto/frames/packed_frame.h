@@ -5,7 +5,7 @@
 #include <span>
 
 #include "proto/codec/payload.h"
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 
 // Frames in codec `packed`, as messages. README.md sections 6 and 10.
 

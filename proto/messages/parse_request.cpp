@@ -11,10 +11,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "proto/commands.h"
-#include "proto/field_reader.h"
 #include "proto/messages/command_reader.h"
-#include "proto/strict_json.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/field_reader.h"
+#include "proto/messages/strict_json.h"
 
 namespace weft::proto {
 namespace {

@@ -1,4 +1,4 @@
-#include "proto/strict_json.h"
+#include "proto/messages/strict_json.h"
 
 #include <cstdint>
 #include <string>

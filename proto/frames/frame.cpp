@@ -1,10 +1,10 @@
-#include "proto/frame.h"
+#include "proto/frames/frame.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "proto/section_kinds.h"
+#include "proto/frames/section_kinds.h"
 
 namespace weft::proto {
 namespace {

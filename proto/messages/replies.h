@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "proto/commands.h"
 #include "proto/error.h"
-#include "proto/events.h"
+#include "proto/messages/commands.h"
+#include "proto/messages/events.h"
 #include "proto/types.h"
 
 // Answers to commands that carry an id. `tick` is the command's place in the order.

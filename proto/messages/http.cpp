@@ -1,8 +1,8 @@
-#include "proto/http.h"
+#include "proto/messages/http.h"
 
 #include <nlohmann/json.hpp>
 
-#include "proto/json_output.h"
+#include "proto/messages/json_output.h"
 
 namespace weft::proto {
 

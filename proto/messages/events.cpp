@@ -1,11 +1,11 @@
-#include "proto/events.h"
+#include "proto/messages/events.h"
 
 #include <array>
 
 #include <nlohmann/json.hpp>
 
-#include "proto/event_json.h"
-#include "proto/json_output.h"
+#include "proto/messages/event_json.h"
+#include "proto/messages/json_output.h"
 
 namespace weft::proto {
 

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "proto/commands.h"
 #include "proto/hash_text.h"
+#include "proto/messages/commands.h"
 #include "proto/types.h"
 
 // Messages that the server sends unasked. README.md section 4 gives the meaning of each field.
