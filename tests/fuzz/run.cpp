@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -23,9 +24,10 @@
 namespace weft::fuzz {
 namespace {
 
-constexpr proto::ViewerId kAuditor = 1000;  // the viewer that asks what every run is asked
-constexpr int kPatience = 400;              // turns until an `advance` is ended by its viewer
-constexpr int kSettling = 30;               // turns until everything has been told and answered
+constexpr proto::ViewerId kAuditor = 1000;      // the viewer that asks what every run is asked
+constexpr proto::ViewerId kConnection = 10000;  // from one id of a viewer to its next
+constexpr int kPatience = 400;                  // turns until an `advance` is ended by its viewer
+constexpr int kSettling = 30;                   // turns until everything has been told and answered
 
 double cpu_seconds() {
   timespec time{};
@@ -179,18 +181,27 @@ class Run {
     }
   }
 
+  /// A viewer that comes again is another one to the room, as each connection is to the server.
   void join(proto::ViewerId viewer) {
-    here_.insert(viewer);
-    take({viewer, 0, server::Join{}}, "join");
+    const proto::ViewerId known_as = viewer + kConnection * connections_++;
+    here_[viewer] = known_as;
+    take({known_as, 0, server::Join{}}, "join");
   }
 
   /// What it has not been answered yet, it need not be any more.
   void leave(proto::ViewerId viewer) {
+    const proto::ViewerId known_as = id_of(viewer);
     here_.erase(viewer);
     std::erase_if(asked_, [&](const auto& asked) {
-      return asked.first == viewer && !listener_.answers.contains(asked);
+      return asked.first == known_as && !listener_.answers.contains(asked);
     });
-    take({viewer, 0, server::Leave{}}, "leave");
+    take({known_as, 0, server::Leave{}}, "leave");
+  }
+
+  /// What the room knows the script's viewer as; one that is not here has no id of the room's.
+  proto::ViewerId id_of(proto::ViewerId viewer) const {
+    const auto found = here_.find(viewer);
+    return found == here_.end() ? viewer : found->second;
   }
 
   void tick() {
@@ -236,14 +247,15 @@ class Run {
     if (!request) return listener_.problem("not legal: " + request.error().message);
     ++outcome_.commands;
     const std::string name = proto::name_of(request->command);
-    server::Inbound item{viewer, ++number_, *request};
+    const proto::ViewerId known_as = id_of(viewer);
+    server::Inbound item{known_as, ++number_, *request};
     // The session answers these, and the room hears of their number alone.
     const auto* view = std::get_if<proto::View>(&request->command);
     if (view && view->forces) listener_.forces = *view->forces;
     if (view || std::holds_alternative<proto::Ping>(request->command))
       item.what = server::Noted{view != nullptr, view ? view->forces : std::nullopt};
     else if (request->id)
-      asked_.emplace_back(viewer, json::parse(text)["id"]);
+      asked_.emplace_back(known_as, json::parse(text)["id"]);
     take(std::move(item), name + " " + text);
   }
 
@@ -251,7 +263,7 @@ class Run {
   void finish_advance() {
     for (int turn = 0; room_->advancing(); ++turn) {
       if (turn == kPatience || outcome_.cpu > limits_.scene) {
-        for (const proto::ViewerId viewer : std::set(here_)) {
+        for (const auto& [viewer, known_as] : std::map(here_)) {
           leave(viewer);
           join(viewer);
         }
@@ -295,16 +307,18 @@ class Run {
     listener_.last_answer = nullptr;
     const std::string text =
         R"({"op":"query","id":"audit )" + what + R"(","what":")" + what + "\"}";
-    take({kAuditor, ++number_, *proto::parse_request(text)}, "query " + text);
+    take({id_of(kAuditor), ++number_, *proto::parse_request(text)}, "query " + text);
     return listener_.last_answer.is_object() ? listener_.last_answer.value("data", json()) : json();
   }
 
   /// Each command with an id of a viewer that is here is answered once.
   void count_answers() {
+    std::set<proto::ViewerId> here;
+    for (const auto& [viewer, known_as] : here_) here.insert(known_as);
     for (const auto& [viewer, id] : asked_) {
       const auto found = listener_.answers.find({viewer, id});
       const int count = found == listener_.answers.end() ? 0 : found->second;
-      if (count == 1 || !here_.contains(viewer)) continue;
+      if (count == 1 || !here.contains(viewer)) continue;
       listener_.problem("command " + id.dump() + " of viewer " + std::to_string(viewer) + " has " +
                         std::to_string(count) + " answers");
     }
@@ -339,7 +353,8 @@ class Run {
   double now_ = 100;
   std::uint64_t looks_ = 0;
   std::uint32_t number_ = 0;
-  std::set<proto::ViewerId> here_;
+  std::map<proto::ViewerId, proto::ViewerId> here_;  // the script's viewers, as the room knows them
+  proto::ViewerId connections_ = 1;                  // so far, and one
   std::vector<std::pair<proto::ViewerId, json>> asked_;
   std::deque<Step> later_;                   // within the coming tick
   std::vector<std::function<void()>> jobs_;  // that build scenes
