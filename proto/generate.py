@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes what follows from the descriptions of the messages (proto/messages): the declarations in js/commands.d.ts,
-js/results.d.ts and js/parts.d.ts, those of the Python client with its commands in both forms, the version of both
+js/results.d.ts and js/parts.d.ts, the names in js/fields.js, the declarations of the Python client with its commands in both forms, the version of both
 packages, and the tables of README.md.
 
 Usage: generate.py PROGRAM [--check]. PROGRAM is weft_messages, which prints the descriptions. With --check nothing is
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from descriptions import NUMBERS, described, objects_of, type_name, unit_text, value_text
 from generate_blocking import blocking_commands
-from generate_python import python_commands, python_messages, python_results
+from generate_python import BARE, python_commands, python_messages, python_results, wrapped
 
 PROTO = Path(__file__).parent
 SUMMARIES = {  # of the commands whose methods in Python follow from their fields alone
@@ -33,6 +33,7 @@ SCRIPT = {
     **NUMBERS, "boolean": "boolean", "string": "string", "vector": "Vec3", "rotation": "number[]",
     "name_or_place": "string | number", "name_or_object": "string | object",
 }
+BARE_SCRIPT = {"tick: int": "tick: number", "paused: bool": "paused: boolean"}
 HEAD = "// Written by proto/generate.py from the descriptions in proto/messages. Do not edit."
 
 # --- declarations ---
@@ -98,11 +99,34 @@ def result_declarations(messages):
     parts = {name for reply in messages["replies"] for name in objects_of(reply["fields"])}
     yield from (HEAD, "", "import type { Vec3 } from './messages.js';")
     yield f"import type {{ {', '.join(sorted(parts & {'Hit', 'Fan'}))} }} from './parts.js';"
+    forms = {op: [f"{{ {'; '.join(BARE_SCRIPT[field] for field in fields)} }}"] for op, fields in BARE.items()}
     for op, alternatives in names.items():
         for number, fields in enumerate(alternatives, 1):
             name = type_name(op) + "Result" + (str(number) if len(alternatives) > 1 else "")
+            forms.setdefault(op, []).append(name)
             yield from ("", f"/** What the answer to `{op}` has. */", f"export interface {name} {{")
             yield from (*script_fields(fields), "}")
+    yield from ("", "/** What the answers have, by the command. */", "export interface Results {")
+    yield from (f"  {op}: {' | '.join(results)};" for op, results in forms.items())
+    yield "}"
+
+
+def field_names(messages):
+    """The names of fields, by command, and those of the parts that are fields of a command."""
+    names = {}
+    for command in messages["commands"]:
+        for field in command["fields"]:
+            names.setdefault(command["op"], {})[field["name"]] = True
+            for fields in objects_of([field]).values():
+                names[field["name"]] = dict.fromkeys(inner["name"] for inner in fields)
+    yield from (HEAD, "", "/** @type {Record<string, string[]>} */", "export const FIELDS = {")
+    for name, fields in names.items():
+        line = f"  {name}: [" + ", ".join(f"'{field}'" for field in fields) + "],"
+        if len(line) <= 120:
+            yield line
+        else:
+            yield from (f"  {name}: [", *wrapped([f"'{field}'" for field in fields], "    "), "  ],")
+    yield "};"
 
 
 # --- tables ---
@@ -164,6 +188,10 @@ def written(messages):
     yield PROTO / "js/commands.d.ts", "\n".join(command_declarations(messages)) + "\n"
     yield PROTO / "js/results.d.ts", "\n".join(result_declarations(messages)) + "\n"
     yield PROTO / "js/parts.d.ts", "\n".join(part_declarations(messages)) + "\n"
+    yield PROTO / "js/fields.js", "\n".join(field_names(messages)) + "\n"
+    package = PROTO / "js/package.json"
+    told = re.sub(r'("version": ")[^"]*', rf"\g<1>{version()}", package.read_text(encoding="utf-8"), count=1)
+    yield package, told
     yield from python_files(messages)
     page = PROTO / "README.md"
     text = page.read_text(encoding="utf-8")

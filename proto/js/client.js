@@ -1,4 +1,5 @@
 import { Drag } from './drag.js';
+import { known } from './known.js';
 import { Session } from './session.js';
 
 /** @typedef {import('./messages.js').Vec3} Vec3 */
@@ -50,7 +51,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   hello(options, call) {
-    Object.assign(this.options, options);
+    Object.assign(this.options, known('hello', options));
     return this.request('hello', options, call);
   }
 
@@ -72,6 +73,7 @@ export class WeftClient extends Session {
    */
   drag(hold, options = {}, call) {
     const number = this.#nextDrag++;
+    known('drag', options);
     const send = (/** @type {object} */ fields) => this.post('drag', fields);
     const drag = new Drag(number, options.target, send, this.timers);
     this.#drags.set(number, drag);
@@ -87,7 +89,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   pin(hold, options = {}, call) {
-    return this.request('pin', { ...holdFields(hold), ...options }, call);
+    return this.request('pin', { ...holdFields(hold), ...known('pin', options) }, call);
   }
 
   /**
@@ -95,7 +97,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   release(which, call) {
-    return this.request('release', which, call);
+    return this.request('release', known('release', which), call);
   }
 
   /**
@@ -106,7 +108,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   camera(position, target, options = {}, call) {
-    return this.request('camera', { position, target, ...options }, call);
+    return this.request('camera', { position, target, ...known('camera', options) }, call);
   }
 
   /** @param {Call} [call] */
@@ -153,7 +155,7 @@ export class WeftClient extends Session {
   move(what, where, call) {
     const named =
       typeof what === 'object' ? what : typeof what === 'number' ? { pin: what } : { collider: what };
-    return this.request('move', { ...named, ...where }, call);
+    return this.request('move', known('move', { ...named, ...where }), call);
   }
 
   /**
@@ -164,7 +166,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   gripper(name, wanted, call) {
-    return this.request('gripper', { name, ...wanted }, call);
+    return this.request('gripper', { name, ...known('gripper', wanted) }, call);
   }
 
   /**
@@ -172,7 +174,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   set(values, call) {
-    return this.request('set', values, call);
+    return this.request('set', known('set', values), call);
   }
 
   /**
@@ -183,7 +185,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {
-    return this.request('advance', { n, ...options }, call);
+    return this.request('advance', { n, ...known('advance', options) }, call);
   }
 
   /** @param {Call} [call] */
@@ -204,20 +206,21 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   view(options, call) {
-    Object.assign(this.wantedView, options);
+    Object.assign(this.wantedView, known('view', options));
     return this.request('view', options, call);
   }
 
   /**
    * The data of a query; with a binary format `{tick, components, values}`.
-   * @param {import('./messages.js').QueryWhat} what
-   * @param {{format?: 'json' | 'f32' | 'f64', viewer?: number,
-   *   tree?: string, level?: number}} [options]
+   * @template {import('./messages.js').QueryWhat} What
+   * @template {import('./messages.js').QueryOptions} [Options={}]
+   * @param {What} what
+   * @param {Options} [options]
    * @param {Call} [call]
-   * @returns {Promise<any>}
+   * @returns {Promise<import('./messages.js').QueryAnswer<What, Options>>}
    */
-  async query(what, options = {}, call) {
-    return (await this.request('query', { what, ...options }, call)).data;
+  async query(what, options, call) {
+    return (await this.request('query', { what, ...known('query', options ?? {}) }, call)).data;
   }
 
   /**

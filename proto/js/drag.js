@@ -40,7 +40,7 @@ export class Drag {
     this.#schedule(REPEAT_INTERVAL);
   }
 
-  /** @param {Promise<import('./messages.js').Result>} started */
+  /** @param {Promise<import('./messages.js').Answer<'drag'>>} started */
   begin(started) {
     this.started = started;
     started.then(

@@ -1,7 +1,23 @@
 // Types of the messages of weft.v1. proto/README.md gives the meaning and unit of each field.
 
 import type { AdvanceCommand, DragCommand1, QueryCommand } from './commands.js';
-import type { Grab, Pin, Viewer } from './parts.js';
+import type {
+  Camera,
+  ColliderPose,
+  Contact,
+  Crossings,
+  Energy,
+  Grab,
+  GripperState,
+  Pin,
+  Reactions,
+  StageWork,
+  State,
+  Strain,
+  Tree,
+  Viewer,
+} from './parts.js';
+import type { Results } from './results.js';
 
 export type Vec3 = [number, number, number];
 export type {
@@ -15,21 +31,34 @@ export type {
 export type {
   Bye,
   Camera,
+  ColliderPose,
+  Contact,
   Crossings,
   Energy,
   Fabric,
   Fan,
   Grab,
+  GripperState,
   Guarantee,
   Hit,
   Notice,
   Pin,
+  Reactions,
+  StageWork,
   State,
   Strain,
   Tree,
   Viewer,
 } from './parts.js';
-export type { SetCommand } from './commands.js';
+export type {
+  AdvanceCommand,
+  CameraCommand,
+  GripperCommand,
+  HelloCommand,
+  SetCommand,
+  ViewCommand,
+} from './commands.js';
+export type { Results } from './results.js';
 export type QueryWhat = QueryCommand['what'];
 
 /** The frames of an `advance` that its viewer gets, regardless of its `hz`. */
@@ -90,13 +119,46 @@ export interface ErrorMessage {
   hint?: string;
 }
 
-export interface Result {
-  op: 'result';
-  id: number | string;
-  command: string;
-  tick?: number;
-  [field: string]: any;
+/** The answer to a command; what it has follows from the command, as far as this client knows it. */
+export type Answer<Op extends string> = { op: 'result'; id: number | string; command: Op } & (Op extends keyof Results
+  ? Results[Op]
+  : { tick?: number; [field: string]: any });
+
+/** What each query answers in the format `json`. */
+export interface QueryData {
+  positions: Vec3[];
+  velocities: Vec3[];
+  boxes: number[][];
+  energies: Energy;
+  strain: Strain;
+  pins: Pin[];
+  grabs: Grab[];
+  camera: (Camera & { viewer: number })[];
+  roster: Viewer[];
+  state: State;
+  work: StageWork[];
+  trees: Tree[];
+  colliders: ColliderPose[];
+  measurements: Record<string, number>;
+  contacts: Contact[];
+  reactions: Reactions;
+  grippers: GripperState[];
+  crossings: Crossings;
 }
+
+export interface QueryOptions {
+  format?: 'json' | 'f32' | 'f64';
+  viewer?: number;
+  tree?: string;
+  level?: number;
+}
+
+/** What a query with these options answers. */
+export type QueryAnswer<What extends QueryWhat, Options extends QueryOptions> = Options extends {
+  format: 'f32' | 'f64';
+}
+  ? Data
+  : QueryData[What];
 
 /** Where to hold: a point of a triangle, or a particle. */
 export type Hold = { triangle: number; barycentric: Vec3 } | { particle: number };

@@ -146,3 +146,26 @@ export interface ViewResult {
   /** contacts and reactions in the frames; `true` or `false` */
   forces: boolean;
 }
+
+/** What the answers have, by the command. */
+export interface Results {
+  pause: { tick: number; paused: boolean };
+  resume: { tick: number; paused: boolean };
+  camera: { tick: number };
+  set: { tick: number };
+  reset: { tick: number };
+  hello: HelloResult;
+  pick: PickResult;
+  drag: DragResult;
+  pin: PinResult;
+  release: ReleaseResult;
+  step: StepResult;
+  speed: SpeedResult;
+  move: MoveResult1 | MoveResult2;
+  gripper: GripperResult;
+  advance: AdvanceResult;
+  hash: HashResult;
+  ping: PingResult;
+  load: LoadResult;
+  view: ViewResult;
+}

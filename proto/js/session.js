@@ -8,7 +8,6 @@ import { fetchMesh, matchMesh } from './mesh.js';
 import { Pace } from './pace.js';
 import { ClockEstimate, LatencyMeter } from './timing.js';
 
-/** @typedef {import('./messages.js').Result} Result */
 /** @typedef {import('./mesh.js').Mesh} Mesh */
 
 /**
@@ -162,10 +161,11 @@ export class Session extends Emitter {
   /**
    * Sends a command and waits for its answer. It is sent as soon as the server's limit of messages
    * a second allows; rejects with `CallTimeout` if no answer arrives in time.
-   * @param {string} op
+   * @template {string} Op
+   * @param {Op} op
    * @param {object} [fields]
    * @param {Call} [call]
-   * @returns {Promise<Result>}
+   * @returns {Promise<import('./messages.js').Answer<Op>>}
    */
   request(op, fields = {}, { timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
     return this.#ask({ op, ...fields }, () => ({}), timeout);
@@ -196,7 +196,7 @@ export class Session extends Emitter {
    * @param {{op: string, [field: string]: unknown}} message
    * @param {() => object} last  fields that are filled in when it is sent
    * @param {number} timeout     [ms]
-   * @returns {Promise<Result>}
+   * @returns {Promise<any>}
    */
   #ask({ op, ...fields }, last, timeout) {
     const id = this.#nextId++;
@@ -335,12 +335,11 @@ export class Session extends Emitter {
     this.emit('mesh', this.mesh);
   }
 
-  /** @param {Result} message */
+  /** @param {any} message  a `result` */
   #answer(message) {
     const id = Number(message.id);
     if (!this.#waiting.has(id)) return;
-    /** @param {Result} result */
-    const settle = (result) => this.#take(id)?.resolve(result);
+    const settle = (/** @type {any} */ result) => this.#take(id)?.resolve(result);
     if (!message.binary) return settle(message);
     // It keeps waiting for the binary part; the connection may end before that arrives.
     this.#transfers.set(message.binary.transfer, (data) => settle({ ...message, data }));

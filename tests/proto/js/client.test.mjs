@@ -75,6 +75,23 @@ test('each call sends the golden command with an id of its own', async () => {
   }
 });
 
+test('a field that a command has not is named, in its parts too, and nothing is sent', async () => {
+  const { client, socket } = await join();
+  const before = socket.sent.length;
+  const fan = { position: [0, 1, 2], direction: [0, 0, -1] };
+  const wrong = [
+    [() => client.set({ wind: [1, 0, 0], windy: 1 }), /windy/],
+    [() => client.set({ fans: [fan, { ...fan, sped: 1 }] }), /sped/],
+    [() => client.set({ fabric: { frction: 0.2 } }), /frction/],
+    [() => client.view({ hertz: 30 }), /hertz/],
+    [() => client.gripper('g', { openning: 0 }), /openning/],
+    [() => client.drag({ particle: 7 }, { raduis: 0.05 }), /raduis/],
+    [() => client.release({ particel: 7 }), /particel/],
+  ];
+  for (const [call, word] of wrong) await assert.rejects(async () => call(), { name: 'TypeError', message: word });
+  assert.equal(socket.sent.length, before);
+});
+
 test('a result goes to the call that it answers, in any order', async () => {
   const { client, socket } = await join();
   const first = client.hash();
