@@ -37,6 +37,7 @@ from .errors import CallTimeout, CommandError, ConnectionLost, ProtocolError, We
 from .frames import decode_frame
 from .meshes import decode_mesh
 from .packed import FrameDecoder
+from .page import Page
 from .samples import (
     ColliderMesh, ContactSample, Data, Frame, GrabSample, GripperSample, Hit, MeshData, Pose, ReactionSample, Rows,
 )  # fmt: skip
@@ -47,7 +48,7 @@ if sys.byteorder != "little":
 
 __all__ = [
     "CallTimeout", "Client", "ColliderMesh", "CommandError", "ConnectionLost", "ContactSample", "Data", "Drag",
-    "Frame", "FrameDecoder", "GrabSample", "GripperSample", "Hit", "MeshData", "Pose", "ProtocolError",
+    "Frame", "FrameDecoder", "GrabSample", "GripperSample", "Hit", "MeshData", "Page", "Pose", "ProtocolError",
     "ReactionSample", "Rows", "SUBPROTOCOL", "SyncClient", "SyncDrag", "WeftError", "__version__", "connect",
     "decode_binary", "decode_data", "decode_frame", "decode_mesh", "encode_ack", "open",
 ]  # fmt: skip

@@ -28,6 +28,11 @@ class SyncDrag:
         """The room's number of it, once it holds."""
         return self._drag.grab
 
+    @property
+    def target(self) -> tuple[float, ...] | None:
+        """Where it pulls to [m]; None before it holds, if none was given."""
+        return self._drag.target
+
     def start(self) -> SyncDrag:
         """Takes hold."""
         self._owner._run(self._drag.start())
@@ -58,21 +63,9 @@ class SyncClient(BlockingCommands):
         self, url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10,
         reconnect: bool = False, call_timeout: float | None = CALL_SECONDS,
     ):  # fmt: skip
+        joining = connect(url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout)
         super().__init__()
-        try:
-            joining = connect(
-                url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
-            )
-            self._client = self._run(joining._connect())
-        except BaseException:
-            self._stop()
-            raise
-
-    def close(self) -> None:
-        """Leaves the server."""
-        if not self._loop.is_closed():
-            self._run(self._client.close())
-            self._stop()
+        self._client = self._start(joining._connect())
 
     def __enter__(self) -> SyncClient:
         return self

@@ -28,6 +28,11 @@ class Drag:
         self.number = number
         self.grab: int | None = None  # the room's number, once it holds
 
+    @property
+    def target(self) -> tuple[float, ...] | None:
+        """Where it pulls to [m]; None before it holds, if none was given."""
+        return None if self._target is None else tuple(self._target)
+
     async def start(self) -> Drag:
         """Takes hold."""
         self._connection = self._client._connections

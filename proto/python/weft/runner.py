@@ -22,6 +22,20 @@ class Runner:
         self._thread = threading.Thread(target=self._loop.run_forever, name="weft", daemon=True)
         self._thread.start()
 
+    def _start(self, joining: Coroutine[Any, Any, Client]) -> Client:
+        """The client that joins; nothing stays if it cannot."""
+        try:
+            return self._run(joining)
+        except BaseException:
+            self._stop()
+            raise
+
+    def close(self) -> None:
+        """Leaves the server."""
+        if not self._loop.is_closed():
+            self._run(self._client.close())
+            self._stop()
+
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
         return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result()
 

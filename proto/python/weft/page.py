@@ -1,0 +1,22 @@
+"""The page of a server within a notebook."""
+
+import html
+from urllib.parse import urlsplit
+
+from .address import socket_address
+
+
+class Page:
+    """Shows a server's live page where the last value of a cell is displayed: see it and hold the cloth there.
+
+    `url` is the server's address, that of its page or its socket; the browser that shows the notebook opens it.
+    """
+
+    def __init__(self, url: str, *, height: int = 480):
+        parts = urlsplit(socket_address(url))
+        scheme = {"ws": "http", "wss": "https"}[parts.scheme]
+        self.url = parts._replace(scheme=scheme, path=parts.path.removesuffix("ws"), query="").geturl()
+        self.height = height  # [pixels]
+
+    def _repr_html_(self) -> str:
+        return f'<iframe src="{html.escape(self.url)}" width="100%" height="{self.height}" style="border: 0"></iframe>'
