@@ -1,5 +1,8 @@
 // Prints what a frame costs the page's script: CPU time from the bytes of the wire to buffers that
-// are ready to draw, without drawing. usage: frame_cost.mjs [FRAMES]
+// are ready to draw, without drawing. With WEFT_PROGRAM it also measures packed frames of a server's
+// cloth in gusts that a hand holds, whose decoding the page leaves to a worker.
+// usage: [WEFT_PROGRAM=build/weft] node tests/web/frame_cost.mjs [FRAMES]
+import { FrameReader } from '../../proto/js/index.js';
 import { decodeFrame } from '../../proto/js/codec.js';
 import { import_page_module } from './support/page_module.mjs';
 
@@ -11,6 +14,8 @@ const frames = Number(process.argv[2] ?? 600);
 const TICK = 1 / 60; // [s]
 const GRAB_BYTES = 36;
 const WARM_UP = 60; // frames
+const RECORDED = 60; // frames
+const SHOWN_ERROR = 4e-4; // that the page allows [m]
 const studio = { scene: { add() {} }, set_floor() {}, raise_floor() {}, light() {} };
 
 /** The binary message of a frame with one hand. */
@@ -46,6 +51,8 @@ function frame_message(tick, positions) {
   view.setUint32(12, b, true);
   return bytes;
 }
+
+const is_packed = (bytes) => new Uint8Array(bytes)[2] === 2;
 
 /** A waving square metre of n by n particles. */
 function cloth_at(n, time) {
@@ -87,13 +94,10 @@ function mean_cost(act) {
   return (user + system) / 1000 / frames;
 }
 
-/** Milliseconds of CPU time a frame, by part. */
-function cost_of(n, fabric) {
-  const world = world_of(n, fabric);
+/** Milliseconds of CPU time a frame, by part. @param decode decodes the k-th frame */
+function cost_of(world, decode, decoded) {
   const { camera } = new OrbitCamera();
   camera.updateMatrixWorld();
-  const messages = Array.from({ length: 20 }, (_, k) => frame_message(k, cloth_at(n, k * TICK)));
-  const decoded = messages.map((message) => decodeFrame(message));
   const show = (k) => {
     const frame = { ...decoded[k % decoded.length], tick: k, serverTime: 100 + k * TICK };
     world.push(frame, k * TICK);
@@ -101,7 +105,7 @@ function cost_of(n, fabric) {
     point_on_triangle(0, [1, 0, 0], world.playback.positions, world.triangles);
   };
   const cost = {
-    decode: mean_cost((k) => decodeFrame(messages[k % messages.length])),
+    decode: mean_cost(decode),
     show: mean_cost(show),
     order: mean_cost(() => world.look_from(camera)),
     ray: mean_cost(() =>
@@ -111,16 +115,67 @@ function cost_of(n, fabric) {
   return cost;
 }
 
+function made_up_cost(n, fabric) {
+  const messages = Array.from({ length: 20 }, (_, k) => frame_message(k, cloth_at(n, k * TICK)));
+  const decode = (k) => decodeFrame(messages[k % messages.length]);
+  return cost_of(world_of(n, fabric), decode, messages.map((message) => decodeFrame(message)));
+}
+
+/** Packed frames of a server's cloth in gusts, one for each tick, as bytes and as they are read. */
+async function record(n, fabric) {
+  const { start_server } = await import('./support/server.mjs');
+  // Its motion counts alone, so that nothing is spent on contact with itself.
+  const settings = [`cloth.rows=${n}`, `cloth.columns=${n}`, `fabric=${fabric}`, 'environment.wind=1,0,4',
+    'contact.self=none'];
+  const server = await start_server(['--paused', '--scene', 'wall', ...settings.flatMap((each) => ['--set', each])]);
+  const record = { frames: [] };
+  const reader = new FrameReader();
+  const frames = {
+    begin: (...mesh) => reader.begin(...(record.mesh = mesh)),
+    read(bytes, done) {
+      const received = reader.take(bytes);
+      record.frames.push({ bytes, frame: received.frame });
+      done(received);
+    },
+  };
+  const script = await server.script('script', { frames });
+  await script.view({ codec: 'packed', error: SHOWN_ERROR });
+  await script.drag({ particle: Math.floor((n * n) / 2) }, { target: [0, 1, 0.5] }).started;
+  await script.advance(RECORDED, { frames: 'all' });
+  record.announcement = script.mesh.announcement;
+  script.close();
+  await server.stop();
+  record.frames = record.frames.filter(({ bytes }) => is_packed(bytes));
+  return record;
+}
+
+async function packed_cost(n, fabric) {
+  const { mesh, frames, announcement } = await record(n, fabric);
+  const [cloths, data] = mesh;
+  let reader;
+  const decode = (k) => {
+    if (k % frames.length === 0) {
+      reader = new FrameReader(); // the first is a key
+      reader.begin(cloths, data);
+    }
+    reader.take(frames[k % frames.length].bytes);
+  };
+  const world = new WorldView({ ...announcement, cloths, colliders: [] }, { ...data, colliders: [] }, studio);
+  return cost_of(world, decode, frames.map(({ frame }) => frame));
+}
+
+function print(name, cost) {
+  const sum = Object.values(cost).reduce((total, part) => total + part, 0);
+  const figures = [cost.decode, cost.show, cost.order, cost.ray, sum];
+  const text = figures.map((value) => value.toFixed(2).padStart(8)).join('');
+  console.log(`${name.padEnd(26)}${text}`);
+}
+
 const heads = ['decode', 'show', 'order', 'ray', 'sum'];
 console.log(`CPU time of ${frames} frames, milliseconds each: decoding; playback, subdivision, normals`);
 console.log('and hems; order of see-through triangles; the ray of a hovering pointer');
-console.log(['cloth'.padEnd(18), ...heads.map((head) => head.padStart(8))].join(''));
+console.log(['cloth'.padEnd(26), ...heads.map((head) => head.padStart(8))].join(''));
 for (const fabric of ['cotton', 'silk']) {
-  for (const n of [32, 64, 128]) {
-    const cost = cost_of(n, fabric);
-    const sum = Object.values(cost).reduce((total, part) => total + part, 0);
-    const figures = [cost.decode, cost.show, cost.order, cost.ray, sum];
-    const text = figures.map((value) => value.toFixed(2).padStart(8)).join('');
-    console.log(`${`${n} x ${n} ${fabric}`.padEnd(18)}${text}`);
-  }
+  for (const n of [32, 64, 128]) print(`${n} x ${n} ${fabric}`, made_up_cost(n, fabric));
+  if (process.env.WEFT_PROGRAM) print(`128 x 128 ${fabric}, packed`, await packed_cost(128, fabric));
 }

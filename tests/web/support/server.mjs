@@ -35,9 +35,9 @@ export async function start_server(options = [], port = 0) {
       process_.kill(signal);
       await ended;
     },
-    /** A script that looks at the same cloth. */
-    async script(name = 'script') {
-      const client = new WeftClient(addresses.websocket, { name, WebSocket, reconnect: false });
+    /** A script that looks at the same cloth. @param options of the client */
+    async script(name = 'script', options = {}) {
+      const client = new WeftClient(addresses.websocket, { name, WebSocket, reconnect: false, ...options });
       const last = { pins: [], grabs: [], viewers: [] };
       client.on('pins', ({ pins }) => (last.pins = pins));
       client.on('grabs', ({ grabs }) => (last.grabs = grabs));
