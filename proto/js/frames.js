@@ -6,6 +6,7 @@ import { FrameDecoder } from './packed.js';
 const PACKED = 2;
 const KEY = 1;
 const FRAME_BYTES = 64;
+const KEY_PATIENCE = 1000; // until a key is asked for again [ms]
 
 /**
  * What became of a frame: null if it builds on frames that this client has not got, so that it
@@ -56,5 +57,64 @@ export class FrameReader {
     if (lost) return { sequence, frame: null };
     this.#decoder ??= /** @type {() => FrameDecoder} */ (this.#make)();
     return { sequence, frame: this.#decoder.decode(bytes) };
+  }
+}
+
+/**
+ * A source whose frames may be decoded elsewhere. Those of a connection that is lost meanwhile are
+ * dropped: what follows is of another one, and perhaps of another server.
+ * @implements {FrameSource}
+ */
+export class LiveFrames {
+  #source;
+  #losses = 0;
+
+  /** @param {FrameSource} source */
+  constructor(source) {
+    this.#source = source;
+  }
+
+  /** @type {FrameSource['begin']} */
+  begin(cloths, data) {
+    this.#source.begin(cloths, data);
+  }
+
+  /** @type {FrameSource['read']} */
+  read(bytes, done, fail) {
+    const losses = this.#losses;
+    const live = () => losses === this.#losses;
+    this.#source.read(bytes, (got) => live() && done(got), (error) => live() && fail(error));
+  }
+
+  /** The connection is lost. */
+  drop() {
+    this.#losses += 1;
+  }
+}
+
+/**
+ * When to ask for a key. While one is under way none is asked for; but the request may have been
+ * refused, as when too many messages came.
+ */
+export class KeyWish {
+  #timers;
+  #askedAt = -Infinity; // [ms]
+
+  /** @param {import('./connection.js').Timers} timers */
+  constructor(timers) {
+    this.#timers = timers;
+  }
+
+  /** A frame could not be read. @returns whether to ask now */
+  renew() {
+    const now = this.#timers.now();
+    if (now - this.#askedAt < KEY_PATIENCE) return false;
+    this.#askedAt = now;
+    return true;
+  }
+
+  /** Frames can be read. */
+  fulfil() {
+    this.#askedAt = -Infinity;
   }
 }

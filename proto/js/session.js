@@ -3,7 +3,7 @@ import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
 import { Connection, SECOND_LOOK, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
 import { CallTimeout, CommandError, ConnectionLost } from './errors.js';
-import { FrameReader } from './frames.js';
+import { FrameReader, KeyWish, LiveFrames } from './frames.js';
 import { fetchMesh, matchMesh } from './mesh.js';
 import { Pace } from './pace.js';
 import { ClockEstimate, LatencyMeter } from './timing.js';
@@ -75,7 +75,7 @@ export class Session extends Emitter {
   #clock = new ClockEstimate();
   #meter = new LatencyMeter();
   #frames;
-  #keyAsked = false;
+  #key;
 
   /** @type {import('./messages.js').Welcome | null} */
   welcome = null;
@@ -92,8 +92,9 @@ export class Session extends Emitter {
     super();
     this.options = options;
     this.timers = options.timers ?? systemTimers;
-    this.#frames = options.frames ?? new FrameReader();
+    this.#frames = new LiveFrames(options.frames ?? new FrameReader());
     this.#pace = new Pace(this.timers);
+    this.#key = new KeyWish(this.timers);
     this.#url = socketAddress(url);
     if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
     this.#connection = new Connection(this.#url.href, {
@@ -266,6 +267,8 @@ export class Session extends Emitter {
     this.timers.clearTimeout(this.#pingTimer);
     this.welcome = null;
     this.#announced = null;
+    this.#frames.drop();
+    this.#key.fulfil();
     this.#transfers.clear();
     this.#pace.clear();
     for (const id of [...this.#waiting.keys()]) this.#take(id)?.reject(new ConnectionLost(reason));
@@ -378,9 +381,8 @@ export class Session extends Emitter {
   /** @param {import('./frames.js').Received} received */
   #receive({ sequence, frame }) {
     this.#connection.send(encodeAck(sequence));
-    if (!frame && !this.#keyAsked) this.post('view', { codec: 'packed' });
-    this.#keyAsked = frame === null;
-    if (!frame) return;
+    if (!frame) return this.#key.renew() && this.post('view', { codec: 'packed' });
+    this.#key.fulfil();
     const own = frame.applied.find(({ viewer }) => viewer === this.viewer);
     if (own) this.#meter.applied(own.number, this.#now());
     if (frame.epoch !== this.mesh?.announcement.epoch) return;

@@ -251,6 +251,54 @@ test('packed frames before the mesh and without a key are acknowledged, and a ke
   assert.equal(socket.acks.length, 6);
 });
 
+test('a key that does not come is asked for again after a second, and on a new connection at once', async () => {
+  const [stream] = packedStreams();
+  const { socket, sockets, timers } = await join();
+  const say = (to) => to.sayBytes(stream.frames[3][0]);
+  const asked = (of) => of.ops('view').length;
+  say(socket);
+  await timers.pass(900);
+  say(socket);
+  assert.equal(asked(socket), 1);
+  await timers.pass(200);
+  say(socket);
+  assert.equal(asked(socket), 2);
+  socket.lose(1006);
+  await timers.pass(300);
+  sockets[1].open();
+  sockets[1].say(welcome);
+  say(sockets[1]);
+  assert.equal(asked(sockets[1]), 1);
+});
+
+test('a frame that is decoded when its connection is lost is neither told nor acknowledged on the next', async () => {
+  const waiting = [];
+  const frames = { begin() {}, read: (bytes, done, fail) => waiting.push({ bytes, done, fail }) };
+  const { client, socket, sockets, timers } = await join({ frames });
+  const told = [];
+  client.on('frame', ({ sequence }) => told.push(sequence));
+  client.on('fault', (fault) => told.push(fault));
+  const begin = (on) => {
+    on.say(GRID);
+    on.sayBytes(readGolden('mesh_grid.bin'));
+    for (let k = 0; k < 2; k++) on.sayBytes(readGolden('frame_hands.bin'));
+  };
+  begin(socket);
+  socket.lose(1006);
+  await timers.pass(300);
+  sockets[1].open();
+  sockets[1].say(welcome);
+  begin(sockets[1]);
+  new FrameReader().read(waiting[0].bytes, waiting[0].done);
+  waiting[1].fail(new ProtocolError('unreadable'));
+  assert.equal(told.length, 0);
+  assert.equal(sockets[1].acks.length, 0);
+  assert.equal(sockets[1].closedWith, null);
+  new FrameReader().read(waiting[2].bytes, waiting[2].done);
+  assert.equal(told.length, 1);
+  assert.equal(sockets[1].acks.length, 1);
+});
+
 test('frames may be decoded elsewhere, and what goes wrong there ends the connection', async () => {
   const waiting = [];
   const frames = { begin() {}, read: (bytes, done, fail) => waiting.push({ bytes, done, fail }) };
