@@ -20,8 +20,10 @@ const EXTRA = {
     { view: 'phone', title: 'on a phone', options: PHONE },
     { view: 'phone-dark', title: 'on a phone, in the dark theme', options: { ...PHONE, dark: true } },
     { view: 'boxes', title: 'boxes of the triangles, by level', options: DESKTOP, act: show_boxes },
+    { view: 'moving', title: 'in motion, two seconds later', options: DESKTOP, act: go_on, moving: true },
   ],
 };
+const IN_MOTION = 120; // ticks after which a picture of a moving cloth is taken
 /** Figures of the paper that are compared with each other stand in one row. */
 const COMPARED_WITH = { 12: 11 };
 
@@ -68,12 +70,14 @@ async function draw(scene) {
   const server = await server_at(scene.name, scene.tick);
   const pictures = [];
   const views = [{ view: 'desktop', title: '', options: DESKTOP }, ...(EXTRA[scene.name] ?? [])];
-  for (const { view, title, options, act } of views) {
+  for (const { view, title, options, act, moving } of views) {
     const page = await open_page(browser, server.url, { ...options, name: 'Ada', visited: true });
     await until(async () => (await read(page, 'tick')) === scene.tick, 'the tick is shown');
     await act?.(page);
-    await camera_at_rest(page);
-    await until(() => read(page, 'fine'), 'the picture is a fine one');
+    if (!moving) {
+      await camera_at_rest(page);
+      await until(() => read(page, 'fine'), 'the picture is a fine one');
+    }
     const file = `${scene.name}-${scene.tick}-${view}.png`;
     await page.screenshot({ path: join(folder, file) });
     if (page.complaints.length) throw new Error(`${file}: ${page.complaints.join('; ')}`);
@@ -92,6 +96,13 @@ async function show_boxes(page) {
   await panel.getByRole('slider', { name: 'Level' }).fill('6');
   const shown = panel.locator('#level-value');
   await until(async () => (await shown.textContent()).startsWith('6 of'), 'those of the level');
+}
+
+/** Lets time pass: pictures of what moves are smoothed by themselves, not the mean of many. */
+async function go_on(page) {
+  const begun = await read(page, 'tick');
+  await page.getByRole('button', { name: 'Resume' }).click();
+  await until(async () => (await read(page, 'tick')) >= begun + IN_MOTION, 'time has passed');
 }
 
 /** Number of the paper's figure that a scene shows; null if it shows none. */

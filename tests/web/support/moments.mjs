@@ -10,6 +10,8 @@ const TICKS = {
   'hard-teleport': 120,
   'hard-squeeze': 120,
   'hard-stack': 180,
+  'hard-point': 135,
+  'hard-pinch': 110,
   'hard-mass-ratio': 130,
   'hard-warp-and-weft': 130,
   'hard-ring': 130,
@@ -26,11 +28,20 @@ const TICKS = {
   'seed-fig11-particle-pairs': 110,
   'seed-fig12-triangle-pairs': 110,
 };
-/** What a hand does in experiments that are about hands, halfway to the picture's tick. */
+/** What a hand does in scenes that are about hands, halfway to the picture's tick. */
 const HANDS = {
+  wall: async (script) => drag(script, await script.pick([-0.1, 0.95, 2], [0, 0, -1]), [-0.1, 1.2, -0.4]),
   'seed-fig15-corners': (script) => script.release({ particle: 25 * 25 - 1 }),
-  'seed-fig16-drag': (script) => script.drag({ particle: 12 * 25 + 12 }, { target: [0, 1.24, 0.36] }).started,
+  'seed-fig16-drag': (script) => drag(script, { particle: 12 * 25 + 12 }, [0, 1.24, 0.36]),
 };
+const HOLDER = 'Grace';
+
+/** Takes hold; its name is in the picture then. */
+async function drag(script, hold, target) {
+  script.holds = true;
+  await script.hello({ name: HOLDER });
+  await script.drag(hold, { target }).started;
+}
 
 /** The tick of a scene's picture. @param scene by its name */
 export const tick_of = (scene) => TICKS[scene] ?? USUAL_TICK;
@@ -44,6 +55,6 @@ export async function server_at(scene, tick) {
   if (before > 0) await script.advance(before);
   await hand?.(script);
   if (tick > before) await script.advance(tick - before);
-  script.close(); // or its name would be in the pictures
+  if (!script.holds) script.close(); // or its name would be in the pictures
   return server;
 }
