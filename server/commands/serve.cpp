@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 #include <thread>
+#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -16,6 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "server/commands/qr_code.h"
 #include "server/commands/version.h"
 #include "server/net/addresses.h"
 #include "server/net/close_codes.h"
@@ -178,6 +180,10 @@ void print_addresses(const ServerOptions& options, int port) {
   } catch (const OutputError& error) {
     spdlog::warn("the addresses could not be printed: {}; port {}", error.what(), port);
   }
+  // Beside somebody who lets others in, for their phones.
+  if (!options.open || ::isatty(STDERR_FILENO) == 0) return;
+  if (const auto code = qr_code(urls.front()))
+    std::fprintf(stderr, "%s%s\n", terminal_text(*code).c_str(), urls.front().c_str());
 }
 
 /// The network thread with its timers and its shutdown.
