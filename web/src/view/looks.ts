@@ -141,7 +141,7 @@ export const FINISHES: Record<FabricName, Finish> = {
     grooves: 0.25,
     roughness: 0.45,
     back_roughness: 0.5,
-    specular: 0.8,
+    specular: 1,
     sheen: 0.1,
     sheen_roughness: 0.4,
     clear: 0.14,
