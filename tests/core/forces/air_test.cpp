@@ -122,6 +122,31 @@ TEST_CASE("before a fan its core blows with the fan's speed, and the bound count
   }
 }
 
+TEST_CASE("a jet is the same at any distance in its core, beyond its reach as 1 / distance") {
+  test::SeededRandom random(7);
+  for (int run = 0; run < 50; ++run) {
+    EnvironmentDef environment;
+    environment.fans.emplace_back();
+    FanDef& fan = environment.fans[0];
+    fan.position = random.vector(1);
+    fan.direction = random.vector(1);
+    fan.spread = random.uniform(0, 0.5);
+    fan.reach = random.uniform(1, 3);
+    const Vec3d along = fan.direction.normalized(), across = along.unitOrthogonal();
+    const double share = random.uniform(0, 0.95);  // of the jet's radius
+    const auto speed_at = [&](double distance) {
+      const double away = share * (fan.radius + fan.spread * distance);
+      const Vec3d place = fan.position + along * distance + across * away;
+      return air_at(environment, 0, {place})[0].dot(along);
+    };
+    const double core = speed_at(0.9 * fan.reach);
+    REQUIRE(core > 0);
+    REQUIRE(speed_at(fan.reach) == Approx(core));
+    for (const double times : {1.5, 2.0, 7.0})
+      REQUIRE(speed_at(times * fan.reach) == Approx(core / times));
+  }
+}
+
 TEST_CASE("gusts are carried along by the wind: later the same eddy is as far downwind (Taylor)") {
   test::SeededRandom random(7);
   for (int run = 0; run < 50; ++run) {

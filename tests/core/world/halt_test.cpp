@@ -104,6 +104,18 @@ TEST_CASE("a tick of the seed's contact ended at any point leaves what a tick no
   check_scene(def, 20, nullptr);
 }
 
+TEST_CASE(
+    "a tick in which the scene's wind changes, ended at any point, leaves the wind before it") {
+  WorldDef def = scene_of("flag");
+  def.winds = {{0, Vec3d(3, 0, 1)}, {5.0 / 60, Vec3d(-7, 1, 0)}};
+  check_scene(def, 5, nullptr);
+  const auto world = world_at(def, 5);
+  REQUIRE(step_and_stop(*world, 0));
+  CHECK(world->environment().wind == def.winds[0].wind);
+  CHECK_FALSE(step_and_stop(*world, -1));
+  CHECK(world->environment().wind == def.winds[1].wind);
+}
+
 TEST_CASE("within a tick of changing wind and sleeping cloth the hash before it is known") {
   WorldDef def = scene_of("flag");
   def.winds = {{0, def.environment.wind}, {0.1, Vec3d(7, 1, 0)}};

@@ -1,10 +1,12 @@
 #include "core/world/script.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "core/error.h"
-#include "core/world/world.h"
-#include "tests/support/cloths.h"
+#include "tests/support/worlds.h"
 
 using namespace weft;
 
@@ -118,4 +120,50 @@ TEST_CASE("a hand of the scene takes hold if it fits beside all others and sling
   while (world.report().time < 0.06) REQUIRE_NOTHROW(world.step());
   REQUIRE(world.grabs().impulses.size() == 1);
   CHECK(world.grabs().list.size() == kMostGrabs - 1);
+}
+
+TEST_CASE("at the end of each tick a hand of the scene is where its path is then") {
+  WorldDef def = hanging();
+  HandDef hand;
+  hand.path = {{0.05, Vec3d::Zero()}, {0.25, Vec3d(0, 0.1, 0.2)}, {0.3, Vec3d(0, 0.1, 0.2)}};
+  def.hands = {hand};
+  World<double> world(def);
+  Vec3d start = Vec3d::Zero();
+  int holding = 0;
+  for (int tick = 0; tick < 25; ++tick) {
+    const Vec3Array<double> before = world.state().x;
+    world.step();
+    if (world.grabs().list.empty()) continue;
+    const Grab<double>& grab = world.grabs().list[0];
+    if (holding++ == 0) start = held_point(grab, before);
+    const double gone = std::min(world.report().time - 0.05, 0.2);  // at 1 m/s along z
+    CHECK((grab.target - start - Vec3d(0, gone / 2, gone)).norm() < 1e-12);
+  }
+  CHECK(holding == 16);  // from 0.05 s on, until the tick after 0.3 s
+}
+
+TEST_CASE("what a disturbance gives the cloth stands in the balance, and nothing else is missing") {
+  WorldDef def = test::empty_world(test::flat_cloth(6, 6));
+  def.cloths[0].v = -Vec3d::UnitY();
+  def.cloths[0].fabric.damping_ratio = 0;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.solver.min_substeps = 40;
+  DisturbanceDef disturbance;
+  disturbance.time = 0.1;
+  disturbance.noise = 2;
+  def.disturbances = {DisturbanceDef{}, disturbance};
+  World<double> world(def);
+  world.measure_energy(true);
+  test::advance(world, 0.1);
+  CHECK(world.energy_balance()->disturbances == 0);
+  double given = 0;
+  for (std::size_t i = 0; i < world.state().v.size(); ++i) {
+    const Vec3d v = world.state().v[i];
+    const Vec3d more = 2 * Vec3d(noise_at(1, i, 0), noise_at(1, i, 1), noise_at(1, i, 2));
+    given += world.model().mass[i] * ((v + more).squaredNorm() - v.squaredNorm()) / 2;
+  }
+  test::advance(world, 0.1);
+  CHECK(given > 0.1);
+  CHECK(world.energy_balance()->disturbances == Approx(given).epsilon(1e-9));
+  CHECK(std::abs(world.energy_balance()->lost()) < 0.01 * given);
 }
