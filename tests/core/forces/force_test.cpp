@@ -8,6 +8,7 @@
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
 #include "core/forces/hinge.h"
+#include "core/forces/spring.h"
 #include "tests/support/cloths.h"
 #include "tests/support/seeded_random.h"
 #include "tests/support/sheets_of_triangles.h"
@@ -73,6 +74,19 @@ TEST_CASE("the force of the springs is minus the gradient of their energy, to 1e
   const auto force = [&](const auto& at, auto& f) { add_spring_forces(model, at, rest, f); };
   const auto energy = [&](const auto& at) { return elastic_energy(model, at).stretch; };
   CHECK(gradient_error(x, force, energy) < 1e-6);
+}
+
+TEST_CASE("a spring's dashpot pulls with its coefficient times the rate of the spring's length") {
+  SeededRandom random(1);
+  Spring<double> dashpot;
+  dashpot.damping = 0.7;
+  for (int run = 0; run < 20; ++run) {
+    constexpr double kSeconds = 1e-6;
+    const Vec3d d = random.vector(0.05), dv = random.vector(3);
+    const double rate = ((d + dv * kSeconds).norm() - (d - dv * kSeconds).norm()) / (2 * kSeconds);
+    const Vec3d force = spring_force(dashpot, d, dv);
+    CHECK((force - 0.7 * rate * d.normalized()).norm() < 1e-5);
+  }
 }
 
 TEST_CASE("the force of the hinges is minus the gradient of their energy, to 1e-6") {
