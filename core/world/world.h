@@ -159,6 +159,11 @@ class World {
   /// @param cloth  its index, below the number of cloths
   std::unique_ptr<World> with_fabric(std::size_t cloth, const FabricDef& fabric) const;
 
+  /// The same world at this moment, with the same runtime: given the same commands it has the same
+  /// future, bit for bit, with everything that contact and solvers remember. Neither changes the
+  /// other, and each outlives the other.
+  std::unique_ptr<World> fork() const;
+
   /// Takes `factor` times the substeps that it would take, from the coming tick on: for repetitions
   /// that tell a run's error in time (run_error.h). The hash leaves it out.
   /// @param factor  1 to kMostRefinement

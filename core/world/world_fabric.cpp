@@ -1,4 +1,4 @@
-// Another fabric for a cloth of a running world.
+// Worlds made from a running one: a fork, and one whose cloth has another fabric.
 
 #include <cassert>
 
@@ -17,6 +17,14 @@ std::unique_ptr<World<Real>> World<Real>::with_fabric(std::size_t cloth,
   changed->take_fabric(cloth, fabric);
   changed->refuse_too_stiff();
   return changed;
+}
+
+template <class Real>
+std::unique_ptr<World<Real>> World<Real>::fork() const {
+  std::unique_ptr<World> other(new World(copy()));
+  other->energy_ = energy_;  // a copy has none
+  other->allocate_external();
+  return other;
 }
 
 /// Builds anew all that follows from masses, stiffness, thickness or friction. The topology stays,
@@ -42,6 +50,7 @@ void World<Real>::take_fabric(std::size_t cloth, const FabricDef& fabric) {
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                  \
+  template std::unique_ptr<World<Real>> World<Real>::fork() const;                              \
   template std::unique_ptr<World<Real>> World<Real>::with_fabric(std::size_t, const FabricDef&) \
       const;                                                                                    \
   template void World<Real>::take_fabric(std::size_t, const FabricDef&);
