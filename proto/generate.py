@@ -24,11 +24,17 @@ SUMMARIES = {  # of the commands whose methods in Python follow from their field
     "resume": "Lets the room's clock run.",
     "step": "Lets ticks pass in a paused room.",
     "reset": "Back to the scene's start.",
+    "save": "Keeps the present state in memory, in place of an earlier one of this name.",
+    "restore": "Back to a state that was saved.",
     "speed": "Sets how fast time passes.",
     "gripper": "Opens, closes (opening=0) or moves a gripper; omitted values stay as they are.",
     "set": "Changes forces, settings and fabric of the room; omitted values stay as they are.",
+    "create_room": "Opens a room beside this one; its address ends in `/ws/name`.",
+    "list_rooms": "The rooms of the server.",
+    "fork": "Opens a room that is like this one at this moment; its address ends in `/ws/name`.",
+    "close_room": "Closes a room and the connections of its viewers; the default one stays.",
 }
-TABLES = {"hello", "camera", "gripper", "set", "advance", "view"}  # that README.md has
+TABLES = {"hello", "camera", "gripper", "set", "advance", "view", "create_room", "fork"}  # that README.md has
 SCRIPT = {
     **NUMBERS, "boolean": "boolean", "string": "string", "vector": "Vec3", "rotation": "number[]",
     "name_or_place": "string | number", "name_or_object": "string | object",
@@ -98,7 +104,7 @@ def result_declarations(messages):
         names.setdefault(reply["op"], []).append(reply["fields"])
     parts = {name for reply in messages["replies"] for name in objects_of(reply["fields"])}
     yield from (HEAD, "", "import type { Vec3 } from './messages.js';")
-    yield f"import type {{ {', '.join(sorted(parts & {'Hit', 'Fan'}))} }} from './parts.js';"
+    yield f"import type {{ {', '.join(sorted(parts & {'Hit', 'Fan', 'RoomInfo'}))} }} from './parts.js';"
     forms = {op: [f"{{ {'; '.join(BARE_SCRIPT[field] for field in fields)} }}"] for op, fields in BARE.items()}
     for op, alternatives in names.items():
         for number, fields in enumerate(alternatives, 1):

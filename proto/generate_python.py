@@ -13,7 +13,7 @@ TOLD = TAKEN | {"vector": "Sequence[float]", "rotation": "Sequence[float]", "nam
 # Answers that several commands have in common are described by none of them.
 BARE = {
     **dict.fromkeys(("pause", "resume"), ("tick: int", "paused: bool")),
-    **dict.fromkeys(("camera", "set", "reset"), ("tick: int",)),
+    **dict.fromkeys(("camera", "set", "reset", "save", "restore"), ("tick: int",)),
 }
 
 

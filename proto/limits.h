@@ -42,6 +42,7 @@ inline constexpr std::size_t kMostNameCharacters = 32;
 inline constexpr std::size_t kMostTokenBytes = 256;
 inline constexpr std::size_t kMostSceneBytes = 64;
 inline constexpr std::size_t kMostGripperBytes = 56;
+inline constexpr std::size_t kMostRoomNameBytes = 32;
 inline constexpr std::size_t kMostValueCharacters = 80;  ///< of a string quoted in an error
 
 }  // namespace weft::proto

@@ -49,6 +49,41 @@ inline constexpr std::size_t kTickTimes = 120;
 /// is told, and until it is told again [s]. Larger: less is told, and later.
 inline constexpr double kSlow = 0.9, kSlowPatience = 2, kSlowNoticePause = 10;
 
+// Rooms.
+
+/// Ticks that take less CPU than this count as light, however many rooms there are [s]. Larger: a
+/// few rooms delay the others' ticks. Smaller: rooms change their threads for nothing.
+inline constexpr double kShortTick = 2e-3;
+
+/// Weight of a tick in the mean by which a room counts as light or heavy [1]. Larger: a single long
+/// tick decides. Smaller: a room that overruns delays others for longer.
+inline constexpr double kCostMemory = 0.2;
+
+/// By how much the threads of heavy rooms are nicer than others [1]: they get a tenth of the time
+/// of a thread that never rests. Larger: heavy rooms stand beside other work. Smaller: they delay
+/// the light ones.
+inline constexpr int kPatience = 10;
+
+/// Threads that build scenes. More: memory and time that ticks lack. Fewer: who loads waits for
+/// others who load.
+inline constexpr int kSceneBuilders = 2;
+
+/// Particles of all rooms together, and updates of particles by their solvers a simulated second:
+/// twice what one room may have. Larger: memory. Smaller: fewer rooms of fine cloth.
+inline constexpr double kMostParticlesOfRooms = 600'000, kMostUpdatesOfRooms = 2e10;
+
+/// States that a room keeps for `restore`, and particles of all of them together. More: memory,
+/// 1 to 3 kB a particle. Fewer: scripts that go back to several states load and advance instead.
+inline constexpr std::size_t kMostSaves = 16, kMostSavedParticles = 300'000;
+
+/// Entries of its room's log that a fork keeps. More: memory of each fork, about 200 bytes an
+/// entry. Fewer: the logs of forks of old rooms tell less of the history.
+inline constexpr std::size_t kForkedLog = 4096;
+
+/// A turn that lasts longer, or has been due for longer, is told in `/readyz` [s]. Larger: it is
+/// told later. Smaller: scenes with long ticks are told.
+inline constexpr double kStallSeconds = 1;
+
 // What viewers are told, and how often.
 
 /// Time between two `state` while ticks pass [s]. Larger: figures lag. Smaller: more messages.

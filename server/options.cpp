@@ -76,6 +76,8 @@ void validate(const ServerOptions& options) {
   check_range("--count-crossings", options.count_crossings, kCountPauses);
   check_range("--tick-limit", options.tick_limit, kTickLimits);
   check_range("--max-seconds", options.max_seconds, kRunSeconds);
+  check_range("--rooms", options.rooms, kRoomCounts);
+  check_range("--room-idle", options.room_idle, kRoomIdles);
   check_range("--max-viewers", options.limits.viewers, kViewerCounts);
   check_range("--max-connections", options.limits.connections, kSocketCounts);
   check_range("--max-connections-per-address", options.limits.connections_per_address,

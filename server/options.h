@@ -33,6 +33,8 @@ inline constexpr OptionRange kViewerCounts{1, 10'000};
 inline constexpr OptionRange kSocketCounts{1, 100'000};
 inline constexpr OptionRange kMessageRates{1, 1e6};    // [1/s]
 inline constexpr OptionRange kPongSeconds{0.1, 3600};  // [s]
+inline constexpr OptionRange kRoomCounts{1, 1000};
+inline constexpr OptionRange kRoomIdles{0, 1e7};  // [s]
 
 /// Throws OptionError if the value is NaN or out of range.
 void check_range(const char* field, double value, const OptionRange& range);
@@ -76,6 +78,8 @@ struct ServerOptions {
   bool paused = false;                  ///< start paused
   int count_crossings = 60;             ///< ticks between two counts, 0 to 1,000,000; 0: none
   double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
+  int rooms = 64;                       ///< at a time, 1 to 1000
+  double room_idle = 600;               ///< an empty room closes after this [s]; 0: never
   std::string web;                      ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;  ///< besides the server's own; origin.h
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order

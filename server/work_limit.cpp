@@ -36,13 +36,26 @@ bool WorkLimit::is_over() const {
   return seconds_ > 0 && spent() > seconds_ * share_;
 }
 
-LimitWatch::LimitWatch(WorkLimit& limit)
-    : thread_([&limit](const std::stop_token& stop) {
+LimitWatch::LimitWatch()
+    : thread_([this](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
-          limit.watch();
+          {
+            const std::lock_guard lock(mutex_);
+            for (WorkLimit* const limit : limits_) limit->watch();
+          }
           std::this_thread::sleep_for(kWatchPause);
         }
       }) {}
+
+void LimitWatch::add(WorkLimit& limit) {
+  const std::lock_guard lock(mutex_);
+  limits_.push_back(&limit);
+}
+
+void LimitWatch::remove(WorkLimit& limit) {
+  const std::lock_guard lock(mutex_);
+  std::erase(limits_, &limit);
+}
 
 double thread_cpu_seconds() {
   return read_clock(CLOCK_THREAD_CPUTIME_ID);

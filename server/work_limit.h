@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <ctime>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "core/stop_signal.h"
 #include "server/clock.h"
@@ -69,12 +71,19 @@ class WorkLimit {
   std::atomic<bool> working_ = false;
 };
 
-/// A thread that watches a limit.
+/// A thread that watches limits.
 class LimitWatch {
  public:
-  explicit LimitWatch(WorkLimit& limit);
+  LimitWatch();
+  explicit LimitWatch(WorkLimit& limit) : LimitWatch() { add(limit); }
+
+  /// From now until `remove`, before which the limit must not be destroyed.
+  void add(WorkLimit& limit);
+  void remove(WorkLimit& limit);
 
  private:
+  std::mutex mutex_;
+  std::vector<WorkLimit*> limits_;
   std::jthread thread_;
 };
 

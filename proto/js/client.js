@@ -202,6 +202,58 @@ export class WeftClient extends Session {
   }
 
   /**
+   * Keeps the present state in memory, in place of an earlier one of this name.
+   * @param {string} name
+   * @param {Call} [call]
+   */
+  save(name, call) {
+    return this.request('save', { name }, call);
+  }
+
+  /**
+   * Back to a state that was saved.
+   * @param {string} name
+   * @param {Call} [call]
+   */
+  restore(name, call) {
+    return this.request('restore', { name }, call);
+  }
+
+  /**
+   * Opens a room beside this one; its address ends in `/ws/name`.
+   * @param {string} name
+   * @param {{scene?: string, paused?: boolean}} [options]
+   * @param {Call} [call]
+   */
+  createRoom(name, options = {}, call = { timeout: LOAD_TIMEOUT }) {
+    return this.request('create_room', { name, ...known('create_room', options) }, call);
+  }
+
+  /**
+   * Opens a room that is like this one at this moment; its address ends in `/ws/name`.
+   * @param {string} name
+   * @param {{paused?: boolean}} [options]
+   * @param {Call} [call]
+   */
+  fork(name, options = {}, call) {
+    return this.request('fork', { name, ...known('fork', options) }, call);
+  }
+
+  /** @param {Call} [call] */
+  listRooms(call) {
+    return this.request('list_rooms', {}, call);
+  }
+
+  /**
+   * Closes a room and the connections of its viewers; the default one stays.
+   * @param {string} name
+   * @param {Call} [call]
+   */
+  closeRoom(name, call) {
+    return this.request('close_room', { name }, call);
+  }
+
+  /**
    * @param {{hz?: number, codec?: 'f32' | 'packed', error?: number, forces?: boolean}} options  kept over reconnections
    * @param {Call} [call]
    */

@@ -125,6 +125,18 @@ export interface StepCommand {
 export interface ResetCommand {
 }
 
+/** The fields of `save`. */
+export interface SaveCommand {
+  /** lower-case letters, digits and hyphens; 1 to 32 characters */
+  name: string;
+}
+
+/** The fields of `restore`. */
+export interface RestoreCommand {
+  /** lower-case letters, digits and hyphens; 1 to 32 characters */
+  name: string;
+}
+
 /** The fields of `speed`. */
 export interface SpeedCommand {
   /** simulated per real time; 0.01 to 10 */
@@ -275,4 +287,32 @@ export interface ViewCommand {
   error?: number;
   /** contacts and reactions in the frames; `true` or `false` */
   forces?: boolean;
+}
+
+/** The fields of `create_room`. */
+export interface CreateRoomCommand {
+  /** lower-case letters, digits and hyphens; 1 to 32 characters */
+  name: string;
+  /** its name; by default that with which the server was started; 1 to 64 characters */
+  scene?: string;
+  /** it begins paused; `true` or `false` */
+  paused?: boolean;
+}
+
+/** The fields of `list_rooms`. */
+export interface ListRoomsCommand {
+}
+
+/** The fields of `close_room`. */
+export interface CloseRoomCommand {
+  /** lower-case letters, digits and hyphens; 1 to 32 characters */
+  name: string;
+}
+
+/** The fields of `fork`. */
+export interface ForkCommand {
+  /** lower-case letters, digits and hyphens; 1 to 32 characters */
+  name: string;
+  /** whether it begins so; by default as this room is; `true` or `false` */
+  paused?: boolean;
 }

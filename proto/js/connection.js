@@ -8,7 +8,7 @@ const OPENING_LIMIT = 10000; // for the handshake [ms]
 export const SECOND_LOOK = 50;
 const NORMAL_CLOSE = 1000;
 // Close codes after which a new attempt would fail alike.
-const FINAL_CODES = new Set([1002, 1003, 1007, 1008, 1009, 4003]);
+const FINAL_CODES = new Set([1002, 1003, 1007, 1008, 1009, 4003, 4004]);
 
 /**
  * @typedef {object} Timers  the system's clock, or a test's

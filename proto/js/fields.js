@@ -12,6 +12,8 @@ export const FIELDS = {
   release: ['pin', 'particle', 'all'],
   camera: ['position', 'target', 'up', 'fov'],
   step: ['n'],
+  save: ['name'],
+  restore: ['name'],
   speed: ['speed'],
   move: [
     'collider', 'position', 'rotation', 'speed', 'turn_speed', 'force', 'release', 'pin', 'seconds', 'max_force',
@@ -32,4 +34,7 @@ export const FIELDS = {
   ping: ['t'],
   load: ['scene'],
   view: ['hz', 'codec', 'error', 'forces'],
+  create_room: ['name', 'scene', 'paused'],
+  close_room: ['name'],
+  fork: ['name', 'paused'],
 };

@@ -55,6 +55,23 @@ export interface Hit {
   distance: number;
 }
 
+export interface RoomInfo {
+  /** of the address `/ws/name` */
+  name: string;
+  /** its name */
+  scene: string;
+  /** of all cloths */
+  particles: number;
+  /** connected */
+  viewers: number;
+  /** of its present state */
+  tick: number;
+  /** whether it is; `true` or `false` */
+  paused: boolean;
+  /** simulated per real time; 0 while its time stands */
+  real_time_factor: number;
+}
+
 export interface Sleeping {
   /** groups of touching cloths that sleep and wake together */
   islands: number;

@@ -1,7 +1,7 @@
 // Written by proto/generate.py from the descriptions in proto/messages. Do not edit.
 
 import type { Vec3 } from './messages.js';
-import type { Hit } from './parts.js';
+import type { Hit, RoomInfo } from './parts.js';
 
 /** What the answer to `hello` has. */
 export interface HelloResult {
@@ -135,6 +135,34 @@ export interface LoadResult {
   epoch: number;
 }
 
+/** What the answer to `create_room` has. */
+export interface CreateRoomResult {
+  /** as it begins */
+  room: RoomInfo;
+}
+
+/** What the answer to `list_rooms` has. */
+export interface ListRoomsResult {
+  /** by name */
+  rooms: RoomInfo[];
+  /** rooms that this server has at a time */
+  most: number;
+}
+
+/** What the answer to `close_room` has. */
+export interface CloseRoomResult {
+  /** of the room that is gone */
+  name: string;
+}
+
+/** What the answer to `fork` has. */
+export interface ForkResult {
+  /** the command's place in the order: after it */
+  tick: number;
+  /** as it begins */
+  room: RoomInfo;
+}
+
 /** What the answer to `view` has. */
 export interface ViewResult {
   /** most frames a second */
@@ -154,6 +182,8 @@ export interface Results {
   camera: { tick: number };
   set: { tick: number };
   reset: { tick: number };
+  save: { tick: number };
+  restore: { tick: number };
   hello: HelloResult;
   pick: PickResult;
   drag: DragResult;
@@ -167,5 +197,9 @@ export interface Results {
   hash: HashResult;
   ping: PingResult;
   load: LoadResult;
+  create_room: CreateRoomResult;
+  list_rooms: ListRoomsResult;
+  close_room: CloseRoomResult;
+  fork: ForkResult;
   view: ViewResult;
 }

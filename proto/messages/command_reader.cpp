@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proto/room_name.h"
 #include "proto/utf8.h"
 
 namespace weft::proto {
@@ -82,6 +83,10 @@ void CommandReader::read(const Field& field, std::string& value) {
     in_.fail(ErrorCode::unknown_value, field.name, name + " must not have control characters");
   if (field.form == Form::file_name && !is_plain_name(value))
     in_.fail(ErrorCode::unknown_value, field.name, name + " must be a plain name, not a path");
+  if (field.form == Form::room_name && !is_room_name(value))
+    in_.fail(ErrorCode::unknown_value, field.name,
+             name + " must have lower-case letters, digits and hyphens alone, the first no hyphen",
+             "for instance room-7");
 }
 
 void CommandReader::constant(const char* name, bool what) {

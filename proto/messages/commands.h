@@ -10,6 +10,7 @@
 #include "proto/messages/motion_commands.h"
 #include "proto/messages/query.h"
 #include "proto/messages/room_commands.h"
+#include "proto/messages/rooms_commands.h"
 #include "proto/messages/settings.h"
 #include "proto/types.h"
 
@@ -21,8 +22,9 @@ namespace weft::proto {
 /// Forms of one `op` stand side by side, the one that reads it first: see parse_request.cpp.
 using Command =
     std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin, ReleaseParticle,
-                 ReleaseAll, Camera, Pause, Resume, Step, Reset, Speed, Move, MoveEnd, MovePin,
-                 StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View, Halt>;
+                 ReleaseAll, Camera, Pause, Resume, Step, Reset, Save, Restore, Speed, Move,
+                 MoveEnd, MovePin, StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View,
+                 CreateRoom, ListRooms, CloseRoom, Fork, Halt>;
 
 /// The word in `op`, e.g. "drag".
 inline const char* name_of(const Command& command) {

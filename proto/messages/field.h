@@ -46,6 +46,7 @@ enum class Form : std::uint8_t {
   bytes,       ///< text, `range` of bytes
   secret,      ///< the same, never repeated
   file_name,   ///< the same, without a path
+  room_name,   ///< the same, lower-case letters, digits and hyphens (room_name.h)
   color,       ///< text "#rrggbb"
 };
 

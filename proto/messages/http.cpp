@@ -26,8 +26,16 @@ std::string encode_scenes(const std::vector<SceneListing>& scenes) {
   return text_of(out);
 }
 
+std::string encode_rooms(const std::vector<RoomInfo>& rooms, std::uint32_t most) {
+  Json out = Json::object();
+  out["rooms"] = CommandWriter::json_of(rooms);
+  out["most"] = most;
+  return text_of(out);
+}
+
 std::string encode_readiness(const Readiness& readiness) {
   Json body = {{"ready", readiness.ready},
+               {"room", readiness.room},
                {"scene", readiness.scene},
                {"tick", readiness.tick},
                {"real_time_factor", readiness.real_time_factor}};

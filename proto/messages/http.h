@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "proto/messages/rooms_commands.h"
+
 // Bodies of the HTTP responses, README.md section 2.
 
 namespace weft::proto {
@@ -18,6 +20,7 @@ struct SceneListing {
 
 struct Readiness {
   bool ready = false;
+  std::string room;  ///< that the rest is about: the first that is not ready, else the default one
   std::string scene;
   std::uint64_t tick = 0;
   double real_time_factor = 0;
@@ -32,6 +35,7 @@ struct HttpError {
 
 std::string encode_version(const VersionInfo& version);
 std::string encode_scenes(const std::vector<SceneListing>& scenes);
+std::string encode_rooms(const std::vector<RoomInfo>& rooms, std::uint32_t most);
 std::string encode_readiness(const Readiness& readiness);
 std::string encode_http_error(const HttpError& error);
 

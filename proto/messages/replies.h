@@ -10,14 +10,12 @@
 #include "proto/error.h"
 #include "proto/messages/commands.h"
 #include "proto/messages/events.h"
+#include "proto/messages/rooms_replies.h"
 #include "proto/types.h"
 
 // Answers to commands that carry an id. `tick` is the command's place in the order.
 
 namespace weft::proto {
-
-/// The command's place in the order.
-inline constexpr Field kReplyTick{"tick", "the command's place in the order: after it"};
 
 /// Of a command without further results: camera, reset, set.
 struct DoneReply {
@@ -389,7 +387,8 @@ struct QueryReply {
 using Reply =
     std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply, PauseReply,
                  StepReply, SpeedReply, MoveReply, MovePinReply, GripperReply, AdvanceReply,
-                 HashReply, PingReply, LoadReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+                 HashReply, PingReply, LoadReply, CreateRoomReply, ListRoomsReply, CloseRoomReply,
+                 ForkReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
 
 /// The `result` for a command with this id.
 std::string encode_reply(const Id& id, const Reply& reply);

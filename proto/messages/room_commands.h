@@ -80,6 +80,29 @@ struct Reset {
   static void describe(auto&, auto&) {}
 };
 
+inline constexpr Field kSaveName{"name",
+                                 "lower-case letters, digits and hyphens",
+                                 {1, static_cast<double>(kMostRoomNameBytes)},
+                                 "characters",
+                                 Form::room_name};
+
+/// Keeps the present state in memory, in place of an earlier one of this name.
+struct Save {
+  std::string name;
+  bool operator==(const Save&) const = default;
+
+  static constexpr const char* kOp = "save";
+  static void describe(auto& io, auto& save) { io.required(kSaveName, save.name); }
+};
+
+struct Restore {
+  std::string name;
+  bool operator==(const Restore&) const = default;
+
+  static constexpr const char* kOp = "restore";
+  static void describe(auto& io, auto& restore) { io.required(kSaveName, restore.name); }
+};
+
 struct Speed {
   double speed = 1;
   bool operator==(const Speed&) const = default;

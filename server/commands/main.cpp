@@ -103,6 +103,9 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
       "--allow-origin", o.allowed_origins,
       "Origin whose pages may connect and whose host is accepted, e.g. "
       "https://weft.example behind a proxy, or http://localhost:3000; may be repeated");
+  add_number(serve, "--rooms", o.rooms, kRoomCounts, "Most rooms at a time (64)");
+  add_number(serve, "--room-idle", o.room_idle, kRoomIdles,
+             "Seconds after which an empty room closes; 0: never (600)");
   add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (64)");
   add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (256)");
   add_number(serve, "--max-connections-per-address", l.connections_per_address, kSocketCounts,

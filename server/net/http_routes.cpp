@@ -9,6 +9,8 @@
 #include <boost/beast/http/rfc7230.hpp>
 
 #include "proto/messages/events.h"
+#include "proto/room_name.h"
+#include "server/net/network_output.h"
 #include "server/origin.h"
 #include "server/scene/scene_schema.h"
 
@@ -22,6 +24,7 @@ constexpr const char* kText = "text/plain; charset=utf-8";
 constexpr const char* kMeshPath = "/api/v1/mesh/";
 /// A room that has made no turn for this long does not recover by itself [s].
 constexpr double kDeadSeconds = 30;
+constexpr const char* kSocketPath = "/ws";
 constexpr const char* kConnectPath = "/api/v1/connect";
 constexpr std::size_t kToldBytes = 80;  // of the request's text, in an error
 
@@ -50,6 +53,23 @@ HttpResponse not_found(const HttpRequest& request, const std::string& path) {
   return error_response(request, http::status::not_found, error);
 }
 
+HttpResponse no_room(const HttpRequest& request, const std::string& name) {
+  proto::HttpError error;
+  error.code = "unknown_room";
+  error.message = "there is no such room";
+  error.value = name.substr(0, kToldBytes);
+  error.hint = "see /api/v1/rooms; create_room opens one";
+  return error_response(request, http::status::not_found, error);
+}
+
+/// The room of a socket's address; nothing if the path is none.
+std::optional<std::string> room_of(const std::string& path) {
+  if (path == kSocketPath) return proto::kDefaultRoom;
+  const std::string folder = std::string(kSocketPath) + "/";
+  if (!path.starts_with(folder)) return std::nullopt;
+  return path.substr(folder.size());
+}
+
 HttpResponse mesh_response(const ServiceContext& context, const HttpRequest& request,
                            const std::string& path) {
   const std::string_view digits = std::string_view(path).substr(std::string_view(kMeshPath).size());
@@ -58,7 +78,11 @@ HttpResponse mesh_response(const ServiceContext& context, const HttpRequest& req
       std::from_chars(digits.data(), digits.data() + digits.size(), hash, 16);
   const bool readable =
       digits.size() == 16 && status == std::errc() && end == digits.data() + digits.size();
-  const SharedBytes bytes = readable ? context.hub.find_mesh(hash) : SharedBytes();
+  SharedBytes bytes;
+  for (const auto& room : readable ? context.rooms.all() : decltype(context.rooms.all())()) {
+    bytes = hub_of(*room).find_mesh(hash);
+    if (bytes) break;
+  }
   if (!bytes) return not_found(request, path);
   HttpResponse out = response(request, http::status::ok, "application/octet-stream",
                               std::string(static_cast<const char*>(bytes.data()), bytes.size()));
@@ -148,7 +172,7 @@ HttpResponse check_origin(const ServiceContext& context, const HttpRequest& requ
 /// Reason why no further viewer is admitted; status 101 if one is.
 HttpResponse check_capacity(const ServiceContext& context, const HttpRequest& request) {
   const auto viewers = static_cast<std::size_t>(context.options.limits.viewers);
-  if (context.hub.viewers() >= viewers || context.stopping) {
+  if (context.viewers >= viewers || context.stopping) {
     proto::HttpError error;
     error.code = "busy";
     error.message =
@@ -159,23 +183,24 @@ HttpResponse check_capacity(const ServiceContext& context, const HttpRequest& re
   return {http::status::switching_protocols, request.version()};
 }
 
-/// Value of the query `origin=`, unescaped: an origin needs no escapes.
-std::string_view asked_origin(std::string_view target) {
-  constexpr std::string_view kName = "origin=";
+/// Value of a query such as `origin=`, unescaped: neither an origin nor a room needs escapes.
+std::string_view asked(std::string_view target, std::string_view name) {
   for (std::size_t at = target.find('?'); at != std::string_view::npos; at = target.find('&', at)) {
     const std::string_view rest = target.substr(++at);
-    if (rest.starts_with(kName)) return rest.substr(kName.size(), rest.find('&') - kName.size());
+    if (rest.starts_with(name)) return rest.substr(name.size(), rest.find('&') - name.size());
   }
   return {};
 }
 
 /// Tells a page the reason of its refused socket, because browsers hide the answer to an upgrade.
 HttpResponse connect_response(const ServiceContext& context, const HttpRequest& request) {
-  const std::string_view origin = asked_origin(view_of(request.target()));
+  const std::string_view origin = asked(view_of(request.target()), "origin=");
   if (!origin.empty()) {
     HttpResponse refusal = check_origin(context, request, origin);
     if (refusal.result() != http::status::switching_protocols) return refusal;
   }
+  const std::string room(asked(view_of(request.target()), "room="));
+  if (!room.empty() && !context.rooms.find(room)) return no_room(request, room);
   HttpResponse refusal = check_capacity(context, request);
   if (refusal.result() != http::status::switching_protocols) return refusal;
   HttpResponse out =
@@ -203,8 +228,12 @@ HttpResponse error_response(const HttpRequest& request, http::status status,
   return out;
 }
 
-HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request) {
-  if (path_of(request) != "/ws") return not_found(request, path_of(request));
+HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request,
+                           std::shared_ptr<HostedRoom>& room) {
+  const std::optional<std::string> name = room_of(path_of(request));
+  if (!name) return not_found(request, path_of(request));
+  room = context.rooms.find(*name);
+  if (!room) return no_room(request, *name);
   const auto origin = request.find(http::field::origin);
   if (origin != request.end()) {  // sent by a browser
     HttpResponse refusal = check_origin(context, request, view_of(origin->value()));
@@ -248,28 +277,33 @@ HttpResponse answer_request(const ServiceContext& context, const HttpRequest& re
   }
   const std::string path = path_of(request);
   if (path == "/healthz") {
-    const double stalled = context.readiness().stalled;
-    if (stalled < kDeadSeconds) return response(request, http::status::ok, kText, "ok");
+    const proto::Readiness worst = context.rooms.readiness();
+    if (worst.stalled < kDeadSeconds) return response(request, http::status::ok, kText, "ok");
     return response(request, http::status::service_unavailable, kText,
-                    "the room has made no turn for " + std::to_string(std::lround(stalled)) + " s");
+                    "the room " + worst.room + " has made no turn for " +
+                        std::to_string(std::lround(worst.stalled)) + " s");
   }
   if (path == "/readyz") {
-    const proto::Readiness readiness = context.readiness();
+    const proto::Readiness readiness = context.rooms.readiness();
     return response(request, readiness.ready ? http::status::ok : http::status::service_unavailable,
                     kJson, proto::encode_readiness(readiness));
   }
   if (path == "/metrics")
     return response(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
-                    context.metrics.text());
+                    context.rooms.metrics_text());
   if (path == "/version")
     return response(request, http::status::ok, kJson, proto::encode_version(context.version));
   if (path == "/api/v1/scenes")
     return response(request, http::status::ok, kJson, proto::encode_scenes(context.scenes));
+  if (path == "/api/v1/rooms") {
+    const proto::ListRoomsReply rooms = context.rooms.list();
+    return response(request, http::status::ok, kJson, proto::encode_rooms(rooms.rooms, rooms.most));
+  }
   if (path == kSceneSchemaPath)
     return response(request, http::status::ok, "application/schema+json", scene_schema());
   if (path == kConnectPath) return connect_response(context, request);
   if (path.starts_with(kMeshPath)) return mesh_response(context, request, path);
-  if (path == "/ws") {
+  if (room_of(path)) {
     error.code = "upgrade_required";
     error.message = "this is a WebSocket address";
     error.hint = std::string("open it with the subprotocol ") + proto::kSubprotocol;

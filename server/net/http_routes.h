@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <boost/beast/http/empty_body.hpp>
@@ -24,8 +25,10 @@ bool wants_upgrade(const HttpRequest& request);
 /// origin form.
 std::optional<HttpResponse> refuse_host(const ServiceContext& context, HttpRequest& request);
 
-/// Reason why this upgrade to a WebSocket is refused; status 101 if it is accepted.
-HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request);
+/// Reason why this upgrade to a WebSocket is refused; status 101 if it is accepted, and then the
+/// room that it leads to.
+HttpResponse check_upgrade(const ServiceContext& context, const HttpRequest& request,
+                           std::shared_ptr<HostedRoom>& room);
 
 /// The answer to a plain request. HEAD gets no body, only its length.
 HttpResponse answer_request(const ServiceContext& context, const HttpRequest& request);

@@ -94,11 +94,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return write(std::move(*refusal));
     if (!wants_upgrade(request_) || request_.method() != http::verb::get)
       return write(answer_request(context_, request_));
-    HttpResponse answer = check_upgrade(context_, request_);
+    std::shared_ptr<HostedRoom> room;
+    HttpResponse answer = check_upgrade(context_, request_, room);
     if (answer.result() != http::status::switching_protocols) return write(std::move(answer));
     stream_.expires_never();
-    start_session(context_, stream_.release_socket(), std::move(request_), std::string(received()),
-                  std::move(place_));
+    start_session(context_, std::move(room), stream_.release_socket(), std::move(request_),
+                  std::string(received()), std::move(place_));
   }
 
   void refuse(http::status status, const char* code, const char* message) {

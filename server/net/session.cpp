@@ -15,6 +15,7 @@
 #include "proto/messages/replies.h"
 #include "server/net/close_codes.h"
 #include "server/net/lingering_close.h"
+#include "server/net/network_output.h"
 #include "server/net/rate_limit.h"
 
 namespace boost::beast {
@@ -56,9 +57,10 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
 
 class Session : public ViewerStream, public std::enable_shared_from_this<Session> {
  public:
-  Session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
-          const std::string& early, std::shared_ptr<ConnectionCount::Place> place)
-      : context_(context), place_(std::move(place)), ws_(std::move(socket)),
+  Session(ServiceContext& context, std::shared_ptr<HostedRoom> room, asio::ip::tcp::socket socket,
+          UpgradeRequest request, const std::string& early,
+          std::shared_ptr<ConnectionCount::Place> place)
+      : context_(context), room_(std::move(room)), place_(std::move(place)), ws_(std::move(socket)),
         request_(std::move(request)), messages_(context.options.limits.messages_per_second,
                                                 context.options.limits.messages_per_second),
         flood_(kFlood * context.options.limits.messages_per_second,
@@ -66,8 +68,8 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
         acks_(kAcksPerSecond, kAcksPerSecond), watch_(ws_.get_executor()), cut_(ws_.get_executor()),
         viewer_(context.next_viewer++) {
     auto& buffered = ws_.next_layer();
-    const auto room = buffered.buffer().prepare(early.size());
-    buffered.buffer().commit(asio::buffer_copy(room, asio::buffer(early)));
+    const auto space = buffered.buffer().prepare(early.size());
+    buffered.buffer().commit(asio::buffer_copy(space, asio::buffer(early)));
   }
 
   void start();
@@ -77,6 +79,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void on_welcomed() override { read(); }
 
  private:
+  Hub& hub() const { return hub_of(*room_); }
   void on_accepted();
   void read();
   void on_message();
@@ -95,6 +98,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void finish();
 
   ServiceContext& context_;
+  std::shared_ptr<HostedRoom> room_;
   std::shared_ptr<ConnectionCount::Place> place_;
   websocket::stream<beast::buffered_read_stream<beast::tcp_stream, beast::flat_buffer>, false> ws_;
   UpgradeRequest request_;
@@ -135,13 +139,15 @@ void Session::start() {
 
 void Session::on_accepted() {
   if (context_.stopping) return;
-  channel_ = &context_.hub.add(viewer_, *this);
+  if (room_->closed()) return close(kCloseRoomClosed, "the room is closed");
+  channel_ = &hub().add(viewer_, *this);
+  ++context_.viewers;
   alive_ = context_.clock();
   ws_.control_callback(
       [this](websocket::frame_type, beast::string_view) { alive_ = context_.clock(); });
   const std::string_view target(request_.target().data(), request_.target().size());
   const bool mesh_over_http = target.find("mesh=http") != std::string_view::npos;
-  context_.mailbox.put({viewer_, 0, Join{mesh_over_http}});
+  room_->put({viewer_, 0, Join{mesh_over_http}});
   watch();
 }
 
@@ -184,15 +190,15 @@ void Session::on_text(std::string_view text) {
 
 void Session::on_request(const proto::Request& request, double received) {
   if (const auto* ping = std::get_if<proto::Ping>(&request.command)) {
-    context_.metrics.count_command("ping");
+    room_->metrics().count_command("ping");
     answer(request.id, proto::PingReply{ping->t, received, context_.clock()});
     return note();
   }
   if (const auto* view = std::get_if<proto::View>(&request.command)) {
-    context_.metrics.count_command("view");
+    room_->metrics().count_command("view");
     return on_view(request.id, *view);
   }
-  if (context_.mailbox.put({viewer_, number_, request})) return;
+  if (room_->put({viewer_, number_, request})) return;
   proto::Error error = proto::make_error(proto::ErrorCode::busy, "too many commands are waiting",
                                          "wait for answers before sending more");
   error.command = proto::name_of(request.command);
@@ -204,8 +210,8 @@ void Session::on_request(const proto::Request& request, double received) {
 void Session::on_view(const std::optional<proto::Id>& id, const proto::View& view) {
   if (!channel_) return;
   const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
-  if (view.hz) context_.hub.set_most_frames(viewer_, *view.hz);
-  if (view.forces) context_.hub.want_forces(viewer_, *view.forces);
+  if (view.hz) hub().set_most_frames(viewer_, *view.hz);
+  if (view.forces) hub().want_forces(viewer_, *view.forces);
   choose_codec(view);
   const double error = channel_->packed_error();
   answer(id, proto::ViewReply{channel_->most_frames(),
@@ -218,7 +224,7 @@ void Session::on_view(const std::optional<proto::Id>& id, const proto::View& vie
                       (channel_->wants_forces() && !had_forces) ||
                       (channel_->wants_frames() && view.codec == proto::Codec::packed);
   noted.forces = view.forces;
-  context_.mailbox.put({viewer_, number_, noted});
+  room_->put({viewer_, number_, noted});
 }
 
 void Session::choose_codec(const proto::View& view) {
@@ -229,8 +235,7 @@ void Session::choose_codec(const proto::View& view) {
   const bool packed =
       view.codec ? *view.codec == proto::Codec::packed : channel_->packed_error() > 0;
   if (view.codec || (view.error && packed))
-    context_.hub.want_packed(viewer_, packed ? usual : 0,
-                             packed ? std::max(usual, most_error_) : 0);
+    hub().want_packed(viewer_, packed ? usual : 0, packed ? std::max(usual, most_error_) : 0);
 }
 
 /// A dropped message gets an answer too: its sender may wait for one.
@@ -246,7 +251,7 @@ void Session::on_excess(std::string_view text) {
 }
 
 void Session::refuse(const proto::Error& error) {
-  context_.metrics.count_error(proto::name_of(error.code));
+  room_->metrics().count_error(proto::name_of(error.code));
   if (channel_) channel_->send(text_message(proto::encode_error(error)));
 }
 
@@ -255,7 +260,7 @@ void Session::answer(const std::optional<proto::Id>& id, const proto::Reply& rep
 }
 
 void Session::note() {
-  context_.mailbox.put({viewer_, number_, Noted{}});
+  room_->put({viewer_, number_, Noted{}});
 }
 
 void Session::write(const Message& message) {
@@ -264,7 +269,7 @@ void Session::write(const Message& message) {
   ws_.binary(message.binary);
   ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),
                   [self = shared_from_this()](error_code error, std::size_t bytes) {
-                    self->context_.metrics.count_bytes(bytes);
+                    self->room_->metrics().count_bytes(bytes);
                     self->outgoing_ = {};
                     // Reading notices the broken connection too, and finishes.
                     if (!error && self->channel_) self->channel_->on_written();
@@ -310,15 +315,18 @@ void Session::finish() {
   cut_.cancel();
   beast::get_lowest_layer(ws_).close();
   if (!std::exchange(channel_, nullptr)) return;
-  context_.hub.remove(viewer_);
-  context_.mailbox.put({viewer_, number_, Leave{}});
+  --context_.viewers;
+  hub().remove(viewer_);
+  room_->put({viewer_, number_, Leave{}});
 }
 
 }  // namespace
 
-void start_session(ServiceContext& context, asio::ip::tcp::socket socket, UpgradeRequest request,
-                   const std::string& early, std::shared_ptr<ConnectionCount::Place> place) {
-  std::make_shared<Session>(context, std::move(socket), std::move(request), early, std::move(place))
+void start_session(ServiceContext& context, std::shared_ptr<HostedRoom> room,
+                   asio::ip::tcp::socket socket, UpgradeRequest request, const std::string& early,
+                   std::shared_ptr<ConnectionCount::Place> place) {
+  std::make_shared<Session>(context, std::move(room), std::move(socket), std::move(request), early,
+                            std::move(place))
       ->start();
 }
 

@@ -57,6 +57,16 @@ class CommandLog {
       entries_.erase(std::next(last).base());
   }
 
+  /// The newest entries, for a fork: it goes on with the same numbers.
+  CommandLog newest(std::size_t count) const {
+    CommandLog log = *this;
+    if (log.entries_.size() <= count) return log;
+    log.entries_.erase(log.entries_.begin(),
+                       log.entries_.end() - static_cast<std::ptrdiff_t>(count));
+    log.complete_ = false;
+    return log;
+  }
+
   /// Oldest first.
   const std::deque<LogEntry>& entries() const { return entries_; }
   /// Whether no entry had to make room for newer ones, so that the log tells the whole history.

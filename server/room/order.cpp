@@ -9,12 +9,20 @@ namespace weft::server {
 bool is_beside_the_cloth(const Inbound& item) {
   return std::holds_alternative<Join>(item.what) || std::holds_alternative<Noted>(item.what) ||
          is<proto::Hello>(item) || is<proto::Camera>(item) || is<proto::Pause>(item) ||
-         is<proto::Resume>(item) || is<proto::Speed>(item) || is<proto::Hash>(item);
+         is<proto::Resume>(item) || is<proto::Speed>(item) || is<proto::Hash>(item) ||
+         is<proto::ListRooms>(item) || is<proto::CloseRoom>(item);
+}
+
+bool is_about_rooms(const proto::Command& command) {
+  return std::holds_alternative<proto::CreateRoom>(command) ||
+         std::holds_alternative<proto::ListRooms>(command) ||
+         std::holds_alternative<proto::Fork>(command) ||
+         std::holds_alternative<proto::CloseRoom>(command);
 }
 
 bool is_for_its_viewer_alone(const Inbound& item) {
   return is<proto::Query>(item) || is<proto::Hash>(item) || is<proto::Pick>(item) ||
-         is<proto::Advance>(item) || is<proto::Load>(item);
+         is<proto::Advance>(item) || is<proto::Load>(item) || is<proto::ListRooms>(item);
 }
 
 bool ends_its_advance(const Order& order, const Inbound& item) {
@@ -25,7 +33,8 @@ bool is_held_up(const Order& order, const Inbound& item) {
   const std::optional<Advance>& advance = order.advance;
   if (advance && advance->viewer == item.viewer && !ends_its_advance(order, item)) return true;
   const std::optional<Building>& building = order.building;
-  return building && (building->viewer == item.viewer || is<proto::Load>(item));
+  return building &&
+         (building->viewer == item.viewer || is<proto::Load>(item) || is<proto::CreateRoom>(item));
 }
 
 bool has_waiting(const Order& order, proto::ViewerId viewer) {

@@ -9,6 +9,7 @@
 
 #include "server/room/command_log.h"
 #include "server/room/inbound.h"
+#include "server/room/other_rooms.h"
 #include "server/room/scene_build.h"
 
 namespace weft::server {
@@ -23,11 +24,15 @@ struct Advance {
   bool paused = false;  ///< by a viewer, within the tick that runs and ends it
 };
 
-/// A `load` under way.
+/// A `load` or a `create_room` under way.
 struct Building {
   proto::ViewerId viewer = 0;
   proto::Request request;
   std::shared_ptr<SceneBuild> build;
+  std::shared_ptr<RoomName> name;  ///< of another room; null: it is for this one
+
+  /// Whether the scene under way has no future.
+  bool replaces() const { return !name && build->succeeded(); }
 };
 
 /// The one order of all viewers' commands: what was done, what is being done, and what waits, as it
@@ -48,6 +53,8 @@ bool is(const Inbound& item) {
 
 /// Whether it changes nothing of the cloth and needs no more of it than is known during a tick.
 bool is_beside_the_cloth(const Inbound& item);
+/// Whether it concerns the server's rooms and not this one's cloth, so that it is not logged.
+bool is_about_rooms(const proto::Command& command);
 /// Whether only its viewer would have any use of it.
 bool is_for_its_viewer_alone(const Inbound& item);
 

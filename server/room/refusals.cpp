@@ -1,5 +1,6 @@
 #include "server/room/refusals.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace weft::server {
@@ -32,6 +33,14 @@ proto::Error unknown_pin(std::uint32_t pin) {
 proto::Error unknown_drag(std::uint32_t drag, std::string hint) {
   return field_error(ErrorCode::unknown_drag, "this viewer has no drag with this number", "drag",
                      drag, std::move(hint));
+}
+
+std::optional<proto::Error> check_scene_name(const std::string& name,
+                                             const std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+  proto::Error error = proto::word_error("scene", name, names);
+  error.code = ErrorCode::unknown_scene;
+  return error;
 }
 
 proto::Error not_paused() {

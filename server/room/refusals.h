@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/error.h"
 
@@ -20,6 +22,9 @@ proto::Error too_many(const char* what, std::size_t limit);
 
 proto::Error unknown_pin(std::uint32_t pin);
 proto::Error unknown_drag(std::uint32_t drag, std::string hint = {});
+/// Nothing if it is one of the names.
+std::optional<proto::Error> check_scene_name(const std::string& name,
+                                             const std::vector<std::string>& names);
 proto::Error not_paused();
 /// Another viewer's `advance` runs.
 proto::Error advancing_error();

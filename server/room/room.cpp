@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <spdlog/spdlog.h>
 
@@ -17,24 +18,29 @@ constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f",
 
 }  // namespace
 
+WorldDef first_scene(const RoomOptions& options, const SceneSource& scenes) {
+  WorldDef def = options.scene_def ? *options.scene_def : scenes(options.scene);
+  if (!options.scene_def) def.name = options.scene;
+  if (options.tick_rate > 0) def.tick_rate = options.tick_rate;
+  for (const auto& [key, value] : options.settings) set_field(def, key, value);
+  return def;
+}
+
 Room::Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock,
            Metrics& metrics, Executor* executor)
+    : Room(options, scenes,
+           build_scene(first_scene(options, scenes), executor,
+                       options.limit ? options.limit->seconds() : 0),
+           output, std::move(clock), metrics, executor) {}
+
+Room::Room(RoomOptions options, SceneSource scenes, BuiltScene&& scene, RoomOutput& output,
+           Clock clock, Metrics& metrics, Executor* executor)
     : options_(std::move(options)), scenes_(std::move(scenes)), output_(output),
       clock_(std::move(clock)), metrics_(metrics), executor_(executor),
       time_(options_.paused, clock_()), guarantee_(options_.count_pause, clock_) {
-  WorldDef def = options_.scene_def ? *options_.scene_def : definition_of(options_.scene);
-  if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
-  for (const auto& [key, value] : options_.settings) set_field(def, key, value);
-  start_world(build_scene(def, executor_, options_.limit ? options_.limit->seconds() : 0));
+  start_world(std::move(scene));
   renew_told();
   time_.restart_meter(clock_());
-}
-
-WorldDef Room::definition_of(const std::string& scene) const {
-  WorldDef def = scenes_(scene);
-  def.name = scene;
-  if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
-  return def;
 }
 
 /// Replaces the present scene; no part of it can fail.
@@ -45,16 +51,36 @@ void Room::start_world(BuiltScene&& scene) {
     spdlog::log(notice.warns ? spdlog::level::warn : spdlog::level::info, "scene {}: {}",
                 world_->def().name, notice.message);
   measures_forces_ = false;
+  saves_.clear();
   holds_.clear();
   told_.restart();
   ++epoch_;
   mesh_ = std::move(scene.mesh);
   mesh_.epoch = epoch_;
   mesh_bytes_ = std::move(scene.mesh_bytes);
-  output_.offer_mesh(mesh_.hash, mesh_bytes_, {epoch_, std::move(scene.order)});
-  time_.begin_scene(world_->def().budget);
-  within_limit([&] { guarantee_.start(*world_, std::move(scene.bad_starts)); }, kBetweenTicks);
+  coding_order_ = std::move(scene.order);
+  output_.offer_mesh(mesh_.hash, mesh_bytes_, {epoch_, coding_order_});
+  if (scene.past) {
+    go_on(*std::move(scene.past));
+  } else {
+    time_.begin_scene(world_->def().budget);
+    within_limit([&] { guarantee_.start(*world_, std::move(scene.bad_starts)); }, kBetweenTicks);
+  }
   output_.set_frame_rate(world_->def().tick_rate * speed());
+}
+
+/// From what another room was, in its present world.
+void Room::go_on(RoomPast&& past) {
+  const bool paused = options_.paused;
+  time_ = past.time;
+  time_.drop_steps();
+  paused ? time_.pause() : time_.resume(clock_());
+  order_.log = std::move(past.log);
+  guarantee_ = std::move(past.guarantee);
+  measures_forces_ = past.measures_forces;
+  note_sleep(*world_, told_);
+  note_pins(*world_, told_);
+  note_grabs(*world_, told_);
 }
 
 void Room::take_now(Inbound item) {
@@ -76,6 +102,7 @@ void Room::take_now(Inbound item) {
 }
 
 void Room::join(proto::ViewerId id, const Join& join) {
+  if (rests()) time_.restart_meter(clock_());
   Viewer& viewer = viewers_[id];
   viewer.info = {id, "viewer " + std::to_string(id), kColors[id % kColors.size()], "operator", {}};
   viewer.mesh_over_http = join.mesh_over_http;
@@ -89,12 +116,14 @@ void Room::join(proto::ViewerId id, const Join& join) {
   welcome.name = viewer.info.name;
   welcome.color = viewer.info.color;
   welcome.role = viewer.info.role;
+  welcome.room = options_.name;
   welcome.scene = world_->def().name;
   welcome.tick_rate = world_->def().tick_rate;
   welcome.clock = clock_();
   welcome.limits = options_.limits;
   welcome.capabilities = {"pick",  "drag", "pin",      "camera",  "step", "advance",
                           "query", "move", "move_pin", "gripper", "load"};
+  if (options_.others) welcome.capabilities.emplace_back("rooms");
   output_.send(id, text_message(proto::encode_welcome(welcome)));
   send_mesh(id, viewer);
   if (!tick_.runs) renew_told();
@@ -212,6 +241,8 @@ void Room::finish_turn() {
 }
 
 double Room::next_wake() const {
+  if (rests() && order_.waiting.empty() && !order_.building)
+    return std::numeric_limits<double>::infinity();
   const double now = clock_();
   double wake = std::min(now + kLongestSleep, next_frame());
   if (news_.any()) wake = std::min(wake, news_.next);

@@ -23,8 +23,10 @@
 #include "server/room/holds.h"
 #include "server/room/news.h"
 #include "server/room/order.h"
+#include "server/room/other_rooms.h"
 #include "server/room/room_clock.h"
 #include "server/room/room_output.h"
+#include "server/room/saves.h"
 #include "server/translate/translate.h"
 #include "server/work_limit.h"
 
@@ -34,9 +36,10 @@ namespace weft::server {
 using SceneSource = std::function<WorldDef(const std::string&)>;
 
 struct RoomOptions {
-  std::string scene = "default";      ///< name of the first scene
-  std::optional<WorldDef> scene_def;  ///< the first scene itself, if no name leads to it
-  double tick_rate = 0;               ///< [1/s]; 0: as each scene says
+  std::string name = "default";
+  std::string scene = "default";              ///< name of the first scene
+  std::shared_ptr<const WorldDef> scene_def;  ///< the first scene itself, if no name leads to it
+  double tick_rate = 0;                       ///< [1/s]; 0: as each scene says
   std::vector<std::pair<std::string, std::string>>
       settings;                          ///< of the first scene; core's set_field
   std::vector<std::string> scene_names;  ///< suggested for mistyped names
@@ -44,12 +47,14 @@ struct RoomOptions {
   /// one.
   std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
+  bool rests_when_empty = false;   ///< its time stands while it has no viewers
   std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
   std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
   /// Bounds a tick, and queries that look one tick ahead; outlives the room. Null: no bound.
   WorkLimit* limit = nullptr;
-  double build_limit = 0;  ///< of CPU for building a scene [s]; 0: no bound
+  OtherRooms* others = nullptr;  ///< outlives the room; null: there are none
+  double build_limit = 0;        ///< of CPU for building a scene [s]; 0: no bound
   /// CPU time of the room's thread, by which viewers of expensive commands are made to wait [s];
   /// the default makes none wait.
   Clock cpu_clock = [] { return 0.0; };
@@ -60,14 +65,20 @@ struct RoomOptions {
   };
 };
 
+/// The scene with which the options begin. Throws DefinitionError if there is none.
+WorldDef first_scene(const RoomOptions& options, const SceneSource& scenes);
+
 /// One shared cloth with its clock, its hands and its order of commands. Everything happens on the
-/// simulation thread; input arrives through `take` and output leaves through RoomOutput. The state
-/// changes only between ticks, by commands in the log.
+/// thread that has its turn; input arrives through `take` and output leaves through RoomOutput. The
+/// state changes only between ticks, by commands in the log.
 class Room {
  public:
   /// Throws DefinitionError if the scene cannot be built.
   Room(RoomOptions options, SceneSource scenes, RoomOutput& output, Clock clock, Metrics& metrics,
        Executor* executor = nullptr);
+  /// A room of a scene that has been built.
+  Room(RoomOptions options, SceneSource scenes, BuiltScene&& scene, RoomOutput& output, Clock clock,
+       Metrics& metrics, Executor* executor = nullptr);
 
   /// Called when a taken command is finished.
   std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
@@ -96,7 +107,7 @@ class Room {
   void advance_until(double deadline);
 
   /// Whether ticks follow the clock: the room runs, or `step` asked for some.
-  bool ticking() const { return !order_.advance && time_.runs(); }
+  bool ticking() const { return !order_.advance && time_.runs() && !rests(); }
   double tick_interval() const { return world_->tick_seconds() / speed(); }  ///< real time [s]
   void tick();
 
@@ -105,11 +116,12 @@ class Room {
 
   /// Call after ticks and commands: ends leases, announces changes, sends the newest frame.
   void finish_turn();
-  /// Latest time of the next `finish_turn`, even if nothing happens [s].
+  /// Latest time of the next `finish_turn`, even if nothing happens [s]; infinity while it rests.
   double next_wake() const;
 
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return order_.log; }
+  std::size_t viewers() const { return viewers_.size(); }
   bool paused() const { return time_.paused(); }
   /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
   double speed() const { return time_.speed(); }
@@ -140,15 +152,20 @@ class Room {
 
   using Outcome = proto::Result<proto::Reply>;
 
+  bool rests() const { return options_.rests_when_empty && viewers_.empty(); }
+
   // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
   bool may_run_meanwhile(const Inbound& item) const;
+  bool replaces_state(const Inbound& item) const;
   void work_off();
   void let_go(proto::ViewerId viewer);
   double next_turn() const;
   void charge(proto::ViewerId viewer, double cost);
   void start_build(proto::ViewerId viewer, std::function<WorldDef()> definition);
   void finish_build();
+  void replace_scene(const Building& done);
+  void open_room(const Building& done);
   void note_halt();
   void end_advance(proto::ErrorCode code, const std::string& why, const char* hint);
   template <class Work>
@@ -167,7 +184,9 @@ class Room {
   void follow_speed();
   void end_leases();
   void start_world(BuiltScene&& scene);
+  void go_on(RoomPast&& past);
   void tell_loaded(proto::ViewerId viewer);
+  void tell_jump(const char* code, std::string message, proto::ViewerId viewer);
   void send_mesh(proto::ViewerId to, const Viewer& viewer);
   void tell_slow_motion(double now);
   Message message_of(const SceneNotice& what) const;
@@ -223,6 +242,8 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Resume& command);
   Outcome apply(proto::ViewerId viewer, const proto::Step& command);
   Outcome apply(proto::ViewerId viewer, const proto::Reset& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Save& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Restore& command);
   Outcome apply(proto::ViewerId viewer, const proto::Speed& command);
   Outcome apply(proto::ViewerId viewer, const proto::Move& command);
   Outcome apply(proto::ViewerId viewer, const proto::MoveEnd& command);
@@ -237,6 +258,11 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
   Outcome apply(proto::ViewerId viewer, const proto::View& command);
   Outcome apply(proto::ViewerId viewer, const proto::Halt& command);
+  Outcome apply(proto::ViewerId viewer, const proto::CreateRoom& command);
+  Outcome apply(proto::ViewerId viewer, const proto::ListRooms& command);
+  Outcome apply(proto::ViewerId viewer, const proto::CloseRoom& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Fork& command);
+  BuiltScene fork() const;
   Outcome query_numbers(const proto::Query& command, std::span<const float> values,
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);
@@ -255,6 +281,7 @@ class Room {
   std::uint32_t epoch_ = 0;
   proto::MeshAnnouncement mesh_;
   SharedBytes mesh_bytes_;
+  std::shared_ptr<const proto::codec::CodingOrder> coding_order_;  // of packed frames
 
   RoomClock time_;
   Order order_;
@@ -270,6 +297,7 @@ class Room {
   bool measures_forces_ = false;  // whether the world measures them
   GuaranteeWatch guarantee_;
   std::vector<SceneNotice> scene_notices_;
+  Saves saves_;
 
   std::uint32_t transfers_ = 0;
   std::vector<float> box_values_;     // of the current answer, lowest and highest corners

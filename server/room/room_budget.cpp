@@ -20,8 +20,11 @@ Room::Outcome Room::apply(proto::ViewerId, const proto::Set& command) {
   std::unique_ptr<ServedWorld> changed;  // replaces the present world once nothing can fail
   const auto change = [&] { changed = world_->with_fabric(wanted->cloth, wanted->fabric); };
   if (wanted && !within_limit(change, kBetweenTicks)) throw Stopped();
-  check_cost((changed ? changed : world_)->cost_in(environment), wanted ? "fabric" : "set",
-             "environment");
+  const TickCost cost = (changed ? changed : world_)->cost_in(environment);
+  check_cost(cost, wanted ? "fabric" : "set", "environment");
+  if (options_.others) {
+    if (auto error = options_.others->admit(options_.name, cost)) return *std::move(error);
+  }
   if (changed) {
     world_ = std::move(changed);
     mesh_.cloths[wanted->cloth].thickness =

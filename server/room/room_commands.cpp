@@ -29,11 +29,13 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
     const Outcome outcome =
         std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
     if (!outcome) return refuse(viewer, request, outcome.error());
-    if (std::holds_alternative<proto::Load>(request.command)) {
-      order_.building->request = request;  // it is already logged, and answered when finished
+    if (std::holds_alternative<proto::Load>(request.command) ||
+        std::holds_alternative<proto::CreateRoom>(request.command)) {
+      order_.building->request = request;  // it is logged and answered when finished
       return finish_build();
     }
-    order_.log.add(tick, viewer, CommandOrigin::viewer, request.command);
+    if (!is_about_rooms(request.command))
+      order_.log.add(tick, viewer, CommandOrigin::viewer, request.command);
     if (std::holds_alternative<proto::Advance>(request.command)) {
       order_.advance->id = request.id;  // answered when it is done
       return;
@@ -206,15 +208,44 @@ Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
 Room::Outcome Room::apply(ViewerId viewer, const proto::Reset&) {
   if (order_.advance) end_advance(ErrorCode::interrupted, "a viewer sent reset", "");
   world_->reset();
+  tell_jump("reset", "the cloth is back at its start", viewer);
+  guarantee_.restart();
+  tell_guarantee();
+  return proto::Reply(proto::DoneReply{"reset", world_->tick()});
+}
+
+/// The state is another one than after the last tick: no viewer holds anything, and all is told.
+void Room::tell_jump(const char* code, std::string message, ViewerId viewer) {
   holds_.clear();
   told_.restart();
   time_.drop_steps();
   news_.replace();
   frames_.note_jump();
-  notify(proto::NoticeLevel::info, "reset", "the cloth is back at its start", viewer);
-  guarantee_.restart();
+  notify(proto::NoticeLevel::info, code, std::move(message), viewer);
+}
+
+/// Without the hands of viewers, who may hold something else when it is restored.
+Room::Outcome Room::apply(ViewerId, const proto::Save& command) {
+  if (auto error = saves_.check(command.name, world_->model().mass.size()))
+    return *std::move(error);
+  std::unique_ptr<ServedWorld> kept = world_->fork();
+  for (const Hand& hand : holds_.hands()) kept->release(hand.grab);
+  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, measures_forces_});
+  return proto::Reply(proto::DoneReply{"save", world_->tick()});
+}
+
+Room::Outcome Room::apply(ViewerId viewer, const proto::Restore& command) {
+  const auto found = saves_.find(command.name);
+  if (!found) return found.error();
+  const weft::server::Save& save = **found;
+  if (order_.advance) end_advance(ErrorCode::interrupted, "a viewer sent restore", "");
+  world_ = save.world->fork();
+  mesh_ = save.mesh;
+  guarantee_ = save.guarantee;
+  measures_forces_ = save.measures_forces;
+  tell_jump("restored", "the cloth is back in its state " + command.name, viewer);
   tell_guarantee();
-  return proto::Reply(proto::DoneReply{"reset", world_->tick()});
+  return proto::Reply(proto::DoneReply{"restore", world_->tick()});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Speed& command) {

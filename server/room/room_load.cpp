@@ -1,12 +1,12 @@
 // How a room loads another scene: it is built beside the running one.
 
-#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
 #include "core/error.h"
+#include "server/room/refusals.h"
 #include "server/room/room.h"
 
 namespace weft::server {
@@ -17,6 +17,13 @@ using proto::make_error;
 using proto::ViewerId;
 
 }  // namespace
+
+WorldDef Room::definition_of(const std::string& scene) const {
+  WorldDef def = scenes_(scene);
+  def.name = scene;
+  if (options_.tick_rate > 0) def.tick_rate = options_.tick_rate;
+  return def;
+}
 
 /// The scene that a `load` asks for. Runs on another thread: reads nothing that changes.
 WorldDef Room::definition_of(const std::string& name, const std::string& json) const {
@@ -37,12 +44,9 @@ WorldDef Room::definition_of(const std::string& name, const std::string& json) c
 Room::Outcome Room::apply(ViewerId viewer, const proto::Load& command) {
   if (!command.definition.empty() && !options_.read_scene)
     return make_error(ErrorCode::not_supported, "this server takes scenes by name only");
-  const auto& names = options_.scene_names;
-  if (command.definition.empty() &&
-      std::find(names.begin(), names.end(), command.scene) == names.end()) {
-    proto::Error error = proto::word_error("scene", command.scene, names);
-    error.code = ErrorCode::unknown_scene;
-    return error;
+  if (command.definition.empty()) {
+    if (auto error = check_scene_name(command.scene, options_.scene_names))
+      return *std::move(error);
   }
   start_build(viewer, [this, name = command.scene, json = command.definition] {
     return definition_of(name, json);
@@ -77,17 +81,13 @@ void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definit
   options_.beside([build = order_.building->build] { build->run(); });
 }
 
-/// Replaces the present scene by one that has been built.
+/// Takes a scene that has been built.
 void Room::finish_build() {
   if (!order_.building || !order_.building->build->done()) return;
   const Building done = std::move(*order_.building);
   order_.building.reset();
   try {
-    const std::uint64_t tick = world_->tick();
-    start_world(done.build->take());
-    order_.log.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
-    tell_loaded(done.viewer);
-    answer(done.viewer, done.request.id, proto::LoadReply{0, world_->def().name, epoch_});
+    done.name ? open_room(done) : replace_scene(done);
     if (const auto found = viewers_.find(done.viewer);
         found != viewers_.end() && viewers_.size() > 1)
       found->second.next_turn = clock_() + kPauseAfterLoad;
@@ -100,11 +100,26 @@ void Room::finish_build() {
                                  proto::number_text(options_.build_limit) + " s of CPU",
                              "take fewer particles or triangles"));
   } catch (const std::exception& error) {
-    spdlog::error("load: {}", error.what());
+    spdlog::error("{}: {}", proto::name_of(done.request.command), error.what());
     refuse(done.viewer, done.request,
            proto::make_error(proto::ErrorCode::internal, "the server failed at this command",
                              "the previous scene keeps running"));
   }
+}
+
+/// Throws what building threw.
+void Room::replace_scene(const Building& done) {
+  BuiltScene scene = done.build->take();
+  const TickCost cost = scene.world->cost_in(scene.world->environment());
+  if (options_.others) {
+    if (auto error = options_.others->admit(options_.name, cost))
+      return refuse(done.viewer, done.request, *std::move(error));
+  }
+  const std::uint64_t tick = world_->tick();
+  start_world(std::move(scene));
+  order_.log.add(tick, done.viewer, CommandOrigin::viewer, done.request.command);
+  tell_loaded(done.viewer);
+  answer(done.viewer, done.request.id, proto::LoadReply{0, world_->def().name, epoch_});
 }
 
 }  // namespace weft::server

@@ -18,8 +18,15 @@ void Room::take(Inbound item) {
 void Room::take_meanwhile(Inbound item) {
   const bool may_run = may_run_meanwhile(item);
   if (tick_.runs && may_run && is_beside_the_cloth(item)) return take_now(std::move(item));
-  tick_.replaced = tick_.replaced || (may_run && is<proto::Reset>(item));
+  tick_.replaced = tick_.replaced || (may_run && replaces_state(item));
   order_.waiting.push_back(std::move(item));
+}
+
+/// Whether it will make the tick that runs worthless.
+bool Room::replaces_state(const Inbound& item) const {
+  const auto* request = std::get_if<proto::Request>(&item.what);
+  const auto* restore = request ? std::get_if<proto::Restore>(&request->command) : nullptr;
+  return is<proto::Reset>(item) || (restore && saves_.find(restore->name).has_value());
 }
 
 /// Whether it is its viewer's turn during a tick.
@@ -31,8 +38,7 @@ bool Room::may_run_meanwhile(const Inbound& item) const {
 bool Room::gives_up() {
   tick_.over_limit = options_.limit && options_.limit->is_over();
   return tick_.over_limit ||
-         (tick_.runs &&
-          (tick_.replaced || (order_.building && order_.building->build->succeeded())));
+         (tick_.runs && (tick_.replaced || (order_.building && order_.building->replaces())));
 }
 
 /// Whether it has to wait: for what is under way, or because its viewer has cost others their time.

@@ -36,6 +36,9 @@ class RoomOutput {
 
   /// The newest frame, for all viewers.
   virtual void offer_frame(Frame frame) = 0;
+
+  /// The room is gone: ends the connections of all its viewers. Callable from any thread.
+  virtual void close() = 0;
 };
 
 }  // namespace weft::server

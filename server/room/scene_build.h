@@ -10,6 +10,7 @@
 
 #include "core/executor.h"
 #include "server/message.h"
+#include "server/room/room_past.h"
 #include "server/translate/translate.h"
 #include "server/work_limit.h"
 
@@ -36,6 +37,7 @@ struct BuiltScene {
   std::shared_ptr<const proto::codec::CodingOrder> order;  ///< of packed frames
   ComingStarts bad_starts;                                 ///< found by its first tick
   std::vector<SceneNotice> notices;                        ///< of its start
+  std::optional<RoomPast> past;                            ///< of a fork, which has no start
 };
 
 /// All remarks on a world at its start, including the `repairs` of its objects.

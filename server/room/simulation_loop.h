@@ -9,16 +9,16 @@
 
 namespace weft::server {
 
-/// Runs a room at its rate by a given clock: commands between ticks, at most one tick a turn, then
-/// announcements. A room that cannot keep up runs in slow motion and still takes commands between
-/// any two ticks.
+/// The turns of a room at its rate by a given clock: commands between ticks, at most one tick a
+/// turn, then announcements. A room that cannot keep up runs in slow motion and still takes
+/// commands between any two ticks.
 ///
 /// Input that arrives during a tick is handled at the tick's next stop point, if the inbox raises
 /// the room's stop signal.
 ///
 /// @tparam Room   take, take_meanwhile, gives_up, stop_signal, advancing, advance_until,
 /// advance_waits, ticking, tick_interval, tick, finish_turn, next_wake
-/// @tparam Inbox  take_all, wait, stopped
+/// @tparam Inbox  take_all, stopped
 template <class Room, class Inbox>
 class SimulationLoop {
  public:
@@ -32,18 +32,11 @@ class SimulationLoop {
     }
   }
 
-  /// Runs until the inbox is stopped.
-  void run() {
-    while (!inbox_.stopped()) {
-      const double wake = turn();
-      if (wake > clock_()) inbox_.wait(wake);
-    }
-  }
-
   /// One turn; returns when the next one is due unless input arrives before.
   double turn() {
     for (auto& item : inbox_.take_all()) room_.take(std::move(item));
     const double now = clock_();
+    ticked_ = false;
     if (room_.advancing()) {
       // In slices, so that joins, the loss of its viewer and the server's end are noticed.
       room_.advance_until(now + kAdvanceSlice);
@@ -54,10 +47,17 @@ class SimulationLoop {
     const bool ticking = room_.ticking();
     if (ticking && !was_ticking_) pacer_.restart(now);
     was_ticking_ = ticking;
-    if (ticking && pacer_.take_due(now, room_.tick_interval())) room_.tick();
+    late_ = now - pacer_.next();
+    ticked_ = ticking && pacer_.take_due(now, room_.tick_interval());
+    if (ticked_) room_.tick();
     room_.finish_turn();
     return room_.ticking() ? std::min(room_.next_wake(), pacer_.next()) : room_.next_wake();
   }
+
+  /// Whether the last turn passed a tick by the clock, and how long after it was due that began
+  /// [s].
+  bool ticked() const { return ticked_; }
+  double late() const { return late_; }
 
  private:
   /// During a tick: handles what has arrived.
@@ -75,7 +75,8 @@ class SimulationLoop {
   Inbox& inbox_;
   Clock clock_;
   TickPacer pacer_;
-  bool was_ticking_ = false;
+  bool was_ticking_ = false, ticked_ = false;
+  double late_ = 0;
 };
 
 }  // namespace weft::server

@@ -1,8 +1,6 @@
-#include "server/net/mailbox.h"
+#include "server/rooms/mailbox.h"
 
 #include <utility>
-
-#include "server/clock.h"
 
 namespace weft::server {
 
@@ -16,7 +14,6 @@ bool Mailbox::put(Inbound item) {
     }
     items_.push_back(std::move(item));
   }
-  arrived_.notify_one();
   on_arrival();
   return true;
 }
@@ -32,28 +29,11 @@ void Mailbox::finished(proto::ViewerId viewer) {
   if (found != waiting_.end() && --found->second == 0) waiting_.erase(found);
 }
 
-void Mailbox::wait(double deadline) {
-  std::unique_lock lock(mutex_);
-  arrived_.wait_until(lock, time_point_of(deadline),
-                      [this] { return stopped_ || woken_ || !items_.empty(); });
-  woken_ = false;
-}
-
-void Mailbox::wake() {
-  {
-    const std::lock_guard lock(mutex_);
-    woken_ = true;
-  }
-  arrived_.notify_one();
-  on_arrival();
-}
-
 void Mailbox::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
   }
-  arrived_.notify_one();
   on_arrival();
 }
 

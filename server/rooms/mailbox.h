@@ -1,6 +1,5 @@
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <mutex>
@@ -11,7 +10,7 @@
 
 namespace weft::server {
 
-/// The only hand-over from the network thread to the simulation thread.
+/// The only hand-over from the network thread to the thread that has a room's turn.
 class Mailbox {
  public:
   /// @param most_commands  of one viewer that may wait at a time
@@ -21,8 +20,8 @@ class Mailbox {
   /// so. Set it before the first of these.
   std::function<void()> on_arrival = [] {};
 
-  /// Appends and wakes the reader. False, with nothing added, if the viewer has too many commands
-  /// waiting; items other than commands are always accepted.
+  /// Appends. False, with nothing added, if the viewer has too many commands waiting; items other
+  /// than commands are always accepted.
   bool put(Inbound item);
 
   /// Everything that has arrived since the last call, in order.
@@ -31,22 +30,15 @@ class Mailbox {
   /// Tells that a command taken earlier is finished and no longer counts as waiting.
   void finished(proto::ViewerId viewer);
 
-  /// Blocks until an item is there, `stop` was called, or the process clock reads `deadline`.
-  void wait(double deadline);
-
-  /// Ends a `wait` without an item.
-  void wake();
-
   void stop();
   bool stopped() const;
 
  private:
   const std::size_t most_commands_;
   mutable std::mutex mutex_;
-  std::condition_variable arrived_;
   std::vector<Inbound> items_;
   std::unordered_map<proto::ViewerId, std::size_t> waiting_;
-  bool stopped_ = false, woken_ = false;
+  bool stopped_ = false;
 };
 
 }  // namespace weft::server

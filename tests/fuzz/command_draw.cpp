@@ -115,6 +115,12 @@ class CommandDraw {
   void operator()(Hash&) {}
   void operator()(Ping& ping) { ping.t = number({-1e300, 1e300}, 0); }
   void operator()(Load& load) { load.scene = "nowhere"; }
+  void operator()(CreateRoom& create) { create.name = "other"; }
+  void operator()(Save& save) { save.name = some() ? "a" : "b"; }
+  void operator()(Restore& restore) { restore.name = some() ? "a" : "b"; }
+  void operator()(Fork& fork) { fork.name = "other"; }
+  void operator()(ListRooms&) {}
+  void operator()(CloseRoom& close) { close.name = "other"; }
   void operator()(View& view) {
     view.hz = number(kFrameRateRange, 60);
     view.forces = some();

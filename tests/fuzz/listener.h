@@ -47,6 +47,7 @@ class Listener : public server::RoomOutput {
     look(frame.bytes);
     if (frame.with_forces) look(frame.with_forces);
   }
+  void close() override {}
 
   void problem(const std::string& what) {
     if (outcome_.problems++ == 0) put(outcome_.problem, what + " (" + outcome_.doing + ")");

@@ -77,7 +77,7 @@ class Run {
       options.build_limit = limits_.build;
       options.beside = [this](std::function<void()> job) { jobs_.push_back(std::move(job)); };
       measured("reading the scene", Kind::build, [&] {
-        options.scene_def = library_.from_client(script_.scene);
+        options.scene_def = std::make_shared<const WorldDef>(library_.from_client(script_.scene));
         options.read_scene = [this](const std::string& text) { return library_.from_client(text); };
         const auto named = [this](const std::string& name) { return library_.named(name); };
         room_ =

@@ -43,7 +43,7 @@ ROOMS = {
 FLOORS = ("math", "geometry", "cloth", "forces", "contact", "attachments", "diagnostics", "solver", "world",
           "scenes")
 # Folders of the server, the same.
-SERVER_FLOORS = ("scene", "translate", "room", "net", "commands")
+SERVER_FLOORS = ("scene", "translate", "room", "rooms", "net", "commands")
 # Folders of proto, the same.
 PROTO_FLOORS = ("codec", "frames", "messages")
 FLOORS_OF = {"core": FLOORS, "proto": PROTO_FLOORS, "server": SERVER_FLOORS}

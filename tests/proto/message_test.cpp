@@ -39,7 +39,7 @@ Welcome welcome() {
   w.scene = "default";
   w.clock = 86.500125;
   w.capabilities = {"pick",  "drag", "pin",      "camera",  "step", "advance",
-                    "query", "move", "move_pin", "gripper", "load"};
+                    "query", "move", "move_pin", "gripper", "load", "rooms"};
   return w;
 }
 
@@ -165,6 +165,10 @@ ReactionInfo reactions() {
   return reactions;
 }
 
+RoomInfo room(const char* name, std::uint64_t tick, bool paused) {
+  return {name, "flag", 1225, 0, tick, paused, 0};
+}
+
 std::vector<std::string> replies() {
   const ClothHit hit{{411, {0.2, 0.5, 0.3}}, {0, 1, 0.12}, 222, 2.88};
   return {
@@ -201,6 +205,12 @@ std::vector<std::string> replies() {
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),
+      encode_reply(33, DoneReply{"save", 300}),
+      encode_reply(34, DoneReply{"restore", 300}),
+      encode_reply(29, CreateRoomReply{room("class-7", 0, false)}),
+      encode_reply(30, ForkReply{481, room("mine", 481, true)}),
+      encode_reply(31, ListRoomsReply{{{"mine", "flag", 1225, 1, 503, false, 1}}, 64}),
+      encode_reply(32, CloseRoomReply{"mine"}),
       encode_reply(26, ViewReply{30, Codec::f32}),
       encode_reply(28, ViewReply{240, Codec::packed, false, 1e-4}),
   };
@@ -210,7 +220,7 @@ std::vector<std::string> http_bodies() {
   return {
       encode_version({"0.1.0", "c730fd8", "GNU 12.2.0", "avx2"}),
       encode_scenes({{"default", "A cloth hangs before a dressmaker's form in light wind."}}),
-      encode_readiness({true, "default", 5160, 1}),
+      encode_readiness({true, "default", "default", 5160, 1}),
       encode_http_error({"not_found", "no such path: /foo", "see /api/v1/scenes", "", {}}),
       encode_http_error(
           {"unknown_protocol", "this server speaks weft.v1", "", "weft.v7", {"weft.v1"}}),
@@ -260,7 +270,7 @@ TEST_CASE("Each example of a command in the specification is a command") {
     REQUIRE(request.has_value());
     operations.insert(name_of(request->command));
   }
-  CHECK(operations.size() == 20);  // one at least for each
+  CHECK(operations.size() == 26);  // one at least for each
 }
 
 TEST_CASE("Each example of a server's message in the specification is what the server writes") {

@@ -109,6 +109,7 @@ struct RecordingOutput : RoomOutput {
     frames.push_back(text_of({frame.bytes, true}));
     offered.push_back(std::move(frame));
   }
+  void close() override {}
   /// How many frames this viewer was offered.
   long frames_for(proto::ViewerId viewer) const {
     return std::count_if(offered.begin(), offered.end(), [viewer](const Frame& frame) {

@@ -1,12 +1,10 @@
-#include "server/net/mailbox.h"
+#include "server/rooms/mailbox.h"
 
 #include <atomic>
 #include <thread>
 #include <vector>
 
 #include <catch2/catch.hpp>
-
-#include "server/clock.h"
 
 namespace weft::server {
 namespace {
@@ -67,9 +65,8 @@ TEST_CASE("what several threads put in at once all comes out, once and in each o
   std::vector<std::size_t> waiting(kWriters + 1, 0);
   bool bounded = true;
   while (order.count() < kWriters * kItems) {
-    mailbox.wait(process_seconds() + 60);
     const std::vector<Inbound> items = mailbox.take_all();
-    if (items.empty()) break;  // a minute without any
+    if (items.empty()) std::this_thread::yield();
     for (const Inbound& item : items) {
       order.add(item);
       if (std::holds_alternative<proto::Request>(item.what)) ++waiting[item.viewer];
@@ -88,20 +85,19 @@ TEST_CASE("what several threads put in at once all comes out, once and in each o
   CHECK(mailbox.take_all().empty());
 }
 
-TEST_CASE("a reader that waits wakes by an item, by a call and by the end") {
-  for (int round = 0; round < 200; ++round) {
-    Mailbox mailbox(1);
-    const double start = process_seconds();
-    std::thread other([&mailbox, round] {
-      if (round % 3 == 0) mailbox.put({1, 1, Noted{}});
-      if (round % 3 == 1) mailbox.wake();
-      if (round % 3 == 2) mailbox.stop();
-    });
-    mailbox.wait(start + 600);  // else it hangs until the test is ended
-    other.join();
-    CHECK(mailbox.stopped() == (round % 3 == 2));
-    CHECK(mailbox.take_all().size() == (round % 3 == 0 ? 1 : 0));
-  }
+TEST_CASE("each item and the end are told on arrival, on the thread that brought them") {
+  Mailbox mailbox(1);
+  std::vector<std::thread::id> told;
+  mailbox.on_arrival = [&told] { told.push_back(std::this_thread::get_id()); };
+  mailbox.put({1, 1, Noted{}});
+  CHECK(told.size() == 1);
+  mailbox.put(command_of(1));
+  CHECK_FALSE(mailbox.put(command_of(1)));  // refused, so nothing has arrived
+  CHECK(told.size() == 2);
+  CHECK_FALSE(mailbox.stopped());
+  mailbox.stop();
+  CHECK(mailbox.stopped());
+  CHECK(told == std::vector<std::thread::id>(3, std::this_thread::get_id()));
 }
 
 }  // namespace

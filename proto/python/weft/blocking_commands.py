@@ -12,8 +12,9 @@ from .messages import (
 )  # fmt: skip
 from .queries import Binary, ViewerCamera
 from .results import (
-    AdvanceResult, CameraResult, GripperResult, HelloResult, LoadResult, MoveResult1, MoveResult2, PauseResult,
-    PinResult, ReleaseResult, ResetResult, ResumeResult, SetResult, SpeedResult, StepResult, ViewResult,
+    AdvanceResult, CameraResult, CloseRoomResult, CreateRoomResult, ForkResult, GripperResult, HelloResult,
+    ListRoomsResult, LoadResult, MoveResult1, MoveResult2, PauseResult, PinResult, ReleaseResult, ResetResult,
+    RestoreResult, ResumeResult, SaveResult, SetResult, SpeedResult, StepResult, ViewResult,
 )  # fmt: skip
 from .runner import Runner
 from .samples import Data, Frame, Hit, Observation
@@ -54,6 +55,20 @@ class BlockingCommands(Runner):
     def reset(self, *, timeout: float | None = CLIENTS) -> ResetResult:
         """Back to the scene's start."""
         return self._run(self._client.reset(timeout=timeout))
+
+    def save(self, name: str, *, timeout: float | None = CLIENTS) -> SaveResult:
+        """Keeps the present state in memory, in place of an earlier one of this name.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        return self._run(self._client.save(name, timeout=timeout))
+
+    def restore(self, name: str, *, timeout: float | None = CLIENTS) -> RestoreResult:
+        """Back to a state that was saved.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        return self._run(self._client.restore(name, timeout=timeout))
 
     def speed(self, speed: float, *, timeout: float | None = CLIENTS) -> SpeedResult:
         """Sets how fast time passes.
@@ -113,6 +128,36 @@ class BlockingCommands(Runner):
             over_budget=over_budget, fabric=fabric, cloth=cloth, timeout=timeout,
         )  # fmt: skip
         return self._run(call)
+
+    def create_room(
+        self, name: str, *, scene: str | None = None, paused: bool | None = None, timeout: float | None = CLIENTS,
+    ) -> CreateRoomResult:  # fmt: skip
+        """Opens a room beside this one; its address ends in `/ws/name`.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        scene: its name; by default that with which the server was started; 1 to 64 characters
+        paused: it begins paused; true or false
+        """
+        return self._run(self._client.create_room(name, scene=scene, paused=paused, timeout=timeout))
+
+    def list_rooms(self, *, timeout: float | None = CLIENTS) -> ListRoomsResult:
+        """The rooms of the server."""
+        return self._run(self._client.list_rooms(timeout=timeout))
+
+    def close_room(self, name: str, *, timeout: float | None = CLIENTS) -> CloseRoomResult:
+        """Closes a room and the connections of its viewers; the default one stays.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        return self._run(self._client.close_room(name, timeout=timeout))
+
+    def fork(self, name: str, *, paused: bool | None = None, timeout: float | None = CLIENTS) -> ForkResult:
+        """Opens a room that is like this one at this moment; its address ends in `/ws/name`.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        paused: whether it begins so; by default as this room is; true or false
+        """
+        return self._run(self._client.fork(name, paused=paused, timeout=timeout))
 
     def request(self, op: str, *, timeout: float | None = CLIENTS, **fields: Any) -> Any:
         """Sends any command and waits for its result."""

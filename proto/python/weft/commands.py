@@ -8,7 +8,8 @@ from typing import Literal
 from .fields import known, listed, without_none
 from .messages import Fabric, Fan
 from .results import (
-    CameraResult, GripperResult, PauseResult, ResetResult, ResumeResult, SetResult, SpeedResult, StepResult,
+    CameraResult, CloseRoomResult, CreateRoomResult, ForkResult, GripperResult, ListRoomsResult, PauseResult,
+    ResetResult, RestoreResult, ResumeResult, SaveResult, SetResult, SpeedResult, StepResult,
 )  # fmt: skip
 from .session import Session
 from .timeouts import CLIENTS
@@ -50,6 +51,22 @@ class Commands(Session):
     async def reset(self, *, timeout: float | None = CLIENTS) -> ResetResult:
         """Back to the scene's start."""
         return await self.request("reset", timeout=timeout)
+
+    async def save(self, name: str, *, timeout: float | None = CLIENTS) -> SaveResult:
+        """Keeps the present state in memory, in place of an earlier one of this name.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        fields = {"name": name}
+        return await self.request("save", timeout=timeout, **without_none(fields))
+
+    async def restore(self, name: str, *, timeout: float | None = CLIENTS) -> RestoreResult:
+        """Back to a state that was saved.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        fields = {"name": name}
+        return await self.request("restore", timeout=timeout, **without_none(fields))
 
     async def speed(self, speed: float, *, timeout: float | None = CLIENTS) -> SpeedResult:
         """Sets how fast time passes.
@@ -111,3 +128,36 @@ class Commands(Session):
             "fabric": known(Fabric, "fabric", fabric), "cloth": cloth,
         }  # fmt: skip
         return await self.request("set", timeout=timeout, **without_none(fields))
+
+    async def create_room(
+        self, name: str, *, scene: str | None = None, paused: bool | None = None, timeout: float | None = CLIENTS,
+    ) -> CreateRoomResult:  # fmt: skip
+        """Opens a room beside this one; its address ends in `/ws/name`.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        scene: its name; by default that with which the server was started; 1 to 64 characters
+        paused: it begins paused; true or false
+        """
+        fields = {"name": name, "scene": scene, "paused": paused}
+        return await self.request("create_room", timeout=timeout, **without_none(fields))
+
+    async def list_rooms(self, *, timeout: float | None = CLIENTS) -> ListRoomsResult:
+        """The rooms of the server."""
+        return await self.request("list_rooms", timeout=timeout)
+
+    async def close_room(self, name: str, *, timeout: float | None = CLIENTS) -> CloseRoomResult:
+        """Closes a room and the connections of its viewers; the default one stays.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        """
+        fields = {"name": name}
+        return await self.request("close_room", timeout=timeout, **without_none(fields))
+
+    async def fork(self, name: str, *, paused: bool | None = None, timeout: float | None = CLIENTS) -> ForkResult:
+        """Opens a room that is like this one at this moment; its address ends in `/ws/name`.
+
+        name: lower-case letters, digits and hyphens; 1 to 32 characters
+        paused: whether it begins so; by default as this room is; true or false
+        """
+        fields = {"name": name, "paused": paused}
+        return await self.request("fork", timeout=timeout, **without_none(fields))

@@ -41,6 +41,18 @@ class Hit(TypedDict):
     distance: float  # along the ray [m]
 
 
+class RoomInfo(TypedDict):
+    """`RoomInfo`, as part of a message."""
+
+    name: str  # of the address /ws/name
+    scene: str  # its name
+    particles: int  # of all cloths
+    viewers: int  # connected
+    tick: int  # of its present state
+    paused: bool  # whether it is; true or false
+    real_time_factor: float  # simulated per real time; 0 while its time stands
+
+
 class Sleeping(TypedDict):
     """`Sleeping`, as part of a message."""
 

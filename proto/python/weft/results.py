@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal, NotRequired, TypedDict
 
-from .messages import Hit
+from .messages import Hit, RoomInfo
 
 
 class Answer(TypedDict):
@@ -42,6 +42,18 @@ class SetResult(Answer):
 
 class ResetResult(Answer):
     """The answer to `reset`."""
+
+    tick: int
+
+
+class SaveResult(Answer):
+    """The answer to `save`."""
+
+    tick: int
+
+
+class RestoreResult(Answer):
+    """The answer to `restore`."""
 
     tick: int
 
@@ -152,6 +164,32 @@ class LoadResult(Answer):
     tick: int  # the command's place in the order: after it
     scene: str  # its name
     epoch: int  # of its mesh
+
+
+class CreateRoomResult(Answer):
+    """The answer to `create_room`."""
+
+    room: RoomInfo  # as it begins
+
+
+class ListRoomsResult(Answer):
+    """The answer to `list_rooms`."""
+
+    rooms: list[RoomInfo]  # by name
+    most: int  # rooms that this server has at a time
+
+
+class CloseRoomResult(Answer):
+    """The answer to `close_room`."""
+
+    name: str  # of the room that is gone
+
+
+class ForkResult(Answer):
+    """The answer to `fork`."""
+
+    tick: int  # the command's place in the order: after it
+    room: RoomInfo  # as it begins
 
 
 class ViewResult(Answer):

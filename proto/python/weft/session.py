@@ -22,7 +22,7 @@ from .timeouts import CALL_SECONDS, CLIENTS
 
 Value = TypeVar("Value")
 
-FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003))  # a new attempt would fail alike
+FINAL_CODES = frozenset((1002, 1003, 1007, 1008, 1009, 4003, 4004))  # a new attempt would fail alike
 
 
 class Session:

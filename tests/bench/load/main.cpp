@@ -21,6 +21,7 @@ struct Options {
   std::string address = "127.0.0.1";
   unsigned short port = 0;
   int viewers = 200;
+  int rooms = 0;    // room-0, room-1 and so on, among which they are spread; 0: the default one
   int stalled = 0;  // of these stop to read before the measurement
   double seconds = 10;
   std::string codec = "packed";
@@ -45,7 +46,8 @@ class Load {
     plan_.host = options.address + ":" + std::to_string(options.port);
     plan_.codec = options.codec;
     for (int k = 0; k < options.viewers; ++k)
-      viewers_.push_back(std::make_unique<Viewer>(io_, plan_));
+      viewers_.push_back(std::make_unique<Viewer>(
+          io_, plan_, options.rooms > 0 ? "room-" + std::to_string(k % options.rooms) : ""));
   }
 
   /// @return whether all viewers joined
@@ -146,6 +148,8 @@ int main(int argc, char** argv) {
   app.add_option("--address", options.address, "of the server");
   app.add_option("--port", options.port, "of the server")->required();
   app.add_option("--viewers", options.viewers, "number of viewers")->check(CLI::Range(1, 10000));
+  app.add_option("--rooms", options.rooms, "room-0, room-1, … among which they are spread")
+      ->check(CLI::Range(0, 1000));
   app.add_option("--stalled", options.stalled, "of these stop to read")->check(CLI::Range(0, 9999));
   app.add_option("--seconds", options.seconds, "measured time")->check(CLI::Range(0.1, 600.0));
   app.add_option("--codec", options.codec, "f32 or packed");

@@ -33,7 +33,7 @@ void Viewer::start(std::function<void()> on_ready,
       request.set(beast::http::field::sec_websocket_protocol, proto::kSubprotocol);
     }));
     ws_.read_message_max(1 << 28);
-    ws_.async_handshake(plan_.host, "/ws?mesh=http", [this](error_code refused) {
+    ws_.async_handshake(plan_.host, target_, [this](error_code refused) {
       if (refused) return lose("handshake: " + refused.message());
       send(nlohmann::json{{"op", "view"}, {"codec", plan_.codec}}.dump(), false);
       read();

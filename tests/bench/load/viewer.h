@@ -36,7 +36,10 @@ struct Plan {
 /// cost little.
 class Viewer {
  public:
-  Viewer(boost::asio::io_context& io, const Plan& plan) : ws_(io), plan_(plan) {}
+  /// @param room  that it joins; empty: the default one
+  Viewer(boost::asio::io_context& io, const Plan& plan, const std::string& room)
+      : ws_(io), plan_(plan),
+        target_(room.empty() ? "/ws?mesh=http" : "/ws/" + room + "?mesh=http") {}
 
   /// Joins, and goes on reading.
   /// @param on_ready  called with the first frame
@@ -61,6 +64,7 @@ class Viewer {
 
   boost::beast::websocket::stream<boost::beast::tcp_stream> ws_;
   const Plan& plan_;
+  std::string target_;
   boost::beast::flat_buffer incoming_;
   struct Outgoing {
     std::string bytes;

@@ -34,7 +34,8 @@ void command(World<float>& world, int tick) {
     environment.air_density = 1.2;
     world.set_environment(environment);
   }
-  if (tick == 25) world.pin({world.model().triangles[static_cast<std::size_t>(middle)][0], 0.02, {}});
+  if (tick == 25)
+    world.pin({world.model().triangles[static_cast<std::size_t>(middle)][0], 0.02, {}});
   if (tick == 30 && !world.grabs().list.empty()) world.release(world.grabs().list.back().id);
 }
 
@@ -80,7 +81,8 @@ WorldDef swinging(SolverKind solver, bool seed = false) {
 
 }  // namespace
 
-TEST_CASE("a fork has the future of its world bit for bit, with the same commands, in every solver") {
+TEST_CASE(
+    "a fork has the future of its world bit for bit, with the same commands, in every solver") {
   const auto solver = GENERATE(SolverKind::verlet, SolverKind::implicit, SolverKind::relaxation);
   const bool seed = GENERATE(false, true);
   CAPTURE(static_cast<int>(solver), seed);

@@ -248,6 +248,18 @@ def refused_fields():
                  value="s" * 65)
     yield refuse('{"op":"load","scene":"' + "s" * 81 + '"}', "wrong_length", field="scene",
                  value="s" * 80 + "...")
+    yield refuse('{"op":"create_room"}', "missing_field", field="name")
+    yield refuse('{"op":"create_room","name":"a","scene":"../b"}', "unknown_value", field="scene", value="../b")
+    yield refuse('{"op":"create_room","name":"a","paused":1}', "wrong_type", field="paused", value=1)
+    for name in ("A", "-a", "a_b", "a.b", "a b", "ä"):
+        yield refuse(f'{{"op":"create_room","name":"{name}"}}', "unknown_value", field="name", value=name)
+    for name in ("", "a" * 33):
+        yield refuse(f'{{"op":"close_room","name":"{name}"}}', "wrong_length", field="name", value=name)
+    yield refuse('{"op":"save"}', "missing_field", field="name")
+    yield refuse('{"op":"restore","name":"../a"}', "unknown_value", field="name", value="../a")
+    yield refuse('{"op":"fork"}', "missing_field", field="name")
+    yield refuse('{"op":"fork","name":"a","paused":"no"}', "wrong_type", field="paused", value="no")
+    yield refuse('{"op":"close_room","name":7}', "wrong_type", field="name", value=7)
     yield refuse('{"op":"view"}', "missing_field", field="hz")
     yield refuse('{"op":"view","hz":241}', "out_of_range", field="hz", limit=limits(0, 240))
     yield refuse('{"op":"view","codec":"zip"}', "unknown_value", field="codec",

@@ -63,11 +63,14 @@ test('the address of the page leads to the socket, and what is none is told with
     assert.throws(() => new WeftClient(url, options), /ws:\/\/127\.0\.0\.1:8080\/ws/, url);
 });
 
+/** The name that a method of the golden calls has in JavaScript. @param {string} name */
+const inCamels = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
+
 test('each call sends the golden command with an id of its own', async () => {
   const { client, socket } = await join();
   const ids = new Set();
   for (const { method, args, options, sends } of readGoldenJson('client_calls.json')) {
-    client[method](...args, ...(Object.keys(options).length ? [options] : [])).catch(() => {});
+    client[inCamels(method)](...args, ...(Object.keys(options).length ? [options] : [])).catch(() => {});
     const { id, ...message } = socket.sent.at(-1);
     assert.deepEqual(message, sends);
     assert.equal(ids.has(id), false);
@@ -399,12 +402,12 @@ test('every command takes a time-out of its own as its last argument', async () 
   for (const { method, args, options } of readGoldenJson('client_calls.json')) {
     // Those that take options have them before it.
     const given = Object.keys(options).length ? [options] : [];
-    const wanted = client[method].toString().match(/^(?:async )?\w+\(([^)]*(?:\([^)]*\))?[^)]*)\) \{/)[1];
+    const wanted = client[inCamels(method)].toString().match(/^(?:async )?\w+\(([^)]*(?:\([^)]*\))?[^)]*)\) \{/)[1];
     const names = wanted.replace(/\{[^}]*\}/g, '').split(',').map((part) => part.trim().split(' ')[0]);
     const list = [...args, ...given];
     while (list.length < names.indexOf('call')) list.push(undefined);
     assert.ok(names.includes('call'), method);
-    calls.push(assert.rejects(client[method](...list, { timeout: 5 }), CallTimeout, method));
+    calls.push(assert.rejects(client[inCamels(method)](...list, { timeout: 5 }), CallTimeout, method));
   }
   await timers.pass(5000);
   await Promise.all(calls);

@@ -1,0 +1,201 @@
+#include "server/rooms/scheduler.h"
+
+#include <algorithm>
+#include <sys/resource.h>
+#include <utility>
+
+#include "server/constants.h"
+#include "server/work_limit.h"
+
+namespace weft::server {
+namespace {
+
+/// Lowers the priority of the calling thread alone.
+void be_patient() {
+  const int now = getpriority(PRIO_PROCESS, 0);
+  setpriority(PRIO_PROCESS, 0, std::min(now + kPatience, 19));
+}
+
+/// Threads that ticks of this cost would keep busy [1].
+double demand_of(double tick_cost, double interval) {
+  if (interval == kNever) return 0;
+  return interval > 0 ? tick_cost / interval : 1;
+}
+
+}  // namespace
+
+Scheduler::Scheduler(int threads, Clock clock) : threads_(threads), clock_(std::move(clock)) {
+  for (int k = 0; k < threads; ++k) {
+    workers_.emplace_back([this] { work(prompt); });
+    workers_.emplace_back([this] {
+      be_patient();
+      work(patient);
+    });
+  }
+}
+
+Scheduler::~Scheduler() {
+  stop();
+}
+
+void Scheduler::add(std::shared_ptr<Turns> turns) {
+  const std::lock_guard lock(mutex_);
+  turns->due_ = clock_();
+  all_.push_back(std::move(turns));
+  judge();
+  call(prompt);
+}
+
+void Scheduler::remove(const Turns& turns) {
+  const std::lock_guard lock(mutex_);
+  for (const std::shared_ptr<Turns>& each : all_) {
+    if (each.get() != &turns) continue;
+    each->removed_ = each->woken_ = true;
+    each->due_ = clock_();
+    call(lane_of(*each));
+  }
+}
+
+void Scheduler::wake(Turns& turns) {
+  const std::lock_guard lock(mutex_);
+  turns.woken_ = true;
+  if (turns.running_) return;  // seen at its end
+  turns.due_ = std::min(turns.due_, clock_());
+  call(lane_of(turns));
+}
+
+void Scheduler::stop() {
+  const std::lock_guard lock(mutex_);
+  stopped_ = true;
+  for (Waiting& lane : waiting_) lane.arrived.notify_all();
+}
+
+double Scheduler::overdue(const Turns& turns) const {
+  const std::lock_guard lock(mutex_);
+  return std::max(0.0, clock_() - (turns.running_ ? turns.begun_ : turns.due_));
+}
+
+bool Scheduler::is_heavy(const Turns& turns) const {
+  const std::lock_guard lock(mutex_);
+  return turns.heavy_;
+}
+
+void Scheduler::work(Lane lane) {
+  std::unique_lock lock(mutex_);
+  while (!stopped_) {
+    std::shared_ptr<Turns> next = pick(lane, clock_());
+    if (!next) {
+      wait(lane, lock);
+      continue;
+    }
+    run(lane, next, lock);
+    if (!next->removed_) continue;
+    lock.unlock();  // it may be the last who knows of it, and a world takes long to destroy
+    next.reset();
+    lock.lock();
+  }
+}
+
+/// Until something is due, or a call. Only one thread of a lane waits for the time, so that a
+/// server with one room wakes one.
+void Scheduler::wait(Lane lane, std::unique_lock<std::mutex>& lock) {
+  Waiting& here = waiting_[lane];
+  const double due = earliest(lane);
+  ++here.threads;
+  if (due < here.deadline) {
+    here.deadline = due;
+    here.arrived.wait_until(lock, time_point_of(due));
+    here.deadline = kNever;
+  } else {
+    here.arrived.wait(lock);
+  }
+  --here.threads;
+}
+
+/// Wakes a thread that waits.
+void Scheduler::call(Lane lane) {
+  if (waiting_[lane].threads > 0) waiting_[lane].arrived.notify_one();
+}
+
+/// Light ones by when they are due, heavy ones by what they have had.
+std::shared_ptr<Turns> Scheduler::pick(Lane lane, double now) const {
+  const auto key = [](const Turns& turns) { return turns.heavy_ ? turns.served_ : turns.due_; };
+  const std::shared_ptr<Turns>* best = nullptr;
+  for (const std::shared_ptr<Turns>& each : all_) {
+    if (each->running_ || each->due_ > now || lane_of(*each) != lane) continue;
+    const bool first =
+        best == nullptr ||
+        (each->heavy_ == (*best)->heavy_ ? key(*each) < key(**best) : (*best)->heavy_);
+    if (first) best = &each;
+  }
+  return best == nullptr ? nullptr : *best;
+}
+
+double Scheduler::earliest(Lane lane) const {
+  double due = kNever;
+  for (const std::shared_ptr<Turns>& each : all_)
+    if (!each->running_ && lane_of(*each) == lane) due = std::min(due, each->due_);
+  return due;
+}
+
+void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
+                    std::unique_lock<std::mutex>& lock) {
+  turns->running_ = true;
+  turns->woken_ = false;
+  turns->begun_ = clock_();
+  const bool ends = turns->removed_;
+  if (waiting_[lane].deadline == kNever && earliest(lane) < kNever) call(lane);
+  ++running_;
+  lock.unlock();
+  const double before = thread_cpu_seconds();
+  Turn turn;
+  if (ends)
+    turns->end();
+  else
+    turn = turns->turn();
+  const double cpu = thread_cpu_seconds() - before;
+  lock.lock();
+  --running_;
+  turns->running_ = false;
+  if (ends)
+    std::erase(all_, turns);
+  else
+    book(*turns, turn, cpu);
+  judge();
+  if (lane_of(*turns) != lane) call(lane_of(*turns));
+}
+
+void Scheduler::book(Turns& turns, const Turn& turn, double cpu) {
+  turns.served_ += cpu;
+  if (turn.ticked)
+    turns.tick_cost_ += kCostMemory * (cpu - turns.tick_cost_);
+  else if (turn.interval == 0)
+    turns.tick_cost_ = cpu;
+  turns.demand_ = demand_of(turns.tick_cost_, turn.interval);
+  turns.due_ = turns.woken_ ? clock_() : turn.next;
+}
+
+/// Tells light rooms from heavy ones.
+void Scheduler::judge() {
+  int busy = 0;
+  double least_served = kNever;
+  for (const std::shared_ptr<Turns>& each : all_) {
+    busy += each->demand_ > 0 ? 1 : 0;
+    if (each->demand_ > 0) least_served = std::min(least_served, each->served_);
+  }
+  const double share = static_cast<double>(threads_) / std::max(busy, 1);
+  bool light = false, heavy = false;
+  for (const std::shared_ptr<Turns>& each : all_) {
+    each->heavy_ = each->demand_ > share && each->tick_cost_ > kShortTick;
+    // What it left unused while it stood is not saved up.
+    if (each->demand_ == 0 && least_served < kNever)
+      each->served_ = std::max(each->served_, least_served);
+    heavy = heavy || each->heavy_;
+    light = light || (!each->heavy_ && (each->running_ || each->due_ < kNever));
+  }
+  const bool crowded = light && heavy;
+  if (std::exchange(crowded_, crowded) == crowded) return;
+  for (const Lane lane : {prompt, patient}) call(lane);
+}
+
+}  // namespace weft::server

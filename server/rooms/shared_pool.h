@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <utility>
+
+#include "core/executor.h"
+
+namespace weft::server {
+
+/// A pool of threads that serves one room at a time: the physics of a room uses it while no other
+/// room has a turn, and one thread else. No bit of the motion depends on that.
+class SharedPool : public Executor {
+ public:
+  /// @param pool   called from one thread at a time
+  /// @param alone  whether at most one room has a turn; callable from any thread
+  SharedPool(Executor& pool, std::function<bool()> alone) : pool_(pool), alone_(std::move(alone)) {}
+
+  void run(int chunks, void (*work)(void* context, int chunk), void* context) override {
+    std::unique_lock lock(free_, std::defer_lock);
+    if (chunks > 1 && alone_() && lock.try_lock()) return pool_.run(chunks, work, context);
+    for (int chunk = 0; chunk < chunks; ++chunk) work(context, chunk);
+  }
+
+ private:
+  Executor& pool_;
+  std::function<bool()> alone_;
+  std::mutex free_;
+};
+
+}  // namespace weft::server

@@ -1,0 +1,205 @@
+#include "server/rooms/scheduler.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "server/constants.h"
+#include "server/work_limit.h"
+
+// Turns of rooms on a few threads. No verdict depends on how long something took: a scheduler that
+// gives no turn hangs the test, which has a limit.
+
+namespace weft::server {
+namespace {
+
+struct FakeTurns : Turns {
+  std::function<Turn(FakeTurns&)> does;
+  std::atomic<int> turns = 0, at_once = 0, most_at_once = 0, ends = 0;
+
+  explicit FakeTurns(std::function<Turn(FakeTurns&)> what) : does(std::move(what)) {}
+  Turn turn() override {
+    if (++at_once > most_at_once) most_at_once = at_once.load();
+    ++turns;
+    const Turn next = does(*this);
+    --at_once;
+    return next;
+  }
+  void end() override { ++ends; }
+};
+
+std::shared_ptr<FakeTurns> room(std::function<Turn(FakeTurns&)> what) {
+  return std::make_shared<FakeTurns>(std::move(what));
+}
+
+void burn(double seconds) {
+  const double end = thread_cpu_seconds() + seconds;
+  while (thread_cpu_seconds() < end) {
+  }
+}
+
+void until(const std::function<bool()>& holds) {
+  while (!holds()) std::this_thread::yield();
+}
+
+/// A tick of some cost, and the next one as soon as it can be.
+Turn costly_tick(double cost, double interval = 0.01) {
+  burn(cost);
+  return {process_seconds(), interval, true};
+}
+
+Turn light_tick() {
+  return {process_seconds() + 0.001, 0.01, true};
+}
+
+/// A room whose ticks take twice the CPU time that there is.
+std::shared_ptr<FakeTurns> overrunning() {
+  return room([](FakeTurns&) { return costly_tick(3 * kShortTick, 1.5 * kShortTick); });
+}
+
+TEST_CASE("a room has one turn at a time, however often it is woken") {
+  Scheduler scheduler(3, process_seconds);
+  std::vector<std::shared_ptr<FakeTurns>> rooms;
+  for (int k = 0; k < 4; ++k) {
+    rooms.push_back(room([](FakeTurns&) { return Turn{}; }));
+    scheduler.add(rooms.back());
+  }
+  until([&] {
+    for (const auto& each : rooms) scheduler.wake(*each);
+    return rooms[0]->turns > 300;
+  });
+  scheduler.stop();
+  until([&] { return scheduler.running() == 0; });
+  for (const auto& each : rooms) CHECK(each->most_at_once <= 1);
+}
+
+TEST_CASE("no call is lost: each is followed by the begin of a turn") {
+  Scheduler scheduler(2, process_seconds);
+  std::atomic<int> called = 0, seen = 0;
+  const auto other = room([](FakeTurns&) { return light_tick(); });
+  const auto one = room([&](FakeTurns&) {
+    seen = called.load();
+    return Turn{};
+  });
+  scheduler.add(other);
+  scheduler.add(one);
+  for (int round = 1; round <= 2000; ++round) {
+    called = round;
+    scheduler.wake(*one);
+    if (round % 7 == 0) until([&] { return seen == round; });
+  }
+  until([&] { return seen == called; });
+  CHECK(seen == 2000);
+}
+
+TEST_CASE("a room that sleeps gets no turn until it is woken") {
+  Scheduler scheduler(1, process_seconds);
+  const auto sleeper = room([](FakeTurns&) { return Turn{}; });
+  const auto other = room([](FakeTurns&) { return light_tick(); });
+  scheduler.add(sleeper);
+  scheduler.add(other);
+  until([&] { return other->turns > 20; });
+  CHECK(sleeper->turns == 1);
+  scheduler.wake(*sleeper);
+  until([&] { return sleeper->turns == 2; });
+}
+
+TEST_CASE("a room whose ticks want more than its share is heavy, and only then") {
+  Scheduler scheduler(1, process_seconds);
+  const auto heavy = overrunning();
+  const auto light = room([](FakeTurns&) { return light_tick(); });
+  scheduler.add(heavy);
+  scheduler.add(light);
+  until([&] { return heavy->turns > 10 && light->turns > 10; });
+  CHECK(scheduler.is_heavy(*heavy));
+  CHECK_FALSE(scheduler.is_heavy(*light));
+}
+
+TEST_CASE("while turns of heavy rooms do not end, light ones have theirs") {
+  constexpr int kThreads = 2;
+  Scheduler scheduler(kThreads, process_seconds);
+  std::atomic<bool> held = false, free = false;
+  std::atomic<int> inside = 0;
+  std::vector<std::shared_ptr<FakeTurns>> heavy;
+  for (int k = 0; k < kThreads + 1; ++k) {
+    heavy.push_back(room([&](FakeTurns&) {
+      const Turn turn = costly_tick(3 * kShortTick, 1.5 * kShortTick);
+      ++inside;
+      while (held && !free) std::this_thread::yield();
+      --inside;
+      return turn;
+    }));
+  }
+  const auto light = room([](FakeTurns&) { return light_tick(); });
+  scheduler.add(light);
+  for (const auto& each : heavy) scheduler.add(each);
+  until([&] {
+    for (const auto& each : heavy)
+      if (!scheduler.is_heavy(*each) || each->turns < 10) return false;
+    return true;
+  });
+  held = true;
+  until([&] { return inside == kThreads; });
+  const int before = light->turns;
+  until([&] { return light->turns > before + 50; });
+  CHECK(inside == kThreads);
+  free = true;
+}
+
+TEST_CASE("heavy rooms share their threads by CPU time, not by turns") {
+  Scheduler scheduler(1, process_seconds);
+  const auto at = [](double cost) {
+    return room([cost](FakeTurns&) { return costly_tick(cost, 1e-3); });
+  };
+  const auto one = at(2 * kShortTick), other = at(6 * kShortTick);
+  scheduler.add(one);
+  scheduler.add(other);
+  until([&] { return other->turns >= 20; });
+  scheduler.stop();
+  until([&] { return scheduler.running() == 0; });
+  CHECK(one->turns >= 2 * other->turns);
+  CHECK(one->turns <= 4 * other->turns);
+}
+
+TEST_CASE("a room that is removed ends once, after its last turn, and is let go") {
+  Scheduler scheduler(2, process_seconds);
+  for (int round = 0; round < 50; ++round) {
+    auto gone = room([](FakeTurns&) { return light_tick(); });
+    const std::weak_ptr<FakeTurns> watched = gone;
+    scheduler.add(gone);
+    if (round % 2 == 0) until([&] { return gone->turns > 0; });
+    scheduler.remove(*gone);
+    until([&] { return gone->ends > 0; });
+    const int turns = gone->turns;
+    scheduler.wake(*gone);
+    CHECK(gone->ends == 1);
+    CHECK(gone->turns == turns);
+    gone.reset();
+    until([&] { return watched.expired(); });
+  }
+}
+
+TEST_CASE("a turn that does not end, and one that has no thread, are overdue") {
+  Scheduler scheduler(1, process_seconds);
+  std::atomic<bool> free = false;
+  const auto stuck = room([&](FakeTurns&) {
+    until([&] { return free.load(); });
+    return Turn{};
+  });
+  const auto waiting = room([](FakeTurns&) { return Turn{}; });
+  scheduler.add(stuck);
+  until([&] { return stuck->turns == 1; });
+  scheduler.add(waiting);
+  until([&] { return scheduler.overdue(*stuck) > 0.02 && scheduler.overdue(*waiting) > 0.01; });
+  CHECK(waiting->turns == 0);
+  free = true;
+  until([&] { return waiting->turns == 1 && scheduler.running() == 0; });
+  CHECK(scheduler.overdue(*stuck) == 0);
+}
+
+}  // namespace
+}  // namespace weft::server
