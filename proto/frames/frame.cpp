@@ -36,8 +36,8 @@ bool is_finite(const ReactionSample& reaction) {
 
 bool is_finite(const GripperSample& gripper) {
   return all_finite(gripper.position) && all_finite(gripper.rotation) &&
-         all_finite(gripper.reaction) && std::isfinite(gripper.opening) &&
-         std::isfinite(gripper.force);
+         all_finite(gripper.reaction) && all_finite(gripper.torque) &&
+         std::isfinite(gripper.opening) && std::isfinite(gripper.force);
 }
 
 /// Passes each list of samples of a frame to `visit` with the kind of its section, in the order of

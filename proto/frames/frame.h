@@ -95,9 +95,10 @@ struct GripperSample {
   float opening = 0;           ///< between its jaws [m]
   float force = 0;             ///< most that each jaw presses with [N]
   Vec3f reaction{};            ///< of the cloth on both jaws, mean of the tick [N]
+  Vec3f torque{};              ///< the same about its middle [N m]
   bool operator==(const GripperSample&) const = default;
 };
-static_assert(sizeof(GripperSample) == 56);
+static_assert(sizeof(GripperSample) == 68);
 
 /// The input of the encoder; the caller owns the arrays.
 struct FrameView {

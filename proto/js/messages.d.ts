@@ -222,6 +222,8 @@ export interface GripperSample {
   force: number;
   /** Of the cloth on both jaws, mean of the tick [N]. */
   reaction: number[];
+  /** The same about its middle [N m]. */
+  torque: number[];
 }
 
 export interface ContactSample {

@@ -274,6 +274,8 @@ export interface GripperState {
   gripping: boolean;
   /** of the cloth on both jaws [N] */
   reaction: Vec3;
+  /** the same about its middle [N m] */
+  torque: Vec3;
 }
 
 export interface State {

@@ -9,7 +9,7 @@ const APPLIED_BYTES = 8;
 const POSE_BYTES = 32;
 const CONTACT_BYTES = 52;
 const REACTION_BYTES = 20;
-const GRIPPER_BYTES = 56;
+const GRIPPER_BYTES = 68;
 const NO_COLLIDER = 0xffffffff;
 /** @type {('pin' | 'collider')[]} */
 const REACTION_OF = ['pin', 'collider'];
@@ -113,7 +113,7 @@ export function readGrippers(view, section) {
   demand(section.length % GRIPPER_BYTES === 0, 'a section does not fit');
   const grippers = [];
   for (let at = section.offset; at < section.offset + section.length; at += GRIPPER_BYTES) {
-    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 12);
+    const numbers = new Float32Array(view.buffer, view.byteOffset + at + 8, 15);
     demandFinite(numbers);
     const all = [...numbers];
     grippers.push({
@@ -124,6 +124,7 @@ export function readGrippers(view, section) {
       opening: all[7],
       force: all[8],
       reaction: all.slice(9, 12),
+      torque: all.slice(12, 15),
     });
   }
   return grippers;

@@ -351,12 +351,11 @@ struct ReactionInfo {
 /// The present state of a gripper.
 struct GripperInfo {
   std::string name;
-  Vec3 position{};        ///< of its middle [m]
-  Quat rotation{};        ///< relative to its definition
-  double opening = 0;     ///< between its jaws [m]
-  double force = 0;       ///< most that each jaw presses with [N]
-  bool gripping = false;  ///< the jaws are stopped by the cloth between them, and press it
-  Vec3 reaction{};        ///< of the cloth on both jaws together, mean of the last tick [N]
+  Vec3 position{};                ///< of its middle [m]
+  Quat rotation{};                ///< relative to its definition
+  double opening = 0, force = 0;  ///< between its jaws [m]; most that each jaw presses with [N]
+  bool gripping = false;          ///< the jaws are stopped by the cloth between them, and press it
+  Vec3 reaction{}, torque{};      ///< of the cloth on both jaws [N]; about its middle [N m]
   static constexpr const char* kName = "GripperState";
   static void describe(auto& io, auto& gripper) {
     io.required(Field{"name", ""}, gripper.name);
@@ -366,6 +365,7 @@ struct GripperInfo {
     io.required(Field{"force", "most that each jaw presses with", {}, "N"}, gripper.force);
     io.required(Field{"gripping", "it presses something"}, gripper.gripping);
     io.required(Field{"reaction", "of the cloth on both jaws", {}, "N"}, gripper.reaction);
+    io.required(Field{"torque", "the same about its middle", {}, "N m"}, gripper.torque);
   }
 };
 

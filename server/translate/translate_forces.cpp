@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/attachments/gripper_load.h"
+
 namespace weft::server {
 namespace {
 
@@ -80,15 +82,15 @@ std::vector<proto::GripperInfo> grippers_of(const ServedWorld& world) {
   std::vector<proto::GripperInfo> list;
   for (const Gripper& gripper : world.grippers()) {
     const Eigen::Quaterniond& q = gripper.pose.rotation;
-    const Vec3d reaction =
-        world.colliders()[gripper.jaw[0]].force + world.colliders()[gripper.jaw[1]].force;
+    const GripperLoad load = load_of(gripper, world.colliders(), world.tick_seconds());
     list.push_back({gripper.def.name,
                     to_wire(gripper.pose.position),
                     {q.x(), q.y(), q.z(), q.w()},
                     gripper.opening,
                     gripper.force,
                     gripper.gripping,
-                    to_wire(reaction)});
+                    to_wire(load.force),
+                    to_wire(load.torque)});
   }
   return list;
 }
@@ -109,15 +111,15 @@ std::vector<proto::GripperSample> gripper_samples(const ServedWorld& world) {
   std::vector<proto::GripperSample> samples;
   for (const Gripper& gripper : world.grippers()) {
     const Eigen::Quaternionf q = gripper.pose.rotation.cast<float>();
-    const Vec3d reaction =
-        world.colliders()[gripper.jaw[0]].force + world.colliders()[gripper.jaw[1]].force;
+    const GripperLoad load = load_of(gripper, world.colliders(), world.tick_seconds());
     samples.push_back({static_cast<std::uint32_t>(gripper.jaw[0]),
                        gripper.gripping ? 1U : 0U,
                        floats(gripper.pose.position),
                        {q.x(), q.y(), q.z(), q.w()},
                        static_cast<float>(gripper.opening),
                        static_cast<float>(gripper.force),
-                       floats(reaction)});
+                       floats(load.force),
+                       floats(load.torque)});
   }
   return samples;
 }

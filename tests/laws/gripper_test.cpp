@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "core/attachments/gripper_load.h"
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
 #include "core/scenes/scenes.h"
@@ -152,6 +153,39 @@ TEST_CASE("the contacts of each jaw press with its force, and rub with no more t
     CHECK(-press.dot(world.reactions()->colliders[jaw]) == Approx(force).epsilon(0.01));
   }
   CHECK(rubbed[1] == Approx(weight_of(world)).epsilon(0.01));
+}
+
+TEST_CASE("the torque on a gripper is the weight of its cloth times the lever, to 2 %") {
+  const bool flat = GENERATE(false, true);
+  CAPTURE(flat);
+  WorldDef def = hung_between_jaws();
+  if (flat) {  // a stiff cloth held at one side from above and below: by the jaws' normal forces
+    def.cloths[0].v = Vec3d::UnitZ();
+    def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 0.01;
+    def.grippers[0].centre = Vec3d(-0.07, 1.2, 0.1);
+    def.grippers[0].orientation = Eigen::AngleAxisd(1.5707963267948966, Vec3d::UnitZ());
+    def.grippers[0].half_extents = Vec3d(0.005, 0.03, 0.06);
+    def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}, {EdgeStrip{Side::right, 0}, 0, {}}};
+  } else {  // one that hangs, off its middle: by friction alone
+    def.grippers[0].centre[0] = -0.06;
+  }
+  World<float> world(def);
+  const double weight = weight_of(world);
+  command(world, 0, 100 * weight);
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  free_pins(world);
+  test::settle(world, 20, 3);
+  constexpr int kTicks = 60;
+  Vec3d told = Vec3d::Zero(), expected = Vec3d::Zero();
+  for (int t = 0; t < kTicks; ++t) {
+    world.step();
+    const Vec3d lever = test::centre_of_mass(world) - world.grippers()[0].pose.position;
+    told += load_of(world.grippers()[0], world.colliders(), world.tick_seconds()).torque / kTicks;
+    expected += lever.cross(Vec3d(0, -weight, 0)) / kTicks;
+  }
+  REQUIRE(expected.norm() > 0.02 * weight);  // a lever of 2 cm
+  CHECK((told - expected).norm() < 0.02 * expected.norm());
 }
 
 TEST_CASE("jaws that come down on folded cloth stop with their force and do not drive it") {

@@ -80,7 +80,7 @@ std::vector<GripperSample> grippers_of(const json& content) {
   for (const json& g : content["grippers"])
     grippers.push_back({g["jaw"], g["gripping"].get<bool>() ? 1U : 0U, vec3_of(g["position"]),
                         g["rotation"].get<Quatf>(), g["opening"], g["force"],
-                        vec3_of(g["reaction"])});
+                        vec3_of(g["reaction"]), vec3_of(g["torque"])});
   return grippers;
 }
 

@@ -47,10 +47,11 @@ class Examples(unittest.TestCase):
         self.assertAlmostEqual(way, closed, delta=0.01 * closed)
 
     def test_a_gripper_that_lifts_a_cloth_feels_its_weight(self):
-        closed, carried, opened = self.lines_of("grip_and_lift.py")
+        closed, carried, turned, opened = self.lines_of("grip_and_lift.py")
         self.assertEqual((closed, opened), ("gripping: True", "gripping: False"))
         force, weight = numbers(carried)
         self.assertAlmostEqual(force, weight, delta=0.03 * weight)
+        self.assertLess(numbers(turned)[0], 1000 * 0.25 * weight)  # its lever is within the cloth
 
     def test_two_grippers_fold_a_towel_to_half_its_length(self):
         gripping, flat, folded, crossings = self.lines_of("fold_towel.py")

@@ -62,6 +62,7 @@ def _gripper(entry: tuple) -> GripperSample:
         opening=numbers[7],
         force=numbers[8],
         reaction=tuple(numbers[9:12]),
+        torque=tuple(numbers[12:15]),
     )
 
 

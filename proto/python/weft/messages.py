@@ -223,6 +223,7 @@ class GripperState(TypedDict):
     force: float  # most that each jaw presses with [N]
     gripping: bool  # it presses something; true or false
     reaction: Sequence[float]  # of the cloth on both jaws [N]
+    torque: Sequence[float]  # the same about its middle [N m]
 
 
 class State(TypedDict):

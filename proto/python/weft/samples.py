@@ -91,6 +91,7 @@ class GripperSample:
     opening: float  # between its jaws [m]
     force: float  # most that each jaw presses with [N]
     reaction: tuple[float, float, float]  # of the cloth on both jaws, mean of the tick [N]
+    torque: tuple[float, float, float]  # the same about its middle [N m]
 
 
 @dataclass(frozen=True)

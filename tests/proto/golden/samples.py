@@ -48,7 +48,7 @@ def reaction_bytes(reactions):
 def gripper_bytes(grippers):
     return b"".join(
         struct.pack(
-            "<II12f",
+            "<II15f",
             g["jaw"],
             g["gripping"],
             *g["position"],
@@ -56,6 +56,7 @@ def gripper_bytes(grippers):
             g["opening"],
             g["force"],
             *g["reaction"],
+            *g["torque"],
         )
         for g in grippers
     )
@@ -107,6 +108,7 @@ GRIPPING = [
         opening=0.008,
         force=5.0,
         reaction=[0.1, -0.8, 0.0],
+        torque=[0.02, 0.0, -0.03],
     ),
     dict(
         jaw=6,
@@ -116,6 +118,7 @@ GRIPPING = [
         opening=1.0,
         force=0.0,
         reaction=[0.0, 0.0, 0.0],
+        torque=[0.0, 0.0, 0.0],
     ),
 ]
 

@@ -27,4 +27,4 @@ async def misspell_waiting(cloth: weft.Client) -> None:
     await cloth.puase()  # wrong
     await cloth.gripper("g", openning=0)  # wrong
     print((await cloth.step(3))["untl"])  # wrong
-    print((await cloth.query("grippers"))[0]["openning"])  # wrong
+    print((await cloth.query("grippers"))[0]["troque"])  # wrong

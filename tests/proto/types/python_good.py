@@ -31,7 +31,7 @@ async def watch(address: str) -> list[int]:
     ticks: list[int] = []
     async with weft.connect(address, reconnect=True) as cloth:
         await cloth.gripper("gripper", opening=0, position=[0, 1, 0])
-        print((await cloth.query("grippers"))[0]["reaction"])
+        print((await cloth.query("grippers"))[0]["torque"])
         async for frame in cloth.frames():
             ticks.append(frame.tick)
             if len(ticks) > 3:

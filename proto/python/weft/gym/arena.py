@@ -14,7 +14,7 @@ from .spaces import Box, Dict
 
 START = "gym-start"  # the name of the state that `reset` goes back to
 FARTHEST, FASTEST, STRONGEST = 1e4, 1e4, 1e6  # bounds of what is observed [m], [m/s], [N] and [N m]
-GRIPPER_NUMBERS = 11  # position 3, rotation 4, opening, force 3
+GRIPPER_NUMBERS = 14  # position 3, rotation 4, opening, force 3, torque 3
 OBSERVED = ("velocities", "grippers")
 
 Preparation = Callable[[Client], Awaitable[None]]
@@ -36,7 +36,7 @@ def observation_space(vertices: int, grippers: int) -> Any:
 
 def observed(frame: Frame) -> dict[str, Any]:
     """What an environment tells of a frame. Positions and velocities share the memory of its message."""
-    rows = [(*g.position, *g.rotation, g.opening, *g.reaction) for g in frame.grippers]
+    rows = [(*g.position, *g.rotation, g.opening, *g.reaction, *g.torque) for g in frame.grippers]
     return {
         "positions": frame.positions,
         "velocities": frame.velocities,

@@ -25,7 +25,7 @@ def lifted(before: Mapping[str, Any], after: Mapping[str, Any], action: Any) -> 
 
 class ClothEnv(Env):
     """One room of a server. Its actions move grippers and hands, four numbers from -1 to 1 each; it observes positions
-    and velocities of the vertices and the state of all grippers with the force that they feel.
+    and velocities of the vertices and the state of all grippers with the force and torque that they feel.
 
     The room is this environment's alone: it is paused, and loses its scene. `reset(seed, options)` goes back to the
     start; `options` may have `settings`, those of `Client.set`, which count above what `randomise` draws. An episode is
