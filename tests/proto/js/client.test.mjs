@@ -90,6 +90,8 @@ test('a field that a command has not is named, in its parts too, and nothing is 
     [() => client.gripper('g', { openning: 0 }), /openning/],
     [() => client.drag({ particle: 7 }, { raduis: 0.05 }), /raduis/],
     [() => client.release({ particel: 7 }), /particel/],
+    [() => client.createRoom('mine', { pausd: true }), /pausd/],
+    [() => client.fork('mine', { pausd: true }), /pausd/],
   ];
   for (const [call, word] of wrong) await assert.rejects(async () => call(), { name: 'TypeError', message: word });
   assert.equal(socket.sent.length, before);

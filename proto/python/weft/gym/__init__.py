@@ -10,5 +10,6 @@ It needs numpy, and works without gymnasium: spaces then have `sample`, `seed`, 
 from .actors import Actor, Gripper, Hand
 from .env import ClothEnv, Randomise, Reward, lifted
 from .picture import Picture
+from .vector import VectorClothEnv
 
-__all__ = ["Actor", "ClothEnv", "Gripper", "Hand", "Picture", "Randomise", "Reward", "lifted"]
+__all__ = ["Actor", "ClothEnv", "Gripper", "Hand", "Picture", "Randomise", "Reward", "VectorClothEnv", "lifted"]

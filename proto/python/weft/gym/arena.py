@@ -64,7 +64,7 @@ class Arena:
         await self.client.view(hz=0)  # frames come with observations alone
         await self._prepare_anew()
         if self._saves:
-            await self.client.request("save", name=START)
+            await self.client.save(START)
 
     @property
     def _saves(self) -> bool:
@@ -81,7 +81,7 @@ class Arena:
         for actor in self.actors:
             await actor.end()
         if self._saves:
-            await self.client.request("restore", name=START)
+            await self.client.restore(START)
         else:
             await self._prepare_anew()
         if settings:

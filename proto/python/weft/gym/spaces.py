@@ -70,3 +70,4 @@ class PlainEnv:
 Box: Any = gymnasium.spaces.Box if gymnasium else PlainBox
 Dict: Any = gymnasium.spaces.Dict if gymnasium else PlainDict
 Env: Any = gymnasium.Env if gymnasium else PlainEnv
+VectorEnv: Any = gymnasium.vector.VectorEnv if gymnasium else PlainEnv
