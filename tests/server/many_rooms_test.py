@@ -1,6 +1,7 @@
 """Rooms of one server: each has its own cloth, clock and viewers. A foreign client on real sockets."""
 
 import asyncio
+import contextlib
 import json
 
 import websockets
@@ -68,8 +69,7 @@ class ManyRooms(SocketTest):
 
     async def test_a_fork_is_its_room_at_that_moment_and_has_the_same_future(self):
         here = await self.viewer()
-        await here.ask("load", scene="table")
-        await here.wait_frame(lambda f: f.tick > 20 and f.epoch > 1)
+        await here.wait_frame(lambda f: f.tick > 10)
         await here.ask("pin", particle=40, radius=0.05)
         await here.ask("drag", phase="start", drag=1, particle=500)
         await here.ask("pause")
@@ -77,16 +77,16 @@ class ManyRooms(SocketTest):
         self.assertEqual(made["op"], "result", made)
         self.assertEqual((made["room"]["tick"], made["room"]["paused"]), (made["tick"], True))
         mine = await self.enter("mine")
-        self.assertEqual(mine.welcome["scene"], "table")
+        self.assertEqual(mine.welcome["scene"], "curtain")
         self.assertEqual((await mine.ask("query", what="grabs"))["data"], [])
         await here.ask("drag", phase="end", drag=1)
         for viewer in (here, mine):
-            await viewer.ask("set", wind=[2, 0, 1], gust_speed=1)
+            await viewer.ask("set", wind=[1, 0, 0.5])
             await viewer.ask("drag", phase="start", drag=2, particle=300, target=[0.1, 1.5, 0])
-        answers = await asyncio.gather(*(viewer.ask("advance", n=60) for viewer in (here, mine)))
+        answers = await asyncio.gather(*(viewer.ask("advance", n=12) for viewer in (here, mine)))
         self.assertEqual(answers[0]["hash"], answers[1]["hash"])
-        self.assertEqual(answers[0]["tick"], made["tick"] + 60)
-        await mine.ask("advance", n=5)
+        self.assertEqual(answers[0]["tick"], made["tick"] + 12)
+        await mine.ask("advance", n=2)
         self.assertEqual((await here.ask("hash"))["hash"], answers[0]["hash"])
         self.assertEqual((await here.ask("fork", name="mine"))["code"], "room_exists")
         # And a fork of a fork, running.
@@ -94,7 +94,7 @@ class ManyRooms(SocketTest):
         running = await mine.ask("fork", name="again")
         self.assertFalse(running["room"]["paused"])
         again = await self.enter("again")
-        await again.wait_frame(lambda f: f.tick > running["tick"] + 5)
+        await again.wait_frame(lambda f: f.tick > running["tick"] + 2)
 
     async def test_refusals_name_field_value_and_limit(self):
         viewer = await self.viewer()
@@ -145,12 +145,15 @@ class ManyRooms(SocketTest):
 
 
 class EmptyRooms(SocketTest):
-    options = ("--scene", "flag", "--room-idle", "0.05")
+    options = ("--scene", "flag", "--room-idle", "0.5")
 
     async def test_a_room_that_stays_empty_closes_and_one_with_a_viewer_does_not(self):
         viewer = await self.viewer()
-        await viewer.ask("create_room", name="kept")
-        kept = await Viewer.open(self.server, query="/kept")
+        kept = None
+        while not kept:  # it may have closed before its viewer came
+            await viewer.ask("create_room", name="kept")
+            with contextlib.suppress(websockets.InvalidStatusCode):
+                kept = await Viewer.open(self.server, query="/kept")
         self.addAsyncCleanup(kept.socket.close)
         await viewer.ask("create_room", name="left")
         names = ["left"]
