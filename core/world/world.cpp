@@ -96,7 +96,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
 template <class Real>
 void World<Real>::build_contact() {
   contact_ = make_contact(def_, model_, runtime_);
-  contact_.log_impulses(measures_forces_ || energy_);
+  contact_.log_impulses(measures_forces_, energy_.has_value());
   sleep_ = make_sleep(def_, model_);
   account_ = EnergyAccount(total_mass(model_));
   thickest_ = 0;

@@ -13,7 +13,7 @@ namespace weft {
 template <class Real>
 void World<Real>::measure_forces(bool wanted) {
   measures_forces_ = wanted;
-  contact_.log_impulses(wanted || energy_);
+  contact_.log_impulses(wanted, energy_.has_value());
   if (!wanted) reactions_.reset();
   if (wanted && rests()) reactions_ = coming_reactions();  // no tick will measure them
 }
@@ -30,7 +30,7 @@ void World<Real>::measure_energy(bool wanted) {
     const std::size_t first_jaw = def_.colliders.size() - 2 * def_.grippers.size();
     energy_.emplace(EnergyLedger<Real>{WorkMeter<Real>(model_.mass.size(), first_jaw), {}});
   }
-  contact_.log_impulses(wanted || measures_forces_);
+  contact_.log_impulses(measures_forces_, wanted);
   allocate_external();
   begin_balance();
 }

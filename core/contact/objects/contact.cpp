@@ -82,6 +82,7 @@ void Contact<Real>::reset() {
   collected_ = rows_built_ = false;
   clearance_.clear();
   rows_.clear();
+  log_.clear();
   moving_rows_.clear();
   exits_.clear();
   v_came_.clear();
@@ -149,6 +150,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
   }
   if (!rows_.empty()) {
     profile[Stage::contact].work += rows_.size();
+    if (log_.wanted()) log_.see(rows_, state);
     find_busy_rows();
     push_out(state, dt);
     aim_rows(state, dt);
@@ -176,6 +178,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
     return;
   }
   profile[Stage::contact].work += rows_.size();
+  if (log_.wanted()) log_.see(rows_, state);
   measure_way(state, dt);
   find_busy_rows();
   if (lone_apart_) lone_response_ = lone_rows_.respond(lone_pass(state, dt));
@@ -193,7 +196,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
 }
 
 template <class Real>
-std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) const {
+std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) {
   return log_.contacts(rows_, x, kTouching, static_cast<double>(tick_seconds_));
 }
 

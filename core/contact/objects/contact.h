@@ -112,8 +112,8 @@ class Contact {
   /// Cloths that are inside objects because they started there.
   const std::vector<BadStart<Real>>& bad_starts() const { return exits_; }
 
-  /// Notes the impulses of each tick from now on, or no longer.
-  void log_impulses(bool wanted) { log_.want(wanted); }
+  /// Notes the impulses of each tick from now on, or no longer: see ContactLog::want.
+  void log_impulses(bool contacts, bool each) { log_.want(contacts, each); }
 
   /// Impulses of the present tick, if noted, and a collider's motion in the present substep.
   const ContactLog& log() const { return log_; }
@@ -121,7 +121,7 @@ class Contact {
 
   /// Contacts of the last tick with their mean forces over it, if impulses are noted [N]; without
   /// forces if not. Those that pushed, and those that touch now.
-  std::vector<ContactPoint> contacts(const Vec3Array<Real>& x) const;
+  std::vector<ContactPoint> contacts(const Vec3Array<Real>& x);
 
  private:
   using Plane = ObjectPlane<Real>;

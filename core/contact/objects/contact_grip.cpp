@@ -52,7 +52,7 @@ void Contact<Real>::share_squeeze(const ClothState<Real>& state, Real dt) {
       if (moving.collider != k || moving.grip == 0) continue;
       const Vec3d impulse = (rows_[moving.row].normal * each).template cast<double>();
       jaw.squeezed += impulse;
-      if (log_.wanted()) log_.add_impulse(rows_[moving.row], impulse);
+      if (log_.wanted()) log_.add_impulse(rows_, moving.row, impulse);
       const auto cloth = static_cast<std::size_t>(rows_[moving.row].cloth);
       moving.grip = each * moving.mobility * static_cast<Real>(cloths_[cloth].friction);
     }

@@ -7,37 +7,35 @@
 
 namespace weft {
 
-void ContactLog::want(bool wanted) {
-  wanted_ = wanted;
-  if (!wanted) entries_ = {};
+void ContactLog::want(bool contacts, bool each) {
+  wanted_ = contacts || each;
+  each_wanted_ = each;
+  if (!each) entries_ = {};
+  if (!wanted_) clear();
 }
 
-/// Entries of the same particles with the same object come together.
-bool ContactLog::before(const Entry& a, const Entry& b) {
+void ContactLog::clear() {
+  for (const Slot& slot : slots_)
+    first_slot_[static_cast<std::size_t>(slot.contact.particle[0])] = kNone;
+  slots_.clear();
+  sums_.clear();
+  entries_.clear();
+}
+
+/// The slots as contacts, by object, number of particles and particles.
+std::vector<ContactPoint> ContactLog::sorted(double seconds) {
+  std::vector<const Slot*> order;
+  for (const Slot& slot : slots_) order.push_back(&slot);
   const auto key = [](const ContactPoint& c) { return std::tie(c.collider, c.count, c.particle); };
-  return key(a.contact) < key(b.contact);
-}
-
-/// One contact for all entries of the same particles with the same object, which may have been
-/// pushed by several of its triangles. Its geometry is that of the latest entry; friction is what
-/// goes across the direction in which it was pushed.
-std::vector<ContactPoint> ContactLog::merged(std::vector<Entry> entries, double seconds) {
-  std::stable_sort(entries.begin(), entries.end(), before);
+  std::sort(order.begin(), order.end(),
+            [&key](const Slot* a, const Slot* b) { return key(a->contact) < key(b->contact); });
   std::vector<ContactPoint> contacts;
-  for (std::size_t first = 0; first < entries.size();) {
-    Vec3d impulse = Vec3d::Zero(), along = Vec3d::Zero();
-    std::size_t end = first;
-    for (; end < entries.size() && !before(entries[first], entries[end]); ++end) {
-      const Entry& entry = entries[end];
-      impulse += entry.impulse;
-      along += entry.contact.normal * entry.contact.normal.dot(entry.impulse);
-    }
-    ContactPoint contact = entries[end - 1].contact;
-    if (along.norm() > 0) contact.normal = along.normalized();
-    contact.normal_force = contact.normal.dot(impulse) / seconds;
-    contact.friction = impulse / seconds - contact.normal * contact.normal_force;
-    contacts.push_back(contact);
-    first = end;
+  contacts.reserve(order.size());
+  for (const Slot* slot : order) {
+    ContactPoint& contact = contacts.emplace_back(slot->contact);
+    if (slot->along.norm() > 0) contact.normal = slot->along.normalized();
+    contact.normal_force = contact.normal.dot(slot->impulse) / seconds;
+    contact.friction = slot->impulse / seconds - contact.normal * contact.normal_force;
   }
   return contacts;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
@@ -29,17 +31,118 @@ struct ContactPoint {
 };
 
 /// Impulses of contacts with objects over a tick, for those who want to know; else it stays empty.
+///
+/// A substep pushes the same rows again and again, hundreds of times in a tick of a gripper. So
+/// impulses are added up per row, and these sums per contact as often as rows change: a tick costs
+/// an addition for each impulse, and what is done for each contact. All is added in the order in
+/// which the rows are solved, hence alike with any number of threads.
 class ContactLog {
  public:
   bool wanted() const { return wanted_; }
-  void want(bool wanted);
-  void clear() { entries_.clear(); }
+  /// @param contacts  sums, for `contacts`
+  /// @param each      all impulses one by one, for `visit_from`
+  void want(bool contacts, bool each);
 
-  /// Notes that a row of particles got an impulse from an object.
-  /// @param row       of Contact, with its particles, weights, normal and collider
-  /// @param change    of the velocity of the row's point [m/s]; it is shared by mass
+  /// Forgets everything: a tick begins, or the rows have gone.
+  void clear();
+
+  /// Call before impulses of these rows, each time that rows were built or a tick began.
+  template <class Row, class Real>
+  void see(const std::vector<Row>& rows, const ClothState<Real>& state) {
+    if (sums_.size() == rows.size()) return;
+    sums_.clear();
+    for (const Row& row : rows) sums_.push_back({Vec3d::Zero(), mass_of(row, state)});
+  }
+
+  /// Notes that row `r` got an impulse from an object.
+  /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
+  template <class Row, class Real>
+  void add(const std::vector<Row>& rows, std::size_t r, const Vec3<Real>& change) {
+    add_impulse(rows, r, change.template cast<double>() * sums_[r].mass);
+  }
+
+  /// The same, with the impulse [N s].
+  template <class Row>
+  void add_impulse(const std::vector<Row>& rows, std::size_t r, const Vec3d& impulse) {
+    assert(sums_.size() == rows.size() && "see comes first");
+    sums_[r].impulse += impulse;
+    if (each_wanted_) entries_.push_back({entry_of(rows[r]), impulse});
+  }
+
+  /// Notes what is not one of the rows: it got a change of velocity [m/s].
+  template <class Row, class Real>
+  void add_apart(const Row& row, const Vec3<Real>& change, const ClothState<Real>& state) {
+    const Vec3d impulse = change.template cast<double>() * mass_of(row, state);
+    book(row, impulse);
+    if (each_wanted_) entries_.push_back({entry_of(row), impulse});
+  }
+
+  /// Call before the normal of row `r` turns: what it got belongs to the old one.
+  template <class Row>
+  void before_turn(const std::vector<Row>& rows, std::size_t r) {
+    if (sums_.size() == rows.size()) book_sum(rows[r], sums_[r]);
+  }
+
+  /// Call before rows go.
+  template <class Row>
+  void before_rebuild(const std::vector<Row>& rows) {
+    if (sums_.size() == rows.size()) {
+      for (std::size_t r = 0; r < rows.size(); ++r) book_sum(rows[r], sums_[r]);
+    }
+    sums_.clear();
+  }
+
+  /// Calls visit(contact, impulse) for each that was noted from `first` on, which then is the next
+  /// [N s].
+  template <class Visit>
+  void visit_from(std::size_t& first, Visit&& visit) const {
+    for (; first < entries_.size(); ++first) visit(entries_[first].first, entries_[first].second);
+  }
+
+  /// Contacts of the tick, by object and particles: those that pushed, and those of `rows` that
+  /// touch now.
+  /// @param x        positions now [m]
+  /// @param reach    touching is what is nearer than this part of the thickness
+  /// @param seconds  of the tick; forces are means over it
   template <class Real, class Row>
-  void add(const Row& row, const Vec3<Real>& change, const ClothState<Real>& state) {
+  std::vector<ContactPoint> contacts(const std::vector<Row>& rows, const Vec3Array<Real>& x,
+                                     double reach, double seconds);
+
+ private:
+  /// What a row got since it was booked last.
+  struct RowSum {
+    Vec3d impulse = Vec3d::Zero();  ///< [N s]
+    double mass = 0;                ///< impulse for a change of velocity of its point [kg]
+  };
+  /// A contact with all that it got in this tick. Several triangles of an object may push the same
+  /// particles: the geometry is that of the last, friction what goes across the common direction.
+  struct Slot {
+    ContactPoint contact;
+    double offset = 0;              ///< of the plane [m]
+    Vec3d impulse = Vec3d::Zero();  ///< [N s]
+    Vec3d along = Vec3d::Zero();    ///< its parts along the normals [N s]
+    Index next = kNone;             ///< another with the same first particle
+  };
+
+  template <class Row>
+  static ContactPoint entry_of(const Row& row) {
+    ContactPoint c;
+    c.collider = row.collider;
+    c.count = c.first_side = row.count;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+      c.particle[k] = row.particle[k];
+    take_plane(row, c);
+    return c;
+  }
+  template <class Row>
+  static void take_plane(const Row& row, ContactPoint& c) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+      c.weight[k] = static_cast<double>(row.weight[k]);
+    c.normal = row.normal.template cast<double>();
+  }
+  /// 0 if no impulse can move the row's point.
+  template <class Row, class Real>
+  static double mass_of(const Row& row, const ClothState<Real>& state) {
     double mobility = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
       const double weight = row.weight[k];
@@ -47,84 +150,80 @@ class ContactLog {
           weight * weight *
           static_cast<double>(state.inverse_mass[static_cast<std::size_t>(row.particle[k])]);
     }
-    if (mobility > 0) note(row, change.template cast<double>() / mobility);
+    return mobility > 0 ? 1 / mobility : 0;
   }
-
-  /// Notes an impulse of an object on a row of particles [N s].
   template <class Row>
-  void add_impulse(const Row& row, const Vec3d& impulse) {
-    note(row, impulse);
-  }
-
-  /// Calls visit(contact, impulse) for what was noted from `first` on, which then is the next [N
-  /// s].
-  template <class Visit>
-  void visit_from(std::size_t& first, Visit&& visit) const {
-    for (; first < entries_.size(); ++first)
-      visit(entries_[first].contact, entries_[first].impulse);
-  }
-
-  /// Contacts of the tick: those that pushed, and those of `rows` that touch now.
-  /// @param x        positions now [m]
-  /// @param reach    touching is what is nearer than this part of the thickness
-  /// @param seconds  of the tick; forces are means over it
-  template <class Real, class Row>
-  std::vector<ContactPoint> contacts(const std::vector<Row>& rows, const Vec3Array<Real>& x,
-                                     double reach, double seconds) const;
-
- private:
-  struct Entry {
-    ContactPoint contact;
-    double offset = 0;  ///< of the plane [m]
-    Vec3d impulse = Vec3d::Zero();
-  };
-
-  template <class Row>
-  static Entry entry_of(const Row& row) {
-    Entry entry;
-    ContactPoint& c = entry.contact;
-    c.collider = row.collider;
-    c.count = c.first_side = row.count;
+  static bool is_of(const ContactPoint& c, const Row& row) {
+    if (c.collider != row.collider || c.count != row.count) return false;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-      c.particle[k] = row.particle[k];
-      c.weight[k] = static_cast<double>(row.weight[k]);
+      if (c.particle[k] != row.particle[k]) return false;
     }
-    c.normal = row.normal.template cast<double>();
-    entry.offset = static_cast<double>(row.offset);
-    return entry;
+    return true;
   }
   template <class Row>
-  void note(const Row& row, const Vec3d& impulse) {
-    entries_.push_back(entry_of(row));
-    entries_.back().impulse = impulse;
+  void book_sum(const Row& row, RowSum& sum) {
+    if (sum.impulse.isZero(0)) return;
+    book(row, sum.impulse);
+    sum.impulse.setZero();
   }
-  static bool before(const Entry& a, const Entry& b);
-  static std::vector<ContactPoint> merged(std::vector<Entry> entries, double seconds);
+  /// Adds an impulse to the slot of a row.
+  template <class Row>
+  void book(const Row& row, const Vec3d& impulse) {
+    Slot& slot = slot_of(row);
+    slot.impulse += impulse;
+    slot.along += slot.contact.normal * slot.contact.normal.dot(impulse);
+  }
+  /// The slot of a row, new or old, with the row's plane.
+  template <class Row>
+  Slot& slot_of(const Row& row) {
+    const auto first = static_cast<std::size_t>(row.particle[0]);
+    if (first >= first_slot_.size()) first_slot_.resize(first + 1, kNone);
+    Index at = first_slot_[first];
+    while (at != kNone && !is_of(slots_[static_cast<std::size_t>(at)].contact, row))
+      at = slots_[static_cast<std::size_t>(at)].next;
+    if (at == kNone) {
+      at = static_cast<Index>(slots_.size());
+      slots_.emplace_back();
+      slots_.back().contact = entry_of(row);
+      slots_.back().next = std::exchange(first_slot_[first], at);
+    }
+    Slot& slot = slots_[static_cast<std::size_t>(at)];
+    take_plane(row, slot.contact);
+    slot.offset = static_cast<double>(row.offset);
+    return slot;
+  }
+  std::vector<ContactPoint> sorted(double seconds);
 
-  bool wanted_ = false;
-  std::vector<Entry> entries_;
+  bool wanted_ = false, each_wanted_ = false;
+  std::vector<RowSum> sums_;                             ///< of each row
+  std::vector<Slot> slots_;                              ///< in the order of their first impulse
+  std::vector<Index> first_slot_;                        ///< for each particle as the first of it
+  std::vector<std::pair<ContactPoint, Vec3d>> entries_;  ///< all impulses, if they are wanted
 };
 
 template <class Real, class Row>
 std::vector<ContactPoint> ContactLog::contacts(const std::vector<Row>& rows,
                                                const Vec3Array<Real>& x, double reach,
-                                               double seconds) const {
-  std::vector<Entry> all = entries_;
-  const auto measure = [&x](Entry& entry) {
-    ContactPoint& c = entry.contact;
+                                               double seconds) {
+  before_rebuild(rows);
+  for (const Row& row : rows) {
+    if (!row.responds) continue;
+    Vec3d point = Vec3d::Zero();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+      point += x[static_cast<std::size_t>(row.particle[k])].template cast<double>() *
+               static_cast<double>(row.weight[k]);
+    const double gap =
+        row.normal.template cast<double>().dot(point) - static_cast<double>(row.offset);
+    if (gap <= static_cast<double>(row.thickness) * reach) slot_of(row);
+  }
+  for (Slot& slot : slots_) {
+    ContactPoint& c = slot.contact;
     c.point.setZero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(c.count); ++k)
       c.point += x[static_cast<std::size_t>(c.particle[k])].template cast<double>() * c.weight[k];
-    c.gap = c.normal.dot(c.point) - entry.offset;
-  };
-  for (Entry& entry : all) measure(entry);
-  for (const Row& row : rows) {
-    if (!row.responds) continue;
-    Entry entry = entry_of(row);
-    measure(entry);
-    if (entry.contact.gap <= static_cast<double>(row.thickness) * reach) all.push_back(entry);
+    c.gap = c.normal.dot(c.point) - slot.offset;
   }
-  return merged(std::move(all), seconds);
+  return sorted(seconds);
 }
 
 }  // namespace weft

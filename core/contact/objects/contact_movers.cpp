@@ -107,7 +107,9 @@ void Contact<Real>::move_colliders(Real dt) {
     const Vec3d normal = frame.pose.rotation * moving.own_normal;
     const Vec3d shift = frame.pose.position - frame.pose.rotation * frame.pivot;
     ContactRow<Real>& row = rows_[moving.row];
-    row.normal = normal.template cast<Real>();
+    const Vec3<Real> turned = normal.template cast<Real>();
+    if (log_.wanted() && turned != row.normal) log_.before_turn(rows_, moving.row);
+    row.normal = turned;
     row.offset = static_cast<Real>(moving.own_offset + normal.dot(shift));
   }
 }

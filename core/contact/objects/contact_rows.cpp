@@ -88,6 +88,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   for (ColliderFrame<Real>& frame : frames_) frame.travel_since_rows = 0;
   way_rows_ = way_step_;
   take_to_own(state.x);
+  log_.before_rebuild(rows_);
   rows_.clear();
   moving_rows_.clear();
   travel2_.resize(n);

@@ -113,7 +113,7 @@ void Contact<Real>::respond(std::size_t r, const Vec3<Real>& v, Real vn, Real pu
   share_out(row, change, state.v);
   pushed_rows_.push_back(r);
   if (row.mover != kNone) take_reaction(row, weighted(row, state.x), change);
-  if (log_.wanted()) log_.add(row, change, state);
+  if (log_.wanted()) log_.add(rows_, r, change);
 }
 
 /// A sweep of projected Gauss-Seidel.
@@ -183,7 +183,8 @@ void Contact<Real>::log_stop(const ContactRow<Real>& row, std::size_t k, const V
   single.particle = {row.particle[k], 0, 0};
   single.weight = {Real(1), 0, 0};
   single.count = 1;
-  log_.add<Real>(single, state.v[static_cast<std::size_t>(row.particle[k])] - before, state);
+  const Vec3<Real> change = state.v[static_cast<std::size_t>(row.particle[k])] - before;
+  log_.add_apart(single, change, state);
 }
 
 /// Keeps each particle of a row on its side of the row's plane through the coming drift: as the
