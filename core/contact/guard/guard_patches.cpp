@@ -17,11 +17,6 @@ constexpr std::size_t kPatchesAtLeast = 128;
 /// And so many patches are fitted together.
 constexpr std::size_t kFitsAtLeast = 128;
 
-bool share_particle(const std::array<Index, 4>& p, PairKind kind) {
-  if (kind == PairKind::vertex_triangle) return p[0] == p[1] || p[0] == p[2] || p[0] == p[3];
-  return p[0] == p[2] || p[0] == p[3] || p[1] == p[2] || p[1] == p[3];
-}
-
 /// Calls visit(number) for each bit that is set.
 template <class Visit>
 void for_each_bit(std::uint32_t bits, Visit&& visit) {
@@ -92,6 +87,7 @@ void ClothGuard<Real>::test_patches(Index p, Index q, bool all, PairSearch<Real>
   if (in_heap(p) || in_heap(q)) return;
   overlap_patches(boxes_.columns(p), boxes_.columns(q), changed_in(p, all), changed_in(q, all),
                   s.overlaps);
+  leave_out_incident<Real>(tree_.patch(p), tree_.patch(q), s.overlaps);
   test_triangles(p, q, s.overlaps.first_vertices, s);
   if (p != q) test_triangles(q, p, s.overlaps.second_vertices, s);
   test_edges(p, q, s);
@@ -133,7 +129,6 @@ void ClothGuard<Real>::test_edges(Index p, Index q, PairSearch<Real>& s) const {
 template <class Real>
 void ClothGuard<Real>::test_pair(PairKind kind, Index a, Index b,
                                  const std::array<Index, 4>& particle, PairSearch<Real>& s) const {
-  if (share_particle(particle, kind)) return;
   PairColumns<Real>& columns = s.columns[kind];
   columns.add(a, b, particle);
   if (columns.size() >= kPairsAtOnce) keep_near(columns, s);

@@ -1,6 +1,8 @@
 #include "core/contact/guard/patch_boxes.h"
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/contact/guard/patch_boxes.cpp"
@@ -134,6 +136,28 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
       fit_features(shape.triangles, corner, bits, all.triangles.pitch, numbers(all.triangles))};
 }
 
+template <class Real>
+void leave_out_incident(const typename PatchTree<Real>::Patch& p,
+                        const typename PatchTree<Real>::Patch& q, PatchOverlaps& overlaps) {
+  const auto clear = [](std::uint32_t rows, std::uint32_t columns, PatchOverlaps::Bits& bits) {
+    for (; rows != 0; rows &= rows - 1)
+      bits[static_cast<std::size_t>(std::countr_zero(rows))] &= ~columns;
+  };
+  const std::size_t first = p.particles.size(), second = q.particles.size();
+  assert(p.having.size() == first && q.having.size() == second);
+  for (std::size_t a = 0, b = 0; a < first && b < second;) {
+    const Index i = p.particles[a], j = q.particles[b];
+    if (i == j) {
+      const PatchMarks &one = p.having[a], &two = q.having[b];
+      clear(one.vertices, two.triangles, overlaps.first_vertices);
+      clear(two.vertices, one.triangles, overlaps.second_vertices);
+      clear(one.edges, two.edges, overlaps.first_edges);
+    }
+    a += i <= j ? 1 : 0;
+    b += j <= i ? 1 : 0;
+  }
+}
+
 HWY_EXPORT(overlap_f32);
 HWY_EXPORT(overlap_f64);
 
@@ -148,6 +172,10 @@ void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& 
   HWY_DYNAMIC_DISPATCH(overlap_f64)(p, q, marked_p, marked_q, overlaps);
 }
 
+template void leave_out_incident<float>(const PatchTree<float>::Patch&,
+                                        const PatchTree<float>::Patch&, PatchOverlaps&);
+template void leave_out_incident<double>(const PatchTree<double>::Patch&,
+                                         const PatchTree<double>::Patch&, PatchOverlaps&);
 template class PatchBoxes<float>;
 template class PatchBoxes<double>;
 

@@ -28,11 +28,6 @@ struct PatchColumns {
   const Real* whole = nullptr;  ///< the box around them all: lower x y z, upper x y z [m]
 };
 
-/// A bit for each feature of a patch.
-struct PatchMarks {
-  std::uint32_t vertices = 0, edges = 0, triangles = 0;
-};
-
 /// Which features of two patches have boxes that overlap: for each of the one a bit for each of the
 /// other. Only pairs of which a feature is marked.
 struct PatchOverlaps {
@@ -50,6 +45,12 @@ void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
 void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
                      const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps);
+
+/// Takes out features that share a particle: these always touch.
+/// @param p, q  whose features were compared
+template <class Real>
+void leave_out_incident(const typename PatchTree<Real>::Patch& p,
+                        const typename PatchTree<Real>::Patch& q, PatchOverlaps& overlaps);
 
 /// Boxes around the motion of the features of patches, in the order in which the patches list them.
 template <class Real>

@@ -11,13 +11,28 @@
 namespace weft {
 namespace {
 
-/// A patch of a grid is at most so many cells wide; one of another mesh has at most so many
-/// triangles.
-constexpr int kPatchCells = 2;
+/// A patch of a mesh that is no grid has at most so many triangles.
 constexpr std::size_t kPatchTriangles = 8;
 
-/// Rounding of the cull's test, relative.
-constexpr double kCullSlack = 1e-3;
+/// Marks the features of a patch with each of its particles.
+template <class Patch>
+void mark_features(const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
+                   Patch& patch) {
+  patch.having.assign(patch.particles.size(), {});
+  const auto marks = [&](Index i) -> PatchMarks& {
+    const auto found = std::lower_bound(patch.particles.begin(), patch.particles.end(), i);
+    return patch.having[static_cast<std::size_t>(found - patch.particles.begin())];
+  };
+  for (std::size_t k = 0; k < patch.vertices.size(); ++k)
+    marks(patch.vertices[k]).vertices |= 1u << k;
+  for (std::size_t k = 0; k < patch.edges.size(); ++k) {
+    for (const Index i : edges[static_cast<std::size_t>(patch.edges[k])]) marks(i).edges |= 1u << k;
+  }
+  for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
+    for (const Index i : triangles[static_cast<std::size_t>(patch.triangles[k])])
+      marks(i).triangles |= 1u << k;
+  }
+}
 
 }  // namespace
 
@@ -178,6 +193,7 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
         }
       }
     }
+    mark_features(model.edges, model.triangles, patch);
   }
 }
 
@@ -201,7 +217,7 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
   for (Node& node : nodes_) node.spread = {};
   if (!cull || nodes_.empty()) return;
-  mark_spread(0, motion, false);
+  mark_spread(0, motion);
 }
 
 template <class Real>
@@ -221,138 +237,7 @@ void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
   }
   if (nodes_.empty()) return;
   sum_changed(changed);
-  mark_spread(0, motion, true);
-}
-
-template <class Real>
-void PatchTree<Real>::sum_changed(const std::vector<char>& changed) {
-  changed_sums_.resize(parts_.size());
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const ClothPart<Real>& part = parts_[p];
-    std::vector<int>& sums = changed_sums_[p];
-    sums.clear();
-    if (part.rows * part.columns != part.particles.count) continue;  // no whole grid
-    const auto width = static_cast<std::size_t>(part.columns) + 1;
-    sums.assign((static_cast<std::size_t>(part.rows) + 1) * width, 0);
-    auto i = static_cast<std::size_t>(part.particles.first);
-    for (std::size_t at = width; at < sums.size(); at += width) {
-      for (std::size_t c = 1; c < width; ++c, ++i)
-        sums[at + c] = sums[at + c - 1] + sums[at - width + c] - sums[at - width + c - 1] +
-                       (changed[i] != 0 ? 1 : 0);
-    }
-  }
-}
-
-/// Whether a particle of these cells changed its motion, or may have.
-template <class Real>
-bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
-  const std::vector<int>& sums = changed_sums_[static_cast<std::size_t>(p)];
-  if (sums.empty()) return true;
-  const int width = parts_[static_cast<std::size_t>(p)].columns + 1;
-  const auto before = [&](int row, int column) {
-    return sums[static_cast<std::size_t>(row * width + column)];
-  };
-  const int row_end = cells.row_end + 1, column_end = cells.column_end + 1;
-  return before(row_end, column_end) - before(cells.row, column_end) -
-             before(row_end, cells.column) + before(cells.row, cells.column) !=
-         0;
-}
-
-/// Tries the rectangle of a node, grown by the width of a patch, and else those of its children.
-template <class Real>
-void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion, bool only_changed) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
-  const bool grid = node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
-  if (grid) {
-    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
-    const CellRange grown = {std::max(node.cells.row - kPatchCells, 0),
-                             std::min(node.cells.row_end + kPatchCells, part.rows - 1),
-                             std::max(node.cells.column - kPatchCells, 0),
-                             std::min(node.cells.column_end + kPatchCells, part.columns - 1)};
-    // Features that share no particle are at least the height of a triangle apart in the fabric.
-    const Real nearest = part.cell_u * part.cell_v /
-                         std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
-    const Real least = 2 * motion.radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
-    const bool inherited = node.spread.cells() > 0 && node.spread != grown;
-    const bool as_before = only_changed && !inherited && !has_changed(node.part, grown);
-    if (as_before && node.spread.cells() > 0) return;
-    Plane plane;
-    if (!as_before && least < 1 && find_plane(motion, grown, node.part, plane) &&
-        is_spread(motion.start, plane, grown, node.part, least) &&
-        is_spread(motion.end, plane, grown, node.part, least)) {
-      give_spread(n, grown);
-      return;
-    }
-  }
-  node.spread = {};
-  if (node.patch != kNone) return;
-  mark_spread(node.left, motion, only_changed);
-  mark_spread(node.right, motion, only_changed);
-}
-
-template <class Real>
-void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
-  node.spread = cells;
-  if (node.patch != kNone) return;
-  give_spread(node.left, cells);
-  give_spread(node.right, cells);
-}
-
-/// The plane in which a rectangle lies on the whole during the motion, by the mean of its rows and
-/// columns: two directions that stand alike to both.
-/// @return whether there is one
-template <class Real>
-bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const CellRange& cells,
-                                 Index p, Plane& plane) const {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
-  const auto at = [&](int r, int c) {
-    return static_cast<std::size_t>(part.particles.first + r * part.columns + c);
-  };
-  Quad<Real> u, v;
-  for (const QuadArray<Real>* x : {&motion.start, &motion.end}) {
-    for (int r = cells.row; r <= cells.row_end; ++r)
-      u += (*x)[at(r, cells.column_end)] - (*x)[at(r, cells.column)];
-    for (int c = cells.column; c <= cells.column_end; ++c)
-      v += (*x)[at(cells.row_end, c)] - (*x)[at(cells.row, c)];
-  }
-  const auto scale = [](Quad<Real>& q, Real length) {
-    const Real size = std::sqrt(dot(q, q));
-    q = q * (length / size);
-    return size;
-  };
-  scale(u, 1);
-  scale(v, 1);
-  Quad<Real> sum = u + v, difference = u - v;
-  const Real half = std::sqrt(Real(0.5));
-  if (!(scale(sum, half) > Real(0.1)) || !(scale(difference, half) > Real(0.1))) return false;
-  plane = {sum + difference, sum - difference};
-  return true;
-}
-
-/// Whether the least eigenvalue of the symmetric part of the gradient in a plane is above `least`
-/// all over a rectangle.
-template <class Real>
-bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
-                                const CellRange& cells, Index p, Real least) const {
-  const auto& grid = grids_[static_cast<std::size_t>(p)];
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
-  const int columns = part.columns - 1;
-  const Real per_u = Real(1) / part.cell_u, per_v = Real(1) / part.cell_v;
-  const auto side = [&](const std::array<Index, 2>& s, Real per_length) {
-    return (x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])]) * per_length;
-  };
-  for (int r = cells.row; r < cells.row_end; ++r) {
-    const auto begin = static_cast<std::size_t>(2 * (r * columns + cells.column));
-    const auto end = static_cast<std::size_t>(2 * (r * columns + cells.column_end));
-    for (std::size_t t = begin; t < end; ++t) {
-      const Quad<Real> u = side(grid[t].along_u, per_u), v = side(grid[t].along_v, per_v);
-      const Real a = dot(plane.u, u) - least, b = dot(plane.v, v) - least;
-      const Real off = (dot(plane.u, v) + dot(plane.v, u)) / 2;
-      if (!(a > 0 && b > 0 && a * b > off * off)) return false;
-    }
-  }
-  return true;
+  renew_spread(0, motion, changed);
 }
 
 template class PatchTree<float>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -16,6 +17,15 @@ struct PredictedMotion {
   Real radius = 0;             ///< of the balls [m]
 };
 
+/// A patch of a grid is at most so many cells wide. Wider: fewer boxes, and more features in those
+/// that touch.
+inline constexpr int kPatchCells = 2;
+
+/// A bit for each feature of a patch.
+struct PatchMarks {
+  std::uint32_t vertices = 0, edges = 0, triangles = 0;
+};
+
 /// Hierarchy of axis-aligned boxes over patches of cloths. Its shape is made once, from the mesh;
 /// boxes are refitted. Patches of a grid are rectangles of cells; those of other meshes are halved
 /// by place. Every particle and edge belongs to one patch, every triangle too.
@@ -25,7 +35,8 @@ struct PredictedMotion {
 /// points of it are at least lambda times as far apart as in the fabric. So what is stretched out
 /// enough cannot touch itself, and no pair within it needs a test. The gradient in one plane is
 /// linear in time on linear paths and the least eigenvalue concave, so both ends of the stretch are
-/// enough, in the same plane.
+/// enough, in the same plane. When some particles get other paths, the triangles of the others keep
+/// to what was found, and in that plane only the triangles with a changed one are tested again.
 template <class Real>
 class PatchTree {
  public:
@@ -44,7 +55,8 @@ class PatchTree {
   /// What stands in a patch.
   struct Patch {
     std::vector<Index> vertices, edges, triangles;  ///< that belong to it
-    std::vector<Index> particles;                   ///< of its triangles
+    std::vector<Index> particles;                   ///< of its triangles, ascending
+    std::vector<PatchMarks> having;                 ///< of each of these, the features that have it
   };
   const Patch& patch(Index p) const { return patches_[static_cast<std::size_t>(p)]; }
   std::size_t patch_count() const { return patches_.size(); }
@@ -79,6 +91,10 @@ class PatchTree {
     }
     bool operator==(const CellRange&) const = default;
   };
+  /// Two orthonormal directions.
+  struct Plane {
+    Quad<Real> u, v;
+  };
   struct Node {
     QuadBox<Real> box;
     Index left = kNone, right = kNone;  ///< nodes, behind this one
@@ -87,15 +103,12 @@ class PatchTree {
     Index triangles = 0;                ///< below it
     CellRange cells;                    ///< of a grid
     CellRange spread;                   ///< what is stretched out around it; empty if it is not
+    Plane plane;                        ///< in which it is, if that was found for this node
     bool marked = false;                ///< it or one below has a changed particle
   };
   /// In a grid each triangle has one side along the rows and one along the columns.
   struct GridTriangle {
     std::array<Index, 2> along_u = {kNone, kNone}, along_v = {kNone, kNone};
-  };
-  /// Two orthonormal directions.
-  struct Plane {
-    Quad<Real> u, v;
   };
 
   void build_grid(const ClothModel<Real>& model, Index part);
@@ -108,7 +121,17 @@ class PatchTree {
   void fit_box(Node& node, const PredictedMotion<Real>& motion) const;
   void sum_changed(const std::vector<char>& changed);
   bool has_changed(Index part, const CellRange& cells) const;
-  void mark_spread(Index node, const PredictedMotion<Real>& motion, bool only_changed);
+  bool is_grid(const Node& node) const {
+    return node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
+  }
+  CellRange grown(const Node& node) const;
+  Real least_spread(const Node& node, Real radius) const;
+  void mark_spread(Index node, const PredictedMotion<Real>& motion);
+  void renew_spread(Index node, const PredictedMotion<Real>& motion,
+                    const std::vector<char>& changed);
+  bool find_spread(Node& node, const PredictedMotion<Real>& motion) const;
+  bool stays_spread(const Node& node, const PredictedMotion<Real>& motion,
+                    const std::vector<char>& changed) const;
   void give_spread(Index node, const CellRange& cells);
   bool find_plane(const PredictedMotion<Real>& motion, const CellRange& cells, Index part,
                   Plane& plane) const;

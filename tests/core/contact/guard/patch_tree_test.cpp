@@ -1,11 +1,10 @@
-#include "core/contact/guard/patch_tree.h"
-
 #include <cstdlib>
 #include <set>
 
 #include <catch2/catch.hpp>
 
 #include "core/contact/feature_pair.h"
+#include "core/contact/guard/patch_boxes.h"
 #include "tests/support/cloths.h"
 #include "tests/support/seeded_random.h"
 
@@ -223,6 +222,47 @@ TEST_CASE("a sheet that is spread out at both ends of its motion but not between
   PatchTree<float> tree(model);
   const bool found_all = find_pairs(model, tree, motion, true).pairs == all_pairs(model, motion);
   CHECK(found_all);
+}
+
+TEST_CASE("of two patches exactly the features that share a particle are left out") {
+  const ClothModel<float> model = build_cloth<float>(flat_cloth(9, 12));
+  const PatchTree<float> tree(model);
+  std::size_t left_out = 0;
+  const auto check = [&](PairKind kind, const std::array<Index, 4>& particle, std::uint32_t bits,
+                         std::size_t n) {
+    const bool kept = (bits >> n & 1) != 0;
+    left_out += kept ? 0 : 1;
+    REQUIRE(kept == !share(particle, first_side(kind)));
+  };
+  const auto vertices = [&](const auto& p, const auto& q, const PatchOverlaps::Bits& bits) {
+    for (std::size_t k = 0; k < p.vertices.size(); ++k) {
+      for (std::size_t n = 0; n < q.triangles.size(); ++n) {
+        const Triangle& c = model.triangles[static_cast<std::size_t>(q.triangles[n])];
+        check(PairKind::vertex_triangle, {p.vertices[k], c[0], c[1], c[2]}, bits[k], n);
+      }
+    }
+  };
+  const auto count = static_cast<Index>(tree.patch_count());
+  for (Index a = 0; a < count; ++a) {
+    for (Index b = a; b < count; ++b) {
+      PatchOverlaps all;
+      for (PatchOverlaps::Bits* bits :
+           {&all.first_vertices, &all.second_vertices, &all.first_edges})
+        bits->fill(~0u);
+      const auto &p = tree.patch(a), &q = tree.patch(b);
+      leave_out_incident<float>(p, q, all);
+      vertices(p, q, all.first_vertices);
+      vertices(q, p, all.second_vertices);
+      for (std::size_t k = 0; k < p.edges.size(); ++k) {
+        for (std::size_t n = 0; n < q.edges.size(); ++n) {
+          const Edge &e = model.edges[static_cast<std::size_t>(p.edges[k])],
+                     &f = model.edges[static_cast<std::size_t>(q.edges[n])];
+          check(PairKind::edge_edge, {e[0], e[1], f[0], f[1]}, all.first_edges[k], n);
+        }
+      }
+    }
+  }
+  CHECK(left_out > 1000);
 }
 
 TEST_CASE("every particle, edge and triangle belongs to one patch") {
