@@ -116,8 +116,8 @@ class CommandDraw {
   void operator()(Ping& ping) { ping.t = number({-1e300, 1e300}, 0); }
   void operator()(Load& load) { load.scene = "nowhere"; }
   void operator()(CreateRoom& create) { create.name = "other"; }
-  void operator()(Save& save) { save.name = some() ? "a" : "b"; }
-  void operator()(Restore& restore) { restore.name = some() ? "a" : "b"; }
+  void operator()(Save& save) { save.name.assign(1, some() ? 'a' : 'b'); }
+  void operator()(Restore& restore) { restore.name.assign(1, some() ? 'a' : 'b'); }
   void operator()(Fork& fork) { fork.name = "other"; }
   void operator()(ListRooms&) {}
   void operator()(CloseRoom& close) { close.name = "other"; }
