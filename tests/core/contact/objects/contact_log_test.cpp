@@ -49,15 +49,18 @@ WorldDef on_objects() {
   return def;
 }
 
-/// A sheet by whose edge a gripper holds, turns and pulls it.
+/// A sheet that hangs by its upper edge between the open jaws of a gripper.
 WorldDef in_jaws() {
   ClothDef cloth = test::flat_cloth(9, 9, 0.2, 0.2);
-  cloth.origin = Vec3d(-0.1, 1, 0);
+  cloth.origin = Vec3d(-0.1, 1.2, 0);
+  cloth.v = -Vec3d::UnitY();
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
   GripperDef gripper;
-  gripper.centre = Vec3d(0, 1, 0.01);
-  gripper.orientation = Eigen::AngleAxisd(1.5707963267948966, Vec3d::UnitZ());
+  gripper.centre = Vec3d(0, 1.15, 0);
+  gripper.orientation = Eigen::AngleAxisd(-1.5707963267948966, Vec3d::UnitY());
+  gripper.half_extents = Vec3d(0.005, 0.03, 0.06);
   gripper.opening = 0.02;
   gripper.closing_speed = 0.5;
   def.grippers = {gripper};
@@ -100,7 +103,7 @@ TEST_CASE("a contact's mean force is the sum of its impulses, on objects that mo
   move.target.rotation = Eigen::AngleAxisd(0.8, Vec3d(1, 2, 0.5).normalized());
   CHECK(check_ticks(world, 15) > 100);
   REQUIRE(world.move_collider(0, move));
-  CHECK(check_ticks(world, 25) > 1000);
+  CHECK(check_ticks(world, 25) > 100);
 }
 
 TEST_CASE("so is that of jaws that squeeze, with what cancels between the two") {
@@ -112,8 +115,8 @@ TEST_CASE("so is that of jaws that squeeze, with what cancels between the two") 
   REQUIRE(world.command_gripper(0, close));
   check_ticks(world, 10);
   GripperCommand turn;
-  turn.rotation = Eigen::AngleAxisd(0.7, Vec3d::UnitX());
-  turn.position = Vec3d(0.02, 1.05, 0);
+  turn.rotation = Eigen::AngleAxisd(0.2, Vec3d::UnitX());
+  turn.position = Vec3d(0.01, 1.16, 0);
   REQUIRE(world.command_gripper(0, turn));
   CHECK(check_ticks(world, 15) > 100);
   const std::vector<Vec3d>& on = world.reactions()->colliders;
