@@ -64,8 +64,8 @@ inline constexpr double kCostMemory = 0.2;
 /// the light ones.
 inline constexpr int kPatience = 10;
 
-/// Threads that build scenes. More: memory and time that ticks lack. Fewer: who loads waits for
-/// others who load.
+/// Threads that build scenes. More: memory and time that ticks lack. Fewer: a load waits for
+/// other loads.
 inline constexpr int kSceneBuilders = 2;
 
 /// Particles of all rooms together, and updates of particles by their solvers a simulated second:

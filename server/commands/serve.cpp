@@ -99,7 +99,7 @@ void print_addresses(const ServerOptions& options, int port) {
   } catch (const OutputError& error) {
     spdlog::warn("the addresses could not be printed: {}; port {}", error.what(), port);
   }
-  // Beside somebody who lets others in, for their phones.
+  // Phones in the same place read it.
   if (!options.open || ::isatty(STDERR_FILENO) == 0) return;
   if (const auto code = qr_code(urls.front()))
     std::fprintf(stderr, "%s%s\n", terminal_text(*code).c_str(), urls.front().c_str());

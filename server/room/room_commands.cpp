@@ -224,7 +224,7 @@ void Room::tell_jump(const char* code, std::string message, ViewerId viewer) {
   notify(proto::NoticeLevel::info, code, std::move(message), viewer);
 }
 
-/// Without the hands of viewers, who may hold something else when it is restored.
+/// Without the hands of viewers: these may hold something else when it is restored.
 Room::Outcome Room::apply(ViewerId, const proto::Save& command) {
   if (auto error = saves_.check(command.name, world_->model().mass.size()))
     return *std::move(error);

@@ -90,7 +90,7 @@ void Scheduler::work(Lane lane) {
     }
     run(lane, next, lock);
     if (!next->removed_) continue;
-    lock.unlock();  // it may be the last who knows of it, and a world takes long to destroy
+    lock.unlock();  // this may be the last pointer to it, and a world takes long to destroy
     next.reset();
     lock.lock();
   }
