@@ -77,7 +77,9 @@ World<Real> World<Real>::copy() const {
   other.verlet_ = {};
   other.relaxation_ = {};
   other.prepare_solver();
-  other.implicit_ = implicit_;  // it has no pointers, and knows the previous substep
+  other.implicit_ = implicit_;  // it knows the previous substep
+  if (solver_of(def_) == SolverKind::implicit)
+    other.implicit_.energy.prepare(other.model_);  // its passes point into arrays of their own
   return other;
 }
 
