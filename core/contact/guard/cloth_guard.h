@@ -196,6 +196,7 @@ class ClothGuard {
   void test_pair(PairKind kind, Index a, Index b, const std::array<Index, 4>& particle,
                  PairSearch<Real>& s) const;
   void keep_near(PairColumns<Real>& columns, PairSearch<Real>& s) const;
+  bool is_apart(const GuardedPair<Real>& pair) const;
 
   // guard_tangles.cpp
   void find_tangles(const ClothState<Real>& state);

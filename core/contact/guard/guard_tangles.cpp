@@ -93,7 +93,7 @@ void ClothGuard<Real>::look_through(Index p, Index q) {
 template <class Real>
 void ClothGuard<Real>::note_touches() {
   for (const GuardedPair<Real>& pair : pairs_) {
-    if (pair.open && !(pair.bound > 0) && !tangles_.frees(pair.kind, pair.particle))
+    if (pair.open && !tangles_.frees(pair.kind, pair.particle))
       tangles_.note_touch(pair.kind, pair.particle, legal_);
   }
 }
