@@ -20,7 +20,6 @@
 #include "core/contact/tangles/cloth_tangles.h"
 #include "core/executor.h"
 #include "core/profile.h"
-
 // Contact of cloths with themselves and each other; section 4 of core/README.md is an overview.
 
 namespace weft {
