@@ -33,8 +33,18 @@ SUMMARIES = {  # of the commands whose methods in Python follow from their field
     "list_rooms": "The rooms of the server.",
     "fork": "Opens a room that is like this one at this moment; its address ends in `/ws/name`.",
     "close_room": "Closes a room and the connections of its viewers; the default one stays.",
+    "policy": "Says who may hold the cloth.",
+    "mute": "Takes the right to hold from a viewer, whatever the policy.",
+    "give_hand": "Gives a viewer the right to hold, whatever the policy.",
+    "presence": "Tells others where this viewer points and looks.",
+    "follow": "Sees by the camera of another viewer; 0: by its own again.",
+    "lead": "Brings all viewers to this one's camera.",
+    "invite": "Makes a token for a link; the result has it.",
 }
-TABLES = {"hello", "camera", "gripper", "set", "advance", "view", "create_room", "fork"}  # that README.md has
+TABLES = {  # that README.md has
+    "hello", "camera", "gripper", "set", "advance", "view", "policy", "mute", "give_hand", "presence", "follow",
+    "lead", "invite", "create_room", "fork",
+}
 SCRIPT = {
     **NUMBERS, "boolean": "boolean", "string": "string", "vector": "Vec3", "rotation": "number[]",
     "name_or_place": "string | number", "name_or_object": "string | object",
@@ -148,14 +158,41 @@ def table(fields):
         yield f"| `{field['name']}` | {field['meaning']}{unit} | {value_text(field)} | {usual} |"
 
 
+def form_text(command):
+    """A command with what tells this form of it from its others."""
+    told = [f"`{f['name']}: {json.dumps(f['constant'])}`" for f in command["fields"] if "constant" in f]
+    only = [f"`{f['name']}`" for f in command["fields"] if f.get("required") and "constant" not in f]
+    return f"`{command['op']}`" + (" with " + ", ".join(told or only[:1]) if told or only else "")
+
+
+def rights(messages):
+    """Which right each command needs: a line for each right, and for parts that need more."""
+    alternatives = {}
+    for command in messages["commands"]:
+        alternatives.setdefault(command["op"], []).append(command)
+    needs = {}
+    for op, forms in alternatives.items():
+        one = len({form["right"] for form in forms}) == 1
+        for form in forms[:1] if one else forms:
+            needs.setdefault(form["right"], []).append(f"`{op}`" if one else form_text(form))
+        for form in forms:
+            if "further" in form:
+                needs.setdefault(form["further"]["right"], []).append(f"`{op}` with {form['further']['what']}")
+    yield "| right | commands |"
+    yield "|---|---|"
+    for right in ("look", "hold", "operate"):
+        yield f"| `{right}` | {'; '.join(dict.fromkeys(needs[right]))} |"
+
+
 def tables(messages):
     """All tables, by the name in their mark."""
-    found = {}
+    found = {"rights": rights(messages)}
     for command in messages["commands"]:
         if command["op"] in TABLES:
             found[command["op"]] = table(command["fields"])
             for name, fields in objects_of(command["fields"]).items():
-                found[name] = table(fields)
+                if name.lower() not in TABLES:  # a command of its own has the same fields
+                    found[name] = table(fields)
     return {name: "\n".join(rows) for name, rows in found.items()}
 
 

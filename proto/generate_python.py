@@ -13,7 +13,8 @@ TOLD = TAKEN | {"vector": "Sequence[float]", "rotation": "Sequence[float]", "nam
 # Answers that several commands have in common are described by none of them.
 BARE = {
     **dict.fromkeys(("pause", "resume"), ("tick: int", "paused: bool")),
-    **dict.fromkeys(("camera", "set", "reset", "save", "restore"), ("tick: int",)),
+    **dict.fromkeys(("camera", "set", "reset", "save", "restore", "policy", "mute", "give_hand", "presence", "follow",
+                     "lead"), ("tick: int",)),
 }
 
 
@@ -129,12 +130,16 @@ def python_method(command, summary):
         yield f'        """{summary}"""'
         yield f'        return await self.request("{op}", timeout=timeout)'
         return
-    yield f'        """{summary}'
-    yield ""
-    for field in fields:
-        line = f"{field['name']}: {described(field)}".replace("`", "")
-        yield from textwrap.wrap(line, WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 12)
-    yield '        """'
+    lines = [f"{field['name']}: {described(field)}".replace("`", "") for field in fields]
+    short = f'        """{summary} ({lines[0]})"""'
+    if len(lines) == 1 and len(short) <= WIDTH:
+        yield short
+    else:
+        yield f'        """{summary}'
+        yield ""
+        for line in lines:
+            yield from textwrap.wrap(line, WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 12)
+        yield '        """'
     values = [f'"{field["name"]}": {value_of(field)}' for field in fields]
     body = "fields = {" + ", ".join(values) + "}"
     if len(body) + 8 <= WIDTH:

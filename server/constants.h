@@ -32,6 +32,24 @@ inline constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
 /// script that loads scene after scene is slow. Smaller: it keeps others busy with meshes.
 inline constexpr double kPauseAfterLoad = 0.25;
 
+// Who may what.
+
+/// Viewers of a room that others reach, up to which newcomers may hold the cloth at once [1]. More:
+/// strangers can spoil it together. Fewer: two people and their scripts have to ask each other.
+inline constexpr std::size_t kMostUnasked = 3;
+
+/// Time between two changes of a viewer's name [s], of which all viewers are told. Larger: names
+/// follow later. Smaller: one viewer makes the server tell all others more often.
+inline constexpr double kNamePause = 1;
+
+/// Viewers of whose cursors and cameras one message tells [1]. More: a crowd's messages are longer
+/// and rarer. Fewer: a cursor in a crowd moves less often.
+inline constexpr std::size_t kMostPresences = 8;
+
+/// Shortest time between two such messages [s], and their sustained rate to one viewer [bytes/s].
+/// Larger pause: cursors jump. Larger rate: many hands cost slow links more.
+inline constexpr double kPresencePause = 0.1, kPresenceRate = 4000;
+
 // Time.
 
 /// Longest sleep of the simulation thread [s]. Larger: leases end later. Smaller: an idle room

@@ -9,6 +9,7 @@
 #include <boost/asio/ip/address.hpp>
 
 #include "server/origin.h"
+#include "server/proxies.h"
 
 namespace weft::server {
 namespace {
@@ -66,10 +67,10 @@ void validate(const ServerOptions& options) {
   boost::system::error_code error;
   boost::asio::ip::make_address(options.bind, error);
   if (error) throw OptionError("--bind", options.bind, "an IPv4 or IPv6 address");
-  if (!is_loopback(options.bind) && !options.open)
+  if (!is_loopback(options.bind) && !options.open && !options.has_tokens)
     throw OptionError("--bind", options.bind,
-                      "a loopback address such as 127.0.0.1, or any together with --open "
-                      "(everyone who reaches the port may then command the cloth)");
+                      "a loopback address such as 127.0.0.1, or any together with --tokens or "
+                      "--open (everyone who reaches the port may then command the cloth)");
   check_range("--port", options.port, kPorts);
   if (options.rate != 0) check_range("--rate", options.rate, kRates);
   check_range("--threads", options.threads, kThreadCounts);
@@ -88,6 +89,11 @@ void validate(const ServerOptions& options) {
     if (!parse_origin(origin))
       throw OptionError("--allow-origin", origin,
                         "an origin such as https://weft.example or http://localhost:3000");
+  }
+  for (const std::string& proxy : options.trusted_proxies) {
+    if (!AddressRange::parse(proxy))
+      throw OptionError("--trusted-proxy", proxy,
+                        "an address such as 127.0.0.1, or a network such as 10.0.0.0/8");
   }
   static constexpr std::array<const char*, 6> kLevels = {"trace",   "debug", "info",
                                                          "warning", "error", "off"};

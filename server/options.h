@@ -47,8 +47,8 @@ double parse_number(const char* field, const std::string& text, const OptionRang
 
 /// Limits that protect the server from its viewers.
 struct ConnectionLimits {
-  int viewers = 64;                     ///< WebSocket connections
-  int connections = 256;                ///< sockets of any kind
+  int viewers = 1000;                   ///< WebSocket connections
+  int connections = 2000;               ///< sockets of any kind
   int connections_per_address = 128;    ///< sockets of any kind from one address
   double messages_per_second = 1000;    ///< text messages of one viewer; also the longest burst
   double handshake_seconds = 5;         ///< for a request to be complete
@@ -66,11 +66,15 @@ inline constexpr double kUsualTickLimit = 2;
 /// two busy in many ticks, and no more. The number never changes a bit of the motion.
 int usual_threads();
 
+/// Holds tokens, as a file of them does; `weft serve` takes it from the environment.
+inline constexpr const char* kTokensVariable = "WEFT_TOKENS";
+
 /// All options of `weft serve`.
 struct ServerOptions {
   std::string bind = "127.0.0.1";       ///< address; others than loopback need `open`
   int port = 8080;                      ///< 0 to 65535; 0 lets the system choose
   bool open = false;                    ///< serve other machines, without authentication
+  bool has_tokens = false;              ///< viewers are let in by token
   std::string scene = "default";        ///< a name, or a file that ends in .json
   std::string scenes;                   ///< directory with further scenes and meshes; empty: none
   double rate = 0;                      ///< ticks a second, 1 to 1000; 0: the scene's own
@@ -80,8 +84,10 @@ struct ServerOptions {
   double tick_limit = kUsualTickLimit;  ///< of CPU for a tick, 0 to 3600 [s]; 0: no bound
   int rooms = 64;                       ///< at a time, 1 to 1000
   double room_idle = 600;               ///< an empty room closes after this [s]; 0: never
+  std::string tokens;                   ///< file of tokens; empty: those of the environment
   std::string web;                      ///< directory of the page; empty: beside the executable
   std::vector<std::string> allowed_origins;  ///< besides the server's own; origin.h
+  std::vector<std::string> trusted_proxies;  ///< whose word on the client's address counts
   std::vector<std::pair<std::string, std::string>> settings;  ///< `--set`, in order
   double max_seconds = 0;          ///< stop by itself after this; 0: never
   std::string log_level = "info";  ///< trace, debug, info, warning, error or off

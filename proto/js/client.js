@@ -178,6 +178,71 @@ export class WeftClient extends Session {
   }
 
   /**
+   * Says who may hold the cloth.
+   * @param {import('./commands.js').PolicyCommand['policy']} policy
+   * @param {Call} [call]
+   */
+  policy(policy, call) {
+    return this.request('policy', { policy }, call);
+  }
+
+  /**
+   * Takes the right to hold from a viewer, whatever the policy.
+   * @param {number} viewer
+   * @param {{muted?: boolean}} [options]
+   * @param {Call} [call]
+   */
+  mute(viewer, options = {}, call) {
+    return this.request('mute', { viewer, ...options }, call);
+  }
+
+  /**
+   * Gives a viewer the right to hold, whatever the policy.
+   * @param {number} viewer
+   * @param {{given?: boolean}} [options]
+   * @param {Call} [call]
+   */
+  giveHand(viewer, options = {}, call) {
+    return this.request('give_hand', { viewer, ...options }, call);
+  }
+
+  /**
+   * Tells others where this viewer points and looks.
+   * @param {import('./commands.js').PresenceCommand} where
+   * @param {Call} [call]
+   */
+  presence(where, call) {
+    return this.request('presence', where, call);
+  }
+
+  /**
+   * Sees by the camera of another viewer, whose `camera` comes with the event `presence`.
+   * @param {number} viewer  0: by its own again
+   * @param {Call} [call]
+   */
+  follow(viewer, call) {
+    return this.request('follow', { viewer }, call);
+  }
+
+  /**
+   * Brings all viewers to this one's camera.
+   * @param {{on?: boolean}} [options]
+   * @param {Call} [call]
+   */
+  lead(options = {}, call) {
+    return this.request('lead', options, call);
+  }
+
+  /**
+   * Makes a token for a link; the result has it.
+   * @param {import('./commands.js').InviteCommand['right']} right
+   * @param {Call} [call]
+   */
+  invite(right, call) {
+    return this.request('invite', { right }, call);
+  }
+
+  /**
    * @param {number} n
    * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  `frames`: which of its frames this
    *   viewer gets, regardless of its `hz`; by default those that its `hz` allows. `observe`: what

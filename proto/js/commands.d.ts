@@ -1,7 +1,7 @@
 // Written by proto/generate.py from the descriptions in proto/messages. Do not edit.
 
 import type { Vec3 } from './messages.js';
-import type { Fabric, Fan } from './parts.js';
+import type { Camera, Fabric, Fan } from './parts.js';
 
 /** The fields of `hello`. */
 export interface HelloCommand {
@@ -9,7 +9,7 @@ export interface HelloCommand {
   name?: string;
   /** as `#rrggbb` */
   color?: string;
-  /** reserved; 0 to 256 bytes */
+  /** of a link; tells the role; 0 to 256 bytes */
   token?: string;
 }
 
@@ -315,4 +315,54 @@ export interface ForkCommand {
   name: string;
   /** whether it begins so; by default as this room is; `true` or `false` */
   paused?: boolean;
+}
+
+/** The fields of `policy`. */
+export interface PolicyCommand {
+  /** who may hold the cloth; `watch` or `one_hand` or `everybody` */
+  policy: 'watch' | 'one_hand' | 'everybody';
+}
+
+/** The fields of `mute`. */
+export interface MuteCommand {
+  /** whose hands let go; 0 to 4294967295 */
+  viewer: number;
+  /** `false`: the policy holds for it again; `true` or `false` */
+  muted?: boolean;
+}
+
+/** The fields of `give_hand`. */
+export interface GiveHandCommand {
+  /** that may hold; 0 to 4294967295 */
+  viewer: number;
+  /** `false`: the policy holds for it again; `true` or `false` */
+  given?: boolean;
+}
+
+/** The fields of `presence`. */
+export interface PresenceCommand {
+  /** what it points at [m]; 3 × ±10000 */
+  cursor?: Vec3;
+  /** it points at nothing any more; `true` or `false` */
+  away?: boolean;
+  /** where it looks from */
+  camera?: Camera;
+}
+
+/** The fields of `follow`. */
+export interface FollowCommand {
+  /** by whose camera it sees; 0: its own again; 0 to 4294967295 */
+  viewer: number;
+}
+
+/** The fields of `lead`. */
+export interface LeadCommand {
+  /** `false`: those that follow its sender see by their own again; `true` or `false` */
+  on?: boolean;
+}
+
+/** The fields of `invite`. */
+export interface InviteCommand {
+  /** of who comes by it; `look` or `hold` or `operate` */
+  right: 'look' | 'hold' | 'operate';
 }

@@ -37,4 +37,11 @@ export const FIELDS = {
   create_room: ['name', 'scene', 'paused'],
   close_room: ['name'],
   fork: ['name', 'paused'],
+  policy: ['policy'],
+  mute: ['viewer', 'muted'],
+  give_hand: ['viewer', 'given'],
+  presence: ['cursor', 'away', 'camera'],
+  follow: ['viewer'],
+  lead: ['on'],
+  invite: ['right'],
 };

@@ -10,6 +10,7 @@ import type {
   Grab,
   GripperState,
   Pin,
+  Presence,
   Reactions,
   StageWork,
   State,
@@ -43,6 +44,7 @@ export type {
   Hit,
   Notice,
   Pin,
+  Presence,
   Reactions,
   StageWork,
   State,
@@ -86,6 +88,11 @@ export interface Welcome {
 export interface Roster {
   op: 'roster';
   viewers: Viewer[];
+}
+
+export interface PresenceNews {
+  op: 'presence';
+  viewers: Presence[];
 }
 
 export interface Pins {

@@ -42,6 +42,17 @@ export interface Fabric {
   friction?: number;
 }
 
+export interface Camera {
+  /** of the eye [m]; 3 × ±10000 */
+  position: Vec3;
+  /** what it looks at; not the same point [m]; 3 × ±10000 */
+  target: Vec3;
+  /** a direction; 3 × ±10000 */
+  up?: Vec3;
+  /** vertical angle of view [degrees]; 1 to 179 */
+  fov?: number;
+}
+
 export interface Hit {
   /** to hold it at a point of this triangle; 0 to 2147483647 */
   triangle: number;
@@ -116,17 +127,6 @@ export interface Energy {
   total: number;
 }
 
-export interface Camera {
-  /** of the eye [m]; 3 × ±10000 */
-  position: Vec3;
-  /** what it looks at; not the same point [m]; 3 × ±10000 */
-  target: Vec3;
-  /** a direction; 3 × ±10000 */
-  up?: Vec3;
-  /** vertical angle of view [degrees]; 1 to 179 */
-  fov?: number;
-}
-
 export interface PinForce {
   /** its id */
   pin: number;
@@ -156,10 +156,25 @@ export interface Viewer {
   name: string;
   /** `#rrggbb` */
   color: string;
-  /** what it may do */
-  role: string;
+  /** what it may do; `viewer` or `operator` or `admin` */
+  role: 'viewer' | 'operator' | 'admin';
+  /** whether it may hold the cloth; `true` or `false` */
+  hand: boolean;
   /** where it looks from, as last told */
   camera: Camera | null;
+}
+
+export interface Presence {
+  /** of which something is new */
+  viewer: number;
+  /** what it points at [m] */
+  cursor?: Vec3;
+  /** it points at nothing any more; `true` or `false` */
+  away?: boolean;
+  /** where it looks from; only while others see by it */
+  camera?: Camera;
+  /** by whose camera it sees now; 0: its own */
+  follows?: number;
 }
 
 export interface Pin {
@@ -284,6 +299,8 @@ export interface State {
   /** simulated [s] */
   time: number;
   paused: boolean;
+  /** who may hold the cloth; `watch` or `one_hand` or `everybody` */
+  policy: 'watch' | 'one_hand' | 'everybody';
   /** simulated time per real time that was asked for */
   speed: number;
   /** fraction of `speed` at which time passes */

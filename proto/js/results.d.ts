@@ -11,8 +11,16 @@ export interface HelloResult {
   name: string;
   /** in force */
   color: string;
-  /** what it may do */
-  role: string;
+  /** what it may do; `viewer` or `operator` or `admin` */
+  role: 'viewer' | 'operator' | 'admin';
+}
+
+/** What the answer to `invite` has. */
+export interface InviteResult {
+  /** the command's place in the order: after it */
+  tick: number;
+  /** for a link's fragment, `#token=…` */
+  token: string;
 }
 
 /** What the answer to `pick` has. */
@@ -184,7 +192,14 @@ export interface Results {
   reset: { tick: number };
   save: { tick: number };
   restore: { tick: number };
+  policy: { tick: number };
+  mute: { tick: number };
+  give_hand: { tick: number };
+  presence: { tick: number };
+  follow: { tick: number };
+  lead: { tick: number };
   hello: HelloResult;
+  invite: InviteResult;
   pick: PickResult;
   drag: DragResult;
   pin: PinResult;

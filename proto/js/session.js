@@ -14,6 +14,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @typedef {object} Options
  * @property {string} [name]
  * @property {string} [color]            `#rrggbb`
+ * @property {string} [token]            of a link, for a server that asks for one
  * @property {'socket' | 'http'} [mesh]  source of the mesh; over HTTP it is cached
  * @property {boolean} [reconnect]       default true
  * @property {import('./frames.js').FrameSource} [frames]  reads frames, in a worker perhaps
@@ -32,6 +33,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @property {import('./messages.js').Frame} frame      of the present mesh, decoded and acknowledged
  * @property {import('./messages.js').State} state
  * @property {import('./messages.js').Roster} roster
+ * @property {import('./messages.js').PresenceNews} presence  of others and of this viewer
  * @property {import('./messages.js').Pins} pins
  * @property {import('./messages.js').Grabs} grabs
  * @property {import('./messages.js').Notice} notice
@@ -48,7 +50,7 @@ const CALL_TIMEOUT = 30000; // for an answer [ms]
 const LONGEST_TIMER = 2 ** 31 - 1; // the most that timers take [ms]
 const SILENCE_LIMIT = 10000; // silence after which the connection counts as dead [ms]
 const FRAME = 1; // the type of a binary message
-const EVENTS = new Set(['state', 'roster', 'pins', 'grabs', 'notice', 'bye']);
+const EVENTS = new Set(['state', 'roster', 'presence', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
 
 /**
@@ -237,8 +239,8 @@ export class Session extends Emitter {
     this.#clock = new ClockEstimate();
     this.#pings = 0;
     this.#heardAt = this.timers.now();
-    const { name, color } = this.options;
-    if (name || color) this.#send({ op: 'hello', ...{ name, color } });
+    const { name, color, token } = this.options;
+    if (name || color || token) this.#send({ op: 'hello', ...{ token, name, color } });
     if (Object.keys(this.wantedView).length) this.#send({ op: 'view', ...this.wantedView });
     this.#keepAlive();
   }

@@ -8,6 +8,7 @@
 #include "proto/error.h"
 #include "proto/messages/hold_commands.h"
 #include "proto/messages/motion_commands.h"
+#include "proto/messages/people_commands.h"
 #include "proto/messages/query.h"
 #include "proto/messages/room_commands.h"
 #include "proto/messages/rooms_commands.h"
@@ -20,15 +21,20 @@
 namespace weft::proto {
 
 /// Forms of one `op` stand side by side, the one that reads it first: see parse_request.cpp.
-using Command =
-    std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin, ReleaseParticle,
-                 ReleaseAll, Camera, Pause, Resume, Step, Reset, Save, Restore, Speed, Move,
-                 MoveEnd, MovePin, StopPin, Gripper, Set, Advance, Query, Hash, Ping, Load, View,
-                 CreateRoom, ListRooms, CloseRoom, Fork, Halt>;
+using Command = std::variant<Hello, Pick, DragStart, DragMove, DragEnd, Pin, ReleasePin,
+                             ReleaseParticle, ReleaseAll, Camera, Pause, Resume, Step, Reset, Save,
+                             Restore, Speed, Move, MoveEnd, MovePin, StopPin, Gripper, Set, Advance,
+                             Query, Hash, Ping, Load, View, CreateRoom, ListRooms, CloseRoom, Fork,
+                             SetPolicy, Mute, GiveHand, Presence, Follow, Lead, Invite, Halt>;
 
 /// The word in `op`, e.g. "drag".
 inline const char* name_of(const Command& command) {
   return std::visit([](const auto& form) { return form.kOp; }, command);
+}
+
+/// What its sender needs for it.
+inline Right right_to(const Command& command) {
+  return std::visit([](const auto& form) { return right_to(form); }, command);
 }
 
 /// A command with the id that its sender gave, if any.

@@ -102,7 +102,7 @@ std::string encode_welcome(const Welcome& welcome) {
                   {"viewer", welcome.viewer},
                   {"name", welcome.name},
                   {"color", welcome.color},
-                  {"role", welcome.role},
+                  {"role", name_of(welcome.role)},
                   {"room", welcome.room},
                   {"scene", welcome.scene},
                   {"tick_rate", welcome.tick_rate},
@@ -138,6 +138,10 @@ std::string encode_state(const State& state) {
 
 std::string encode_roster(const std::vector<ViewerInfo>& viewers) {
   return text_of({{"op", "roster"}, {"viewers", json_of(viewers)}});
+}
+
+std::string encode_presence(const std::vector<PresenceInfo>& viewers) {
+  return text_of({{"op", "presence"}, {"viewers", json_of(viewers)}});
 }
 
 std::string encode_pins(std::uint64_t tick, const std::vector<PinInfo>& pins) {

@@ -19,7 +19,7 @@ namespace weft::proto {
 struct ServerLimits {
   std::size_t message_bytes = kMostMessageBytes;
   double messages_per_second = 1000;
-  std::uint32_t viewers = 64;
+  std::uint32_t viewers = 1000;
   std::uint32_t drags_per_viewer = 16;
   std::uint32_t drags = 256;
   std::uint32_t pins = 4096;
@@ -31,7 +31,8 @@ struct Welcome {
   std::string version;
   std::string session;  ///< new for each process
   ViewerId viewer = 0;
-  std::string name, color, role;
+  std::string name, color;
+  Role role = Role::viewer;
   std::string room = "default";
   std::string scene;
   double tick_rate = 60;  ///< [1/s]
@@ -187,6 +188,7 @@ struct State {
   std::uint64_t tick = 0;
   double time = 0;  ///< simulated [s]
   bool paused = false;
+  Policy policy = Policy::everybody;
   double speed = 1, pace = 1, softness = 1;
   double budget_ms = 0;
   OverBudget over_budget = OverBudget::slow;
@@ -214,6 +216,7 @@ struct State {
     io.required(Field{"tick", ""}, state.tick);
     io.required(Field{"time", "simulated", {}, "s"}, state.time);
     io.required(Field{"paused", ""}, state.paused);
+    io.required(Field{"policy", "who may hold the cloth"}, state.policy);
     io.required(Field{"speed", "simulated time per real time that was asked for"}, state.speed);
     io.required(Field{"pace", "fraction of `speed` at which time passes"}, state.pace);
     io.required(Field{"softness", "fraction of their stiffness that the springs have"},
@@ -252,7 +255,9 @@ struct State {
 
 struct ViewerInfo {
   ViewerId id = 0;
-  std::string name, color, role;
+  std::string name, color;
+  Role role = Role::viewer;
+  bool hand = true;
   std::optional<Camera> camera;
   static constexpr const char* kName = "Viewer";
   static void describe(auto& io, auto& viewer) {
@@ -260,7 +265,26 @@ struct ViewerInfo {
     io.required(Field{"name", ""}, viewer.name);
     io.required(Field{"color", "`#rrggbb`"}, viewer.color);
     io.required(Field{"role", "what it may do"}, viewer.role);
+    io.required(Field{"hand", "whether it may hold the cloth"}, viewer.hand);
     io.nullable(Field{"camera", "where it looks from, as last told"}, viewer.camera);
+  }
+};
+
+/// What is new of where a viewer points and looks.
+struct PresenceInfo {
+  ViewerId viewer = 0;
+  std::optional<Vec3> cursor;
+  bool away = false;
+  std::optional<Camera> camera;
+  std::optional<ViewerId> follows;
+  static constexpr const char* kName = "Presence";
+  static void describe(auto& io, auto& presence) {
+    io.required(Field{"viewer", "of which something is new"}, presence.viewer);
+    io.optional(Field{"cursor", "what it points at", {}, "m"}, presence.cursor);
+    io.flag(Field{"away", "it points at nothing any more"}, presence.away, false);
+    io.optional(Field{"camera", "where it looks from; only while others see by it"},
+                presence.camera);
+    io.optional(Field{"follows", "by whose camera it sees now; 0: its own"}, presence.follows);
   }
 };
 
@@ -354,6 +378,7 @@ std::string encode_welcome(const Welcome& welcome);
 std::string encode_mesh(const MeshAnnouncement& mesh);
 std::string encode_state(const State& state);
 std::string encode_roster(const std::vector<ViewerInfo>& viewers);
+std::string encode_presence(const std::vector<PresenceInfo>& viewers);
 std::string encode_pins(std::uint64_t tick, const std::vector<PinInfo>& pins);
 std::string encode_grabs(std::uint64_t tick, const std::vector<GrabInfo>& grabs);
 std::string encode_notice(const Notice& notice);

@@ -7,6 +7,7 @@
 
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 #include "proto/types.h"
 
 // Commands that point at the cloth, pull it and pin it.
@@ -19,6 +20,7 @@ struct Pick {
   bool operator==(const Pick&) const = default;
 
   static constexpr const char* kOp = "pick";
+  static constexpr Right kRight = Right::look;
   static void describe(auto& io, auto& pick) {
     io.required(Field{"origin", "where the ray starts", kPositionRange, "m"}, pick.origin);
     io.required(Field{"direction", "of any length but 0: its largest component is at least 1e-9",
@@ -70,6 +72,7 @@ struct DragStart {
   bool operator==(const DragStart&) const = default;
 
   static constexpr const char* kOp = "drag";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& start) {
     io.constant("phase", "start");
     io.optional(kDragNumber, start.drag);
@@ -93,6 +96,7 @@ struct DragMove {
   bool operator==(const DragMove&) const = default;
 
   static constexpr const char* kOp = "drag";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& move) {
     io.constant("phase", "move");
     io.optional(kDragNumber, move.drag);
@@ -106,6 +110,7 @@ struct DragEnd {
   bool operator==(const DragEnd&) const = default;
 
   static constexpr const char* kOp = "drag";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& end) {
     io.constant("phase", "end");
     io.optional(kDragNumber, end.drag);
@@ -119,6 +124,7 @@ struct Pin {
   bool operator==(const Pin&) const = default;
 
   static constexpr const char* kOp = "pin";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& pin) {
     io.hold(pin.hold);
     io.optional(Field{"radius", "of the fixed disc in the fabric; 0: the particle alone",
@@ -132,6 +138,7 @@ struct ReleasePin {
   bool operator==(const ReleasePin&) const = default;
 
   static constexpr const char* kOp = "release";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& release) {
     io.required(Field{"pin", "id of the pin", kIdRange}, release.pin);
   }
@@ -142,6 +149,7 @@ struct ReleaseParticle {
   bool operator==(const ReleaseParticle&) const = default;
 
   static constexpr const char* kOp = "release";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& release) {
     io.required(Field{"particle", "all pins that hold it; none is no error", kIndexRange},
                 release.particle);
@@ -152,6 +160,7 @@ struct ReleaseAll {
   bool operator==(const ReleaseAll&) const = default;
 
   static constexpr const char* kOp = "release";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto&) { io.constant("all", true); }
 };
 

@@ -22,7 +22,12 @@ Json described() {
   Document document(fields);
   const Message message{};
   Message::describe(document, message);
-  return {{"op", Message::kOp}, {"fields", std::move(fields)}};
+  Json out = {{"op", Message::kOp}, {"fields", std::move(fields)}};
+  if constexpr (requires { Message::kRight; }) out["right"] = name_of(Message::kRight);
+  if constexpr (requires { Message::kFurther; })
+    out["further"] = {{"what", Message::kFurther.what},
+                      {"right", name_of(Message::kFurther.right)}};
+  return out;
 }
 
 /// Every form of every command that a client may send.
@@ -71,7 +76,7 @@ int main() {
       {"commands", commands(std::make_index_sequence<std::variant_size_v<Command>>{})},
       {"replies", replies(std::make_index_sequence<std::variant_size_v<Reply>>{})},
       {"events", {described<State>(), described<Notice>(), described<Bye>()}},
-      {"parts", parts<ViewerInfo, PinInfo, GrabInfo, StageWork, TreeInfo, ColliderPose, ContactInfo,
-                      ReactionInfo, GripperInfo>()}};
+      {"parts", parts<ViewerInfo, PresenceInfo, PinInfo, GrabInfo, StageWork, TreeInfo,
+                      ColliderPose, ContactInfo, ReactionInfo, GripperInfo>()}};
   std::cout << all.dump(1) << '\n';
 }

@@ -7,6 +7,7 @@
 #include "proto/error.h"
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 #include "proto/types.h"
 
 // Commands that send colliders, pins and grippers somewhere.
@@ -31,6 +32,7 @@ struct Move {
   bool operator==(const Move&) const = default;
 
   static constexpr const char* kOp = "move";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& move) {
     io.required(kMovedCollider, move.collider);
     io.excludes("collider", {"seconds", "max_force", "stop"});
@@ -51,6 +53,7 @@ struct MoveEnd {
   bool operator==(const MoveEnd&) const = default;
 
   static constexpr const char* kOp = "move";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& end) {
     io.required(kMovedCollider, end.collider);
     io.excludes("collider", {"seconds", "max_force", "stop"});
@@ -69,6 +72,7 @@ struct MovePin {
   bool operator==(const MovePin&) const = default;
 
   static constexpr const char* kOp = "move";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& move) {
     io.required(kMovedPin, move.pin);
     io.excludes("pin", {"collider", "rotation", "turn_speed", "force", "release"});
@@ -89,6 +93,7 @@ struct StopPin {
   bool operator==(const StopPin&) const = default;
 
   static constexpr const char* kOp = "move";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& stop) {
     io.required(kMovedPin, stop.pin);
     io.excludes("pin", {"collider", "rotation", "turn_speed", "force", "release"});
@@ -107,6 +112,7 @@ struct Gripper {
   bool operator==(const Gripper&) const = default;
 
   static constexpr const char* kOp = "gripper";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& gripper) {
     io.required(Field{"name", "of the gripper", {1, kMostGripperBytes}, "bytes", Form::bytes},
                 gripper.gripper);

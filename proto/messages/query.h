@@ -8,6 +8,7 @@
 #include "proto/error.h"
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 #include "proto/types.h"
 
 // The command `query`: reads something from the state between two ticks.
@@ -53,6 +54,14 @@ struct Query {
   bool operator==(const Query&) const = default;
 
   static constexpr const char* kOp = "query";
+  static constexpr Right kRight = Right::look;
+  static constexpr FurtherRight kFurther{"`contacts`, `reactions`, `crossings`", Right::operate};
+  /// What is computed for it alone takes the time of all.
+  constexpr Right right() const {
+    const bool computed =
+        what == QueryWhat::contacts || what == QueryWhat::reactions || what == QueryWhat::crossings;
+    return computed ? kFurther.right : kRight;
+  }
   static void describe(auto& io, auto& query) {
     io.required(Field{"what", "what to read; see the table below"}, query.what);
     io.optional(Field{"format", "binary ones are for positions, velocities and boxes alone"},

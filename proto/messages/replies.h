@@ -10,6 +10,7 @@
 #include "proto/error.h"
 #include "proto/messages/commands.h"
 #include "proto/messages/events.h"
+#include "proto/messages/people_replies.h"
 #include "proto/messages/rooms_replies.h"
 #include "proto/types.h"
 
@@ -22,18 +23,6 @@ struct DoneReply {
   const char* command = "";
   std::uint64_t tick = 0;
   static void describe(auto& io, auto& reply) { io.required(kReplyTick, reply.tick); }
-};
-
-struct HelloReply {
-  ViewerId viewer = 0;
-  std::string name, color, role;
-  static constexpr const char* kOp = "hello";
-  static void describe(auto& io, auto& reply) {
-    io.required(Field{"viewer", "its number"}, reply.viewer);
-    io.required(Field{"name", "in force"}, reply.name);
-    io.required(Field{"color", "in force"}, reply.color);
-    io.required(Field{"role", "what it may do"}, reply.role);
-  }
 };
 
 struct ClothHit {
@@ -385,10 +374,10 @@ struct QueryReply {
 };
 
 using Reply =
-    std::variant<DoneReply, HelloReply, PickReply, DragReply, PinReply, ReleaseReply, PauseReply,
-                 StepReply, SpeedReply, MoveReply, MovePinReply, GripperReply, AdvanceReply,
-                 HashReply, PingReply, LoadReply, CreateRoomReply, ListRoomsReply, CloseRoomReply,
-                 ForkReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
+    std::variant<DoneReply, HelloReply, InviteReply, PickReply, DragReply, PinReply, ReleaseReply,
+                 PauseReply, StepReply, SpeedReply, MoveReply, MovePinReply, GripperReply,
+                 AdvanceReply, HashReply, PingReply, LoadReply, CreateRoomReply, ListRoomsReply,
+                 CloseRoomReply, ForkReply, ViewReply, VectorsReply, BinaryReply, QueryReply>;
 
 /// The `result` for a command with this id.
 std::string encode_reply(const Id& id, const Reply& reply);

@@ -9,6 +9,7 @@
 #include "proto/error.h"
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 #include "proto/types.h"
 
 // Commands about a viewer, the room's clock and its scene.
@@ -20,6 +21,7 @@ struct Hello {
   bool operator==(const Hello&) const = default;
 
   static constexpr const char* kOp = "hello";
+  static constexpr Right kRight = Right::look;
   static void describe(auto& io, auto& hello) {
     io.optional(Field{"name",
                       "without control characters",
@@ -28,8 +30,9 @@ struct Hello {
                       Form::characters},
                 hello.name);
     io.optional(Field{"color", "as `#rrggbb`", {}, "", Form::color}, hello.color);
-    io.optional(Field{"token", "reserved", {0, kMostTokenBytes}, "bytes", Form::secret},
-                hello.token);
+    io.optional(
+        Field{"token", "of a link; tells the role", {0, kMostTokenBytes}, "bytes", Form::secret},
+        hello.token);
   }
 };
 
@@ -40,6 +43,7 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 
   static constexpr const char* kOp = "camera";
+  static constexpr Right kRight = Right::look;
   static constexpr const char* kName = "Camera";
   static void describe(auto& io, auto& camera) {
     io.required(Field{"position", "of the eye", kPositionRange, "m"}, camera.position);
@@ -55,12 +59,14 @@ struct Camera {
 struct Pause {
   bool operator==(const Pause&) const = default;
   static constexpr const char* kOp = "pause";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto&, auto&) {}
 };
 
 struct Resume {
   bool operator==(const Resume&) const = default;
   static constexpr const char* kOp = "resume";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto&, auto&) {}
 };
 
@@ -69,6 +75,7 @@ struct Step {
   bool operator==(const Step&) const = default;
 
   static constexpr const char* kOp = "step";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& step) {
     io.optional(Field{"n", "ticks", kStepRange}, step.n);
   }
@@ -77,6 +84,7 @@ struct Step {
 struct Reset {
   bool operator==(const Reset&) const = default;
   static constexpr const char* kOp = "reset";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto&, auto&) {}
 };
 
@@ -92,6 +100,7 @@ struct Save {
   bool operator==(const Save&) const = default;
 
   static constexpr const char* kOp = "save";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& save) { io.required(kSaveName, save.name); }
 };
 
@@ -100,6 +109,7 @@ struct Restore {
   bool operator==(const Restore&) const = default;
 
   static constexpr const char* kOp = "restore";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& restore) { io.required(kSaveName, restore.name); }
 };
 
@@ -108,6 +118,7 @@ struct Speed {
   bool operator==(const Speed&) const = default;
 
   static constexpr const char* kOp = "speed";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& speed) {
     io.required(Field{"speed", "simulated per real time", kSpeedRange}, speed.speed);
   }
@@ -131,6 +142,7 @@ struct Advance {
   bool operator==(const Advance&) const = default;
 
   static constexpr const char* kOp = "advance";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& advance) {
     io.required(Field{"n", "ticks", kAdvanceRange}, advance.n);
     io.optional(Field{"frames",
@@ -148,6 +160,7 @@ struct Advance {
 struct Hash {
   bool operator==(const Hash&) const = default;
   static constexpr const char* kOp = "hash";
+  static constexpr Right kRight = Right::look;
   static void describe(auto&, auto&) {}
 };
 
@@ -156,6 +169,7 @@ struct Ping {
   bool operator==(const Ping&) const = default;
 
   static constexpr const char* kOp = "ping";
+  static constexpr Right kRight = Right::look;
   static void describe(auto& io, auto& ping) {
     io.required(Field{"t", "the client's time", {-1e300, 1e300}}, ping.t);
   }
@@ -167,6 +181,7 @@ struct Load {
   bool operator==(const Load&) const = default;
 
   static constexpr const char* kOp = "load";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& load) {
     io.scene(Field{"scene",
                    "its name, or a scene that follows `/api/v1/scene-schema`",
@@ -189,6 +204,10 @@ struct View {
   bool operator==(const View&) const = default;
 
   static constexpr const char* kOp = "view";
+  static constexpr Right kRight = Right::look;
+  static constexpr FurtherRight kFurther{"`forces`", Right::operate};
+  /// Forces are measured in each tick as soon as one viewer wants them.
+  constexpr Right right() const { return forces.value_or(false) ? kFurther.right : kRight; }
   static void describe(auto& io, auto& view) {
     io.optional(Field{"hz", "most frames a second; 0: none", kFrameRateRange}, view.hz);
     io.optional(Field{"codec", "of the positions in frames"}, view.codec);
@@ -206,6 +225,7 @@ struct Halt {
   bool operator==(const Halt&) const = default;
 
   static constexpr const char* kOp = "halt";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& halt) { io.required(Field{"cause", ""}, halt.cause); }
 };
 

@@ -6,6 +6,7 @@
 
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 
 // Commands about the rooms of a server, and what is told of a room.
 
@@ -25,6 +26,7 @@ struct CreateRoom {
   bool operator==(const CreateRoom&) const = default;
 
   static constexpr const char* kOp = "create_room";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& create) {
     io.required(kRoomName, create.name);
     io.optional(Field{"scene",
@@ -40,6 +42,7 @@ struct CreateRoom {
 struct ListRooms {
   bool operator==(const ListRooms&) const = default;
   static constexpr const char* kOp = "list_rooms";
+  static constexpr Right kRight = Right::look;
   static void describe(auto&, auto&) {}
 };
 
@@ -48,6 +51,7 @@ struct CloseRoom {
   bool operator==(const CloseRoom&) const = default;
 
   static constexpr const char* kOp = "close_room";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& close) { io.required(kRoomName, close.name); }
 };
 
@@ -58,6 +62,7 @@ struct Fork {
   bool operator==(const Fork&) const = default;
 
   static constexpr const char* kOp = "fork";
+  static constexpr Right kRight = Right::hold;
   static void describe(auto& io, auto& fork) {
     io.required(kRoomName, fork.name);
     io.optional(Field{"paused", "whether it begins so; by default as this room is"}, fork.paused);

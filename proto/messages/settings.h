@@ -8,6 +8,7 @@
 
 #include "proto/limits.h"
 #include "proto/messages/field.h"
+#include "proto/messages/right.h"
 #include "proto/types.h"
 
 // The command `set`: forces and settings of a room.
@@ -91,6 +92,7 @@ struct Set {
   bool operator==(const Set&) const = default;
 
   static constexpr const char* kOp = "set";
+  static constexpr Right kRight = Right::operate;
   static void describe(auto& io, auto& set) {
     io.optional(Field{"gravity", "acceleration", kGravityRange, "m/s²"}, set.gravity);
     io.optional(Field{"wind", "mean velocity", kWindRange, "m/s"}, set.wind);

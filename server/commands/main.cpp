@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <sstream>
@@ -98,6 +99,9 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
              "Ticks between two counts of crossings (60; 0: none)");
   add_number(serve, "--tick-limit", o.tick_limit, kTickLimits,
              "Seconds of CPU after which a tick is given up and the room pauses (2; 0: never)");
+  serve.add_option("--tokens", o.tokens,
+                   "File of tokens, one a line: role token [name] (without it, the lines of the "
+                   "environment variable WEFT_TOKENS)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option(
       "--allow-origin", o.allowed_origins,
@@ -106,8 +110,11 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   add_number(serve, "--rooms", o.rooms, kRoomCounts, "Most rooms at a time (64)");
   add_number(serve, "--room-idle", o.room_idle, kRoomIdles,
              "Seconds after which an empty room closes; 0: never (600)");
-  add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (64)");
-  add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (256)");
+  serve.add_option("--trusted-proxy", o.trusted_proxies,
+                   "Address or network of a proxy that tells each client's address truly, e.g. "
+                   "127.0.0.1 or 10.0.0.0/8; may be repeated");
+  add_number(serve, "--max-viewers", l.viewers, kViewerCounts, "Most viewers (1000)");
+  add_number(serve, "--max-connections", l.connections, kSocketCounts, "Most sockets (2000)");
   add_number(serve, "--max-connections-per-address", l.connections_per_address, kSocketCounts,
              "Most sockets from one address (128)");
   add_number(serve, "--max-messages-per-second", l.messages_per_second, kMessageRates,
@@ -256,6 +263,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("fabric")) return convert_damping(fabric_options);
   if (app.got_subcommand("scenes")) return list_scenes(scenes_options);
   if (app.got_subcommand("simulate")) return simulate(simulate_options);
+  serve_options.has_tokens = !serve_options.tokens.empty() || std::getenv(kTokensVariable);
   validate(serve_options);
   spdlog::set_level(spdlog::level::from_str(serve_options.log_level));
   return serve(serve_options);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
 
@@ -62,6 +63,27 @@ std::string page_directory(const ServerOptions& options) {
   return options.web.empty() ? beside_program("web") : options.web;
 }
 
+/// Reads the tokens of the file or, without one, of the environment, from which they are taken, so
+/// that no child process has them.
+void read_tokens(const ServerOptions& options, Tokens& tokens) {
+  const char* const given = std::getenv(kTokensVariable);
+  const std::string text = given ? given : "";
+  ::unsetenv(kTokensVariable);
+  if (!options.tokens.empty()) return tokens.read_file(options.tokens);
+  if (!text.empty()) tokens.read(kTokensVariable, text);
+}
+
+/// Lets the process have a descriptor for each socket, as far as the system allows.
+void allow_sockets(int connections) {
+  constexpr ::rlim_t kOthers = 64;  // files, timers and what the libraries open
+  const ::rlim_t wanted = static_cast<::rlim_t>(connections) + kOthers;
+  ::rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(limit.rlim_max, wanted);
+  if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted)
+    spdlog::warn("the system allows {} open files, fewer than --max-connections", limit.rlim_cur);
+}
+
 RoomOptions room_options(const ServerOptions& options, const SceneLibrary& library) {
   RoomOptions room;
   room.scene = options.scene;
@@ -77,6 +99,13 @@ RoomOptions room_options(const ServerOptions& options, const SceneLibrary& libra
   room.limits.messages_per_second = options.limits.messages_per_second;
   room.limits.viewers = static_cast<std::uint32_t>(options.limits.viewers);
   room.build_limit = kBuildSeconds;
+  return room;
+}
+
+RoomOptions with_rights(RoomOptions room, const ServerOptions& options, Tokens& tokens) {
+  room.linked = tokens.required() || !is_loopback(options.bind) || !options.trusted_proxies.empty();
+  room.has_tokens = tokens.required();
+  room.make_token = [&tokens](const Grant& grant) { return tokens.make(grant); };
   return room;
 }
 
@@ -186,7 +215,10 @@ void listen(std::optional<Network>& network, asio::io_context& io, ServiceContex
 
 int serve(const ServerOptions& options) {
   validate(options);
+  allow_sockets(options.limits.connections);
   Metrics metrics;
+  Tokens tokens;
+  read_tokens(options, tokens);
   const StaticFiles files(page_directory(options));
   if (!options.web.empty() && !files.find("/"))
     throw OptionError("--web", options.web, "a directory with the page's index.html");
@@ -197,7 +229,7 @@ int serve(const ServerOptions& options) {
   auto io = std::make_unique<asio::io_context>(1);
   const ChannelLimits limits{options.limits.queued_messages, options.limits.queued_bytes};
   Rooms rooms(
-      rooms_options(options), room_options(options, library),
+      rooms_options(options), with_rights(room_options(options, library), options, tokens),
       [&library](const std::string& name) { return library.named(name); },
       [&io, &limits](Metrics& counts) {
         return std::make_shared<NetworkOutput>(
@@ -205,13 +237,15 @@ int serve(const ServerOptions& options) {
       },
       process_seconds, metrics);
   rooms.open_default();
-  ServiceContext context{options, rooms, files, process_seconds, version_info()};
+  ServiceContext context{options, rooms, tokens, files, process_seconds, version_info()};
+  for (const std::string& proxy : options.trusted_proxies)
+    context.trusted_proxies.push_back(*AddressRange::parse(proxy));
   for (const SceneInfo& scene : library.list())
     context.scenes.push_back({scene.name, scene.description});
 
   std::optional<Network> network;
   listen(network, *io, context);
-  if (!is_loopback(options.bind))
+  if (!is_loopback(options.bind) && !tokens.required())
     spdlog::warn("everyone who reaches {} port {} may command the cloth", options.bind,
                  context.port);
   if (!files.find("/"))

@@ -20,13 +20,25 @@ class ConnectionCount {
     }
     ~Place() {
       --count_.total_;
-      const auto found = count_.by_address_.find(address_);
-      if (--found->second == 0) count_.by_address_.erase(found);
+      leave_address();
     }
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
 
+    const std::string& address() const { return address_; }
+    /// Counts it for another address from now on: that of the client behind a proxy.
+    void move_to(const std::string& address) {
+      ++count_.by_address_[address];
+      leave_address();
+      address_ = address;
+    }
+
    private:
+    void leave_address() {
+      const auto found = count_.by_address_.find(address_);
+      if (--found->second == 0) count_.by_address_.erase(found);
+    }
+
     ConnectionCount& count_;
     std::string address_;
   };

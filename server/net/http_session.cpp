@@ -33,8 +33,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(ServiceContext& context, asio::ip::tcp::socket socket,
               std::shared_ptr<ConnectionCount::Place> place, bool refuse)
-      : context_(context), place_(std::move(place)), stream_(std::move(socket)), refuse_(refuse) {
+      : context_(context), place_(std::move(place)), stream_(std::move(socket)), refuse_(refuse),
+        own_address_(place_->address()) {
     error_code ignored;
+    const auto peer = stream_.socket().remote_endpoint(ignored);
+    from_proxy_ = !ignored && context_.trusts(peer.address());
     stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
   }
 
@@ -89,7 +92,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void respond() {
-    if (refuse_) return refuse(http::status::service_unavailable, "busy", "too many connections");
+    if (refuse_ || !count_for_client())
+      return refuse(http::status::service_unavailable, "busy", "too many connections");
     if (std::optional<HttpResponse> refusal = refuse_host(context_, request_))
       return write(std::move(*refusal));
     if (!wants_upgrade(request_) || request_.method() != http::verb::get)
@@ -100,6 +104,26 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     stream_.expires_never();
     start_session(context_, std::move(room), stream_.release_socket(), std::move(request_),
                   std::string(received()), std::move(place_));
+  }
+
+  std::vector<std::string> values_of(std::string_view name) const {
+    std::vector<std::string> list;
+    const auto [first, last] = request_.equal_range({name.data(), name.size()});
+    for (auto field = first; field != last; ++field) list.emplace_back(field->value());
+    return list;
+  }
+
+  /// Counts a connection of a proxy for the client of its request. A client that the proxy does not
+  /// tell counts as the proxy itself.
+  /// @return false if that client has too many
+  bool count_for_client() {
+    if (!from_proxy_) return true;
+    const ForwardedFields fields{values_of("X-Forwarded-For"), values_of("Forwarded")};
+    const auto client = forwarded_client(fields, context_.trusted_proxies);
+    const std::string address = client ? counted_as(*client) : own_address_;
+    if (address != place_->address()) place_->move_to(address);
+    return context_.connections.of_address(address) <=
+           context_.options.limits.connections_per_address;
   }
 
   void refuse(http::status status, const char* code, const char* message) {
@@ -138,6 +162,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::shared_ptr<ConnectionCount::Place> place_;
   beast::tcp_stream stream_;
   bool refuse_;
+  std::string own_address_;  // that it comes from, as counted
+  bool from_proxy_ = false;
   beast::flat_buffer buffer_;
   HttpRequest request_;
   HttpResponse response_;

@@ -85,6 +85,18 @@ void Hub::want_forces(proto::ViewerId viewer, bool wanted) {
   count_takers();
 }
 
+void Hub::set_role(proto::ViewerId viewer, proto::Role role) {
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  found->second.role = role;
+  if (role == proto::Role::viewer) want_forces(viewer, false);
+}
+
+proto::Role Hub::role(proto::ViewerId viewer) const {
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? proto::Role::viewer : found->second.role;
+}
+
 void Hub::want_packed(proto::ViewerId viewer, double usual, double most) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "proto/messages/right.h"
 #include "proto/types.h"
 #include "server/clock.h"
 #include "server/metrics.h"
@@ -34,6 +35,8 @@ class Hub {
   void set_frame_rate(double frame_rate);
   void set_most_frames(proto::ViewerId viewer, double hz);
   void want_forces(proto::ViewerId viewer, bool wanted);
+  void set_role(proto::ViewerId viewer, proto::Role role);
+  proto::Role role(proto::ViewerId viewer) const;
   /// Packs the viewer's frames from now on, the first one as a key.
   /// @param usual  bound of their error [m]; 0: float32
   /// @param most   bound while the viewer does not keep up, at least as large [m]
@@ -60,6 +63,7 @@ class Hub {
   struct Viewer {
     std::unique_ptr<ViewerChannel> channel;
     bool welcomed = false;
+    proto::Role role = proto::Role::viewer;
     double next_notice = 0;  ///< of dropped frames [s]
     std::uint64_t sent_counted = 0, dropped_counted = 0;
   };

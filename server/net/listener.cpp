@@ -71,10 +71,12 @@ void Listener::welcome(tcp::socket socket) {
   boost::system::error_code error;
   const tcp::endpoint remote = socket.remote_endpoint(error);
   if (error) return;  // already closed
-  const std::string address = remote.address().to_string();
+  const std::string address = counted_as(remote.address());
   const ConnectionLimits& limits = context_.options.limits;
+  // That of a proxy is known to be shared; each request tells whom it is for.
   const bool full = context_.connections.total() >= limits.connections ||
-                    context_.connections.of_address(address) >= limits.connections_per_address;
+                    (!context_.trusts(remote.address()) &&
+                     context_.connections.of_address(address) >= limits.connections_per_address);
   if (context_.connections.total() >= limits.connections + kMostRefusals) return;
   start_http_session(context_, std::move(socket), context_.connections.take_place(address), full);
 }

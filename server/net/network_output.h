@@ -37,6 +37,9 @@ class NetworkOutput : public RoomOutput {
   void welcome_done(proto::ViewerId viewer) override {
     post([viewer](Hub& hub) { hub.welcome_done(viewer); });
   }
+  void set_role(proto::ViewerId viewer, proto::Role role) override {
+    post([viewer, role](Hub& hub) { hub.set_role(viewer, role); });
+  }
   bool wants_frames() const override { return hub_->wants_frames(); }
   bool wants_forces() const override { return hub_->wants_forces(); }
   void offer_frame(Frame frame) override {

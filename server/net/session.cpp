@@ -13,27 +13,10 @@
 
 #include "proto/messages/data.h"
 #include "proto/messages/replies.h"
+#include "server/net/buffered_close.h"
 #include "server/net/close_codes.h"
-#include "server/net/lingering_close.h"
 #include "server/net/network_output.h"
 #include "server/net/rate_limit.h"
-
-namespace boost::beast {
-
-// Beast closes a stream through these; its buffered stream has no overloads. The overload for a
-// socket, in Boost 1.74, closes after the first read even if there is more to read.
-template <class Buffer, class Handler>
-void async_teardown(role_type, buffered_read_stream<tcp_stream, Buffer>& stream,
-                    Handler&& handler) {
-  weft::server::async_lingering_close(stream.next_layer(), std::forward<Handler>(handler));
-}
-
-template <class NextLayer, class Buffer>
-void beast_close_socket(buffered_read_stream<NextLayer, Buffer>& stream) {
-  close_socket(stream.next_layer());
-}
-
-}  // namespace boost::beast
 
 namespace weft::server {
 namespace {
@@ -49,6 +32,9 @@ constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel kee
 constexpr double kAcksPerSecond = 4000;
 constexpr double kFlood = 2;         // this many times the limit of messages ends the connection
 constexpr double kCloseSeconds = 5;  // for the closing handshake
+constexpr double kTokenSeconds = 5;  // for the first message, where a token is needed
+// Until a wrong token is refused, so that few can be tried. The connection counts meanwhile.
+constexpr double kWrongTokenSeconds = 0.5;
 
 std::chrono::steady_clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -76,17 +62,26 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
 
   void write(const Message& message) override;
   void close(std::uint16_t code, const std::string& reason) override;
-  void on_welcomed() override { read(); }
+  void on_welcomed() override {
+    pauses_ = false;
+    read();
+  }
 
  private:
   Hub& hub() const { return hub_of(*room_); }
   void on_accepted();
+  void join(const Grant& grant);
+  void await_token();
+  void on_first(std::string_view text);
+  void refuse_entry(const std::optional<proto::Id>& id);
   void read();
   void on_message();
   void on_text(std::string_view text);
   void on_binary();
   void on_request(const proto::Request& request, double received);
-  void on_view(const std::optional<proto::Id>& id, const proto::View& view);
+  void on_hello(proto::Request request);
+  void put(const proto::Request& request);
+  void on_view(const proto::Request& request, const proto::View& view);
   void choose_codec(const proto::View& view);
   void on_excess(std::string_view text);
   void refuse(const proto::Error& error);
@@ -112,6 +107,8 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
   bool pinging_ = false, finished_ = false, cutting_ = false;
+  bool awaits_token_ = false;  // the viewer has not joined
+  bool pauses_ = false;        // nothing more is read until the viewer is welcomed
 };
 
 void Session::start() {
@@ -145,10 +142,52 @@ void Session::on_accepted() {
   alive_ = context_.clock();
   ws_.control_callback(
       [this](websocket::frame_type, beast::string_view) { alive_ = context_.clock(); });
+  if (context_.tokens.required()) return await_token();
+  join({});
+}
+
+/// The viewer's own messages are read from its welcome on.
+void Session::join(const Grant& grant) {
   const std::string_view target(request_.target().data(), request_.target().size());
   const bool mesh_over_http = target.find("mesh=http") != std::string_view::npos;
-  room_->put({viewer_, 0, Join{mesh_over_http}});
+  pauses_ = true;
+  room_->put({viewer_, 0, Join{mesh_over_http, grant}});
   watch();
+}
+
+void Session::await_token() {
+  awaits_token_ = true;
+  watch_.expires_after(duration_of(kTokenSeconds));
+  watch_.async_wait([self = shared_from_this()](error_code error) {
+    if (!error && self->awaits_token_) self->refuse_entry({});
+  });
+  read();
+}
+
+/// The first message, where a token is needed: it has to be a `hello` with one that is known.
+void Session::on_first(std::string_view text) {
+  ++number_;
+  auto request = proto::parse_request(text);
+  auto* const hello = request ? std::get_if<proto::Hello>(&request->command) : nullptr;
+  const auto grant =
+      hello && hello->token ? context_.tokens.find(*hello->token) : std::optional<Grant>();
+  if (grant) {
+    awaits_token_ = false;
+    hello->token.reset();
+    join(*grant);
+    return put(*request);
+  }
+  const std::optional<proto::Id> id = request ? request->id : request.error().id;
+  pauses_ = true;
+  watch_.expires_after(duration_of(kWrongTokenSeconds));
+  watch_.async_wait([self = shared_from_this(), id](error_code error) {
+    if (!error) self->refuse_entry(id);
+  });
+}
+
+void Session::refuse_entry(const std::optional<proto::Id>& id) {
+  refuse(unknown_token(true, id));
+  close_by_policy(kCloseToken, "a token is needed");
 }
 
 void Session::read() {
@@ -156,7 +195,7 @@ void Session::read() {
     if (error) return self->finish();
     self->on_message();
     self->incoming_.consume(self->incoming_.size());
-    self->read();
+    if (!self->pauses_) self->read();
   });
 }
 
@@ -177,6 +216,7 @@ void Session::on_binary() {
 }
 
 void Session::on_text(std::string_view text) {
+  if (awaits_token_) return on_first(text);
   const double received = context_.clock();
   ++number_;
   if (!flood_.take(received))
@@ -196,8 +236,27 @@ void Session::on_request(const proto::Request& request, double received) {
   }
   if (const auto* view = std::get_if<proto::View>(&request.command)) {
     room_->metrics().count_command("view");
-    return on_view(request.id, *view);
+    return on_view(request, *view);
   }
+  if (std::holds_alternative<proto::Hello>(request.command)) return on_hello(request);
+  put(request);
+}
+
+/// Takes the token out of a `hello`, because nothing behind the session needs to know it.
+void Session::on_hello(proto::Request request) {
+  auto& hello = std::get<proto::Hello>(request.command);
+  if (const auto token = std::exchange(hello.token, std::nullopt)) {
+    const auto grant = context_.tokens.find(*token);
+    if (!grant && context_.tokens.required()) {
+      refuse(unknown_token(false, request.id));
+      return note();
+    }
+    if (grant) room_->put({viewer_, number_, *grant});
+  }
+  put(request);
+}
+
+void Session::put(const proto::Request& request) {
   if (room_->put({viewer_, number_, request})) return;
   proto::Error error = proto::make_error(proto::ErrorCode::busy, "too many commands are waiting",
                                          "wait for answers before sending more");
@@ -207,16 +266,22 @@ void Session::on_request(const proto::Request& request, double received) {
   note();
 }
 
-void Session::on_view(const std::optional<proto::Id>& id, const proto::View& view) {
+void Session::on_view(const proto::Request& request, const proto::View& view) {
   if (!channel_) return;
+  if (auto error = check_right(request.command, hub().role(viewer_), false)) {
+    error->command = "view";
+    error->id = request.id;
+    refuse(*error);
+    return note();
+  }
   const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
   if (view.hz) hub().set_most_frames(viewer_, *view.hz);
   if (view.forces) hub().want_forces(viewer_, *view.forces);
   choose_codec(view);
   const double error = channel_->packed_error();
-  answer(id, proto::ViewReply{channel_->most_frames(),
-                              error > 0 ? proto::Codec::packed : proto::Codec::f32,
-                              channel_->asked_forces(), error});
+  answer(request.id, proto::ViewReply{channel_->most_frames(),
+                                      error > 0 ? proto::Codec::packed : proto::Codec::f32,
+                                      channel_->asked_forces(), error});
   // Anything not sent before is missing now, such as a key; no other wish of a viewer makes a
   // frame.
   Noted noted;

@@ -16,6 +16,7 @@ enum class CommandOrigin : std::uint8_t {
   viewer,  ///< sent by a client
   lease,   ///< a drag received no target for too long
   leave,   ///< its viewer left
+  policy,  ///< its viewer may not hold the cloth any more
   budget,  ///< ticks exceeded the time budget, or fit it again
   limit,   ///< a tick exceeded its CPU limit, or became worthless, and was given up
 };

@@ -12,8 +12,10 @@ namespace weft::server {
 struct News {
   bool state = false, roster = false, pins = false, grabs = false;  ///< they have changed
   std::vector<proto::Notice> notices;
-  double next = 0;        ///< earliest time to tell it [s]
-  double next_state = 0;  ///< the same for a state that only ticks have changed [s]
+  bool presence = false;     ///< cursors, cameras and whom viewers follow; told by itself
+  double next_presence = 0;  ///< earliest time to tell it [s]
+  double next = 0;           ///< earliest time to tell it [s]
+  double next_state = 0;     ///< the same for a state that only ticks have changed [s]
 
   bool any() const { return state || roster || pins || grabs || !notices.empty(); }
   /// Everything about the cloth has changed.

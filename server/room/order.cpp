@@ -8,7 +8,8 @@ namespace weft::server {
 
 bool is_beside_the_cloth(const Inbound& item) {
   return std::holds_alternative<Join>(item.what) || std::holds_alternative<Noted>(item.what) ||
-         is<proto::Hello>(item) || is<proto::Camera>(item) || is<proto::Pause>(item) ||
+         is<proto::Hello>(item) || is<proto::Camera>(item) || is<proto::Presence>(item) ||
+         is<proto::Follow>(item) || is<proto::Lead>(item) || is<proto::Pause>(item) ||
          is<proto::Resume>(item) || is<proto::Speed>(item) || is<proto::Hash>(item) ||
          is<proto::ListRooms>(item) || is<proto::CloseRoom>(item);
 }

@@ -43,6 +43,8 @@ struct Order {
   std::optional<Advance> advance;
   std::optional<Building> building;
   std::deque<Inbound> waiting;
+  /// Commands of viewers that may only look wait until then [s].
+  double looks_from = 0;
 };
 
 template <class Command>

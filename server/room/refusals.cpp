@@ -43,6 +43,11 @@ std::optional<proto::Error> check_scene_name(const std::string& name,
   return error;
 }
 
+proto::Error unknown_viewer(proto::ViewerId viewer) {
+  return field_error(ErrorCode::unknown_viewer, "no viewer has this number", "viewer", viewer,
+                     "the message roster lists the viewers");
+}
+
 proto::Error not_paused() {
   return make_error(ErrorCode::not_paused, "the room is running", "send pause first");
 }

@@ -25,6 +25,7 @@ proto::Error unknown_drag(std::uint32_t drag, std::string hint = {});
 /// Nothing if it is one of the names.
 std::optional<proto::Error> check_scene_name(const std::string& name,
                                              const std::vector<std::string>& names);
+proto::Error unknown_viewer(proto::ViewerId viewer);
 proto::Error not_paused();
 /// Another viewer's `advance` runs.
 proto::Error advancing_error();

@@ -1,7 +1,6 @@
 #include "server/room/room.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,13 +10,6 @@
 #include "server/translate/translate_settings.h"
 
 namespace weft::server {
-namespace {
-
-constexpr std::array<const char*, 8> kColors = {"#e4572e", "#2e86e4", "#2ea84f", "#b04fd1",
-                                                "#d99a00", "#00a3a3", "#d13f7c", "#6b7a1f"};
-
-}  // namespace
-
 WorldDef first_scene(const RoomOptions& options, const SceneSource& scenes) {
   WorldDef def = options.scene_def ? *options.scene_def : scenes(options.scene);
   if (!options.scene_def) def.name = options.scene;
@@ -88,6 +80,7 @@ void Room::take_now(Inbound item) {
   if (std::holds_alternative<Leave>(item.what)) return leave(item.viewer);
   const auto found = viewers_.find(item.viewer);
   if (found == viewers_.end()) return;
+  if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
   found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
     const double before = options_.cpu_clock();
@@ -101,14 +94,8 @@ void Room::take_now(Inbound item) {
   if (noted.wants_frame) found->second.wants_frame = true;
 }
 
-void Room::join(proto::ViewerId id, const Join& join) {
-  if (rests()) time_.restart_meter(clock_());
-  Viewer& viewer = viewers_[id];
-  viewer.info = {id, "viewer " + std::to_string(id), kColors[id % kColors.size()], "operator", {}};
-  viewer.mesh_over_http = join.mesh_over_http;
-  news_.roster = true;
-  tell_changes_if_due(clock_());
-
+/// The messages that a viewer is sent before its first frame.
+void Room::welcome(proto::ViewerId id, Viewer& viewer) {
   proto::Welcome welcome;
   welcome.version = options_.version;
   welcome.session = options_.session;
@@ -140,12 +127,6 @@ void Room::join(proto::ViewerId id, const Join& join) {
 void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
   output_.send(to, text_message(proto::encode_mesh(mesh_), Topic::mesh));
   if (!viewer.mesh_over_http) output_.send(to, {mesh_bytes_, true, Topic::mesh_data});
-}
-
-void Room::leave(proto::ViewerId viewer) {
-  if (viewers_.erase(viewer) == 0) return;
-  for (const Hand& hand : holds_.of(viewer)) end_hand(hand, CommandOrigin::leave);
-  news_.roster = true;
 }
 
 /// @returns its duration [s]; nothing if the tick was given up
@@ -236,6 +217,7 @@ void Room::finish_turn() {
     tell_guarantee();
   }
   tell_changes_if_due(now);
+  if (news_.presence && now >= news_.next_presence) tell_presence(now);
   if (now >= next_frame()) publish(now);
   if (now >= frames_.next_idle()) show_to_those_who_lack(now);
 }
@@ -246,6 +228,7 @@ double Room::next_wake() const {
   const double now = clock_();
   double wake = std::min(now + kLongestSleep, next_frame());
   if (news_.any()) wake = std::min(wake, news_.next);
+  if (news_.presence) wake = std::min(wake, news_.next_presence);
   if (!order_.waiting.empty()) wake = std::min(wake, next_turn());
   for (const auto& [id, viewer] : viewers_)
     if (viewer.wants_frame) wake = std::min(wake, frames_.next_idle());
@@ -287,6 +270,7 @@ proto::State Room::state() const {
   proto::State state = state_of(*world_);
   const BudgetKeeper& budget = time_.budget();
   state.paused = paused();
+  state.policy = rights_.policy;
   state.speed = time_.wanted_speed();
   state.pace = budget.setting().pace;
   state.softness = world_->softness();
@@ -297,12 +281,6 @@ proto::State Room::state() const {
   state.crossings = guarantee_.crossings();
   if (const auto seconds = time_.median_tick()) state.step_ms = *seconds * 1000;
   return state;
-}
-
-std::vector<proto::ViewerInfo> Room::roster() const {
-  std::vector<proto::ViewerInfo> list;
-  for (const auto& [id, viewer] : viewers_) list.push_back(viewer.info);
-  return list;
 }
 
 }  // namespace weft::server

@@ -24,6 +24,8 @@
 #include "server/room/news.h"
 #include "server/room/order.h"
 #include "server/room/other_rooms.h"
+#include "server/room/presence.h"
+#include "server/room/rights.h"
 #include "server/room/room_clock.h"
 #include "server/room/room_output.h"
 #include "server/room/saves.h"
@@ -47,7 +49,11 @@ struct RoomOptions {
   /// one.
   std::function<WorldDef(const std::string&)> read_scene;
   bool paused = false;
-  bool rests_when_empty = false;   ///< its time stands while it has no viewers
+  bool rests_when_empty = false;  ///< its time stands while it has no viewers
+  bool linked = false;            ///< others than the people of this machine reach it
+  bool has_tokens = false;        ///< viewers are let in by token
+  /// Makes a token that grants this. Null: no links can be made.
+  std::function<std::string(const Grant&)> make_token;
   std::uint32_t count_pause = 60;  ///< ticks between two counts of crossings; 0: none by itself
   std::string version, session;    ///< for `welcome`
   proto::ServerLimits limits;
@@ -140,6 +146,16 @@ class Room {
     std::shared_ptr<const int> ticket = std::make_shared<int>();
     bool stalled = false;  ///< it took none for too long, and has not taken one since
     double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
+    HandRight hand = HandRight::by_policy;
+    bool by_token = false;
+    double next_name = 0;  ///< it may change its name from then on [s]
+    Presence presence;
+  };
+
+  /// Who may hold the cloth.
+  struct Rights {
+    proto::Policy policy = proto::Policy::everybody;
+    bool chosen = false;  ///< by an operator
   };
 
   /// The tick that runs, or the last one.
@@ -171,9 +187,24 @@ class Room {
   template <class Work>
   bool within_limit(Work&& work, double share = 1);
 
-  // room.cpp: viewers that come and go, and ticks
+  // room_people.cpp: viewers that come and go, and what they may do
   void join(proto::ViewerId id, const Join& join);
+  void admit(Viewer& viewer, const Grant& grant);
+  void ask_newcomer(Viewer& viewer);
   void leave(proto::ViewerId viewer);
+  void pass_on_operation();
+  bool may_hold(const Viewer& viewer) const;
+  bool only_looks(const Viewer& viewer) const;
+  void let_go_forbidden(proto::ViewerId viewer);
+  std::optional<proto::Error> check_owner(proto::ViewerId viewer, PinId pin) const;
+  std::optional<proto::Error> set_hand(proto::ViewerId by, proto::ViewerId viewer, HandRight right,
+                                       bool set);
+  std::vector<proto::ViewerInfo> roster() const;
+  void tell_presence(double now);
+  void show_camera(proto::ViewerId viewer);
+
+  // room.cpp: ticks, and what is told of them
+  void welcome(proto::ViewerId id, Viewer& viewer);
   void take_now(Inbound item);
   std::optional<double> step_world();
   void count_crossings(bool stays);
@@ -191,7 +222,6 @@ class Room {
   void tell_slow_motion(double now);
   Message message_of(const SceneNotice& what) const;
   proto::State state() const;
-  std::vector<proto::ViewerInfo> roster() const;
   WorldDef definition_of(const std::string& scene) const;
   WorldDef definition_of(const std::string& name, const std::string& json) const;
 
@@ -257,6 +287,13 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Load& command);
   Outcome apply(proto::ViewerId viewer, const proto::Ping& command);
   Outcome apply(proto::ViewerId viewer, const proto::View& command);
+  Outcome apply(proto::ViewerId viewer, const proto::SetPolicy& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Mute& command);
+  Outcome apply(proto::ViewerId viewer, const proto::GiveHand& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Presence& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Follow& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Lead& command);
+  Outcome apply(proto::ViewerId viewer, const proto::Invite& command);
   Outcome apply(proto::ViewerId viewer, const proto::Halt& command);
   Outcome apply(proto::ViewerId viewer, const proto::CreateRoom& command);
   Outcome apply(proto::ViewerId viewer, const proto::ListRooms& command);
@@ -288,6 +325,7 @@ class Room {
   RunningTick tick_;
 
   std::map<proto::ViewerId, Viewer> viewers_;
+  Rights rights_;
   Holds holds_;
 
   News news_;

@@ -25,6 +25,9 @@ using proto::ViewerId;
 void Room::handle(ViewerId viewer, const proto::Request& request) {
   const std::uint64_t tick = world_->tick();
   metrics_.count_command(proto::name_of(request.command));
+  const Viewer& sender = viewers_.at(viewer);
+  if (auto error = check_right(request.command, sender.info.role, may_hold(sender)))
+    return refuse(viewer, request, *std::move(error));
   try {
     const Outcome outcome =
         std::visit([&](const auto& command) { return apply(viewer, command); }, request.command);
@@ -34,7 +37,8 @@ void Room::handle(ViewerId viewer, const proto::Request& request) {
       order_.building->request = request;  // it is logged and answered when finished
       return finish_build();
     }
-    if (!is_about_rooms(request.command))
+    // What only looks is no part of the history, and its viewers cannot fill the log.
+    if (!is_about_rooms(request.command) && proto::right_to(request.command) != proto::Right::look)
       order_.log.add(tick, viewer, CommandOrigin::viewer, request.command);
     if (std::holds_alternative<proto::Advance>(request.command)) {
       order_.advance->id = request.id;  // answered when it is done
@@ -68,22 +72,15 @@ void Room::refuse(ViewerId viewer, const proto::Request& request, proto::Error e
   output_.send(viewer, text_message(proto::encode_error(error)));
 }
 
-Room::Outcome Room::apply(ViewerId viewer, const proto::Hello& command) {
-  proto::ViewerInfo& info = viewers_.at(viewer).info;
-  if (command.name) info.name = *command.name;
-  if (command.color) info.color = *command.color;
-  news_.roster = true;
-  return proto::Reply(proto::HelloReply{viewer, info.name, info.color, info.role});
-}
-
 Room::Outcome Room::apply(ViewerId, const proto::Pick& command) {
   const auto hit = world_->pick(from_wire(command.origin), from_wire(command.direction));
   return proto::Reply(proto::PickReply{world_->tick(), to_wire(hit)});
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
-  if (auto error = check_new_hand(holds_, viewer, command.drag, options_.limits))
-    return *std::move(error);
+  proto::ServerLimits limits = options_.limits;
+  limits.drags_per_viewer = most_hands(rights_.policy, limits.drags_per_viewer);
+  if (auto error = check_new_hand(holds_, viewer, command.drag, limits)) return *std::move(error);
   const auto point = resolve_hold(*world_, command.hold);
   if (!point) return point.error();
   if (auto error = check_free(holds_, *world_, viewer, nearest_corner(*world_, *point)))
@@ -153,12 +150,13 @@ Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
   return proto::Reply(proto::ReleaseReply{world_->tick(), ids});
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::ReleasePin& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::ReleasePin& command) {
   if (find_pin(*world_, command.pin) == nullptr) return unknown_pin(command.pin);
+  if (auto error = check_owner(viewer, command.pin)) return *std::move(error);
   return release_pins({command.pin});
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::ReleaseParticle& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::ReleaseParticle& command) {
   const std::size_t count = world_->model().mass.size();
   if (command.particle >= count)
     return proto::range_error("particle", command.particle, {0, static_cast<double>(count) - 1});
@@ -168,6 +166,8 @@ Room::Outcome Room::apply(ViewerId, const proto::ReleaseParticle& command) {
                            static_cast<Index>(command.particle)))
       ids.push_back(pin.id);
   }
+  for (const PinId pin : ids)
+    if (auto error = check_owner(viewer, pin)) return *std::move(error);
   return release_pins(ids);
 }
 
@@ -179,6 +179,8 @@ Room::Outcome Room::apply(ViewerId, const proto::ReleaseAll&) {
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Camera& command) {
   viewers_.at(viewer).info.camera = command;
+  viewers_.at(viewer).presence.look(command);
+  news_.presence = true;
   return proto::Reply(proto::DoneReply{"camera", world_->tick()});
 }
 
@@ -269,9 +271,10 @@ Room::Outcome Room::apply(ViewerId, const proto::MoveEnd& command) {
   return proto::Reply(proto::MoveReply{world_->tick(), command.collider});
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::MovePin& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::MovePin& command) {
   const weft::Pin* pin = find_pin(*world_, command.pin);
   if (pin == nullptr) return unknown_pin(command.pin);
+  if (auto error = check_owner(viewer, command.pin)) return *std::move(error);
   const auto move = pin_move(*world_, *pin, command);
   if (!move) return move.error();
   const proto::Vec3 before = pin_info(*world_, *pin, 0).position;
@@ -281,9 +284,10 @@ Room::Outcome Room::apply(ViewerId, const proto::MovePin& command) {
   return proto::Reply(proto::MovePinReply{world_->tick(), command.pin, before});
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::StopPin& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::StopPin& command) {
   const weft::Pin* pin = find_pin(*world_, command.pin);
   if (pin == nullptr) return unknown_pin(command.pin);
+  if (auto error = check_owner(viewer, command.pin)) return *std::move(error);
   world_->stop_pin(pin->id);
   note_pins(*world_, told_);
   change(&News::pins);

@@ -45,7 +45,10 @@ bool Room::gives_up() {
 bool Room::must_wait(const Inbound& item) const {
   const auto viewer = viewers_.find(item.viewer);
   if (viewer == viewers_.end()) return false;
-  return is_held_up(order_, item) || viewer->second.next_turn > clock_();
+  const bool looks =
+      std::holds_alternative<proto::Request>(item.what) && only_looks(viewer->second);
+  const double turn = std::max(viewer->second.next_turn, looks ? order_.looks_from : 0);
+  return is_held_up(order_, item) || turn > clock_();
 }
 
 /// Runs the waiting items in their order.
@@ -95,16 +98,21 @@ double Room::next_turn() const {
   double next = clock_() + 1;
   for (const Inbound& item : order_.waiting) {
     const auto viewer = viewers_.find(item.viewer);
-    if (viewer != viewers_.end()) next = std::min(next, viewer->second.next_turn);
+    if (viewer == viewers_.end()) continue;
+    const double looks_from = only_looks(viewer->second) ? order_.looks_from : 0;
+    next = std::min(next, std::max(viewer->second.next_turn, looks_from));
   }
   return next;
 }
 
-/// Makes a viewer wait after a command that has cost others their time.
+/// Makes a viewer wait after a command that has cost others their time. Those that may only look
+/// wait together after any, so that all of them take a quarter of the room's time at most.
 /// @param cost  of CPU [s]
 void Room::charge(proto::ViewerId viewer, double cost) {
   const auto found = viewers_.find(viewer);
-  if (found == viewers_.end() || viewers_.size() < 2 || cost < kFreeCost) return;
+  if (found == viewers_.end() || viewers_.size() < 2) return;
+  if (only_looks(found->second)) order_.looks_from = clock_() + cost * kWaitPerCost;
+  if (cost < kFreeCost) return;
   found->second.next_turn = clock_() + cost * kWaitPerCost;
 }
 

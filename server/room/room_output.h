@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "proto/messages/right.h"
 #include "proto/types.h"
 #include "server/message.h"
 
@@ -24,6 +25,9 @@ class RoomOutput {
   /// Makes a binary mesh message available under its content hash. Frames offered earlier belong to
   /// an older mesh and are no longer sent.
   virtual void offer_mesh(std::uint64_t hash, SharedBytes bytes, PackedMesh packed) = 0;
+
+  /// What the viewer may do from now on.
+  virtual void set_role(proto::ViewerId, proto::Role) {}
 
   /// Tells that the viewer has been sent everything that precedes frames.
   virtual void welcome_done(proto::ViewerId viewer) = 0;

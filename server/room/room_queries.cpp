@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/room/refusals.h"
 #include "server/room/room.h"
 #include "server/translate/translate.h"
 #include "server/translate/translate_forces.h"
@@ -12,19 +13,6 @@
 namespace weft::server {
 
 using proto::ViewerId;
-
-namespace {
-
-proto::Error unknown_viewer(ViewerId viewer) {
-  proto::Error error =
-      proto::make_error(proto::ErrorCode::unknown_viewer, "no viewer has this number",
-                        "the message roster lists the viewers");
-  error.field = "viewer";
-  error.value = std::to_string(viewer);
-  return error;
-}
-
-}  // namespace
 
 Room::Outcome Room::query_numbers(const proto::Query& command, std::span<const float> values,
                                   std::uint32_t components) {

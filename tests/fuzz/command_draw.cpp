@@ -127,6 +127,28 @@ class CommandDraw {
     if (some()) view.codec = some() ? Codec::packed : Codec::f32;
     if (some()) view.error = number(kPackedErrorRange, 1e-4);
   }
+  // Mostly so that viewers hold: what is refused tries nothing.
+  void operator()(SetPolicy& set) {
+    set.policy = dice_.chance(0.8) ? Policy::everybody : static_cast<Policy>(dice_.below(2));
+  }
+  void operator()(Mute& mute) {
+    mute.viewer = viewer();
+    mute.muted = dice_.chance(0.2);
+  }
+  void operator()(GiveHand& give) {
+    give.viewer = viewer();
+    give.given = dice_.chance(0.8);
+  }
+  void operator()(Presence& presence) {
+    if (some())
+      presence.cursor = place();
+    else
+      presence.away = some();
+    if (some()) (*this)(presence.camera.emplace());
+  }
+  void operator()(Follow& follow) { follow.viewer = some() ? viewer() : 0; }
+  void operator()(Lead& lead) { lead.on = some(); }
+  void operator()(Invite& invite) { invite.right = static_cast<Invitation>(dice_.below(3)); }
   void operator()(Halt&) {}  // of logs alone
 
  private:

@@ -56,7 +56,7 @@ IMPORT = re.compile(
     r"""|^[ \t]*import\s*['"]([^'"]+)['"]|\bimport\(\s*['"]([^'"]+)['"]""", re.M)
 # Folder -> (what of ours it may import, packages it may import).
 SCRIPT_ROOMS = {
-    "web/src": (("web/", "proto/js/"), re.compile(r"three(/.*)?$")),
+    "web/src": (("web/", "proto/js/"), re.compile(r"(three(/.*)?|uqr)$")),
     "proto/js": (("proto/js/",), re.compile(r"(ws|node:.*)$")),
 }
 

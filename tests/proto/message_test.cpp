@@ -35,7 +35,7 @@ Welcome welcome() {
   w.viewer = 3;
   w.name = "viewer 3";
   w.color = "#e4572e";
-  w.role = "operator";
+  w.role = Role::operator_;
   w.scene = "default";
   w.clock = 86.500125;
   w.capabilities = {"pick",  "drag", "pin",      "camera",  "step", "advance",
@@ -130,8 +130,8 @@ std::vector<std::string> events() {
       encode_welcome(welcome()),
       encode_mesh(mesh()),
       encode_state(state()),
-      encode_roster({{3, "Ada", "#e4572e", "operator", kCamera},
-                     {4, "script", "#2e86e4", "operator", std::nullopt}}),
+      encode_roster({{3, "Ada", "#e4572e", Role::operator_, true, kCamera},
+                     {4, "script", "#2e86e4", Role::viewer, false, std::nullopt}}),
       encode_pins(5160, {{1, 0, 0, 0, {-0.5, 1.6, 0}, 1, {}, false},
                          {9, 3, 299, 0.05, {0.1, 0.8, 0.3}, 7, Vec3{0.1, 1, 0.5}, false}}),
       encode_grabs(5160, {grab}),
@@ -173,7 +173,7 @@ std::vector<std::string> replies() {
   const ClothHit hit{{411, {0.2, 0.5, 0.3}}, {0, 1, 0.12}, 222, 2.88};
   return {
       encode_reply(12, PauseReply{5160, true}),
-      encode_reply(1, HelloReply{3, "Ada", "#e4572e", "operator"}),
+      encode_reply(1, HelloReply{3, "Ada", "#e4572e", Role::operator_}),
       encode_reply(2, PickReply{5161, hit}),
       encode_reply(2, PickReply{5161, std::nullopt}),
       encode_reply(3, DragReply{5162, 1, 17, Vec3{0, 1.1, 0.2}, {}}),

@@ -1,6 +1,7 @@
 import type { WeftClient } from '../../proto/js/index.js';
 import type { Frame, State, Viewer } from '../../proto/js/messages.js';
 import { BoxView } from './panel/box_view.js';
+import { Crowd } from './crowd.js';
 import { OrbitCamera } from './view/camera.js';
 import { Director, view_of_address } from './view/director.js';
 import { connect_client, explain_refusals } from './wire/connection.js';
@@ -66,6 +67,7 @@ export class Page {
   private hint = new Hint();
   private toolbar: Toolbar;
   readonly reticle = new Reticle();
+  readonly crowd: Crowd;
   private viewers: Viewer[] = [];
   private told_camera: ToldCamera;
   private clock = new PictureClock();
@@ -106,6 +108,9 @@ export class Page {
       announce: (text: string) => (element('announcer').textContent = text),
       changed: () => (this.dirty = true),
     };
+    const grabs = () => this.holding.grabs;
+    this.crowd = new Crowd(element('labels'), { ...reach, director: this.director, grabs });
+    this.stage.scene.add(this.crowd.cursors.group);
     this.holding = new Holding(reach);
     this.key_hand = new KeyHand(reach, this.holding.pointed, this.holding);
     this.input = new Input(this.canvas, {
@@ -118,7 +123,7 @@ export class Page {
       press: (point) => this.holding.press(point),
       ...this.camera_actions(),
       pan: (dx, dy) => {
-        this.director.leave();
+        this.crowd.leave();
         this.orbit.pan(dx, dy);
       },
       changed: () => (this.dirty = true),
@@ -270,11 +275,11 @@ export class Page {
   private camera_actions() {
     return {
       orbit: (azimuth: number, elevation: number) => {
-        this.director.leave();
+        this.crowd.leave();
         this.orbit.orbit(azimuth, elevation);
       },
       zoom: (factor: number) => {
-        this.director.leave();
+        this.crowd.leave();
         this.orbit.zoom(factor);
       },
     };
@@ -282,6 +287,7 @@ export class Page {
 
   private frame(at_once = false): void {
     if (!this.world) return;
+    if (!at_once) this.crowd.leave();
     const asked = view_of_address(window.location.search);
     const { view = null } = this.world.announcement;
     this.director.begin(this.world.subject(), asked ?? view, at_once);
@@ -355,6 +361,7 @@ export class Page {
     this.fans.spin(this.world?.playback.tick ?? 0);
     const { width, height } = this.size();
     this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
+    this.crowd.draw(this.orbit.camera, { width, height });
     this.world?.look_from(this.orbit.camera);
     this.stage.draw(this.orbit.camera);
     if (this.world && this.world.playback.tick >= 0) void this.stage.complete(this.orbit.camera);
@@ -369,6 +376,7 @@ export class Page {
     this.input.follow();
     this.key_hand.follow();
     const { hovered, radius } = this.holding;
+    this.crowd.company.point(hovered?.position ?? null);
     const ring = this.key_hand.holds ? null : (this.key_hand.cursor ?? hovered);
     this.reticle.update(ring, radius, this.world, this.orbit.camera, this.size());
     const cursors = { idle: taken ? 'grab' : '', camera: 'move', holding: 'grabbing' };

@@ -66,6 +66,11 @@ export function expose_probe(page: Page): void {
     get pin_heads() {
       return page.pins.group.children.map(({ position }) => position.toArray());
     },
+    /** Others' cursors as drawn, and by whose camera this viewer sees. */
+    get company() {
+      const { cursors, company } = page.crowd;
+      return { cursors: structuredClone(cursors.shown), follows: company.follows };
+    },
     get fans() {
       return structuredClone(page.fans.list);
     },

@@ -60,10 +60,12 @@ class SyncClient(BlockingCommands):
     """
 
     def __init__(
-        self, url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10,
-        reconnect: bool = False, call_timeout: float | None = CALL_SECONDS,
+        self, url: str, *, name: str | None = None, color: str | None = None, token: str | None = None,
+        timeout: float = 10, reconnect: bool = False, call_timeout: float | None = CALL_SECONDS,
     ):  # fmt: skip
-        joining = connect(url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout)
+        joining = connect(
+            url, name=name, color=color, token=token, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
+        )
         super().__init__()
         self._client = self._start(joining._connect())
 
@@ -158,10 +160,10 @@ class SyncClient(BlockingCommands):
 
 
 def open(
-    url: str, *, name: str | None = None, color: str | None = None, timeout: float = 10, reconnect: bool = False,
-    call_timeout: float | None = CALL_SECONDS,
+    url: str, *, name: str | None = None, color: str | None = None, token: str | None = None, timeout: float = 10,
+    reconnect: bool = False, call_timeout: float | None = CALL_SECONDS,
 ) -> SyncClient:  # fmt: skip
     """Joins a server, blocking; use it with `with`. The arguments are those of `connect`."""
     return SyncClient(
-        url, name=name, color=color, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
+        url, name=name, color=color, token=token, timeout=timeout, reconnect=reconnect, call_timeout=call_timeout
     )

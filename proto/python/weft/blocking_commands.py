@@ -7,14 +7,15 @@ from typing import Any, Literal, overload
 
 from .fields import Hold
 from .messages import (
-    ColliderPose, Contact, Crossings, Energy, Fabric, Fan, Grab, GripperState, Pin, Reactions, StageWork, State,
-    Strain, Tree, Viewer,
+    Camera, ColliderPose, Contact, Crossings, Energy, Fabric, Fan, Grab, GripperState, Pin, Reactions, StageWork,
+    State, Strain, Tree, Viewer,
 )  # fmt: skip
 from .queries import Binary, ViewerCamera
 from .results import (
-    AdvanceResult, CameraResult, CloseRoomResult, CreateRoomResult, ForkResult, GripperResult, HelloResult,
-    ListRoomsResult, LoadResult, MoveResult1, MoveResult2, PauseResult, PinResult, ReleaseResult, ResetResult,
-    RestoreResult, ResumeResult, SaveResult, SetResult, SpeedResult, StepResult, ViewResult,
+    AdvanceResult, CameraResult, CloseRoomResult, CreateRoomResult, FollowResult, ForkResult, GiveHandResult,
+    GripperResult, HelloResult, InviteResult, LeadResult, ListRoomsResult, LoadResult, MoveResult1, MoveResult2,
+    MuteResult, PauseResult, PinResult, PolicyResult, PresenceResult, ReleaseResult, ResetResult, RestoreResult,
+    ResumeResult, SaveResult, SetResult, SpeedResult, StepResult, ViewResult,
 )  # fmt: skip
 from .runner import Runner
 from .samples import Data, Frame, Hit, Observation
@@ -46,10 +47,7 @@ class BlockingCommands(Runner):
         return self._run(self._client.resume(timeout=timeout))
 
     def step(self, n: int = 1, *, timeout: float | None = CLIENTS) -> StepResult:
-        """Lets ticks pass in a paused room.
-
-        n: ticks; 1 to 600
-        """
+        """Lets ticks pass in a paused room. (n: ticks; 1 to 600)"""
         return self._run(self._client.step(n, timeout=timeout))
 
     def reset(self, *, timeout: float | None = CLIENTS) -> ResetResult:
@@ -64,17 +62,11 @@ class BlockingCommands(Runner):
         return self._run(self._client.save(name, timeout=timeout))
 
     def restore(self, name: str, *, timeout: float | None = CLIENTS) -> RestoreResult:
-        """Back to a state that was saved.
-
-        name: lower-case letters, digits and hyphens; 1 to 32 characters
-        """
+        """Back to a state that was saved. (name: lower-case letters, digits and hyphens; 1 to 32 characters)"""
         return self._run(self._client.restore(name, timeout=timeout))
 
     def speed(self, speed: float, *, timeout: float | None = CLIENTS) -> SpeedResult:
-        """Sets how fast time passes.
-
-        speed: simulated per real time; 0.01 to 10
-        """
+        """Sets how fast time passes. (speed: simulated per real time; 0.01 to 10)"""
         return self._run(self._client.speed(speed, timeout=timeout))
 
     def gripper(
@@ -158,6 +150,58 @@ class BlockingCommands(Runner):
         paused: whether it begins so; by default as this room is; true or false
         """
         return self._run(self._client.fork(name, paused=paused, timeout=timeout))
+
+    def policy(
+        self, policy: Literal["watch", "one_hand", "everybody"], *, timeout: float | None = CLIENTS,
+    ) -> PolicyResult:  # fmt: skip
+        """Says who may hold the cloth. (policy: who may hold the cloth; watch or one_hand or everybody)"""
+        return self._run(self._client.policy(policy, timeout=timeout))
+
+    def mute(self, viewer: int, *, muted: bool | None = None, timeout: float | None = CLIENTS) -> MuteResult:
+        """Takes the right to hold from a viewer, whatever the policy.
+
+        viewer: whose hands let go; 0 to 4294967295
+        muted: false: the policy holds for it again; true or false
+        """
+        return self._run(self._client.mute(viewer, muted=muted, timeout=timeout))
+
+    def give_hand(self, viewer: int, *, given: bool | None = None, timeout: float | None = CLIENTS) -> GiveHandResult:
+        """Gives a viewer the right to hold, whatever the policy.
+
+        viewer: that may hold; 0 to 4294967295
+        given: false: the policy holds for it again; true or false
+        """
+        return self._run(self._client.give_hand(viewer, given=given, timeout=timeout))
+
+    def presence(
+        self, *, cursor: Iterable[float] | None = None, away: bool | None = None, camera: Camera | None = None,
+        timeout: float | None = CLIENTS,
+    ) -> PresenceResult:  # fmt: skip
+        """Tells others where this viewer points and looks.
+
+        cursor: what it points at [m]; 3 × ±10000
+        away: it points at nothing any more; true or false
+        camera: where it looks from
+        """
+        return self._run(self._client.presence(cursor=cursor, away=away, camera=camera, timeout=timeout))
+
+    def follow(self, viewer: int, *, timeout: float | None = CLIENTS) -> FollowResult:
+        """Sees by the camera of another viewer; 0: by its own again.
+
+        viewer: by whose camera it sees; 0: its own again; 0 to 4294967295
+        """
+        return self._run(self._client.follow(viewer, timeout=timeout))
+
+    def lead(self, on: bool = True, *, timeout: float | None = CLIENTS) -> LeadResult:
+        """Brings all viewers to this one's camera.
+
+        on: false: those that follow its sender see by their own again; true or false
+        """
+        return self._run(self._client.lead(on, timeout=timeout))
+
+    def invite(self, right: Literal["look", "hold", "operate"], *, timeout: float | None = CLIENTS) -> InviteResult:
+        """Makes a token for a link; the result has it. (right: of who comes by it; look or hold or operate)"""
+        return self._run(self._client.invite(right, timeout=timeout))
 
     def request(self, op: str, *, timeout: float | None = CLIENTS, **fields: Any) -> Any:
         """Sends any command and waits for its result."""

@@ -6,10 +6,11 @@ from collections.abc import Iterable
 from typing import Literal
 
 from .fields import known, listed, without_none
-from .messages import Fabric, Fan
+from .messages import Camera, Fabric, Fan
 from .results import (
-    CameraResult, CloseRoomResult, CreateRoomResult, ForkResult, GripperResult, ListRoomsResult, PauseResult,
-    ResetResult, RestoreResult, ResumeResult, SaveResult, SetResult, SpeedResult, StepResult,
+    CameraResult, CloseRoomResult, CreateRoomResult, FollowResult, ForkResult, GiveHandResult, GripperResult,
+    InviteResult, LeadResult, ListRoomsResult, MuteResult, PauseResult, PolicyResult, PresenceResult, ResetResult,
+    RestoreResult, ResumeResult, SaveResult, SetResult, SpeedResult, StepResult,
 )  # fmt: skip
 from .session import Session
 from .timeouts import CLIENTS
@@ -41,10 +42,7 @@ class Commands(Session):
         return await self.request("resume", timeout=timeout)
 
     async def step(self, n: int = 1, *, timeout: float | None = CLIENTS) -> StepResult:
-        """Lets ticks pass in a paused room.
-
-        n: ticks; 1 to 600
-        """
+        """Lets ticks pass in a paused room. (n: ticks; 1 to 600)"""
         fields = {"n": n}
         return await self.request("step", timeout=timeout, **without_none(fields))
 
@@ -61,18 +59,12 @@ class Commands(Session):
         return await self.request("save", timeout=timeout, **without_none(fields))
 
     async def restore(self, name: str, *, timeout: float | None = CLIENTS) -> RestoreResult:
-        """Back to a state that was saved.
-
-        name: lower-case letters, digits and hyphens; 1 to 32 characters
-        """
+        """Back to a state that was saved. (name: lower-case letters, digits and hyphens; 1 to 32 characters)"""
         fields = {"name": name}
         return await self.request("restore", timeout=timeout, **without_none(fields))
 
     async def speed(self, speed: float, *, timeout: float | None = CLIENTS) -> SpeedResult:
-        """Sets how fast time passes.
-
-        speed: simulated per real time; 0.01 to 10
-        """
+        """Sets how fast time passes. (speed: simulated per real time; 0.01 to 10)"""
         fields = {"speed": speed}
         return await self.request("speed", timeout=timeout, **without_none(fields))
 
@@ -161,3 +153,66 @@ class Commands(Session):
         """
         fields = {"name": name, "paused": paused}
         return await self.request("fork", timeout=timeout, **without_none(fields))
+
+    async def policy(
+        self, policy: Literal["watch", "one_hand", "everybody"], *, timeout: float | None = CLIENTS,
+    ) -> PolicyResult:  # fmt: skip
+        """Says who may hold the cloth. (policy: who may hold the cloth; watch or one_hand or everybody)"""
+        fields = {"policy": policy}
+        return await self.request("policy", timeout=timeout, **without_none(fields))
+
+    async def mute(self, viewer: int, *, muted: bool | None = None, timeout: float | None = CLIENTS) -> MuteResult:
+        """Takes the right to hold from a viewer, whatever the policy.
+
+        viewer: whose hands let go; 0 to 4294967295
+        muted: false: the policy holds for it again; true or false
+        """
+        fields = {"viewer": viewer, "muted": muted}
+        return await self.request("mute", timeout=timeout, **without_none(fields))
+
+    async def give_hand(
+        self, viewer: int, *, given: bool | None = None, timeout: float | None = CLIENTS,
+    ) -> GiveHandResult:  # fmt: skip
+        """Gives a viewer the right to hold, whatever the policy.
+
+        viewer: that may hold; 0 to 4294967295
+        given: false: the policy holds for it again; true or false
+        """
+        fields = {"viewer": viewer, "given": given}
+        return await self.request("give_hand", timeout=timeout, **without_none(fields))
+
+    async def presence(
+        self, *, cursor: Iterable[float] | None = None, away: bool | None = None, camera: Camera | None = None,
+        timeout: float | None = CLIENTS,
+    ) -> PresenceResult:  # fmt: skip
+        """Tells others where this viewer points and looks.
+
+        cursor: what it points at [m]; 3 × ±10000
+        away: it points at nothing any more; true or false
+        camera: where it looks from
+        """
+        fields = {"cursor": listed(cursor), "away": away, "camera": known(Camera, "camera", camera)}
+        return await self.request("presence", timeout=timeout, **without_none(fields))
+
+    async def follow(self, viewer: int, *, timeout: float | None = CLIENTS) -> FollowResult:
+        """Sees by the camera of another viewer; 0: by its own again.
+
+        viewer: by whose camera it sees; 0: its own again; 0 to 4294967295
+        """
+        fields = {"viewer": viewer}
+        return await self.request("follow", timeout=timeout, **without_none(fields))
+
+    async def lead(self, on: bool = True, *, timeout: float | None = CLIENTS) -> LeadResult:
+        """Brings all viewers to this one's camera.
+
+        on: false: those that follow its sender see by their own again; true or false
+        """
+        fields = {"on": on}
+        return await self.request("lead", timeout=timeout, **without_none(fields))
+
+    async def invite(
+        self, right: Literal["look", "hold", "operate"], *, timeout: float | None = CLIENTS,
+    ) -> InviteResult:  # fmt: skip
+        """Makes a token for a link; the result has it. (right: of who comes by it; look or hold or operate)"""
+        fields = {"right": right}
+        return await self.request("invite", timeout=timeout, **without_none(fields))

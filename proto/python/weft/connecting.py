@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Generator
 from typing import Any
 
@@ -19,7 +20,9 @@ MOST_MESSAGE_BYTES = 256 * 2**20
 class Connecting:
     """Result of `connect`: gives a client if awaited, and one that closes itself in `async with`."""
 
-    def __init__(self, url: str, hello: dict[str, Any], timeout: float, reconnect: bool, call_timeout: float | None):
+    def __init__(self, url: str, hello: dict[str, Any], timeout: float, reconnect: bool, call_timeout: float | None,
+                 token: str | None = None):
+        self._token = token
         self._url, self._hello, self._timeout, self._reconnect = socket_address(url), hello, timeout, reconnect
         self._call_timeout = call_timeout
         self._client: Client | None = None
@@ -43,6 +46,8 @@ class Connecting:
         if socket.subprotocol != SUBPROTOCOL:
             await socket.close(4002)
             raise ProtocolError(f"the server does not speak {SUBPROTOCOL}")
+        if self._token:  # where one is asked for, nothing comes before it
+            await socket.send(json.dumps({"op": "hello", "token": self._token}))
         return socket
 
     async def _connect(self) -> Client:
@@ -76,6 +81,7 @@ def connect(
     *,
     name: str | None = None,
     color: str | None = None,
+    token: str | None = None,
     timeout: float = 10,
     reconnect: bool = False,
     call_timeout: float | None = CALL_SECONDS,
@@ -83,6 +89,7 @@ def connect(
     """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
 
     `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
+    `token` is that of a link, for a server that asks for one.
     `timeout` [s] bounds joining, `call_timeout` each answer by default; None: no bound.
     """
-    return Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout)
+    return Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout, token)

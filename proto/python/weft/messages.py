@@ -31,6 +31,15 @@ class Fabric(TypedDict):
     friction: NotRequired[float]  # Coulomb's coefficient; 0 to 10
 
 
+class Camera(TypedDict):
+    """`Camera`, as part of a message."""
+
+    position: Sequence[float]  # of the eye [m]; 3 × ±10000
+    target: Sequence[float]  # what it looks at; not the same point [m]; 3 × ±10000
+    up: NotRequired[Sequence[float]]  # a direction; 3 × ±10000
+    fov: NotRequired[float]  # vertical angle of view [degrees]; 1 to 179
+
+
 class Hit(TypedDict):
     """`Hit`, as part of a message."""
 
@@ -95,15 +104,6 @@ class Energy(TypedDict):
     total: float
 
 
-class Camera(TypedDict):
-    """`Camera`, as part of a message."""
-
-    position: Sequence[float]  # of the eye [m]; 3 × ±10000
-    target: Sequence[float]  # what it looks at; not the same point [m]; 3 × ±10000
-    up: NotRequired[Sequence[float]]  # a direction; 3 × ±10000
-    fov: NotRequired[float]  # vertical angle of view [degrees]; 1 to 179
-
-
 class PinForce(TypedDict):
     """`PinForce`, as part of a message."""
 
@@ -132,8 +132,19 @@ class Viewer(TypedDict):
     id: int  # its number
     name: str
     color: str  # #rrggbb
-    role: str  # what it may do
+    role: Literal["viewer", "operator", "admin"]  # what it may do; viewer or operator or admin
+    hand: bool  # whether it may hold the cloth; true or false
     camera: Camera | None  # where it looks from, as last told
+
+
+class Presence(TypedDict):
+    """`Presence`, as part of a message."""
+
+    viewer: int  # of which something is new
+    cursor: NotRequired[Sequence[float]]  # what it points at [m]
+    away: NotRequired[bool]  # it points at nothing any more; true or false
+    camera: NotRequired[Camera]  # where it looks from; only while others see by it
+    follows: NotRequired[int]  # by whose camera it sees now; 0: its own
 
 
 class Pin(TypedDict):
@@ -233,6 +244,7 @@ class State(TypedDict):
     tick: int
     time: float  # simulated [s]
     paused: bool
+    policy: Literal["watch", "one_hand", "everybody"]  # who may hold the cloth; watch or one_hand or everybody
     speed: float  # simulated time per real time that was asked for
     pace: float  # fraction of speed at which time passes
     softness: float  # fraction of their stiffness that the springs have

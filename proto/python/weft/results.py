@@ -58,13 +58,56 @@ class RestoreResult(Answer):
     tick: int
 
 
+class PolicyResult(Answer):
+    """The answer to `policy`."""
+
+    tick: int
+
+
+class MuteResult(Answer):
+    """The answer to `mute`."""
+
+    tick: int
+
+
+class GiveHandResult(Answer):
+    """The answer to `give_hand`."""
+
+    tick: int
+
+
+class PresenceResult(Answer):
+    """The answer to `presence`."""
+
+    tick: int
+
+
+class FollowResult(Answer):
+    """The answer to `follow`."""
+
+    tick: int
+
+
+class LeadResult(Answer):
+    """The answer to `lead`."""
+
+    tick: int
+
+
 class HelloResult(Answer):
     """The answer to `hello`."""
 
     viewer: int  # its number
     name: str  # in force
     color: str  # in force
-    role: str  # what it may do
+    role: Literal["viewer", "operator", "admin"]  # what it may do; viewer or operator or admin
+
+
+class InviteResult(Answer):
+    """The answer to `invite`."""
+
+    tick: int  # the command's place in the order: after it
+    token: str  # for a link's fragment, #token=…
 
 
 class PickResult(Answer):

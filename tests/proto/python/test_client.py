@@ -265,6 +265,14 @@ class JoiningTest(unittest.IsolatedAsyncioTestCase):
                 hello, = server.of("hello")
                 self.assertEqual((hello["name"], hello["color"]), ("Ada", "#e4572e"))
 
+    async def test_a_token_is_the_first_that_is_said_and_stands_in_no_other_message(self):
+        async with PlayedServer() as server:
+            async with weft.connect(server.url, name="Ada", token="0123456789abcdef"):
+                first, second = server.of("hello")
+                self.assertEqual(server.heard[0], first)
+                self.assertEqual(first["token"], "0123456789abcdef")
+                self.assertNotIn("token", second)
+
     async def test_a_server_without_the_subprotocol_is_refused(self):
         async with PlayedServer(subprotocols=None) as server:
             with self.assertRaises(weft.WeftError):

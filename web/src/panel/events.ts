@@ -23,6 +23,10 @@ export function notice_text(notice: Notice, present: Present): string | null {
       return `${who(viewer, present)} reset the scene`;
     case 'loaded':
       return `${who(viewer, present)} chose the scene “${present.scene}”`;
+    case 'lead':
+      return viewer === present.own ? null : `${who(viewer, present)} shows its view`;
+    case 'policy':
+      return message[0].toUpperCase() + message.slice(1);
     case 'lease_expired':
       return viewer === present.own
         ? 'Your hand let go, because nothing came from this page for a while'

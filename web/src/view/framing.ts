@@ -36,6 +36,12 @@ function angles_of([x, y, z]: Vec3): { azimuth: number; elevation: number } {
   return { azimuth: Math.atan2(x, z), elevation: Math.atan2(y, Math.hypot(x, z)) };
 }
 
+/** Where a camera of the wire stands. */
+export function pose_of_camera({ position, target }: { position: Vec3; target: Vec3 }): Pose {
+  const back = position.map((x, axis) => x - target[axis]) as Vec3;
+  return { target: new Vector3(...target), distance: Math.hypot(...back), ...angles_of(back) };
+}
+
 /** The nearest pose from this side that has all points in the middle of the free picture; `points` are xyz [m]. */
 export function pose_around(
   points: ArrayLike<number>,

@@ -1,4 +1,5 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
+import { own_token } from './own_token.js';
 import { WorkerFrames } from './worker_frames.js';
 
 const SHOWN_ERROR = 4e-4; // how far off a vertex may be on a slow link; 1e-4 else [m]
@@ -17,13 +18,20 @@ const SUSPECTED_PROXY: Refusal = {
   hint: 'a proxy in between has to pass WebSocket upgrades on',
 };
 
+const UNKNOWN_TOKEN: Refusal = {
+  message: 'this server lets in only those who have a link',
+  hint: 'open the whole link that you were given, with what follows #token=',
+};
+const TOKEN_REFUSED = 4003; // the close code
+
 /** Connects to the server that the page came from. @param name of the viewer; may be empty */
 export function connect_client(name: string): WeftClient {
   const url = new URL('ws', window.location.href);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
   url.search = url.hash = '';
+  const token = own_token();
   const frames = new WorkerFrames(new Worker('frame_worker.js', { type: 'module' }));
-  const client = new WeftClient(url.href, { frames, ...(name ? { name } : {}) });
+  const client = new WeftClient(url.href, { frames, ...(name ? { name } : {}), ...(token ? { token } : {}) });
   const look = () => void client.view({ hz: document.hidden ? 0 : EVERY_TICK }).catch(() => {});
   document.addEventListener('visibilitychange', look);
   client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
@@ -40,7 +48,8 @@ export function connect_client(name: string): WeftClient {
 export function explain_refusals(client: WeftClient, tell: (refusal: Refusal | null) => void): void {
   let failures = 0;
   let last: string = 'connecting'; // as left by connect_client
-  client.on('status', ({ phase }) => {
+  client.on('status', ({ phase, code }) => {
+    if (phase === 'closed' && code === TOKEN_REFUSED) return tell(UNKNOWN_TOKEN);
     const failed = last === 'connecting' && phase === 'waiting';
     last = phase;
     if (phase === 'open') {

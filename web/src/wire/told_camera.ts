@@ -1,7 +1,7 @@
 import type { WeftClient } from '../../../proto/js/index.js';
 import type { Vec3 } from '../../../proto/js/messages.js';
 
-const INTERVAL = 0.25; // between two messages [s]
+const INTERVAL = 0.1; // between two messages [s]
 
 /** Tells the server from where this viewer looks, after each change, but not too often. */
 export class ToldCamera {

@@ -1,0 +1,269 @@
+"""Who may do what, over sockets: tokens, roles, the policy and the addresses that proxies tell. A client that
+is not ours, written from proto/README.md, whose table of rights is what is tested."""
+
+import asyncio
+import contextlib
+import json
+import os
+import re
+import socket
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import websockets
+from connecting_test import UPGRADE, Answer
+from foreign_client import PATIENCE, PROGRAM, Server, SocketTest, Viewer, main
+
+ROOT = Path(__file__).resolve().parents[2]
+LOOKER, OPERATOR, ADMIN = "look-0123456789abcdef", "operate-0123456789abcdef", "admin-0123456789abcdef"
+TOKENS = f"# a class\nviewer {LOOKER} Class 7b\noperator {OPERATOR}\n\nadmin {ADMIN} Ada\n"
+
+
+def rights():
+    """The commands of each right, as the specification's table says."""
+    page = (ROOT / "proto/README.md").read_text(encoding="utf-8")
+    table = page.split("<!-- rights: written by generate.py -->")[1].split("<!-- end -->")[0]
+    rows = re.findall(r"\| `(\w+)` \| (.*) \|", table)
+    return {right: {re.match(r"`(\w+)`", item)[1] for item in row.split("; ")} for right, row in rows}
+
+
+def goldens():
+    """Commands that can be read, of each `op` and form."""
+    texts = json.loads((ROOT / "tests/proto/golden/accepted_commands.json").read_text(encoding="utf-8"))
+    return [entry["text"] for entry in texts]
+
+
+async def enter(server, token=None, **hello):
+    """A viewer that tells its token first; None without an answer to wait for."""
+    connection = await websockets.connect(server.websocket, subprotocols=["weft.v1"], compression=None,
+                                          max_size=None, ping_interval=None)
+    viewer = Viewer(connection, True)
+    if token is not None:
+        await viewer.tell("hello", id="hello", token=token, **hello)
+        viewer.welcome = await viewer.wait_text(lambda m: m["op"] == "welcome")
+        viewer.id = viewer.welcome["viewer"]
+    return viewer
+
+
+class WithTokens(SocketTest):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name, "tokens")
+        self.path.write_text(TOKENS)
+        self.path.chmod(0o600)
+        self.server = Server("--paused", "--tokens", str(self.path))
+
+    async def enter(self, token, **hello):
+        viewer = await enter(self.server, token, **hello)
+
+        async def end():
+            await viewer.socket.close()
+            await asyncio.wait({viewer.reader}, timeout=PATIENCE)
+        self.addAsyncCleanup(end)
+        return viewer
+
+    async def test_a_token_tells_role_and_name_and_the_first_message_is_answered(self):
+        for token, role, name in ((LOOKER, "viewer", "Class 7b"), (OPERATOR, "operator", None),
+                                  (ADMIN, "admin", "Ada")):
+            viewer = await self.enter(token)
+            self.assertEqual(viewer.welcome["role"], role)
+            self.assertEqual(viewer.welcome["name"], name or f"viewer {viewer.id}")
+            answer = await viewer.wait_text(lambda m: m.get("id") == "hello")
+            self.assertEqual((answer["op"], answer["role"]), ("result", role))
+        named = await self.enter(LOOKER, name="Bea")
+        roster = await named.wait_text(lambda m: m["op"] == "roster" and m["viewers"][-1]["name"] == "Bea")
+        self.assertEqual([v["role"] for v in roster["viewers"]], ["viewer", "operator", "admin", "viewer"])
+        frame = await named.wait_frame(lambda f: True)
+        self.assertGreater(frame.vertices, 0)
+
+    async def test_whoever_has_no_token_is_let_in_to_nothing(self):
+        loop = asyncio.get_running_loop()
+        firsts = [json.dumps({"op": "hello", "id": 1, "token": LOOKER + "x"}),
+                  json.dumps({"op": "hello", "id": 1, "token": LOOKER[:-1]}),
+                  json.dumps({"op": "hello", "id": 1, "name": "Eve"}),
+                  json.dumps({"op": "query", "id": 1, "what": "positions"}), "nonsense"]
+        began = loop.time()
+        refused = []
+        for first in firsts:
+            viewer = await enter(self.server)
+            await viewer.socket.send(first)
+            # What comes behind it is not read.
+            await viewer.tell("hello", token=OPERATOR)
+            refused.append((first, viewer))
+        for first, viewer in refused:
+            with self.subTest(first=first):
+                self.assertEqual(await viewer.wait_closed(), 4003)
+                self.assertEqual([m["op"] for m in viewer.texts], ["error"])
+                error = viewer.texts[0]
+                self.assertEqual((error["code"], error["field"]), ("not_allowed", "token"))
+                self.assertEqual(error.get("id"), None if first == "nonsense" else 1)
+                self.assertNotIn(LOOKER, json.dumps(error))
+                self.assertEqual((viewer.frames, viewer.binaries), ([], []))
+        self.assertGreaterEqual(loop.time() - began, 0.5, "guessing costs time")
+
+    async def test_a_connection_that_says_nothing_is_closed_after_5_s_and_blocks_nobody(self):
+        loop = asyncio.get_running_loop()
+        silent, began = await enter(self.server), loop.time()
+        operator = await self.enter(OPERATOR)
+        self.assertEqual((await operator.ask("hash"))["op"], "result")
+        self.assertEqual(await silent.wait_closed(), 4003)
+        self.assertGreater(loop.time() - began, 4.5)
+        roster = (await operator.ask("query", what="roster"))["data"]
+        self.assertEqual(len(roster), 1, "it was never a viewer")
+
+    async def test_for_every_command_the_wire_refuses_what_the_table_of_rights_says(self):
+        operator = await self.enter(OPERATOR)
+        looker = await self.enter(LOOKER)
+        await operator.ask("pin", particle=3)
+        await operator.ask("policy", policy="watch")
+        table = rights()
+        self.assertEqual(set(table), {"look", "hold", "operate"})
+        needs = {}
+        for right, commands in table.items():
+            for op in commands:
+                needs.setdefault(op, set()).add(right)
+        before = [(await operator.ask("query", what=what))["data"] for what in ("state", "pins", "grabs")]
+        hash_before = (await operator.ask("hash"))["hash"]
+        seen = set()
+        for number, text in enumerate(goldens()):
+            command = json.loads(text)
+            command["id"] = number
+            command.pop("token", None)  # is tested by itself
+            await looker.socket.send(json.dumps(command))
+            answer = await looker.wait_text(lambda m, n=number: m.get("id") == n)
+            op = command["op"]
+            self.assertIn(op, needs, "the table has every command")
+            refused = answer["op"] == "error" and answer["code"] == "not_allowed"
+            with self.subTest(text=text):
+                if "look" not in needs[op]:
+                    self.assertTrue(refused, answer)
+                    self.assertEqual((answer["field"], answer["value"]), ("op", op))
+                    self.assertIn(answer["limit"]["allowed"], (["hand"], ["operator", "admin"]))
+                elif needs[op] == {"look"}:
+                    self.assertFalse(refused, answer)
+            seen.add(op)
+        self.assertEqual(seen, set(needs), "every command was sent")
+        after = [(await operator.ask("query", what=what))["data"] for what in ("state", "pins", "grabs")]
+        for old, new in zip(before, after):
+            for changing in ("step_ms", "real_time_factor"):
+                if isinstance(old, dict):
+                    old.pop(changing), new.pop(changing)
+            self.assertEqual(old, new)
+        self.assertEqual((await operator.ask("hash"))["hash"], hash_before)
+
+    async def test_hands_are_given_and_taken_live_and_all_are_told(self):
+        operator, pupil = await self.enter(OPERATOR), await self.enter(LOOKER)
+        self.assertEqual((await pupil.ask("drag", phase="start", particle=100))["op"], "result")
+        seen = len(pupil.texts)
+        await operator.ask("policy", policy="watch")
+        await pupil.wait_text(lambda m: m["op"] == "grabs" and not m["grabs"], seen)
+        await pupil.wait_text(lambda m: m["op"] == "state" and m["policy"] == "watch", seen)
+        self.assertEqual((await pupil.ask("drag", phase="start", particle=100))["code"], "not_allowed")
+        await operator.ask("give_hand", viewer=pupil.id)
+        self.assertEqual((await pupil.ask("drag", phase="start", particle=100))["op"], "result")
+        await operator.ask("mute", viewer=pupil.id)
+        self.assertEqual((await pupil.ask("drag", phase="move", target=[0, 1, 0]))["code"], "not_allowed")
+
+    async def test_a_viewer_takes_a_better_token_at_once_and_a_wrong_one_is_refused(self):
+        viewer = await self.enter(LOOKER)
+        self.assertEqual((await viewer.ask("reset"))["code"], "not_allowed")
+        wrong = await viewer.ask("hello", token="guessed-0123456789")
+        self.assertEqual((wrong["code"], wrong["field"]), ("not_allowed", "token"))
+        self.assertEqual((await viewer.ask("hello", token=OPERATOR))["role"], "operator")
+        self.assertEqual((await viewer.ask("reset"))["op"], "result")
+
+
+class TokensAtTheStart(unittest.TestCase):
+    def serve(self, *options, **environment):
+        return subprocess.run([PROGRAM, "serve", "--port", "0", "--max-seconds", "0.2", *options],
+                              capture_output=True, text=True, timeout=PATIENCE,
+                              env={**os.environ, **environment})
+
+    def test_a_file_that_others_may_read_is_told_and_no_token_appears_in_any_log(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "tokens")
+            path.write_text(TOKENS)
+            path.chmod(0o644)
+            done = self.serve("--tokens", str(path), "--log-level", "trace")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("chmod 600", done.stderr)
+        for token in (LOOKER, OPERATOR, ADMIN):
+            self.assertNotIn(token, done.stdout + done.stderr)
+
+    def test_wrong_files_are_refused_by_line_without_the_token(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "tokens")
+            for text, named in ((TOKENS + "owner 0123456789abcdefgh\n", "line 6"), ("viewer short\n", "line 1"),
+                                ("", "role token"), ("#" * 70000, "65536 bytes")):
+                path.write_text(text)
+                done = self.serve("--tokens", str(path))
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(named, done.stderr)
+                self.assertNotIn("0123456789abcdefgh", done.stderr)
+            self.assertEqual(self.serve("--tokens", folder).returncode, 2)
+            self.assertEqual(self.serve("--tokens", str(Path(folder, "absent"))).returncode, 2)
+
+    def test_the_environment_gives_tokens_too(self):
+        done = self.serve("--bind", "0.0.0.0", WEFT_TOKENS=TOKENS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.serve(WEFT_TOKENS="viewer short").returncode, 2)
+
+
+class BehindAProxy(unittest.TestCase):
+    LIMIT = 3
+
+    def connection(self, server, *fields):
+        """One that has been answered, kept open, and the status of its answer."""
+        opened = socket.create_connection((server.addresses["host"], server.addresses["port"]), PATIENCE)
+        self.addCleanup(opened.close)
+        head = "".join(f"{field}\r\n" for field in fields)
+        opened.sendall(f"GET /healthz HTTP/1.1\r\nHost: localhost\r\n{head}\r\n".encode())
+        received = b""
+        while b"\r\n\r\n" not in received:
+            received += opened.recv(65536)
+        return Answer(received).status
+
+    def statuses(self, server, *fields):
+        return [self.connection(server, *fields) for _ in range(self.LIMIT + 1)]
+
+    def serve(self, *options):
+        server = Server("--paused", "--max-connections-per-address", str(self.LIMIT), *options)
+        self.addCleanup(lambda: self.assertEqual(server.stop(), 0))
+        return server
+
+    def test_each_client_of_a_trusted_proxy_is_counted_by_itself(self):
+        server = self.serve("--trusted-proxy", "127.0.0.0/8")
+        full = [200] * self.LIMIT + [503]
+        self.assertEqual(self.statuses(server, "X-Forwarded-For: 203.0.113.9"), full)
+        self.assertEqual(self.statuses(server, "X-Forwarded-For: 203.0.113.8"), full)
+        self.assertEqual(self.statuses(server, 'Forwarded: for="[2001:db8::1]"'), full)
+        # What the client itself wrote before the proxy's word changes nothing.
+        self.assertEqual(self.connection(server, "X-Forwarded-For: 198.51.100.1, 203.0.113.9"), 503)
+        self.assertEqual(self.connection(server, "X-Forwarded-For: 198.51.100.1"), 200)
+
+    def test_nobody_else_is_believed(self):
+        server = self.serve("--trusted-proxy", "192.0.2.7")
+        answers = [self.connection(server, f"X-Forwarded-For: 203.0.113.{k}") for k in range(self.LIMIT + 1)]
+        self.assertEqual(answers, [200] * self.LIMIT + [503])
+
+    def test_a_socket_counts_for_its_client_as_long_as_it_is_open(self):
+        server = self.serve("--trusted-proxy", "127.0.0.1")
+        opened = []
+        for _ in range(self.LIMIT):
+            connection = socket.create_connection((server.addresses["host"], server.addresses["port"]), PATIENCE)
+            opened.append(connection)
+            connection.sendall(f"GET /ws HTTP/1.1\r\nHost: localhost\r\nX-Forwarded-For: 203.0.113.9\r\n"
+                               f"{UPGRADE}\r\n".encode())
+            self.assertIn(b" 101 ", connection.recv(65536))
+        self.assertEqual(self.connection(server, "X-Forwarded-For: 203.0.113.9"), 503)
+        self.assertEqual(self.connection(server, "X-Forwarded-For: 203.0.113.8"), 200)
+        for connection in opened:
+            with contextlib.closing(connection):
+                connection.shutdown(socket.SHUT_RDWR)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+import assert from 'node:assert/strict';
+import { mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test, { after, before } from 'node:test';
+import { launch_browser, open_page, read, until } from './support/browser.mjs';
+import { bounded, CALM, point_at_cloth } from './support/default_page.mjs';
+import { start_server } from './support/server.mjs';
+
+// Several people with one cloth: who may hold it, what each points at, and by whose camera they see.
+
+const LOOKER = 'look-0123456789abcdef';
+const OPERATOR = 'operate-0123456789abcdef';
+
+let browser;
+let folder;
+let server;
+before(async () => {
+  browser = await launch_browser();
+  folder = await mkdtemp(join(tmpdir(), 'weft-people-'));
+  const tokens = join(folder, 'tokens');
+  await writeFile(tokens, `viewer ${LOOKER} Ben\noperator ${OPERATOR} Ada\n`, { mode: 0o600 });
+  server = await start_server([...CALM, '--paused', '--tokens', tokens]);
+});
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+  await rm(folder, { recursive: true, force: true });
+});
+
+const enter = (token) => open_page(browser, `${server.url}#token=${token}`);
+
+/** Two pages, an operator's and a viewer's, which are seen off. */
+async function with_two(act) {
+  const pages = [await enter(OPERATOR), await enter(LOOKER)];
+  try {
+    await act(...pages);
+    for (const { complaints } of pages) assert.deepEqual(complaints, []);
+  } finally {
+    for (const page of pages) await page.context().close();
+  }
+}
+
+async function open_list(page) {
+  await page.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
+  await until(() => page.getByRole('list', { name: 'People' }).isVisible(), 'the list of people');
+}
+
+const close_list = (page) => page.keyboard.press('Escape');
+
+test('an operator says who holds by the list of people, and the page of who may not tells it', bounded, () =>
+  with_two(async (ada, ben) => {
+    await open_list(ada);
+    const told = ben.getByText('You look; an operator can give you a hand.');
+    assert.ok(!(await told.isVisible()));
+    await ada.getByRole('button', { name: 'Others watch' }).click();
+    await until(() => told.isVisible(), 'Ben is told that he looks');
+    const hand = ada.getByRole('checkbox', { name: 'Ben may hold' });
+    await until(async () => !(await hand.isChecked()));
+    await hand.check();
+    await until(async () => !(await told.isVisible()), 'Ben may hold');
+    await ada.getByRole('button', { name: 'Everybody holds' }).click();
+    await ada.getByRole('checkbox', { name: 'Ben may hold' }).uncheck();
+    await until(() => told.isVisible(), 'Ben is muted');
+    await ada.getByRole('checkbox', { name: 'Ben may hold' }).check();
+    await until(async () => !(await told.isVisible()));
+    // A viewer has nothing to decide.
+    await open_list(ben);
+    assert.equal(await ben.getByRole('checkbox').count(), 0);
+    assert.ok(!(await ben.getByRole('button', { name: 'Others watch' }).isVisible()));
+  }));
+
+test("another's cursor is drawn on the cloth with a name", bounded, () =>
+  with_two(async (ada, ben) => {
+    await point_at_cloth(ben);
+    const cursors = await until(async () => {
+      const { cursors } = await read(ada, 'company');
+      return cursors.length > 0 && cursors;
+    }, "Ben's cursor");
+    assert.equal(cursors[0].name, 'Ben');
+    const positions = await read(ada, 'positions');
+    const gaps = [];
+    for (let i = 0; i < positions.length; i += 3)
+      gaps.push(Math.hypot(...[0, 1, 2].map((axis) => positions[i + axis] - cursors[0].place[axis])));
+    assert.ok(Math.min(...gaps) < 0.03, 'it lies on the cloth');
+    await ben.mouse.move(2, 2);
+    await until(async () => (await read(ada, 'company')).cursors.length === 0, 'it goes with the mouse');
+  }));
+
+test('a page that follows sees what the other sees, until its viewer touches it', bounded, () =>
+  with_two(async (ada, ben) => {
+    await open_list(ada);
+    await ada.getByRole('button', { name: 'Bring all to my view' }).click();
+    await close_list(ada);
+    const follows = (page) => read(page, 'company').then((company) => company.follows);
+    await until(async () => (await follows(ben)) === (await read(ada, 'viewer')), 'Ben is brought along');
+    const box = await ada.locator('#view').boundingBox();
+    await ada.mouse.move(box.x + 8, box.y + box.height / 2);
+    await ada.mouse.down();
+    await ada.mouse.move(box.x + 90, box.y + box.height / 2 + 20, { steps: 6 });
+    await ada.mouse.up();
+    const gap = async () => {
+      const [a, b] = [await read(ada, 'camera'), await read(ben, 'camera')];
+      return Math.hypot(...a.position.map((x, axis) => x - b.position[axis]));
+    };
+    await until(async () => (await gap()) < 2e-3, 'both see from the same place');
+    await ben.mouse.move(box.x + 8, box.y + box.height / 2);
+    await ben.mouse.wheel(0, -300);
+    await until(async () => (await follows(ben)) === 0, 'Ben has left');
+    await until(async () => (await gap()) > 0.02, 'and sees by his own');
+  }));
+
+test('a link that an operator makes lets its guest look, and shows as a QR code', bounded, async () => {
+  const ada = await enter(OPERATOR);
+  try {
+    await open_list(ada);
+    await ada.getByRole('button', { name: 'Link to look' }).click();
+    const field = ada.getByRole('textbox', { name: 'Link to look' });
+    await until(() => field.isVisible());
+    const link = await field.inputValue();
+    assert.ok(link.startsWith(`${server.url}#token=`));
+    assert.ok(!link.includes(OPERATOR));
+    const code = ada.getByRole('img', { name: 'QR code of the link to look' });
+    const { width, height } = await code.locator('svg').boundingBox();
+    assert.ok(width > 100 && Math.abs(width - height) < 1);
+    const guest = await open_page(browser, link);
+    await until(() => guest.getByText('You look; an operator can give you a hand.').isVisible());
+    assert.deepEqual(guest.complaints, []);
+    await guest.context().close();
+    assert.deepEqual(ada.complaints, []);
+  } finally {
+    await ada.context().close();
+  }
+});
+
+test('without a token the page says what is missing, and does not try again', bounded, async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  await page.goto(server.url);
+  await until(() => page.locator('#refusal-hint').isVisible(), 'the reason is shown');
+  assert.match(await page.locator('#refusal').innerText(), /link/);
+  assert.equal(await page.locator('#connection-text').innerText(), 'Refused');
+  await context.close();
+});

@@ -1,0 +1,66 @@
+import type { WeftClient } from '../../../proto/js/index.js';
+import type { State, Viewer } from '../../../proto/js/messages.js';
+import type { Company } from '../wire/company.js';
+import { tell_refusal } from '../wire/connection.js';
+import { link_with } from '../wire/own_token.js';
+import { element } from './element.js';
+import type { PeopleList } from './people_list.js';
+
+/** What is known of the people in the room. */
+export interface People {
+  own: number;
+  viewers: Viewer[];
+  policy: State['policy'];
+  follows: number;
+}
+
+/** Says by whose camera the viewer sees and whether it may hold, and opens the list of people. */
+export class PeoplePanel {
+  private viewers: Viewer[] = [];
+  private policy: State['policy'] = 'everybody';
+  private list: PeopleList | null = null;
+  private dialog = element<HTMLDialogElement>('name-dialog');
+
+  constructor(
+    private client: WeftClient,
+    private company: Company,
+    private tell: (text: string) => void,
+  ) {
+    client.on('roster', ({ viewers }) => {
+      this.viewers = viewers;
+      this.show();
+    });
+    client.on('state', ({ policy }) => {
+      if (policy === this.policy) return;
+      this.policy = policy;
+      this.show();
+    });
+    element('viewers').addEventListener('click', ({ target }) => {
+      if (target instanceof Element && target.closest('button')) void this.open();
+    });
+    element('following').addEventListener('click', () => this.company.leave());
+  }
+
+  /** Something about the people has changed. */
+  show(): void {
+    const own = this.viewers.find(({ id }) => id === this.client.viewer);
+    const followed = this.viewers.find(({ id }) => id === this.company.follows);
+    element('following').hidden = !followed;
+    element('following').textContent = followed ? `You see what ${followed.name} sees. Stop` : '';
+    element('only-looks').hidden = own?.hand !== false;
+    if (this.dialog.open) this.list?.show(this.people());
+  }
+
+  private people(): People {
+    const { viewers, policy } = this;
+    return { own: this.client.viewer, viewers, policy, follows: this.company.follows };
+  }
+
+  /** The list is no part of the first load. */
+  private async open(): Promise<void> {
+    const { PeopleList } = await import('./people_list.js');
+    const attempt = (answer: Promise<unknown>) => tell_refusal(answer, this.tell);
+    this.list ??= new PeopleList(element('people'), this.client, { attempt, link_with });
+    this.list.show(this.people());
+  }
+}

@@ -1,0 +1,143 @@
+import type { WeftClient } from '../../../proto/js/index.js';
+import type { State, Viewer } from '../../../proto/js/messages.js';
+import type { People } from './people.js';
+
+const MOST_SHOWN = 40;
+const POLICIES: [State['policy'], string][] = [
+  ['everybody', 'Everybody holds'],
+  ['one_hand', 'One hand each'],
+  ['watch', 'Others watch'],
+];
+
+/** What the page has already, so that the list stays small. */
+interface Tools {
+  /** Awaits a command in the background and tells its refusal. */
+  attempt(answer: Promise<unknown>): void;
+  /** The page's address with another token. */
+  link_with(token: string): string;
+}
+
+/** Who is here, who may hold the cloth, and links that let others in. */
+export class PeopleList {
+  private policies = make('div', 'policies');
+  private rows = make('ul', 'rows');
+  private links = make('div', 'links');
+  private told = '';
+
+  constructor(
+    root: HTMLElement,
+    private client: WeftClient,
+    private tools: Tools,
+  ) {
+    this.policies.setAttribute('role', 'group');
+    this.policies.setAttribute('aria-label', 'Who may hold the cloth');
+    this.rows.setAttribute('aria-label', 'People');
+    root.replaceChildren(this.policies, this.rows, this.links);
+    this.make_links();
+  }
+
+  /** Changes nothing, and no focus, while all is as it was. */
+  show(people: People): void {
+    const told = JSON.stringify([people.own, people.policy, people.follows, people.viewers.map(known_of)]);
+    if (told === this.told) return;
+    this.told = told;
+    const focus = document.activeElement instanceof HTMLElement ? document.activeElement.dataset.key : undefined;
+    const operates = people.viewers.find(({ id }) => id === people.own)?.role !== 'viewer';
+    this.policies.hidden = this.links.hidden = !operates;
+    this.policies.replaceChildren(...this.policy_buttons(people), this.lead_button());
+    const others = [...people.viewers].sort((a, b) => Number(b.id === people.own) - Number(a.id === people.own));
+    this.rows.replaceChildren(...others.slice(0, MOST_SHOWN).map((one) => this.row(one, people, operates)));
+    if (focus) this.rows.parentElement?.querySelector<HTMLElement>(`[data-key="${focus}"]`)?.focus();
+  }
+
+  private policy_buttons({ policy }: People): HTMLElement[] {
+    return POLICIES.map(([value, words]) => {
+      const button = this.button(`policy-${value}`, words, () => this.client.policy(value));
+      button.setAttribute('aria-pressed', String(policy === value));
+      return button;
+    });
+  }
+
+  private lead_button(): HTMLElement {
+    return this.button('lead', 'Bring all to my view', () => this.client.lead());
+  }
+
+  private row(viewer: Viewer, { own, follows }: People, operates: boolean): HTMLElement {
+    const row = make('li', '');
+    row.style.setProperty('--color', viewer.color);
+    const role = viewer.role === 'viewer' ? '' : ` · ${viewer.role}`;
+    const name = make('span', 'viewer-name', viewer.name);
+    row.append(make('span', 'swatch'), name, make('span', 'role', `${viewer.id === own ? ' (you)' : ''}${role}`));
+    if (operates) row.append(this.hand_box(viewer));
+    if (viewer.id === own) return row;
+    const following = follows === viewer.id;
+    const follow = this.button(`follow-${viewer.id}`, 'Follow', () => this.client.follow(following ? 0 : viewer.id));
+    follow.setAttribute('aria-pressed', String(following));
+    follow.setAttribute('aria-label', `Follow ${viewer.name}`);
+    row.append(follow);
+    return row;
+  }
+
+  /** Gives a viewer a hand, or takes it whatever the policy. */
+  private hand_box({ id, name, hand }: Viewer): HTMLElement {
+    const label = make('label', 'hand');
+    const box = document.createElement('input');
+    box.type = 'checkbox';
+    box.checked = hand;
+    box.dataset.key = `hand-${id}`;
+    box.setAttribute('aria-label', `${name} may hold`);
+    box.addEventListener('change', () => {
+      this.told = ''; // shown anew whatever the answer
+      this.tools.attempt(box.checked ? this.client.giveHand(id) : this.client.mute(id));
+    });
+    label.append(box, 'holds');
+    return label;
+  }
+
+  private make_links(): void {
+    const shown = make('div', 'link');
+    const make_link = async (right: 'look' | 'hold') => {
+      const { token } = (await this.client.invite(right)) as unknown as { token: string };
+      const link = this.tools.link_with(token);
+      const { renderSVG } = await import('uqr');
+      const field = document.createElement('input');
+      field.className = 'field';
+      field.readOnly = true;
+      field.value = link;
+      field.setAttribute('aria-label', `Link to ${right}`);
+      const picture = make('div', 'code');
+      picture.setAttribute('role', 'img');
+      picture.setAttribute('aria-label', `QR code of the link to ${right}`);
+      picture.innerHTML = renderSVG(link, { border: 4 });
+      shown.replaceChildren(field, picture);
+      field.select();
+    };
+    this.links.append(
+      this.button('link-look', 'Link to look', () => make_link('look')),
+      this.button('link-hold', 'Link to hold', () => make_link('hold')),
+      shown,
+    );
+  }
+
+  private button(key: string, words: string, act: () => Promise<unknown>): HTMLElement {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.className = 'plain';
+    button.dataset.key = key;
+    button.textContent = words;
+    button.addEventListener('click', () => this.tools.attempt(act()));
+    return button;
+  }
+}
+
+/** What of a viewer the list shows. */
+function known_of({ id, name, color, role, hand }: Viewer) {
+  return [id, name, color, role, hand];
+}
+
+function make(tag: string, name: string, text = ''): HTMLElement {
+  const made = document.createElement(tag);
+  made.className = name;
+  made.textContent = text;
+  return made;
+}
