@@ -149,9 +149,11 @@ TEST_CASE("the policy says who holds, and hands that it forbids let go, the olde
   TestRoom t(true);
   t.join(1);
   t.room->take({2, 0, Join{false, Grant{Role::viewer, HandRight::by_policy, "", true}}});
+  int id = 0;
   const auto start = [&](proto::ViewerId viewer, int drag, int particle) {
-    return t.say(viewer, R"({"op":"drag","phase":"start","id":5,"drag":)" + std::to_string(drag) +
-                             R"(,"particle":)" + std::to_string(particle) + "}");
+    return t.say(viewer, R"({"op":"drag","phase":"start","id":)" + std::to_string(++id) +
+                             R"(,"drag":)" + std::to_string(drag) + R"(,"particle":)" +
+                             std::to_string(particle) + "}");
   };
   CHECK(start(2, 0, 38)["op"] == "result");
   CHECK(start(2, 1, 30)["op"] == "result");
@@ -182,8 +184,10 @@ TEST_CASE(
     "a muted viewer lets go and holds no more, whatever the policy, until it is given a hand") {
   Shared room;
   TestRoom& t = room.t;
+  int id = 100;
   const auto start = [&] {
-    return t.say(kLooker, R"({"op":"drag","phase":"start","id":5,"drag":4,"particle":30})");
+    return t.say(kLooker, R"({"op":"drag","phase":"start","drag":4,"particle":30,"id":)" +
+                              std::to_string(++id) + "}");
   };
   t.say(kOperator, R"({"op":"policy","policy":"everybody"})");
   CHECK(start()["op"] == "result");
