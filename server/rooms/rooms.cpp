@@ -45,6 +45,7 @@ class Rooms::Reserved : public RoomName {
   ~Reserved() override {
     const std::lock_guard lock(rooms_.mutex_);
     rooms_.reserved_.erase(name_);
+    if (!rooms_.rooms_.contains(name_)) rooms_.costs_.erase(name_);  // opening it failed
   }
   const std::string& text() const override { return name_; }
 
@@ -226,6 +227,8 @@ std::optional<proto::Error> Rooms::close(const std::string& name) {
 
 std::optional<proto::Error> Rooms::admit(const std::string& room, const TickCost& cost) {
   const std::lock_guard lock(mutex_);
+  // A room that has been closed during its turn costs nothing any more.
+  if (!rooms_.contains(room) && !reserved_.contains(room)) return std::nullopt;
   double particles = cost.particles, updates = cost.updates() * cost.tick_rate;
   for (const auto& [name, other] : costs_) {
     if (name == room) continue;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -21,6 +22,7 @@ constexpr auto kLook = std::chrono::milliseconds(1);  // between two looks at wh
 struct Outside {
   std::atomic<int> closed = 0;
   std::atomic<bool> blocks = false;  ///< what is sent to a viewer is not taken, so that turns last
+  std::atomic<bool> fails = false;   ///< rooms get no output, so that none opens
 };
 
 /// An output that no viewer listens to.
@@ -53,8 +55,11 @@ struct TestRooms {
       : rooms(
             {.threads = 2, .most = most, .idle_seconds = idle_seconds, .waiting_commands = 8},
             small_room(), small_scene,
-            [this](Metrics&) { return std::make_shared<NoOutput>(outside); }, process_seconds,
-            metrics) {
+            [this](Metrics&) {
+              if (outside.fails) throw std::runtime_error("no output");
+              return std::make_shared<NoOutput>(outside);
+            },
+            process_seconds, metrics) {
     rooms.open_default();
     rooms.start();
   }
@@ -129,6 +134,24 @@ TEST_CASE("all rooms together keep to one bound of particles and one of updates"
   CHECK_FALSE(t.rooms.close("a"));
   CHECK_FALSE(t.rooms.admit("default", cost_of(own + 1)));
   CHECK(t.rooms.admit("default", {1000, kMostUpdatesOfRooms / 1000, 1, 60}));
+}
+
+TEST_CASE("a room that could not be opened, or is closed, costs the others nothing") {
+  TestRooms t;
+  t.outside.fails = true;
+  CHECK_THROWS(t.open("a"));
+  CHECK_FALSE(t.rooms.admit("default", cost_of(kMostParticlesOfRooms)));
+  CHECK_FALSE(t.rooms.admit("default", cost_of(1)));
+  t.outside.fails = false;
+  REQUIRE(t.open("a"));
+  CHECK_FALSE(t.rooms.close("a"));
+  // As by a load whose turn is not over yet.
+  CHECK_FALSE(t.rooms.admit("a", cost_of(kMostParticlesOfRooms)));
+  CHECK_FALSE(t.rooms.admit("default", cost_of(kMostParticlesOfRooms)));
+  CHECK_FALSE(t.rooms.admit("default", cost_of(1)));
+  t.rooms.stop();
+  CHECK(t.open("b").error().code == proto::ErrorCode::busy);
+  CHECK_FALSE(t.rooms.admit("default", cost_of(kMostParticlesOfRooms)));
 }
 
 TEST_CASE("an empty room closes after its time, and the default one never does") {
