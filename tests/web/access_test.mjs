@@ -50,6 +50,7 @@ for (const [look, options] of LOOKS) {
     await until(async () => (await read(page, 'boxes')).lines.length > 0, 'boxes are shown');
     await clean('everything open');
     await page.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
+    await until(() => page.getByRole('list', { name: 'People' }).isVisible(), 'the list is there, and moves nothing more');
     await clean('the dialog of the name');
     await page.keyboard.press('Escape');
     for (const key of ['?', 'l']) {
