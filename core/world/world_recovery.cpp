@@ -1,4 +1,4 @@
-// Ends ticks early, and restores the state before them.
+// Judges ticks, repeats or ends them, and restores the state before them.
 
 #include <algorithm>
 #include <cassert>
@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/world/constants.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -39,6 +40,25 @@ DivergenceCause cause_of(const BlowUp& blow_up) {
       return DivergenceCause::too_far;
   }
   return DivergenceCause::not_finite;
+}
+
+/// Gives hands what they did last before the tick that failed, whose forces may not be finite; a
+/// hand that took hold in it did nothing yet.
+template <class Real>
+void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) {
+    const auto known = std::find_if(before.list.begin(), before.list.end(),
+                                    [&](const Grab<Real>& other) { return other.id == grab.id; });
+    if (known != before.list.end()) {
+      grab.impulse = known->impulse;
+      grab.velocity = known->velocity;
+      grab.force = known->force;
+    } else {
+      for (Vec3Array<Real>* array : {&grab.impulse, &grab.velocity})
+        std::fill(array->begin(), array->end(), Vec3<Real>::Zero());
+      grab.force.setZero();
+    }
+  }
 }
 
 }  // namespace
@@ -89,6 +109,77 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
     }
   }
   return d;
+}
+
+template <class Real>
+void World<Real>::advance_or_recover(int substeps) {
+  assert(substeps >= 1);
+  SolverKind kind = solver_of(def_);
+  int without_loss = 0;
+  if (kind == SolverKind::implicit) {
+    without_loss = choose_substeps(SolverKind::verlet);
+    implicit_.violent = implicit_.touching = false;
+    // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
+    implicit_.refuses = without_loss <= kMostSubsteps &&
+                        refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
+    if (touching_ && implicit_.refuses) {
+      kind = SolverKind::verlet;
+      substeps = without_loss;
+    }
+  }
+  for (int attempt = 0;; ++attempt) {
+    const AdvanceResult result = advance(kind, substeps);
+    if (kind == SolverKind::implicit && (implicit_.violent || implicit_.touching)) {
+      restore_last_good();
+      kind = SolverKind::verlet;
+      substeps = without_loss;
+      --attempt;
+      continue;
+    }
+    const StageTimer timer(report_.profile, Stage::diagnostics, 1);
+    const std::optional<Divergence> divergence = examine(result, kind, substeps);
+    report_.substeps = substeps;
+    report_.energies = result.after;
+    report_.work = result.work;
+    report_.largest_strain = result.largest_strain;
+    report_.damped_substeps = result.damped_substeps;
+    report_.violent = implicit_.violent;
+    report_.touching = kind != solver_of(def_) && !implicit_.violent;
+    if (!divergence) {
+      account_.accept(result, tick_seconds());
+      if (energy_) energy_->book(result, report_.brought);
+      last_good_.x = state_.x;
+      last_good_.v = state_.v;
+      touching_ = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
+      return;
+    }
+    report_.divergence = divergence;
+    restore_last_good();
+    take_back_hands(checkpoint_.grabs, grabs_);
+    if (attempt == kMostTickRetries || substeps > kMostSubsteps / 2) {
+      report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
+      for (Vec3<Real>& v : state_.v) v.setZero();
+      bring_to_rest(pins_);
+      accept_state();
+      if (energy_) energy_->book_loss(report_.energies, energy_->balance.recovery);
+      return;
+    }
+    report_.divergence->remedy = DivergenceRemedy::more_substeps;
+    substeps *= 2;
+  }
+}
+
+template <class Real>
+void World<Real>::restore_last_good() {
+  assert(last_good_.x.size() == model_.mass.size() && last_good_.v.size() == model_.mass.size());
+  state_.x = last_good_.x;
+  state_.v = last_good_.v;
+  take_back_motion(colliders_);
+  take_back_velocities(checkpoint_.pins, pins_);
+  forget_motion();
+  for (std::size_t i = 0; i < state_.v.size(); ++i) {
+    if (state_.inverse_mass[i] == 0) state_.v[i].setZero();  // pinned since that state was saved
+  }
 }
 
 template <class Real>
@@ -151,6 +242,8 @@ void World<Real>::forget_motion() {
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template std::optional<Divergence> World<Real>::examine(const AdvanceResult&, SolverKind, int) \
       const;                                                                                     \
+  template void World<Real>::advance_or_recover(int);                                            \
+  template void World<Real>::restore_last_good();                                                \
   template const TickReport& World<Real>::halt();                                                \
   template void World<Real>::keep_checkpoint();                                                  \
   template void World<Real>::go_back();                                                          \
