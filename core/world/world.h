@@ -296,6 +296,7 @@ class World {
   void plan_targets();
   void finish_targets();
   void end_tick();
+  bool leaves_to_verlet(const AdvanceResult& result, int substeps);
   void advance_or_recover(int substeps);
   AdvanceResult advance(SolverKind kind, int substeps);
   Collision<Real> collision();

@@ -111,6 +111,16 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   return d;
 }
 
+/// Whether verlet has to do a tick of implicit again. What diverged counts as violent: a pin that
+/// moves between two of its steps may bring stiff cloth more energy than can be explained.
+template <class Real>
+bool World<Real>::leaves_to_verlet(const AdvanceResult& result, int substeps) {
+  if (!implicit_.refuses) return false;
+  if (!implicit_.violent && !implicit_.touching)
+    implicit_.violent = examine(result, SolverKind::implicit, substeps).has_value();
+  return implicit_.violent || implicit_.touching;
+}
+
 template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
   assert(substeps >= 1);
@@ -129,8 +139,9 @@ void World<Real>::advance_or_recover(int substeps) {
   }
   for (int attempt = 0;; ++attempt) {
     const AdvanceResult result = advance(kind, substeps);
-    if (kind == SolverKind::implicit && (implicit_.violent || implicit_.touching)) {
+    if (kind == SolverKind::implicit && leaves_to_verlet(result, substeps)) {
       restore_last_good();
+      take_back_hands(checkpoint_.grabs, grabs_);
       kind = SolverKind::verlet;
       substeps = without_loss;
       --attempt;
@@ -156,7 +167,17 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.divergence = divergence;
     restore_last_good();
     take_back_hands(checkpoint_.grabs, grabs_);
-    if (attempt == kMostTickRetries || substeps > kMostSubsteps / 2) {
+    const bool last = attempt == kMostTickRetries || substeps > kMostSubsteps / 2;
+    if (last && kind == SolverKind::implicit && without_loss <= kMostSubsteps) {
+      // However many substeps it takes: a cloth that is stopped in each tick would never move.
+      report_.divergence->remedy = DivergenceRemedy::more_substeps;
+      implicit_.violent = true;
+      kind = SolverKind::verlet;
+      substeps = without_loss;
+      attempt = -1;
+      continue;
+    }
+    if (last) {
       report_.divergence->remedy = DivergenceRemedy::stopped_cloth;
       for (Vec3<Real>& v : state_.v) v.setZero();
       bring_to_rest(pins_);
@@ -242,6 +263,7 @@ void World<Real>::forget_motion() {
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template std::optional<Divergence> World<Real>::examine(const AdvanceResult&, SolverKind, int) \
       const;                                                                                     \
+  template bool World<Real>::leaves_to_verlet(const AdvanceResult&, int);                        \
   template void World<Real>::advance_or_recover(int);                                            \
   template void World<Real>::restore_last_good();                                                \
   template const TickReport& World<Real>::halt();                                                \
