@@ -155,7 +155,8 @@ class World {
   /// The same world with a cloth of another fabric, in motion: positions, velocities, pins, hands
   /// and objects stay, contact forgets the past, and a reset keeps the fabric. This world is
   /// unchanged, so its owner may still refuse the other one, e.g. for its cost. Throws
-  /// DefinitionError if the fabric cannot be built on this mesh or takes too many substeps.
+  /// DefinitionError, naming fabric and cloth as in a scene, if a field is out of range or the
+  /// fabric cannot be built on this mesh or takes too many substeps.
   /// @param cloth  its index, below the number of cloths
   std::unique_ptr<World> with_fabric(std::size_t cloth, const FabricDef& fabric) const;
 

@@ -28,11 +28,11 @@ std::unique_ptr<World<Real>> World<Real>::fork() const {
 }
 
 /// Builds anew all that follows from masses, stiffness, thickness or friction. The topology stays,
-/// and so do positions, velocities, pins and hands.
+/// and so do positions, velocities, pins and hands. What a definition may not have is refused while
+/// the model is built, and leaves this world unfit for use.
 template <class Real>
 void World<Real>::take_fabric(std::size_t cloth, const FabricDef& fabric) {
-  visit_fields_of_fabric(
-      fabric, [](const FieldInfo& info, double value) { check_field("fabric.", info, value); });
+  assert(cloth < def_.cloths.size());
   def_.cloths[cloth].fabric = fabric;
   wake_all();  // before `sleep_` is built anew
   model_ = build_cloths<Real>(cloths_to_build(def_));

@@ -83,6 +83,15 @@ TEST_CASE("trying a fabric on leaves the world as it was, and a refused one is n
   } catch (const DefinitionError& error) {
     CHECK(error.field == "fabric.areal_density");
   }
+  WorldDef both = swinging(SolverKind::verlet);
+  both.cloths.push_back(test::flat_cloth(5, 5, 0.2, 0.2));
+  both.cloths[1].name = "other";
+  try {
+    World<float>(both).with_fabric(1, wrong);
+    FAIL("a negative density was taken");
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "cloths[1].fabric.areal_density");
+  }
   FabricDef stiff = heavy_fabric();
   stiff.areal_density = 1e-3;
   stiff.stretch_warp = stiff.stretch_weft = stiff.shear = 1e6;
