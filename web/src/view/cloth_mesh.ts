@@ -129,13 +129,18 @@ export class ClothMesh {
     }
   }
 
-  /** Puts the triangles of cloths that one sees through in order, far ones first. */
+  /** Puts cloths that one sees through, and the triangles of each, in order, far ones first. */
   sort(camera: Camera): void {
-    for (const { mesh, index, order } of this.pieces) {
-      if (!mesh.material.transparent) continue;
-      order.sort(camera, this.positions.array as Float32Array, index.array as Uint32Array);
+    const clear = this.pieces.filter(({ mesh }) => mesh.material.transparent);
+    const nearness = new Map<Piece, number>();
+    for (const piece of clear) {
+      const { index, order } = piece;
+      nearness.set(piece, order.sort(camera, this.positions.array as Float32Array, index.array as Uint32Array));
       index.needsUpdate = true;
     }
+    clear.sort((one, other) => nearness.get(one)! - nearness.get(other)!);
+    // Below 1, so that marks come after all of them.
+    for (const [place, { mesh }] of clear.entries()) mesh.renderOrder = place / clear.length;
   }
 
   dispose(): void {

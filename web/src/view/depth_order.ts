@@ -17,10 +17,11 @@ export class DepthOrder {
   /**
    * @param positions three values per vertex [m]
    * @param ordered   out; as many as the triangles
+   * @returns how near the middle of all is: greater for what is nearer to the eye [m]
    */
-  sort(camera: Camera, positions: Float32Array, ordered: Uint32Array): void {
+  sort(camera: Camera, positions: Float32Array, ordered: Uint32Array): number {
     const { triangles, steps, counts } = this;
-    this.measure(camera, positions);
+    const nearness = this.measure(camera, positions);
     counts.fill(0);
     for (let t = 0; t < steps.length; t++) counts[steps[t] + 1] += 1;
     for (let k = 0; k < STEPS; k++) counts[k + 1] += counts[k];
@@ -30,15 +31,17 @@ export class DepthOrder {
       ordered[to + 1] = triangles[t * 3 + 1];
       ordered[to + 2] = triangles[t * 3 + 2];
     }
+    return nearness;
   }
 
-  /** Steps of depth, 0 for the farthest. */
-  private measure(camera: Camera, positions: Float32Array): void {
+  /** Steps of depth, 0 for the farthest; returns the mean of the depths. */
+  private measure(camera: Camera, positions: Float32Array): number {
     const { triangles, steps, depths } = this;
     const view = camera.matrixWorldInverse.elements;
     const [x, y, z] = [view[2], view[6], view[10]]; // towards the eye
     let far = Infinity;
     let near = -Infinity;
+    let sum = 0;
     for (let t = 0; t < depths.length; t++) {
       const a = triangles[t * 3] * 3;
       const b = triangles[t * 3 + 1] * 3;
@@ -48,10 +51,12 @@ export class DepthOrder {
         (positions[a + 1] + positions[b + 1] + positions[c + 1]) * y +
         (positions[a + 2] + positions[b + 2] + positions[c + 2]) * z;
       depths[t] = depth;
+      sum += depth / 3;
       if (depth < far) far = depth;
       if (depth > near) near = depth;
     }
     const scale = (STEPS - 1) / (near - far || 1);
     for (let t = 0; t < depths.length; t++) steps[t] = (depths[t] - far) * scale;
+    return sum / (depths.length || 1);
   }
 }
