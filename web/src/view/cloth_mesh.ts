@@ -11,6 +11,7 @@ import { colors_of, finish_of } from './looks.js';
 import { even_normals, smooth_normals } from './normals.js';
 import { fabric_extent } from './rest_shape.js';
 import { round_of } from './round.js';
+import { StripeCurves } from './stripe_curves.js';
 import { roundness, Subdivision } from './subdivision.js';
 import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
@@ -29,6 +30,7 @@ interface Piece {
   index: BufferAttribute;
   hem: Hem;
   cut: Cut;
+  stripes: StripeCurves | null; // if it has any
 }
 
 /**
@@ -43,6 +45,7 @@ export class ClothMesh {
   private shaded: Uint32Array;
   private positions: BufferAttribute;
   private normals: BufferAttribute;
+  private uv: BufferAttribute;
   private fine: Subdivision;
   private pieces: Piece[];
   private weaves = new Map<string, Weave>();
@@ -54,7 +57,7 @@ export class ClothMesh {
 
   constructor(private cloths: Cloth[], private data: MeshData) {
     this.triangles = data.triangles;
-    const coarse = data.restPositions.length / 3;
+    const { coarse } = this;
     const cells = cells_of(data.triangles, data.uv);
     this.shaded = both_diagonals(data.triangles, cells);
     const corners = corners_of(data.triangles, data.uv);
@@ -68,10 +71,11 @@ export class ClothMesh {
     this.largest_reach = new Float32Array(coarse);
     this.reach = new Float32Array(this.fine.vertices);
     this.edges = new Float32Array(this.fine.vertices);
-    const uv = new BufferAttribute(new Float32Array(vertices * 2), 2);
-    this.pieces = cloths.map((cloth, k) => this.piece(cloth, data, hems[k], uv));
-    this.fine.interpolate(uv.array as Float32Array, 2);
-    for (const hem of hems) hem.copy(uv.array as Float32Array, 2);
+    this.uv = new BufferAttribute(new Float32Array(vertices * 2), 2);
+    this.pieces = cloths.map((cloth, k) => this.piece(cloth, data, hems[k]));
+    const uv = this.uv.array as Float32Array;
+    this.fine.interpolate(uv, 2);
+    for (const hem of hems) hem.copy(uv, 2);
     this.dress(cloths.map(({ look }) => look));
     this.update(data.restPositions);
   }
@@ -82,7 +86,7 @@ export class ClothMesh {
     const colors = colors_of(looks);
     for (const [k, piece] of this.pieces.entries()) {
       const look = looks[k];
-      const { weave, edge } = finish_of(look);
+      const { weave, edge, stripe } = finish_of(look);
       if (!this.weaves.has(weave)) this.weaves.set(weave, weave_of(weave));
       piece.mesh.material = fabric_material(look, colors[k], this.weaves.get(weave)!, piece.cut);
       if (piece.mesh.material.anisotropy > 0) this.show_weft(piece);
@@ -91,9 +95,37 @@ export class ClothMesh {
       const { first_vertex, vertices, thickness } = this.cloths[k];
       const half = Math.min(edge, (REACH / 2) * thickness);
       this.edges.fill(half, first_vertex, first_vertex + vertices);
+      this.stripe(piece, this.cloths[k], stripe !== undefined);
     }
     this.fine.interpolate(this.edges, 1);
     this.place_weft();
+    this.place_stripes();
+  }
+
+  /** Gives a cloth's pattern smooth stripes, or leaves it as it is. */
+  private stripe(piece: Piece, cloth: Cloth, striped: boolean): void {
+    const uv = this.uv.array as Float32Array;
+    piece.stripes?.straighten(uv);
+    const { rows, columns, first_vertex } = cloth;
+    const finer = striped && this.fine.levels > 0 && rows && columns && piece.cut.size;
+    const grid = { first_vertex, rows: rows ?? 0, columns: columns ?? 0 };
+    const made = new Set(this.triangles_of(cloth).filter((vertex) => vertex >= this.coarse));
+    const parts = 2 ** this.fine.levels;
+    piece.stripes = finer ? new StripeCurves(grid, Uint32Array.from(made), uv, finer, parts) : null;
+    this.uv.needsUpdate = true;
+  }
+
+  private place_stripes(): void {
+    for (const { stripes } of this.pieces) {
+      if (!stripes) continue;
+      stripes.place(this.positions.array as Float32Array, this.uv.array as Float32Array);
+      this.uv.needsUpdate = true;
+    }
+  }
+
+  /** How many of the vertices are simulated; they come first. */
+  private get coarse(): number {
+    return this.data.restPositions.length / 3;
   }
 
   private show_weft({ mesh }: Piece): void {
@@ -119,6 +151,7 @@ export class ClothMesh {
     this.fine.refine(positions, normals, this.reach);
     for (const { hem } of this.pieces) hem.place(positions, normals, this.edges);
     this.place_weft();
+    this.place_stripes();
     this.positions.needsUpdate = this.normals.needsUpdate = true;
   }
 
@@ -171,7 +204,8 @@ export class ClothMesh {
     return this.fine.triangles.subarray(first, first + cloth.triangles * 3 * finer);
   }
 
-  private piece(cloth: Cloth, data: MeshData, hem: Hem, uv: BufferAttribute): Piece {
+  private piece(cloth: Cloth, data: MeshData, hem: Hem): Piece {
+    const { uv } = this;
     const [width, height] = fabric_extent(cloth, data);
     const end = cloth.first_vertex + cloth.vertices;
     for (let i = cloth.first_vertex; i < end; i++) {
@@ -193,7 +227,7 @@ export class ClothMesh {
     mesh.frustumCulled = false; // bounds would have to follow each frame
     this.group.add(mesh);
     const cut = cut_of(cloth, data, [width, height]);
-    return { mesh, triangles, order: new DepthOrder(triangles), index, hem, cut };
+    return { mesh, triangles, order: new DepthOrder(triangles), index, hem, cut, stripes: null };
   }
 }
 
