@@ -113,6 +113,16 @@ test('M pins at the cursor, held or not, and frees what is pinned there', () => 
   assert.deepEqual(said.filter((text) => /ed$/.test(text)), ['Pinned', 'Freed']);
 });
 
+test('without a connection M asks for nothing, and does not say that it has pinned', () => {
+  const { hand, reach, sent, said } = hand_in_room();
+  hand.toggle();
+  reach.client.connected = false;
+  const before = said.length;
+  assert.equal(hand.toggle_pin(), true, 'the key is the cursor’s all the same');
+  assert.deepEqual(sent, []);
+  assert.equal(said.length, before);
+});
+
 test('a hand that the server takes away leaves the cursor', () => {
   const { hand, holding, sent } = hand_in_room();
   hand.toggle();

@@ -84,6 +84,7 @@ export class KeyHand {
   /** Pins what it holds or points at, or releases it. @returns whether there is a cursor */
   toggle_pin(): boolean {
     if (!this.cursor) return false;
+    if (!this.reach.client.connected) return true;
     this.say(this.holding.pinning.toggle(this.cursor) === 'pinned' ? 'Pinned' : 'Freed');
     return true;
   }
