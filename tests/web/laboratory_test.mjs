@@ -9,9 +9,32 @@ import { start_server } from './support/server.mjs';
 
 const { marks_of, overhang, shadow } = await import_page_module('view/textile_marks');
 const { ruler } = await import_page_module('view/ruler');
-const { measurement_text, test_of } = await import_page_module('panel/laboratory_panel');
+const { LaboratoryPanel, measurement_text, test_of } = await import_page_module('panel/laboratory_panel');
 
 const DISC = Math.PI * 0.09 ** 2; // of the drape test [m²]
+
+test('a server that does not answer at first is asked again until it tells which test a scene is', async () => {
+  const part = () => ({ append() {}, replaceChildren() {}, style: { setProperty() {} } });
+  globalThis.document = { getElementById: part, createElement: part };
+  const answers = [null, { chord_angle_degrees: 41.5 }];
+  let asked = 0;
+  const query = async () => {
+    const answer = answers[asked++];
+    if (!answer) throw new Error('busy');
+    return answer;
+  };
+  const tests = [];
+  const panel = new LaboratoryPanel({ connected: true, query }, (kind) => tests.push(kind));
+  panel.renew();
+  await new Promise(setImmediate);
+  for (const now of [2, 2.5]) {
+    panel.follow(now);
+    await new Promise(setImmediate);
+  }
+  delete globalThis.document;
+  assert.deepEqual(tests, [null, 'cantilever']);
+  assert.equal(asked, 2, 'and then once a second');
+});
 
 /** Runs a scene for so many ticks and gives the specimen, its rest and what the server measures. */
 async function specimen_of(scene, ticks) {

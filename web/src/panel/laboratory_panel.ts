@@ -31,13 +31,14 @@ export function test_of(measurements: Measurements): TextileTest | null {
 }
 
 /**
- * Figures of a laboratory scene beside the published band. The server is asked once for each
- * scene, and then every second while the scene is a test.
+ * Figures of a laboratory scene beside the published band. The server is asked until it has answered
+ * once for each scene, and then every second while the scene is a test.
  */
 export class LaboratoryPanel {
   private panel = element('laboratory');
   private asked_at = -Infinity;
   private asking = false;
+  private known = true; // whether the scene is a test
   private scene = 0; // counts the scenes; an answer of an earlier one is too late
 
   /** @param changed called with the test of each scene, once known */
@@ -51,31 +52,33 @@ export class LaboratoryPanel {
   /** Another scene, which may be a test or not. */
   renew(): void {
     this.scene += 1;
+    this.known = false;
     this.panel.hidden = true;
     this.changed(null);
-    void this.ask(true);
+    void this.ask();
   }
 
   /** @param now [s] */
   follow(now: number): void {
-    if (this.panel.hidden || this.asking || !this.client.connected) return;
+    if ((this.known && this.panel.hidden) || this.asking || !this.client.connected) return;
     if (now - this.asked_at < ASK_INTERVAL) return;
     this.asked_at = now;
-    void this.ask(false);
+    void this.ask();
   }
 
-  private async ask(first: boolean): Promise<void> {
+  private async ask(): Promise<void> {
     const { scene } = this;
     this.asking = true;
     try {
       const measured = (await this.client.query('measurements')) as Measurements;
       if (scene !== this.scene) return;
       const test = test_of(measured);
-      if (first) this.changed(test);
+      if (!this.known) this.changed(test);
+      this.known = true;
       this.panel.hidden = test === null;
       if (test) this.write(measured);
     } catch {
-      // The connection was lost, or the server is busy; the figures stay as they were.
+      // The connection was lost, or the server is busy; it is asked again.
     } finally {
       if (scene === this.scene) this.asking = false;
     }
