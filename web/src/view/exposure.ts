@@ -11,8 +11,6 @@ import {
 import type { WebGLRenderer } from 'three';
 import { FullScreenQuad } from 'three/examples/jsm/postprocessing/Pass.js';
 
-const FIRST_WEIGHT = 0.3; // of the first ones in the mean so far, which would flicker otherwise
-
 /**
  * What is done with the picture on the canvas before it is seen: its edges are smoothed, or it is
  * averaged with others that are taken a little differently.
@@ -51,7 +49,7 @@ export class Exposure {
       type: HalfFloatType,
       depthBuffer: false,
     });
-    this.source.weight.value = k === 0 ? 1 : Math.max(1 / (k + 1), k < 3 ? FIRST_WEIGHT : 0);
+    this.source.weight.value = 1 / (k + 1);
     this.draw(this.adding, this.mean);
     this.source.frame.value = this.mean.texture;
     this.draw(this.showing, null);
