@@ -8,6 +8,7 @@ import { import_page_module } from './support/page_module.mjs';
 make_up_browser();
 const { Stage } = await import_page_module('view/stage');
 const { WorldView } = await import_page_module('view/world_view');
+const { Reticle } = await import_page_module('view/reticle');
 const { OrbitCamera } = await import_page_module('view/camera');
 
 const EXPOSURES = 24;
@@ -66,4 +67,25 @@ test('thirty scenes one after the other leave no buffer, vertex array or texture
   for (const mesh of meshes) kept.push(await show(mesh));
   assert.ok(kept[0].Buffer > 5, 'buffers are counted');
   for (let i = 6; i < 30; i++) assert.deepEqual(await show(meshes[i % 3]), kept[i % 3]);
+});
+
+test('the ring on the cloth keeps what it had when it was first seen, wherever it goes', () => {
+  const alive = {};
+  const stage = new Stage(made_up_canvas(alive), { lost() {}, changed() {} });
+  const { camera } = new OrbitCamera();
+  const { announcement, data } = mesh_of(6, [GROUND]);
+  const world = new WorldView(announcement, data, stage);
+  const reticle = new Reticle();
+  stage.scene.add(reticle.group);
+  const show = (triangle) => {
+    const centre = triangle === null ? null : { triangle, barycentric: [0.3, 0.3, 0.4] };
+    reticle.update(centre, 0.05, world, camera, { width: 64, height: 48 });
+    stage.draw(camera);
+    const { Buffer, VertexArray } = alive;
+    return { Buffer, VertexArray };
+  };
+  const without = show(null);
+  const first = show(3);
+  assert.deepEqual(first, { Buffer: without.Buffer + 8, VertexArray: without.VertexArray + 2 });
+  for (const triangle of [null, 7, 20, null, 41, 3]) assert.deepEqual(show(triangle), first);
 });
