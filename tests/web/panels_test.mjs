@@ -132,6 +132,12 @@ test('another scene is shown when one is chosen, and R starts it anew', bounded,
     for (const { description } of known) assert.ok(await list.getByText(description).isVisible());
     const chosen = list.locator('[aria-current]');
     assert.match(await chosen.textContent(), /^Default/);
+    await page.keyboard.press('ArrowDown');
+    const focused = () => page.evaluate(() => document.activeElement.querySelector('b')?.textContent);
+    const at = await focused();
+    await script.load('wall');
+    await until(async () => /^Wall/.test(await chosen.textContent()), 'the mark moves with the scene');
+    assert.ok(at && (await focused()) === at, 'who goes through the list stays there');
     await list.getByRole('button', { name: /^Flag/ }).click();
     assert.ok(!(await list.isVisible()));
     await until(async () => (await read(other, 'scene')) === 'flag', 'the other viewer follows');
@@ -146,6 +152,12 @@ test('another scene is shown when one is chosen, and R starts it anew', bounded,
     await page.keyboard.press('r');
     await until(async () => (await script.query('state')).tick === 0, `it begins anew, after ${tick} ticks`);
     await script.resume();
+    const told = () => page.locator('#scene').getAttribute('title');
+    await until(async () => /flag/i.test(await told()), 'its sentence is told');
+    const cloth = { name: 'cloth', rows: 4, columns: 4 };
+    await script.load({ name: 'mine', cloths: [cloth], pins: [{ place: 'corner', corner: 'top_left' }] });
+    await until(async () => (await scene_title(page)) === 'Mine');
+    assert.equal(await told(), 'Scenes (L)', 'a scene that is not listed has no sentence of another');
     await script.load('default');
     await until(async () => (await read(page, 'scene')) === 'default');
   }),

@@ -39,9 +39,20 @@ export class SceneDialog {
 
   /** Lists the scenes, with a mark at the one that is shown. */
   show(scenes: Scene[], shown: string): void {
+    const same = scenes === this.scenes;
     this.scenes = scenes;
     this.shown = shown;
-    this.write();
+    if (same && this.dialog.open) this.mark();
+    else this.write();
+  }
+
+  /** Moves the mark alone: a list that is written anew would lose the focus of who goes through it. */
+  private mark(): void {
+    for (const frame of this.list.querySelectorAll<HTMLElement>('i')) {
+      const choice = frame.closest('button')!;
+      if (frame.dataset.scene === this.shown) choice.setAttribute('aria-current', 'true');
+      else choice.removeAttribute('aria-current');
+    }
   }
 
   private async fetch_pictures(): Promise<void> {

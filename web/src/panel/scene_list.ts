@@ -8,6 +8,7 @@ export class SceneList {
   private button = element<HTMLButtonElement>('scene');
   private dialog: Promise<SceneDialog> | null = null; // loaded when it is first opened
   private scenes: Scene[] = [];
+  private untold = this.button.title; // of a scene that the server does not list
   private shown = '';
 
   /** @param load called with a chosen scene */
@@ -49,7 +50,7 @@ export class SceneList {
   private name(): void {
     element('scene-title').textContent = title_of(this.shown);
     const described = this.scenes.find(({ name }) => name === this.shown);
-    if (described) this.button.title = described.description;
+    this.button.title = described?.description ?? this.untold;
     void this.dialog?.then((dialog) => dialog.show(this.scenes, this.shown));
   }
 }
