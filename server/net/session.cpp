@@ -159,7 +159,8 @@ void Session::await_token() {
   awaits_token_ = true;
   watch_.expires_after(duration_of(kTokenSeconds));
   watch_.async_wait([self = shared_from_this()](error_code error) {
-    if (!error && self->awaits_token_) self->refuse_entry({});
+    if (!error && self->awaits_token_)
+      self->close_by_policy(kCloseNoPong, "no token came in time");  // and may come again
   });
   read();
 }
