@@ -94,7 +94,7 @@ PairSeparation<Real> separate_pair(PairKind kind, const PairPoints<Real>& x) {
     s.inside = t.feature == 0;
     away = -t.point;
   } else {
-    constexpr Real kEnd = Real(0.01);
+    constexpr Real kEnd = static_cast<Real>(kEdgeEnd);
     const SegmentPoints<Real> e = closest_of_segments<Real>(zero, b, c, d);
     s.weight = {Real(1) - e.s, e.s, e.t - Real(1), -e.t};
     s.inside = e.s > kEnd && e.s < 1 - kEnd && e.t > kEnd && e.t < 1 - kEnd;

@@ -1,135 +1,338 @@
-// Sets up the guard for the cloths of a model, and lets it forget where they were.
+// Calls detection, certificates and the solver of cloth contact in their order.
 
 #include "core/contact/guard/cloth_guard.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/contact/constants.h"
+#include "core/contact/guard/constants.h"
+#include "core/contact/guard/guard_parts.h"
 
 namespace weft {
 namespace {
 
-/// Radius of the balls around predicted paths, as a part of the thickness, and the most of it as a
-/// part of the edge length: beyond it all neighbours become pairs.
-constexpr double kReachPart = 0.65, kMostReach = 0.28;
+/// Whether the rounding of positions could close a pair's gap.
+template <class Real>
+bool touches(const GuardedPair<Real>& pair, const QuadArray<Real>& x, Real smallest_gap) {
+  if (pair.bound >= smallest_gap) return false;
+  Real largest = 0;
+  for (const Index i : pair.particle) {
+    for (int k = 0; k < 3; ++k)
+      largest = std::max(largest, std::abs(x[static_cast<std::size_t>(i)][k]));
+  }
+  return !(pair.bound > largest * std::numeric_limits<Real>::epsilon() * Real(kRoundingsOfNoGap));
+}
+
+/// Opens new pairs that touch: nothing tells on which side of each other their features are.
+/// @param first  number of the first new pair
+template <class Real>
+void open_touching(std::size_t first, const QuadArray<Real>& x, Real smallest_gap,
+                   GuardedPairs<Real>& pairs) {
+  for_pairs_from(pairs, first, [&](GuardedPair<Real>& pair) {
+    if (!touches(pair, x, smallest_gap)) return;
+    pair.open = true;
+    ++pairs.open;
+  });
+}
 
 }  // namespace
 
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
-    : executor_(executor), edges_(model.edges), triangles_(model.triangles),
-      neighbours_(model.mass.size(), edges_), tree_(model), boxes_(tree_, edges_, triangles_),
-      tangles_(model) {
-  for (const Vec3<Real>& p : model.rest_positions) rest_positions_.push_back(to_quad(p));
-  find_who_is_across();
-  finest_ = std::numeric_limits<Real>::infinity();
-  for (const ClothPart<Real>& part : model.parts) {
-    particles_of_.push_back(part.particles);
-    thickness_.push_back(static_cast<Real>(part.fabric.thickness));
-    friction_.push_back(static_cast<Real>(part.fabric.friction));
-    thickest_ = std::max(thickest_, thickness_.back());
-    double sum = 0;
-    for (Index e = part.edges.first; e < part.edges.end(); ++e) {
-      const Edge& edge = edges_[static_cast<std::size_t>(e)];
-      sum += static_cast<double>((model.rest_positions[static_cast<std::size_t>(edge[0])] -
-                                  model.rest_positions[static_cast<std::size_t>(edge[1])])
-                                     .norm());
-    }
-    const double mean =
-        part.rows > 0 ? std::min(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v))
-                      : 0.8 * sum / std::max<Index>(part.edges.count, 1);
-    cell_.push_back(static_cast<Real>(mean));
-    finest_ = std::min(finest_, cell_.back());
-  }
-  reach_ = std::min(thickest_ * Real(kReachPart), finest_ * Real(kMostReach));
-  reach_ = std::max(reach_, finest_ * Real(0.1));
-  calm_paths_.reach = reach_;
-  const std::size_t n = model.mass.size();
-  for (QuadArray<Real>* array : {&motion_.start, &motion_.end, &from_, &velocity_, &legal_, &step_,
-                                 &anchor_, &x_rows_, &quad_v_, &extra_})
+    : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)),
+      making_(row_making<Real>(model.mass.size())), rows_(row_set<Real>(model.mass.size())),
+      push_(push_out<Real>(model.mass.size())) {
+  const std::size_t n = model.mass.size(), cloths = cloths_.particles_of.size();
+  for (QuadArray<Real>* array : {&step_.from, &step_.displacement, &paths_.from, &paths_.velocity,
+                                 &regions_.anchor, &sweeps_.v})
     array->assign(n, {});
-  for (Vec3Array<Real>* array : {&calm_paths_.base, &calm_paths_.velocity, &ends_})
+  for (Vec3Array<Real>* array : {&calm_.paths.base, &calm_.paths.velocity, &slack_.ends})
     array->assign(n, Vec3<Real>::Zero());
-  in_rows_.assign(n, 0);
-  is_moved_.assign(n, 0);
-  first_row_.assign(n, kNone);
-  is_active_.assign(n, 0);
-  for (const ClothPart<Real>& part : model.parts) {
-    for (Index i = part.particles.first; i < part.particles.end(); ++i)
-      inverse_area_.push_back(static_cast<Real>(part.fabric.areal_density) /
-                              model.mass[static_cast<std::size_t>(i)]);
-  }
-  for (std::vector<Real>* array : {&room_, &moved_, &since_, &step_length_, &pressure_})
+  for (std::vector<Real>* array : {&step_.length, &paths_.since, &regions_.radius})
     array->assign(n, Real(0));
-  fraction_.assign(n, Real(1));
-  wave_of_.assign(n, 0);
-  anchored_at_.assign(n, 0);
-  is_tight_.assign(n, 0);
-  is_pushed_.assign(n, 0);
-  searches_.resize(kMostParts);
-  anchor_parts_.resize(kMostParts);
-  row_parts_.resize(kMostParts);
-  turn_parts_.resize(RowSlabs<Real>::kLists);
-  resting_.assign(tree_.patch_count(), 0);
-  is_heap_.assign(particles_of_.size(), 0);
-  crossings_of_.assign(particles_of_.size(), 0);
+  for (std::vector<char>* array : {&pairs_.is_active, &critical_.is_tight}) array->assign(n, 0);
+  critical_.fraction.assign(n, Real(1));
+  regions_.wave_of.assign(n, 0);
+  regions_.anchored_at.assign(n, 0);
+  regions_.parts.resize(kMostParts);
+  calm_.paths.reach = cloths_.reach;
+  tangled_.tangles = ClothTangles<Real>(model);
+  tangled_.is_heap.assign(cloths, 0);
+  tangled_.crossings_of.assign(cloths, 0);
+  awake_.resting.assign(search_.tree.patch_count(), 0);
   let_rest({});
 }
 
 template <class Real>
-Index ClothGuard<Real>::part_of(Index particle) const {
-  std::size_t part = particles_of_.size() - 1;
-  while (part > 0 && particle < particles_of_[part].first) --part;
-  return static_cast<Index>(part);
-}
-
-template <class Real>
 void ClothGuard<Real>::reset() {
-  collected_ = rows_built_ = false;
-  forget_rows();
-  arrived_.clear();
-  passed_.clear();
-  pairs_.clear();
-  active_.clear();
-  dirty_.clear();
-  for (const Index i : pushed_) {
-    extra_[static_cast<std::size_t>(i)] = {};
-    is_pushed_[static_cast<std::size_t>(i)] = 0;
-  }
-  pushed_.clear();
-  open_pairs_ = 0;
-  tangles_.reset();
-  is_heap_.assign(is_heap_.size(), 0);
-  heaps_ = 0;
-  unseen_ = true;
-  kicked_ = 0;
-  closed_ = true;
-  upwards_ = false;
+  phase_ = GuardPhase::between_steps;
+  paths_.collected = making_.made = false;
+  making_.passed.clear();
+  forget_rows(rows_);
+  forget_pairs(pairs_);
+  forget_push(push_);
+  forget_tangles(tangled_);
+  regions_.dirty.clear();
+  sweeps_.kicked = 0;
+  sweeps_.upwards = false;
+  settled_ = true;
 }
 
 template <class Real>
 void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
-  collected_ = rows_built_ = false;
+  assert(asleep.empty() || asleep.size() == cloths_.particles_of.size());
+  paths_.collected = making_.made = false;
   const auto sleeps = [&](std::size_t cloth) { return !asleep.empty() && asleep[cloth] != 0; };
-  for (std::size_t p = 0; p < resting_.size(); ++p) {
-    const Index particle = tree_.patch(static_cast<Index>(p)).particles.front();
-    resting_[p] = sleeps(static_cast<std::size_t>(part_of(particle))) ? 1 : 0;
+  for (std::size_t p = 0; p < awake_.resting.size(); ++p) {
+    const Index particle = search_.tree.patch(static_cast<Index>(p)).particles.front();
+    awake_.resting[p] = sleeps(static_cast<std::size_t>(cloth_of(cloths_, particle))) ? 1 : 0;
   }
-  awake_.clear();
-  awake_count_ = 0;
-  for (std::size_t k = 0; k < particles_of_.size(); ++k) {
+  awake_.ranges.clear();
+  awake_.count = 0;
+  for (std::size_t k = 0; k < cloths_.particles_of.size(); ++k) {
     if (sleeps(k)) continue;
-    awake_.push_back(particles_of_[k]);
-    awake_count_ += static_cast<std::size_t>(particles_of_[k].count);
+    awake_.ranges.push_back(cloths_.particles_of[k]);
+    awake_.count += static_cast<std::size_t>(cloths_.particles_of[k].count);
   }
 }
 
+// ---- solve ----
+
 template <class Real>
-PairPoints<Real> ClothGuard<Real>::points(const GuardedPair<Real>& pair,
-                                          const QuadArray<Real>& x) const {
-  PairPoints<Real> p;
-  for (std::size_t k = 0; k < 4; ++k)
-    p[k] = to_vector(x[static_cast<std::size_t>(pair.particle[k])]);
-  return p;
+void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
+  assert(phase_ == GuardPhase::between_steps && dt > 0);
+  phase_ = GuardPhase::solved;
+  const Real kicked = std::exchange(settled_, false) ? dt / 2 : dt;
+  calm_.calm = pairs_.active.empty() && open_pairs() == 0;
+  if (calm_.calm) {
+    calm_.x_before = state.x;
+    forget_rows(rows_);
+    return;
+  }
+  copy_in(state.x, step_.from, executor_);
+  tangled_.tangles.draw(state, dt);
+  making_.time += dt;
+  ++making_.steps;
+  if (!making_.made || is_time_to_look(making_)) rows_.deals.give_back(rows_.all, executor_);
+  const RowSource<Real> source{cloths_, state, step_.from};
+  if (find_moved(pairs_.active, step_.from, cloths_.thickest, making_))
+    renew_rows(source, regions_.anchor, pairs_, making_, rows_, executor_, profile);
+  if (making_.steps % kStepsBetweenCuts == 0) {
+    rows_.slabs.cut(pairs_.active, step_.from);
+    rows_.in_slabs = false;
+  }
+  if (!pairs_.arrived.empty()) add_arrived(source, pairs_, making_, rows_, profile);
+  if (rows_.all.empty()) {
+    forget_rows(rows_);
+    return;
+  }
+  load_velocities(state.v, rows_.slabs, sweeps_.v, executor_);
+  if (is_time_to_look(making_)) examine_rows(state, dt, profile);
+  start_rows(state, dt, kicked, profile);
+}
+
+/// Chooses the busy rows, measures how hard they press, and turns those that push.
+template <class Real>
+void ClothGuard<Real>::examine_rows(const ClothState<Real>& state, Real dt, Profile& profile) {
+  find_busy_rows(step_.from, sweeps_.v, dt, rows_, executor_);
+  measure_pressures(cloths_.inverse_area, sweeps_.kicked, rows_, executor_);
+  turn_rows({cloths_, state, step_.from}, making_, rows_, executor_, profile);
+  rows_.deals.take(rows_.slabs, rows_.all, step_.from.size(), executor_);
+}
+
+/// Gives the impulses of the last step again, in proportion to the time of the forces.
+template <class Real>
+void ClothGuard<Real>::start_rows(ClothState<Real>& state, Real dt, Real kicked, Profile& profile) {
+  profile[Stage::contact].work += rows_.all.size();
+  warm_start(step_.from, dt, kicked, rows_, sweeps_, executor_);
+  store_velocities(sweeps_.v, rows_.slabs, state.v, executor_);
+}
+
+template <class Real>
+Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
+  if (rows_.slabs.empty()) return 0;
+  assert((phase_ == GuardPhase::solved || settled_) && "solve or settle first");
+  load_velocities(state.v, rows_.slabs, sweeps_.v, executor_);
+  const Real largest = sweep_once(step_.from, rows_, sweeps_, executor_);
+  store_velocities(sweeps_.v, rows_.slabs, state.v, executor_);
+  return largest;
+}
+
+template <class Real>
+void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
+  if (!sweeps_.lack) return;
+  add_push(rows_, push_, state.v, executor_);
+}
+
+template <class Real>
+void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
+  if (rows_.all.empty()) return;
+  const Real enough = cloths_.thickest * Real(kResidual) / dt;
+  for (int k = 0; k < kMostSweeps; ++k) {
+    if (!(sweep(state) > enough)) break;
+  }
+  push_apart(state);
+}
+
+template <class Real>
+void ClothGuard<Real>::finish(ClothState<Real>& state) {
+  assert(phase_ == GuardPhase::certified);
+  phase_ = GuardPhase::between_steps;
+  take_back_push(push_, state.v);
+}
+
+template <class Real>
+void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
+  assert(phase_ == GuardPhase::between_steps && dt > 0);
+  if (rows_.all.empty()) return;
+  rows_.slabs.visit_particles(nullptr, [&](Index k) {
+    step_.from[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
+  });
+  load_velocities(state.v, rows_.slabs, sweeps_.v, executor_);
+  start_rows(state, dt, dt / 2, profile);
+  settled_ = true;
+}
+
+// ---- detect ----
+
+/// Collects pairs anew around the paths on which all particles go on as they move now.
+template <class Real>
+void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& profile) {
+  const StageTimer timer(profile, Stage::broad_phase, 0);
+  ++counts_.collections;
+  regions_.smallest_gap = smallest_gap_at(step_.from);
+  search_.motion.radius = cloths_.reach + regions_.smallest_gap;
+  begin_paths(step_, awake_, dt, cloths_.reach, cloths_.finest, paths_);
+  predict(Real(0), paths_, search_.motion);
+  search_.boxes.forget();
+  search_.tree.refit(search_.motion, true);
+  if (std::exchange(tangled_.unseen, false) || open_pairs() > 0)
+    find_tangles(search_.tree, cloths_, awake_.resting, step_.from, state.inverse_mass, tangled_);
+  pairs_.all.clear();
+  pairs_.open = 0;
+  find_near_patches(search_);
+  test_near_patches(search_, cloths_, {awake_.resting, tangled_, true}, executor_, pairs_, profile);
+  open_touching(0, step_.from, regions_.smallest_gap, pairs_);
+  if (open_pairs() > 0) {
+    note_touches(pairs_, step_.from, tangled_);
+    paths_.horizon = std::min(paths_.horizon, std::max(static_cast<Real>(kLookAgain), dt));
+  }
+  list_all_pairs(step_.from.size(), pairs_);
+  anchor_anew(pairs_, step_, regions_);
+  share_all_gaps(pairs_, step_, regions_);
+  paths_.elapsed = dt;
+  paths_.collected = true;
+  slack_.left = 0;  // was known from other paths
+  making_.made = false;
+}
+
+/// Gives particles that leave their paths new ones, and collects their pairs anew; the others go
+/// on. What was made for them when they began holds for the rest of their paths.
+template <class Real>
+void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
+  const StageTimer timer(profile, Stage::broad_phase, 0);
+  ++counts_.renewals;
+  begin_paths_of_strays(step_, dt, cloths_.reach, paths_);
+  predict(paths_.elapsed - dt, paths_, search_.motion);
+  find_near_patches_of(paths_.strays, search_);
+  drop_pairs_of(paths_.strays, search_.changed, pairs_);
+  const std::size_t kept = pairs_.all.size();
+  test_near_patches(search_, cloths_, {awake_.resting, tangled_, false}, executor_, pairs_,
+                    profile);
+  open_touching(kept, step_.from, regions_.smallest_gap, pairs_);
+  place_new_particles(pairs_, kept, step_.from, making_);
+  admit_pairs(kept, step_, executor_, pairs_, regions_);
+  list_pairs_from(kept, pairs_);
+  note_arrivals(kept, pairs_);
+  slack_.left = 0;
+}
+
+// ---- certify ----
+
+template <class Real>
+void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profile) {
+  assert(phase_ == GuardPhase::solved && dt > 0);
+  phase_ = GuardPhase::certified;
+  const StageTimer timer(profile, Stage::regions, 0);
+  ++step_.number;
+  paths_.elapsed += dt;
+  if (calm_.calm) {
+    if (stays_calm(calm_.paths, paths_, state, dt)) {
+      paths_.off_now = paths_.off;
+      calm_.paths.time = paths_.elapsed;
+      return;
+    }
+    copy_in(calm_.x_before, step_.from, nullptr);
+  }
+  if (regions_.dirty.empty() && has_slack(slack_, paths_, state, dt)) {
+    ++counts_.quiet;
+    step_.allowed = 0;
+    return;
+  }
+  keep_in_regions(state, dt, profile);
+  note_ends(state, dt, paths_.elapsed, slack_);
+  if (pairs_.active.empty()) note_calm_paths(paths_, calm_);
+  count_motion(pairs_.active, step_, counts_);
+}
+
+/// Collects the pairs that the step needs, anchors particles that would leave their regions, and
+/// truncates what no region allows; again for particles that were stopped off their paths.
+template <class Real>
+void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile& profile) {
+  regions_.anchored.clear();
+  slack_.left = find_strays(state, dt, cloths_.reach, awake_, step_, paths_);
+  bool collected = paths_.hold();
+  for (int attempt = 0;; ++attempt) {
+    const std::vector<Index>& strays = paths_.strays;
+    collected = collected && strays.size() <= awake_.count / kManyStrays &&
+                pairs_.all.size() <= pairs_.most &&
+                (strays.empty() || allows_for_common(paths_, cloths_.reach));
+    if (!collected)
+      collect(state, dt, profile);
+    else if (!strays.empty())
+      collect_strays(dt, profile);
+    collected = true;
+    slack_.left = std::min(slack_.left, find_loose(pairs_.active, step_, regions_));
+    if (regions_.loose.empty()) return;
+    for (const Index i : regions_.anchored) regions_.anchored_at[static_cast<std::size_t>(i)] = 0;
+    regions_.anchored.clear();
+    const std::uint64_t before = counts_.anchored;
+    anchor_loose(pairs_, step_, regions_, executor_, counts_);
+    stop_crossings(pairs_, step_, regions_, critical_, executor_, counts_);
+    profile[Stage::regions].work += counts_.anchored - before;
+    truncate(pairs_, dt, cloths_.reach, attempt >= kRetries, critical_, step_, regions_, paths_,
+             state);
+    slack_.left = 0;
+    if (strays.empty()) return;
+    if (attempt == kMostRetries) break;
+  }
+  // New pairs are looked for in the next step.
+  ++counts_.halts;
+  halt(pairs_.is_active, step_, state.x, state.v);
+  paths_.strays.clear();
+  regions_.dirty.clear();
+  paths_.collected = false;
+}
+
+template <class Real>
+void ClothGuard<Real>::stand_still() {
+  assert(phase_ == GuardPhase::certified);
+  paths_.collected = false;
+  counts_.truncated += step_.allowed;
+}
+
+template <class Real>
+void ClothGuard<Real>::leave_calm_paths(int steps, Real time, const Vec3<Real>& common,
+                                        bool renew) {
+  assert(phase_ == GuardPhase::between_steps && steps >= 0);
+  counts_.calm += static_cast<std::uint64_t>(steps);
+  paths_.elapsed = calm_.paths.time = time;
+  paths_.off = paths_.off_now = calm_.noted_off + to_quad(common);
+  if (renew) paths_.collected = false;
 }
 
 template class ClothGuard<float>;

@@ -2,13 +2,9 @@
 
 #include "core/contact/guard/guard_contacts.h"
 
+#include "core/contact/constants.h"
+
 namespace weft {
-namespace {
-
-/// What is nearer than this part of the distance that a pair keeps touches.
-constexpr double kTouching = 1.05;
-
-}  // namespace
 
 template <class Real>
 std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x) {

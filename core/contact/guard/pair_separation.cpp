@@ -14,9 +14,6 @@
 namespace weft {
 namespace {
 
-/// An edge that is closest at its end, within this part of it, belongs to a particle instead.
-constexpr double kEdgeEnd = 0.01;
-
 /// Pairs of a block that is worth a thread's while: whole vectors.
 constexpr std::size_t kBlock = 64 * kPairPadding;
 

@@ -6,13 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "core/contact/constants.h"
 #include "core/contact/guard/cloth_guard.h"
 
 namespace weft {
 namespace {
-
-/// What is nearer than this part of the thickness touches, as others are told.
-constexpr double kTouching = 1.05;
 
 /// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
 constexpr int kClosingSweeps = 4;

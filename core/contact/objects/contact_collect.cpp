@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/constants.h"
 #include "core/contact/objects/contact.h"
 #include "core/contact/objects/corners.h"
 
@@ -22,10 +23,6 @@ constexpr double kSkinSubsteps = 4;
 
 /// Clearance of what sleeps [m]: no list ever has it.
 constexpr double kOutOfReach = 1e9;
-
-/// What is left between cloth and objects at least [m]; where single precision does not reach so
-/// far, so many of its roundings.
-constexpr double kSmallestGap = 1e-5, kRoundings = 64;
 
 /// Collections between two measurements of a particle that is near without having pairs.
 constexpr std::size_t kTurns = 8;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/constants.h"
 #include "core/contact/feature_pair.h"
 #include "core/contact/objects/apart.h"
 #include "core/contact/objects/contact.h"
@@ -13,14 +14,11 @@
 namespace weft {
 namespace {
 
-/// A pair of edges closest at an end belongs to a particle or a vertex instead.
-constexpr double kEdgeEnd = 0.01;
-
 /// What a bound is widened by for rounding.
 constexpr double kSurely = 1.001;
 
 /// Times the rounding of a radius that distances from the core may be off.
-constexpr double kRoundings = 16;
+constexpr double kCoreRoundings = 16;
 
 /// Part of its thickness that a cloth keeps of a round object even if it is pressed on it.
 constexpr double kKeptPart = 0.25;
@@ -74,7 +72,7 @@ void Contact<Real>::measure_cores(const ClothState<Real>& state, const Round& ro
   core_.resize(state.x.size());
   least_core_.resize(state.x.size());
   const auto& [a, b, radius, collider] = round.rod;
-  const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kRoundings);
+  const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kCoreRoundings);
   for (const Index k : active_particles_) {
     const auto i = static_cast<std::size_t>(k);
     const Vec3<Real> from = state.x[i] - a;

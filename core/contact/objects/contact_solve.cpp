@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/contact/constants.h"
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/contact.h"
 #include "core/contact/objects/row_values.h"
@@ -17,10 +18,10 @@ constexpr int kSweeps = 2;
 
 /// Further ones, each after one over the rows of cloths with each other: one where these press, as
 /// piles would tremble without, and more while each changes what something moves in the substep by
-/// more than this part of the thickness. None where the first one, begun from the impulses of the
+/// more than kResidual. None where the first one, begun from the impulses of the
 /// last step, found next to nothing to do [m/s].
 constexpr int kMoreSweeps = 8;
-constexpr double kResidual = 0.01, kStill = 5e-4;
+constexpr double kStill = 5e-4;
 
 /// Rounds of projection on violated planes before a particle is held.
 constexpr int kCertifyRounds = 3;

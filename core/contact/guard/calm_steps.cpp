@@ -1,0 +1,84 @@
+// Certifies a step by the largest displacement of any particle from where it is expected.
+
+#include "core/contact/guard/calm_steps.h"
+
+#include <cassert>
+
+#include "core/contact/guard/constants.h"
+#include "core/contact/travel.h"
+
+namespace weft {
+namespace {
+
+/// A bound of how far any particle is off its straight path after the drift [m].
+/// @param base      where the paths are at time 0 [m]
+/// @param velocity  along them [m/s]
+/// @param time      at the end of the drift [s]
+template <class Real>
+Real farthest_off(const ClothState<Real>& state, Real dt, const Vec3Array<Real>& base,
+                  const Vec3Array<Real>& velocity, Real time) {
+  assert(base.size() == state.x.size() && velocity.size() == state.x.size());
+  PathPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.base = base.data()->data();
+  pass.velocity = velocity.data()->data();
+  pass.time = time;
+  return largest_deviation(pass) * static_cast<Real>(kDiagonal);
+}
+
+}  // namespace
+
+template <class Real>
+bool stays_calm(const CalmPaths<Real>& calm, const PredictedPaths<Real>& paths,
+                const ClothState<Real>& state, Real dt) {
+  return paths.hold() &&
+         farthest_off(state, dt, calm.base, calm.velocity, paths.elapsed) <= calm.reach;
+}
+
+template <class Real>
+void note_calm_paths(const PredictedPaths<Real>& paths, CalmSteps<Real>& steps) {
+  assert(paths.collected);
+  CalmPaths<Real>& calm = steps.paths;
+  steps.noted_off = paths.off;
+  for (std::size_t i = 0; i < calm.base.size(); ++i) {
+    calm.base[i] = to_vector(paths.at(i, 0) + paths.off);
+    calm.velocity[i] = to_vector(paths.velocity[i]);
+  }
+  calm.fastest = paths.fastest;
+  calm.time = paths.elapsed;
+  calm.horizon = paths.horizon;
+  ++calm.number;
+}
+
+template <class Real>
+bool has_slack(const Slack<Real>& slack, const PredictedPaths<Real>& paths,
+               const ClothState<Real>& state, Real dt) {
+  if (!(slack.left > 0) || !paths.hold()) return false;
+  const Real along_paths =
+      (paths.fastest + length(paths.common_velocity)) * (paths.elapsed - slack.time);
+  return farthest_off(state, dt, slack.ends, slack.ends, Real(0)) + along_paths <= slack.left;
+}
+
+template <class Real>
+void note_ends(const ClothState<Real>& state, Real dt, Real elapsed, Slack<Real>& slack) {
+  assert(slack.ends.size() == state.x.size());
+  slack.time = elapsed;
+  if (!(slack.left > 0)) return;
+  for (std::size_t i = 0; i < slack.ends.size(); ++i) slack.ends[i] = state.x[i] + state.v[i] * dt;
+}
+
+#define WEFT_INSTANTIATE(Real)                                                  \
+  template bool stays_calm(const CalmPaths<Real>&, const PredictedPaths<Real>&, \
+                           const ClothState<Real>&, Real);                      \
+  template void note_calm_paths(const PredictedPaths<Real>&, CalmSteps<Real>&); \
+  template bool has_slack(const Slack<Real>&, const PredictedPaths<Real>&,      \
+                          const ClothState<Real>&, Real);                       \
+  template void note_ends(const ClothState<Real>&, Real, Real, Slack<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

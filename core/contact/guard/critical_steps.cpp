@@ -1,0 +1,224 @@
+// Finds one axis for each endangered pair that separates it throughout the step, or two planes in
+// its gap at which its particles stop.
+
+#include "core/contact/guard/critical_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/contact/guard/constants.h"
+#include "core/stop_signal.h"
+
+namespace weft {
+namespace {
+
+/// Whether the displacements of a pair's particles may be too long for its gap, measured anew.
+template <class Real>
+bool is_critical(const GuardedStep<Real>& step, const Regions<Real>& regions,
+                 const std::vector<char>& is_tight, GuardedPair<Real>& pair) {
+  const auto [first, second] = largest_on_sides(pair, [&](std::size_t i) {
+    return is_tight[i] ? length(step.displacement[i]) : regions.radius[i];
+  });
+  const Real needed = first + second + regions.smallest_gap;
+  if (pair.bound >= needed) return false;
+  measure(regions, pair);
+  return !(pair.bound >= needed);
+}
+
+/// Lists the particles whose displacement is longer than their region.
+template <class Real>
+void find_tight(const GuardedStep<Real>& step, const Regions<Real>& regions,
+                CriticalSteps<Real>& critical) {
+  for (const Index i : regions.anchored) critical.is_tight[static_cast<std::size_t>(i)] = 0;
+  critical.tight.clear();
+  for (const Index k : regions.anchored) {
+    const auto i = static_cast<std::size_t>(k);
+    const Quad<Real>& way = step.displacement[i];
+    if (dot(way, way) <= regions.radius[i] * regions.radius[i]) continue;
+    critical.is_tight[i] = 1;
+    critical.tight.push_back(k);
+  }
+}
+
+/// Lists the tight particles and the pairs that these endanger.
+/// @return whether some particle of such a pair has to be anchored first; regions.loose lists them
+template <class Real>
+bool find_critical(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
+                   CriticalSteps<Real>& critical) {
+  find_tight(step, regions, critical);
+  critical.pairs.clear();
+  std::vector<Index>& loose = regions.loose;
+  loose.clear();
+  ++pairs.listing;
+  for (const Index k : critical.tight) {
+    for_pairs_of(pairs, static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+      if (pair.listed == pairs.listing) return;
+      pair.listed = pairs.listing;
+      if (!is_critical(step, regions, critical.is_tight, pair)) return;
+      critical.pairs.push_back({pairs.number_of(pair)});
+      for (const Index j : pair.particle) {
+        if (regions.anchored_at[static_cast<std::size_t>(j)] != step.number) loose.push_back(j);
+      }
+    });
+  }
+  std::sort(loose.begin(), loose.end());
+  loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+  return !loose.empty();
+}
+
+/// Whether the displacements, as far as they are allowed, cannot make the sides of a pair meet.
+/// @param fraction  of each particle's displacement that is allowed
+template <class Real>
+bool holds(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
+           const GuardedStep<Real>& step, const std::vector<Real>& fraction, Real smallest_gap) {
+  if (!(c.gap > 0)) return false;
+  Real side[2] = {0, 0};
+  PairPoints<Real> end;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const Quad<Real> allowed = step.displacement[i] * fraction[i];
+    Real& most = side[k < first_side(pair.kind) ? 0 : 1];
+    most = std::max(most, dot(allowed, allowed));
+    end[k] = to_vector(step.from[i] + allowed);
+  }
+  if (std::sqrt(side[0]) + std::sqrt(side[1]) + smallest_gap <= c.gap) return true;
+  // One axis that has the sides apart at both ends has them apart all along straight lines. What
+  // is nearer than the smallest gap must not come nearer, rounding included.
+  const Real least = std::min(c.gap + smallest_gap / 16, smallest_gap);
+  return gap_along(pair.kind, end, c.normal) >= least;
+}
+
+/// A pair's particles along its normal, from the first one, both sides towards the other [m].
+template <class Real>
+struct PairHeights {
+  std::array<Real, 4> height;        ///< where they are
+  std::array<Real, 4> displacement;  ///< how far they want to go
+  std::array<Real, 2> front;         ///< least height of each side
+  std::array<Real, 2> wish;          ///< by how much each side wants that to fall
+};
+
+template <class Real>
+PairHeights<Real> heights_of(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
+                             const GuardedStep<Real>& step, const std::vector<Real>& fraction) {
+  constexpr Real kFar = std::numeric_limits<Real>::infinity();
+  const Quad<Real> normal = to_quad(c.normal);
+  const Quad<Real>& origin = step.from[static_cast<std::size_t>(pair.particle[0])];
+  PairHeights<Real> h;
+  h.front = {kFar, kFar};
+  Real goal[2] = {kFar, kFar};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const std::size_t s = k < first_side(pair.kind) ? 0 : 1;
+    const Real sign = s == 0 ? Real(1) : Real(-1);
+    h.height[k] = sign * dot(normal, step.from[i] - origin);
+    h.displacement[k] = -sign * dot(normal, step.displacement[i]);
+    h.front[s] = std::min(h.front[s], h.height[k]);
+    goal[s] = std::min(goal[s], h.height[k] - h.displacement[k] * fraction[i]);
+  }
+  h.wish = {std::max(Real(0), h.front[0] - goal[0]), std::max(Real(0), h.front[1] - goal[1])};
+  return h;
+}
+
+/// Stops the particles of a pair at two planes in its gap, which is shared as they wanted it.
+template <class Real>
+void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
+                    const GuardedStep<Real>& step, Real smallest_gap, std::vector<Real>& fraction) {
+  const PairHeights<Real> h = heights_of(c, pair, step, fraction);
+  const Real spare = c.gap - smallest_gap;
+  const Real both = h.wish[0] + h.wish[1];
+  Real part = both > 0 ? h.wish[0] / both : Real(0.5);
+  part = std::clamp(part, static_cast<Real>(kLeastPart), static_cast<Real>(1 - kLeastPart));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const std::size_t s = k < first_side(pair.kind) ? 0 : 1;
+    const Real wanted = h.displacement[k];
+    if (!(spare > 0)) {
+      // No step that rounding could turn into an approach.
+      if (!(c.gap > 0) || wanted > -smallest_gap / 16) fraction[i] = 0;
+      continue;
+    }
+    const Real allowed = h.height[k] - h.front[s] + spare * (s == 0 ? part : 1 - part);
+    if (wanted * fraction[i] > allowed)
+      fraction[i] = std::min(fraction[i], allowed / wanted * Real(1 - kStopShort));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
+                    CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts) {
+  while (find_critical(pairs, step, regions, critical)) {
+    stop_point();
+    anchor_loose(pairs, step, regions, executor, counts);
+  }
+  counts.critical += critical.pairs.size();
+  for (CriticalPair<Real>& c : critical.pairs) {
+    const GuardedPair<Real>& pair = pairs[c.pair];
+    const PairSeparation<Real> s = separate_pair(pair.kind, points_of(pair, step.from));
+    c.normal = s.normal;
+    c.gap = s.gap;
+  }
+  const Real smallest_gap = regions.smallest_gap;
+  for (int round = 0;; ++round) {
+    stop_point();
+    bool changed = false;
+    for (CriticalPair<Real>& c : critical.pairs) {
+      const GuardedPair<Real>& pair = pairs[c.pair];
+      if (c.fixed || (round < kRounds && holds(c, pair, step, critical.fraction, smallest_gap)))
+        continue;
+      stop_at_planes(c, pair, step, smallest_gap, critical.fraction);
+      c.fixed = changed = true;
+    }
+    if (!changed) break;
+  }
+}
+
+template <class Real>
+void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
+              CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
+              PredictedPaths<Real>& paths, ClothState<Real>& state) {
+  assert(dt > 0);
+  paths.strays.clear();
+  ++regions.wave;
+  const auto visit = [&](Index k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (regions.wave_of[i] == regions.wave) return;
+    regions.wave_of[i] = regions.wave;
+    critical.is_tight[i] = 0;
+    regions.dirty.push_back(k);
+    const Real fraction = std::exchange(critical.fraction[i], Real(1));
+    assert(fraction >= 0);
+    if (fraction >= 1) return;
+    const Quad<Real> allowed = step.displacement[i] * fraction;
+    step.lost += static_cast<double>(length(step.displacement[i] - allowed));
+    const Quad<Real> off = step.from[i] + allowed - paths.at(i, paths.elapsed) - paths.off_now;
+    const bool off_path = !(dot(off, off) <= reach * reach);
+    if (off_path) paths.strays.push_back(k);
+    step.displacement[i] = off_path && stay ? Quad<Real>() : allowed;
+    state.x[i] = to_vector(step.from[i]);
+    state.v[i] = to_vector(step.displacement[i]) / dt;
+  };
+  for (const CriticalPair<Real>& c : critical.pairs) {
+    for (const Index k : pairs[c.pair].particle) visit(k);
+  }
+  for (const Index k : critical.tight) visit(k);
+  critical.pairs.clear();
+  critical.tight.clear();
+}
+
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template void stop_crossings(GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&,     \
+                               CriticalSteps<Real>&, Executor*, GuardCounts&);              \
+  template void truncate(const GuardedPairs<Real>&, Real, Real, bool, CriticalSteps<Real>&, \
+                         GuardedStep<Real>&, Regions<Real>&, PredictedPaths<Real>&,         \
+                         ClothState<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "core/cloth/cloth_state.h"
+#include "core/contact/guard/guard_counts.h"
+#include "core/contact/guard/guarded_pairs.h"
+#include "core/contact/guard/guarded_step.h"
+#include "core/contact/guard/predicted_paths.h"
+#include "core/contact/guard/regions.h"
+#include "core/executor.h"
+#include "core/types.h"
+
+// Steps that are longer than their regions: certified pair by pair, or stopped.
+
+namespace weft {
+
+/// A pair whose coming step is certified by itself.
+template <class Real>
+struct CriticalPair {
+  Index pair = kNone;
+  Vec3<Real> normal = Vec3<Real>::Zero();
+  Real gap = 0;        ///< along the normal [m]
+  bool fixed = false;  ///< stopped at planes
+};
+
+/// What one step had no region for.
+template <class Real>
+struct CriticalSteps {
+  std::vector<CriticalPair<Real>> pairs;
+  std::vector<Index> tight;    ///< particles whose displacement is longer than their region
+  std::vector<char> is_tight;  ///< of each particle
+  std::vector<Real> fraction;  ///< of each one's displacement that is allowed
+};
+
+/// Certifies or stops the displacements of particles that are too long for their regions. Particles
+/// of pairs that these endanger are anchored first.
+template <class Real>
+void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
+                    CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts);
+
+/// Applies to the state what was not allowed. Particles stopped off their predicted paths are
+/// listed as strays, which ask for pairs around a new one; what the others may do then is examined
+/// anew.
+/// @param reach  radius of the balls around paths [m]
+/// @param stay   strays stay where they are, so that none is stopped a second time
+template <class Real>
+void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
+              CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
+              PredictedPaths<Real>& paths, ClothState<Real>& state);
+
+}  // namespace weft

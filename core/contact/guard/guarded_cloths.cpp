@@ -1,0 +1,135 @@
+// Copies from the model what the guard needs of the cloths, and answers questions about the fabric.
+
+#include "core/contact/guard/guarded_cloths.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "core/contact/guard/constants.h"
+#include "core/geometry/triangle_sides.h"
+
+namespace weft {
+namespace {
+
+std::vector<std::array<Index, 3>> particles_across(const std::vector<Triangle>& triangles) {
+  std::vector<std::array<Index, 3>> across(triangles.size(), {kNone, kNone, kNone});
+  const std::vector<TriangleSide> sides = sorted_sides(triangles);
+  const auto at = [](const TriangleSide& side, auto& list) -> auto& {
+    return list[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.corner)];
+  };
+  for (std::size_t n = 0; n + 1 < sides.size(); ++n) {
+    const TriangleSide &one = sides[n], &other = sides[n + 1];
+    if (one.ends != other.ends) continue;
+    at(one, across) = at(other, triangles);
+    at(other, across) = at(one, triangles);
+  }
+  return across;
+}
+
+/// Length of a cloth's edges [m]; on a mesh, where they vary, less than their mean.
+template <class Real>
+Real cell_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+  double sum = 0;
+  for (Index e = part.edges.first; e < part.edges.end(); ++e) {
+    const Edge& edge = model.edges[static_cast<std::size_t>(e)];
+    sum += static_cast<double>((model.rest_positions[static_cast<std::size_t>(edge[0])] -
+                                model.rest_positions[static_cast<std::size_t>(edge[1])])
+                                   .norm());
+  }
+  const double cell =
+      part.rows > 0 ? std::min(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v))
+                    : kMeshCell * sum / std::max<Index>(part.edges.count, 1);
+  return static_cast<Real>(cell);
+}
+
+}  // namespace
+
+template <class Real>
+GuardedCloths<Real> guarded_cloths(const ClothModel<Real>& model) {
+  assert(!model.parts.empty() && model.rest_positions.size() == model.mass.size());
+  GuardedCloths<Real> cloths;
+  cloths.edges = model.edges;
+  cloths.triangles = model.triangles;
+  cloths.across = particles_across(model.triangles);
+  cloths.neighbours = Neighbours(model.mass.size(), model.edges);
+  for (const Vec3<Real>& p : model.rest_positions) cloths.rest_positions.push_back(to_quad(p));
+  cloths.finest = std::numeric_limits<Real>::infinity();
+  for (const ClothPart<Real>& part : model.parts) {
+    cloths.particles_of.push_back(part.particles);
+    cloths.thickness.push_back(static_cast<Real>(part.fabric.thickness));
+    cloths.friction.push_back(static_cast<Real>(part.fabric.friction));
+    cloths.cell.push_back(cell_of(model, part));
+    cloths.thickest = std::max(cloths.thickest, cloths.thickness.back());
+    cloths.finest = std::min(cloths.finest, cloths.cell.back());
+    for (Index i = part.particles.first; i < part.particles.end(); ++i)
+      cloths.inverse_area.push_back(static_cast<Real>(part.fabric.areal_density) /
+                                    model.mass[static_cast<std::size_t>(i)]);
+  }
+  cloths.reach = std::min(cloths.thickest * Real(kReachPart), cloths.finest * Real(kMostReach));
+  cloths.reach = std::max(cloths.reach, cloths.finest * Real(kLeastReach));
+  return cloths;
+}
+
+template <class Real>
+Index cloth_of(const GuardedCloths<Real>& cloths, Index particle) {
+  assert(particle >= 0 && particle < cloths.particles_of.back().end());
+  std::size_t cloth = cloths.particles_of.size() - 1;
+  while (cloth > 0 && particle < cloths.particles_of[cloth].first) --cloth;
+  return static_cast<Index>(cloth);
+}
+
+template <class Real>
+Real kept_distance(const GuardedCloths<Real>& cloths, const GuardedPair<Real>& pair, Index p,
+                   Index q) {
+  Real distance = (cloths.thickness[static_cast<std::size_t>(p)] +
+                   cloths.thickness[static_cast<std::size_t>(q)]) /
+                  2;
+  if (pair.kind == PairKind::edge_edge) distance *= Real(kEdgeRadius);
+  if (p != q) return distance;
+  const PairPoints<Real> rest = points_of(pair, cloths.rest_positions);
+  const Real near = 2 * distance + 2 * cloths.cell[static_cast<std::size_t>(p)];
+  if ((rest[0] - rest[2]).squaredNorm() > near * near) return distance;
+  return std::min(distance, separate_pair(pair.kind, rest).gap * Real(kFabricPart));
+}
+
+template <class Real>
+bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
+                  const std::array<Index, 4>& particles, const PairSeparation<Real>& s) {
+  assert(triangle >= 0 && static_cast<std::size_t>(triangle) < cloths.across.size());
+  Quad<Real> nearest;
+  std::size_t corner = 3, zeros = 0, kept = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    nearest += x[static_cast<std::size_t>(particles[k + 1])] * -s.weight[k + 1];
+    if (s.weight[k + 1] == 0) {
+      corner = k;
+      ++zeros;
+    } else {
+      kept = k;
+    }
+  }
+  const Quad<Real> away = x[static_cast<std::size_t>(particles[0])] - nearest;
+  const auto leads_nearer = [&](Index i) {
+    return i != particles[0] && dot(away, x[static_cast<std::size_t>(i)] - nearest) > 0;
+  };
+  if (zeros == 1) {
+    const Index other = cloths.across[static_cast<std::size_t>(triangle)][corner];
+    return other == kNone || !leads_nearer(other);
+  }
+  if (zeros != 2) return true;
+  const auto around = cloths.neighbours.of(static_cast<std::size_t>(particles[kept + 1]));
+  return std::none_of(around.begin(), around.end(),
+                      [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                     \
+  template GuardedCloths<Real> guarded_cloths(const ClothModel<Real>&);                            \
+  template Index cloth_of(const GuardedCloths<Real>&, Index);                                      \
+  template Real kept_distance(const GuardedCloths<Real>&, const GuardedPair<Real>&, Index, Index); \
+  template bool owns_nearest(const GuardedCloths<Real>&, const QuadArray<Real>&, Index,            \
+                             const std::array<Index, 4>&, const PairSeparation<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

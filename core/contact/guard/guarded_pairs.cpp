@@ -1,0 +1,109 @@
+// Lists pairs with their particles, and drops those of particles that get new paths.
+
+#include "core/contact/guard/guarded_pairs.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace weft {
+
+template <class Real>
+void forget_pairs(GuardedPairs<Real>& pairs) {
+  pairs.all.clear();
+  pairs.active.clear();
+  pairs.arrived.clear();
+  pairs.open = 0;
+}
+
+template <class Real>
+void list_all_pairs(std::size_t n, GuardedPairs<Real>& pairs) {
+  std::vector<Index>&begin = pairs.begin, &end = pairs.end;
+  begin.assign(n + 1, 0);
+  for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
+    for (const Index i : pair.particle) ++begin[static_cast<std::size_t>(i) + 1];
+  });
+  pairs.active.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (begin[i + 1] > 0) pairs.active.push_back(static_cast<Index>(i));
+    begin[i + 1] += begin[i];
+  }
+  pairs.of.resize(static_cast<std::size_t>(begin[n]));
+  for (std::size_t k = pairs.all.size(); k-- > 0;) {
+    if (pairs.all[k].open) continue;
+    // Filled from the back of each particle's list, whose begin then stands where it shall.
+    for (const Index i : pairs.all[k].particle)
+      pairs.of[static_cast<std::size_t>(--begin[static_cast<std::size_t>(i) + 1])] =
+          static_cast<Index>(k);
+  }
+  end.resize(n);
+  for (std::size_t i = 0; i < n; ++i) begin[i] = begin[i + 1];
+  begin[n] = static_cast<Index>(pairs.of.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    end[i] = begin[i + 1];
+    pairs.is_active[i] = end[i] > begin[i] ? 1 : 0;
+  }
+  pairs.later.assign(n, kNone);
+  pairs.most = 2 * pairs.all.size() + n;
+}
+
+template <class Real>
+void list_pairs_from(std::size_t first, GuardedPairs<Real>& pairs) {
+  assert(first <= pairs.all.size());
+  for_pairs_from(pairs, first, [&](GuardedPair<Real>& pair) {
+    for (std::size_t m = 0; m < 4; ++m) {
+      const auto i = static_cast<std::size_t>(pair.particle[m]);
+      const auto link = 4 * pairs.number_of(pair) + static_cast<Index>(m);
+      pair.next[m] = std::exchange(pairs.later[i], link);
+      if (!std::exchange(pairs.is_active[i], 1)) pairs.active.push_back(pair.particle[m]);
+    }
+  });
+}
+
+template <class Real>
+void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>& changed,
+                   GuardedPairs<Real>& pairs) {
+  assert(changed.size() == pairs.is_active.size());
+  pairs.dropped_keys.clear();
+  for (const Index k : particles) {
+    const auto i = static_cast<std::size_t>(k);
+    assert(changed[i] != 0);
+    if (!pairs.is_active[i]) continue;
+    for_pairs_of(pairs, i, [&](GuardedPair<Real>& pair) {
+      pair.gone = true;
+      pairs.dropped_keys.push_back(key_of(pair));
+    });
+    pairs.end[i] = pairs.begin[i];
+    pairs.later[i] = kNone;
+  }
+  std::sort(pairs.dropped_keys.begin(), pairs.dropped_keys.end());
+  if (pairs.open == 0) return;
+  // Open pairs stand in no list.
+  for (GuardedPair<Real>& pair : pairs.all) {
+    if (!pair.open || pair.gone) continue;
+    pair.gone = std::any_of(pair.particle.begin(), pair.particle.end(),
+                            [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+    pairs.open -= pair.gone ? 1 : 0;
+  }
+}
+
+template <class Real>
+void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs) {
+  for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
+    const bool known =
+        std::binary_search(pairs.dropped_keys.begin(), pairs.dropped_keys.end(), key_of(pair));
+    if (!known) pairs.arrived.push_back(pair);
+  });
+}
+
+#define WEFT_INSTANTIATE(Real)                                                     \
+  template void forget_pairs(GuardedPairs<Real>&);                                 \
+  template void list_all_pairs(std::size_t, GuardedPairs<Real>&);                  \
+  template void list_pairs_from(std::size_t, GuardedPairs<Real>&);                 \
+  template void drop_pairs_of(const std::vector<Index>&, const std::vector<char>&, \
+                              GuardedPairs<Real>&);                                \
+  template void note_arrivals(std::size_t, GuardedPairs<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

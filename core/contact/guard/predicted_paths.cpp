@@ -1,0 +1,159 @@
+// Predicts how particles go on, and finds those that do not.
+
+#include "core/contact/guard/predicted_paths.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/constants.h"
+#include "core/contact/guard/constants.h"
+
+namespace weft {
+namespace {
+
+/// What of a velocity is not jitter: the smaller of it and of the mean velocity since the path
+/// began, by components, and nothing where they disagree.
+template <class Real>
+Quad<Real> steady(const PredictedPaths<Real>& paths, const QuadArray<Real>& x, const Quad<Real>& v,
+                  std::size_t particle, Real dt) {
+  const Real time = paths.elapsed - dt - paths.since[particle];
+  if (!paths.collected || !(time > 0)) return v;
+  const Quad<Real> mean = (x[particle] - paths.from[particle]) * (Real(1) / time);
+  Quad<Real> result;
+  for (int k = 0; k < 3; ++k) {
+    if (v[k] * mean[k] > 0) result.lanes[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
+  }
+  return result;
+}
+
+/// Velocity of a new path, which has to hold at least for the coming step [m/s].
+template <class Real>
+Quad<Real> path_velocity(const PredictedPaths<Real>& paths, const GuardedStep<Real>& step,
+                         std::size_t particle, Real dt, Real reach) {
+  const Quad<Real> now = step.displacement[particle] * (Real(1) / dt);
+  const Quad<Real> v = steady(paths, step.from, now, particle, dt);
+  const Quad<Real> off = step.displacement[particle] - v * dt;
+  return dot(off, off) > reach * reach / 4 ? now : v;
+}
+
+}  // namespace
+
+template <class Real>
+void begin_paths(const GuardedStep<Real>& step, const AwakeParticles& awake, Real dt, Real reach,
+                 Real finest, PredictedPaths<Real>& paths) {
+  assert(dt > 0 && reach > 0 && finest > 0);
+  // A motion common to all changes nothing between them.
+  const Quad<Real> common =
+      mean_awake<Real>(awake, [&](std::size_t i) { return step.displacement[i]; });
+  paths.common_velocity = common * (Real(1) / dt);
+  const Quad<Real> mean_squares = mean_awake<Real>(awake, [&](std::size_t i) {
+    const Quad<Real> own = step.displacement[i] - common;
+    return Quad<Real>{own.lanes * own.lanes};
+  });
+  const Real speed = std::sqrt(mean_squares[0] + mean_squares[1] + mean_squares[2]) / dt;
+  const Real shortest = dt * Real(kFewestSubsteps);
+  paths.horizon = std::clamp(finest * Real(kHorizonPart) / std::max(speed, Real(1e-6)), shortest,
+                             std::max(static_cast<Real>(kLongestHorizon), shortest));
+  for (std::size_t i = 0; i < step.from.size(); ++i)
+    paths.velocity[i] = path_velocity(paths, step, i, dt, reach);
+  paths.from = step.from;
+  paths.since.assign(step.from.size(), 0);
+  paths.off = paths.off_now = paths.off_before = {};
+}
+
+template <class Real>
+void begin_paths_of_strays(const GuardedStep<Real>& step, Real dt, Real reach,
+                           PredictedPaths<Real>& paths) {
+  assert(paths.collected);
+  for (const Index k : paths.strays) {
+    const auto i = static_cast<std::size_t>(k);
+    paths.velocity[i] = path_velocity(paths, step, i, dt, reach);
+    paths.from[i] = step.from[i] - paths.off_before;
+    paths.since[i] = paths.elapsed - dt;
+  }
+}
+
+template <class Real>
+void predict(Real past, PredictedPaths<Real>& paths, PredictedMotion<Real>& motion) {
+  assert(motion.start.size() == paths.from.size() && motion.end.size() == paths.from.size());
+  const Quad<Real> gone = paths.common_velocity * past;
+  const Quad<Real> common = paths.common_velocity * paths.horizon;
+  Real fastest2 = 0;
+  for (std::size_t i = 0; i < paths.from.size(); ++i) {
+    motion.start[i] = paths.at(i, past) - gone;
+    motion.end[i] = paths.at(i, paths.horizon) - common;
+    fastest2 = std::max(fastest2, dot(paths.velocity[i], paths.velocity[i]));
+  }
+  paths.fastest = std::sqrt(fastest2);
+}
+
+template <class Real>
+Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const AwakeParticles& awake,
+                 GuardedStep<Real>& step, PredictedPaths<Real>& paths) {
+  assert(state.x.size() == step.from.size() && state.v.size() == step.from.size());
+  const Real limit = reach * reach, soon = limit * static_cast<Real>(kSoon * kSoon);
+  bool left = false;
+  Real spare2 = limit;
+  paths.strays.clear();
+  const auto look = [&](std::size_t i) {
+    step.displacement[i] = (to_quad(state.x[i]) - step.from[i]) + to_quad(state.v[i]) * dt;
+    const Quad<Real> off = step.from[i] + step.displacement[i] - paths.at(i, paths.elapsed);
+    const Quad<Real> own = off - paths.off;
+    const Real off2 = dot(own, own);
+    spare2 = std::min(spare2, limit - off2);
+    if (!(off2 <= soon)) {
+      paths.strays.push_back(static_cast<Index>(i));
+      left |= !(off2 <= limit);
+    }
+    return off;
+  };
+  Quad<Real> sum;
+  std::size_t i = 0;
+  for (const IndexRange& range : awake.ranges) {
+    for (; i < static_cast<std::size_t>(range.first); ++i) look(i);
+    for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
+  }
+  for (; i < step.displacement.size(); ++i) look(i);
+  if (!left || !paths.hold()) paths.strays.clear();
+  if (paths.hold()) {
+    paths.off_before = paths.off_now;
+    paths.off_now = paths.off;
+    paths.off = sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake.count, 1)));
+  }
+  // a - b >= (a^2 - b^2) / 2a for 0 <= b <= a.
+  return spare2 / (2 * reach);
+}
+
+template <class Real>
+bool allows_for_common(const PredictedPaths<Real>& paths, Real reach) {
+  const Quad<Real> more = paths.off_now - paths.off_before;
+  return dot(more, more) <= reach * reach / 4;
+}
+
+template <class Real>
+Real smallest_gap_at(const QuadArray<Real>& x) {
+  QuadBox<Real> all;
+  for (const Quad<Real>& p : x) all.add(p);
+  Real largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, -all.lower[k], all.upper[k]});
+  return std::max(static_cast<Real>(kSmallestGap),
+                  largest * std::numeric_limits<Real>::epsilon() * Real(kRoundings));
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                 \
+  template void begin_paths(const GuardedStep<Real>&, const AwakeParticles&, Real, Real, Real, \
+                            PredictedPaths<Real>&);                                            \
+  template void begin_paths_of_strays(const GuardedStep<Real>&, Real, Real,                    \
+                                      PredictedPaths<Real>&);                                  \
+  template void predict(Real, PredictedPaths<Real>&, PredictedMotion<Real>&);                  \
+  template Real find_strays(const ClothState<Real>&, Real, Real, const AwakeParticles&,        \
+                            GuardedStep<Real>&, PredictedPaths<Real>&);                        \
+  template bool allows_for_common(const PredictedPaths<Real>&, Real);                          \
+  template Real smallest_gap_at(const QuadArray<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

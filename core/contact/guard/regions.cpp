@@ -1,0 +1,312 @@
+// Anchors particles in waves, and shares the gaps of their pairs.
+
+#include "core/contact/guard/regions.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <span>
+
+#include "core/contact/guard/constants.h"
+#include "core/contact/guard/guard_parts.h"
+#include "core/stop_signal.h"
+
+namespace weft {
+namespace {
+
+/// How far the sides of a pair want to move in the coming step [m], each at least a little.
+template <class Real>
+BothSides<Real> speeds_of(const GuardedPair<Real>& pair, const GuardedStep<Real>& step) {
+  const auto [first, second] =
+      largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
+  const Real both = std::max(first, second) * Real(kLeastShare) + Real(1e-9);
+  return {first + both, second + both};
+}
+
+/// Bounds the regions of a pair's particles by their side's share of its gap.
+/// @param takes  whether particle i takes part
+template <class Real, class Takes>
+void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Regions<Real>& regions,
+               Takes&& takes) {
+  const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
+  const auto [first, second] = speeds_of(pair, step);
+  const Real share = first / (first + second);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    if (!takes(i)) continue;
+    const Real own = gap * (k < first_side(pair.kind) ? share : 1 - share);
+    regions.radius[i] = std::min(regions.radius[i], own);
+  }
+}
+
+/// Lists the pairs of a particle with the radii that others have in them, and for measuring those
+/// whose bound may not be enough for a particle that is being anchored: the first of these in the
+/// pair asks for all.
+template <class Real>
+void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
+                 const Regions<Real>& regions, AnchorPart<Real>& part) {
+  const auto ahead_of = [&](std::size_t j) {
+    return step.length[j] * Real(2 * kStepsOfRoom) + regions.smallest_gap;
+  };
+  for_pairs_of(pairs, static_cast<std::size_t>(particle), [&](const GuardedPair<Real>& pair) {
+    const std::size_t middle = first_side(pair.kind);
+    Real radii[2] = {0, 0}, ahead[2] = {-1, -1};
+    Index first = kNone;
+    std::size_t at = 0;
+    for (std::size_t m = 0; m < 4; ++m) {
+      const auto j = static_cast<std::size_t>(pair.particle[m]);
+      const std::size_t side = m < middle ? 0 : 1;
+      if (regions.wave_of[j] != regions.wave) {
+        radii[side] = std::max(radii[side], regions.radius[j]);
+        continue;
+      }
+      if (first == kNone) first = pair.particle[m];
+      if (pair.particle[m] == particle) at = side;
+      ahead[side] = std::max(ahead[side], ahead_of(j));
+    }
+    const auto is_ample = [&](std::size_t side, Real displacement) {
+      return pair.bound > std::max(radii[0], radii[1]) + radii[1 - side] + displacement;
+    };
+    const bool ample = is_ample(at, ahead_of(static_cast<std::size_t>(particle)));
+    part.claims.push_back(
+        {pairs.number_of(pair), particle, radii[at], radii[1 - at], at == 0, ample});
+    if (first != particle) return;
+    const auto wants = [&](std::size_t side) {
+      return ahead[side] >= 0 && !is_ample(side, ahead[side]);
+    };
+    if (!wants(0) && !wants(1)) return;
+    part.columns[pair.kind].add(part.claims.back().pair, 0, pair.particle);
+  });
+}
+
+/// Measures the gaps of the pairs in the columns.
+template <class Real>
+void measure_claimed(const QuadArray<Real>& anchor, AnchorPart<Real>& part) {
+  for (PairColumns<Real>& columns : part.columns) {
+    separate_pairs(anchor, anchor, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      columns.gap[k] = columns.certified_gap(k, anchor);
+  }
+}
+
+/// The radius that all pairs leave a particle: its side's share of the gap, and no more than what
+/// the other side has not taken. Lists particles that have taken too much.
+/// @param claims  all of one particle
+/// @param first   in the first wave
+template <class Real>
+Real share_claims(std::span<const AnchorClaim<Real>> claims, bool first,
+                  const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
+                  const Regions<Real>& regions, std::vector<Index>& next) {
+  Real radius = std::numeric_limits<Real>::infinity();
+  for (const AnchorClaim<Real>& claim : claims) {
+    const GuardedPair<Real>& pair = pairs[claim.pair];
+    const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
+    // What is far apart, even if its side gets the least share, changes nothing.
+    if (claim.ample && gap * Real(kLeastOfGap) >= radius) continue;
+    const BothSides<Real> speed = speeds_of(pair, step);
+    const Real share =
+        gap * ((claim.on_first ? speed.first : speed.second) / (speed.first + speed.second));
+    const Real left = gap - claim.other;
+    radius = std::min(radius, std::max(Real(0), std::min(share, left)));
+    // The others' radii alone are too much for the gap, or they leave less than the next steps
+    // need.
+    const Real length = step.length[static_cast<std::size_t>(claim.particle)];
+    const bool too_much = claim.own + claim.other > gap;
+    const bool greedy = first && left < share && left < 2 * length;
+    if (!too_much && !greedy) continue;
+    for (const Index j : pair.particle) {
+      if (regions.wave_of[static_cast<std::size_t>(j)] != regions.wave &&
+          (regions.radius[static_cast<std::size_t>(j)] > 0 || greedy))
+        next.push_back(j);
+    }
+    next.push_back(claim.particle);
+  }
+  return radius;
+}
+
+/// Moves the anchors of a wave's particles to where these are.
+template <class Real>
+void move_anchors(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
+                  GuardCounts& counts) {
+  for (const Index k : regions.in_wave) {
+    const auto i = static_cast<std::size_t>(k);
+    regions.wave_of[i] = regions.wave;
+    regions.radius[i] = 0;
+    if (regions.anchored_at[i] == step.number) continue;
+    regions.anchored_at[i] = step.number;
+    regions.anchored.push_back(k);
+    ++counts.anchored;
+    // The bound of a gap falls by no more than the displacement of an anchor.
+    const Real moved = length(step.from[i] - regions.anchor[i]);
+    regions.anchor[i] = step.from[i];
+    if (moved == 0) continue;
+    for_pairs_of(pairs, i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
+  }
+}
+
+/// Anchors the particles of a wave, and lists those of the next one.
+/// @param first  it is the first wave
+template <class Real>
+void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
+                 Regions<Real>& regions, Executor* executor, GuardCounts& counts) {
+  move_anchors(pairs, step, regions, counts);
+  const std::vector<Index>& in_wave = regions.in_wave;
+  const std::size_t count = in_wave.size(), parts = parts_of(count, kAnchoredAtLeast);
+  run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+    AnchorPart<Real>& part = regions.parts[n];
+    part.claims.clear();
+    for (std::size_t k = from; k < to; ++k) list_claims(in_wave[k], pairs, step, regions, part);
+    measure_claimed(regions.anchor, part);
+  });
+  run_parts(executor, count, parts, [&](std::size_t n, std::size_t, std::size_t) {
+    for (PairColumns<Real>& columns : regions.parts[n].columns) {
+      for (std::size_t k = 0; k < columns.size(); ++k) pairs[columns.a[k]].bound = columns.gap[k];
+      columns.clear();
+    }
+  });
+  run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+    AnchorPart<Real>& part = regions.parts[n];
+    auto claim = part.claims.begin();
+    for (std::size_t k = from; k < to; ++k) {
+      const auto begin = claim;
+      while (claim != part.claims.end() && claim->particle == in_wave[k]) ++claim;
+      regions.radius[static_cast<std::size_t>(in_wave[k])] =
+          share_claims<Real>({begin, claim}, first, pairs, step, regions, part.next);
+    }
+  });
+  regions.next.clear();
+  for (std::size_t n = 0; n < parts; ++n) {
+    std::vector<Index>& next = regions.parts[n].next;
+    regions.next.insert(regions.next.end(), next.begin(), next.end());
+    next.clear();
+  }
+}
+
+/// Anchors and measures everything.
+template <class Real>
+void anchor_all(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions) {
+  ++regions.wave;
+  for (const Index k : pairs.active) {
+    const auto i = static_cast<std::size_t>(k);
+    if (regions.anchored_at[i] != step.number) regions.anchored.push_back(k);
+    regions.anchored_at[i] = step.number;
+    regions.anchor[i] = step.from[i];
+  }
+  for_pairs_from(pairs, 0, [&](GuardedPair<Real>& pair) { measure(regions, pair); });
+  share_all_gaps(pairs, step, regions);
+}
+
+}  // namespace
+
+template <class Real>
+void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
+                 Regions<Real>& regions) {
+  for (const Index k : pairs.active) {
+    const auto i = static_cast<std::size_t>(k);
+    regions.anchor[i] = step.from[i];
+    regions.anchored_at[i] = 0;
+  }
+}
+
+template <class Real>
+void share_all_gaps(const GuardedPairs<Real>& pairs, GuardedStep<Real>& step,
+                    Regions<Real>& regions) {
+  measure_lengths(step);
+  for (const Index k : pairs.active)
+    regions.radius[static_cast<std::size_t>(k)] = std::numeric_limits<Real>::infinity();
+  for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
+    share_gap(pair, step, regions, [](std::size_t) { return true; });
+  });
+  regions.dirty.clear();
+}
+
+template <class Real>
+void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
+                 GuardedPairs<Real>& pairs, Regions<Real>& regions) {
+  assert(first <= pairs.all.size());
+  const auto is_new = [&](std::size_t i) { return !pairs.is_active[i]; };
+  for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
+    for (const Index k : pair.particle) {
+      const auto i = static_cast<std::size_t>(k);
+      if (!is_new(i)) continue;
+      regions.anchor[i] = step.from[i];
+      regions.radius[i] = std::numeric_limits<Real>::infinity();
+    }
+  });
+  for (std::size_t k = first; k < pairs.all.size(); ++k)
+    regions.columns[pairs.all[k].kind].add(static_cast<Index>(k), 0, pairs.all[k].particle);
+  for (PairColumns<Real>& columns : regions.columns) {
+    separate_pairs(regions.anchor, regions.anchor, columns, executor);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      pairs[columns.a[k]].bound = columns.certified_gap(k, regions.anchor);
+    columns.clear();
+  }
+  measure_lengths(step);
+  for_pairs_from(pairs, first,
+                 [&](const GuardedPair<Real>& pair) { share_gap(pair, step, regions, is_new); });
+  for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
+    const auto [one, other] =
+        largest_on_sides(pair, [&](std::size_t i) { return regions.radius[i]; });
+    if (one + other + regions.smallest_gap <= pair.bound) return;
+    regions.dirty.insert(regions.dirty.end(), pair.particle.begin(), pair.particle.end());
+  });
+}
+
+template <class Real>
+Real find_loose(const std::vector<Index>& active, const GuardedStep<Real>& step,
+                Regions<Real>& regions) {
+  Real least = std::numeric_limits<Real>::infinity();
+  regions.loose.clear();
+  ++regions.wave;
+  for (const Index i : regions.dirty) regions.wave_of[static_cast<std::size_t>(i)] = regions.wave;
+  for (const Index k : active) {
+    const auto i = static_cast<std::size_t>(k);
+    const Real radius = regions.radius[i];
+    const Quad<Real> off = step.from[i] + step.displacement[i] - regions.anchor[i];
+    const Real spare2 = radius * radius - dot(off, off);
+    if (regions.wave_of[i] == regions.wave || !(spare2 >= 0)) regions.loose.push_back(k);
+    least = radius > 0 ? std::min(least, spare2 / (2 * radius)) : Real(0);
+  }
+  regions.dirty.clear();
+  return least;
+}
+
+template <class Real>
+void measure(const Regions<Real>& regions, GuardedPair<Real>& pair) {
+  pair.bound = separate_pair(pair.kind, points_of(pair, regions.anchor)).gap;
+}
+
+template <class Real>
+void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
+                  Executor* executor, GuardCounts& counts) {
+  measure_lengths(step);
+  regions.in_wave = regions.loose;
+  for (int wave = 0; !regions.in_wave.empty(); ++wave) {
+    stop_point();
+    if (wave == kMostWaves) {
+      anchor_all(pairs, step, regions);
+      return;
+    }
+    ++regions.wave;
+    anchor_wave(wave == 0, pairs, step, regions, executor, counts);
+    std::vector<Index>& next = regions.next;
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    regions.in_wave = next;
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                    \
+  template void anchor_anew(const GuardedPairs<Real>&, const GuardedStep<Real>&, Regions<Real>&); \
+  template void share_all_gaps(const GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&);    \
+  template void admit_pairs(std::size_t, GuardedStep<Real>&, Executor*, GuardedPairs<Real>&,      \
+                            Regions<Real>&);                                                      \
+  template Real find_loose(const std::vector<Index>&, const GuardedStep<Real>&, Regions<Real>&);  \
+  template void measure(const Regions<Real>&, GuardedPair<Real>&);                                \
+  template void anchor_loose(GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&, Executor*,  \
+                             GuardCounts&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,239 @@
+// Finds the pairs that are near enough for a row, and makes these rows.
+
+#include "core/contact/guard/row_making.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/contact/guard/constants.h"
+#include "core/contact/guard/guard_parts.h"
+#include "core/contact/guard/row_turns.h"
+
+namespace weft {
+namespace {
+
+/// Whether the gap that a pair had, less what its particles have moved since, is too much for a
+/// row.
+template <class Real>
+bool is_beyond(const GuardedPair<Real>& pair, const std::vector<Real>& off_anchor, Real most) {
+  const auto [first, second] = largest_on_sides(pair, [&](std::size_t i) { return off_anchor[i]; });
+  return pair.bound - first - second > most;
+}
+
+/// Makes a row. @return whether the pair is near enough for one, and no other pair's to respond
+template <class Real>
+bool make_row(const RowSource<Real>& source, const GuardedPair<Real>& pair,
+              const PairSeparation<Real>& s, GuardRow<Real>& row) {
+  const GuardedCloths<Real>& cloths = source.cloths;
+  if (s.gap > cloths.thickest * Real(kRowReach) || !(s.gap > 0)) return false;
+  if (!s.inside && (pair.kind == PairKind::edge_edge ||
+                    !owns_nearest(cloths, source.x, pair.b, pair.particle, s)))
+    return false;
+  Real approach = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    approach -=
+        s.weight[k] * s.normal.dot(source.state.v[static_cast<std::size_t>(pair.particle[k])]);
+  const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
+  const Real margin = std::max(cloths.thickest * Real(kRowMargin), soon);
+  if (s.gap > cloths.thickest + margin) return false;
+  const Index p = cloth_of(cloths, pair.particle[0]), q = cloth_of(cloths, pair.particle[2]);
+  row.radius = kept_distance(cloths, pair, p, q);
+  if (s.gap > row.radius + margin) return false;
+  row.particle = pair.particle;
+  if (!weigh(source.state.inverse_mass, s, row)) return false;
+  row.friction = (cloths.friction[static_cast<std::size_t>(p)] +
+                  cloths.friction[static_cast<std::size_t>(q)]) /
+                 2;
+  row.key = key_of(pair);
+  row.apart = weighted(row, source.x);
+  return true;
+}
+
+/// Makes the rows of the pairs in the columns.
+template <class Real>
+void make_near_rows(const RowSource<Real>& source, const GuardedPairs<Real>& pairs,
+                    RowPart<Real>& part) {
+  for (PairColumns<Real>& columns : part.columns) {
+    separate_pairs(source.x, source.x, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (columns.gap[k] > source.cloths.thickest * Real(kRowReach)) continue;
+      GuardRow<Real> row;
+      if (make_row(source, pairs[columns.a[k]], columns.separation(k, source.x), row))
+        part.rows[static_cast<std::size_t>(columns.kind)].push_back(row);
+    }
+  }
+}
+
+template <class Real>
+bool has_moved(const RowMaking<Real>& making, const std::array<Index, 4>& particles) {
+  return std::any_of(particles.begin(), particles.end(),
+                     [&](Index i) { return making.is_moved[static_cast<std::size_t>(i)] != 0; });
+}
+
+/// Drops the rows of particles that have moved, and keeps in mind what they pushed.
+template <class Real>
+void drop_moved_rows(RowMaking<Real>& making, RowSet<Real>& rows) {
+  making.old_rows.clear();
+  making.old_keys.clear();
+  keep_rows(rows, [&](const GuardRow<Real>& row) {
+    if (making.made && !has_moved(making, row.particle)) return true;
+    if (row.push > 0 || dot(row.slip, row.slip) > 0) {
+      making.old_keys.push_back({row.key, static_cast<Index>(making.old_rows.size())});
+      making.old_rows.push_back(row);
+    }
+    return false;
+  });
+  std::sort(making.old_keys.begin(), making.old_keys.end());
+}
+
+/// Lists the pairs of the particles that have moved, each once.
+template <class Real>
+void list_moved_pairs(GuardedPairs<Real>& pairs, RowMaking<Real>& making) {
+  ++pairs.listing;
+  for (const Index k : making.moved) {
+    for_pairs_of(pairs, static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+      if (std::exchange(pair.listed, pairs.listing) != pairs.listing)
+        making.candidates.push_back(pairs.number_of(pair));
+    });
+  }
+}
+
+/// Adds the rows that all parts made, in their order; they go on from those before.
+template <class Real>
+void take_over_rows(const QuadArray<Real>& x, std::size_t parts, RowMaking<Real>& making,
+                    RowSet<Real>& rows, Profile& profile) {
+  for (const PairKind kind : {PairKind::vertex_triangle, PairKind::edge_edge}) {
+    for (std::size_t n = 0; n < parts; ++n) {
+      PairColumns<Real>& columns = making.parts[n].columns[kind];
+      profile[Stage::narrow_phase].work += columns.size();
+      columns.clear();
+      std::vector<GuardRow<Real>>& made = making.parts[n].rows[static_cast<std::size_t>(kind)];
+      for (GuardRow<Real>& row : made) {
+        remember(x, making, row);
+        add_row(row, rows);
+      }
+      made.clear();
+    }
+  }
+}
+
+}  // namespace
+
+template <class Real>
+RowMaking<Real> row_making(std::size_t particles) {
+  RowMaking<Real> making;
+  making.x.assign(particles, {});
+  making.is_moved.assign(particles, 0);
+  making.off_anchor.assign(particles, Real(0));
+  making.parts.resize(std::max(kMostParts, RowSlabs<Real>::kLists));
+  return making;
+}
+
+template <class Real>
+void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
+                         const QuadArray<Real>& x, RowMaking<Real>& making) {
+  for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
+    for (const Index k : pair.particle) {
+      const auto i = static_cast<std::size_t>(k);
+      if (!pairs.is_active[i]) making.x[i] = x[i];
+    }
+  });
+}
+
+template <class Real>
+bool find_moved(const std::vector<Index>& active, const QuadArray<Real>& x, Real thickest,
+                RowMaking<Real>& making) {
+  making.moved.clear();
+  if (!making.made) {
+    making.moved = active;
+    making.passed.clear();
+    making.time = 0;
+    making.steps = 0;
+    return true;
+  }
+  if (!is_time_to_look(making)) return false;
+  const bool old = making.time > static_cast<Real>(kLongestRows);
+  if (old) making.time = 0;
+  const Real most = thickest * static_cast<Real>(old ? kRestMotion : kRowMotion);
+  for (const Index k : active) {
+    const auto i = static_cast<std::size_t>(k);
+    const Quad<Real> moved = x[i] - making.x[i];
+    if (!(dot(moved, moved) <= most * most)) making.moved.push_back(k);
+  }
+  making.moved.insert(making.moved.end(), making.passed.begin(), making.passed.end());
+  making.passed.clear();
+  return !making.moved.empty();
+}
+
+template <class Real>
+void renew_rows(const RowSource<Real>& source, const QuadArray<Real>& anchor,
+                GuardedPairs<Real>& pairs, RowMaking<Real>& making, RowSet<Real>& rows,
+                Executor* executor, Profile& profile) {
+  assert(anchor.size() == source.x.size() && making.x.size() == source.x.size());
+  const StageTimer timer(profile, Stage::narrow_phase, 0);
+  for (const Index k : making.moved) making.is_moved[static_cast<std::size_t>(k)] = 1;
+  drop_moved_rows(making, rows);
+  for (const Index k : pairs.active) {
+    const auto i = static_cast<std::size_t>(k);
+    making.off_anchor[i] = length(source.x[i] - anchor[i]);
+  }
+  making.candidates.clear();
+  const bool many = making.moved.size() > pairs.active.size() / kManyMoved;
+  if (!many) list_moved_pairs(pairs, making);
+  const Real most = source.cloths.thickest * Real(kRowReach);
+  const std::size_t count = many ? pairs.all.size() : making.candidates.size();
+  const std::size_t parts = parts_of(count, kPairsAtLeast);
+  run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) {
+      const Index number = many ? static_cast<Index>(k) : making.candidates[k];
+      const GuardedPair<Real>& pair = std::as_const(pairs)[number];
+      if (many && (pair.open || pair.gone || !has_moved(making, pair.particle))) continue;
+      if (is_beyond(pair, making.off_anchor, most)) continue;
+      making.parts[n].columns[pair.kind].add(number, 0, pair.particle);
+    }
+    make_near_rows(source, pairs, making.parts[n]);
+  });
+  for (const Index k : making.moved) {
+    const auto i = static_cast<std::size_t>(k);
+    making.is_moved[i] = 0;
+    making.x[i] = source.x[i];
+  }
+  if (!making.made) pairs.arrived.clear();
+  making.made = true;
+  rows.in_slabs = false;
+  take_over_rows(source.x, parts, making, rows, profile);
+}
+
+template <class Real>
+void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMaking<Real>& making,
+                 RowSet<Real>& rows, Profile& profile) {
+  assert(making.made);
+  const StageTimer timer(profile, Stage::narrow_phase, pairs.arrived.size());
+  for (const GuardedPair<Real>& pair : pairs.arrived) {
+    GuardRow<Real> row;
+    if (has_row(rows, pair)) continue;
+    if (!make_row(source, pair, separate_pair(pair.kind, points_of(pair, source.x)), row)) continue;
+    const auto number = static_cast<Index>(rows.all.size());
+    const std::size_t list = rows.slabs.add(number, pair.particle);
+    remember(source.x, making, row);
+    add_row(row, rows);
+    rows.deals.add(list, number, rows.all);
+  }
+  pairs.arrived.clear();
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                  \
+  template RowMaking<Real> row_making(std::size_t);                                             \
+  template void place_new_particles(const GuardedPairs<Real>&, std::size_t,                     \
+                                    const QuadArray<Real>&, RowMaking<Real>&);                  \
+  template bool find_moved(const std::vector<Index>&, const QuadArray<Real>&, Real,             \
+                           RowMaking<Real>&);                                                   \
+  template void renew_rows(const RowSource<Real>&, const QuadArray<Real>&, GuardedPairs<Real>&, \
+                           RowMaking<Real>&, RowSet<Real>&, Executor*, Profile&);               \
+  template void add_arrived(const RowSource<Real>&, GuardedPairs<Real>&, RowMaking<Real>&,      \
+                            RowSet<Real>&, Profile&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,66 @@
+// Keeps rows with their particles.
+
+#include "core/contact/guard/row_set.h"
+
+#include <cassert>
+#include <utility>
+
+namespace weft {
+
+template <class Real>
+RowSet<Real> row_set(std::size_t particles) {
+  RowSet<Real> rows;
+  rows.first.assign(particles, kNone);
+  rows.has_particle.assign(particles, 0);
+  rows.pressure.assign(particles, Real(0));
+  return rows;
+}
+
+template <class Real>
+void forget_rows(RowSet<Real>& rows) {
+  rows.all.clear();
+  rows.slabs.clear();
+  rows.deals.clear();
+}
+
+template <class Real>
+void list_row(std::size_t r, RowSet<Real>& rows) {
+  assert(r == rows.next.size() && r < rows.all.size());
+  const GuardRow<Real>& row = rows.all[r];
+  Index& last = rows.first[static_cast<std::size_t>(row.particle[0])];
+  rows.next.push_back(std::exchange(last, static_cast<Index>(r)));
+  for (const Index i : row.particle) {
+    if (std::exchange(rows.has_particle[static_cast<std::size_t>(i)], 1)) continue;
+    rows.slabs.add_particle(i);
+    rows.pressure[static_cast<std::size_t>(i)] = 0;
+  }
+}
+
+template <class Real>
+void add_row(const GuardRow<Real>& row, RowSet<Real>& rows) {
+  assert(row.inertia > 0);
+  rows.all.push_back(row);
+  list_row(rows.all.size() - 1, rows);
+}
+
+template <class Real>
+bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair) {
+  const std::uint64_t key = key_of(pair);
+  Index r = rows.first[static_cast<std::size_t>(pair.particle[0])];
+  assert(r == kNone || static_cast<std::size_t>(r) < rows.all.size());
+  while (r != kNone && rows.all[static_cast<std::size_t>(r)].key != key)
+    r = rows.next[static_cast<std::size_t>(r)];
+  return r != kNone;
+}
+
+#define WEFT_INSTANTIATE(Real)                                 \
+  template RowSet<Real> row_set(std::size_t);                  \
+  template void forget_rows(RowSet<Real>&);                    \
+  template void list_row(std::size_t, RowSet<Real>&);          \
+  template void add_row(const GuardRow<Real>&, RowSet<Real>&); \
+  template bool has_row(const RowSet<Real>&, const GuardedPair<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
