@@ -31,7 +31,7 @@ struct GuardRow {
   std::uint64_t key = 0;  ///< of the pair
 };
 
-/// Rows are looked at every so many steps: whose particles have moved, which are busy, and how
+/// Steps between two looks at the rows: which particles have moved, which rows are busy, and how
 /// those that push lie. Between looks none changes but by its responses.
 inline constexpr int kStepsBetweenLooks = 4;
 

@@ -13,7 +13,7 @@
 
 namespace weft {
 
-/// Pairs are separated in vectors of at most so many.
+/// Pairs are separated in vectors of at most this many.
 inline constexpr std::size_t kPairPadding = 8;
 
 /// Many pairs of one kind, and how their sides lie apart: one column a number, with room for whole

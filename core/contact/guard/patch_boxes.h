@@ -11,7 +11,7 @@
 
 namespace weft {
 
-/// A patch has at most so many features of a kind: each is a bit of a number.
+/// A patch has at most this many features of a kind: each is a bit of a number.
 inline constexpr std::size_t kMostPatchFeatures = 32;
 
 /// Boxes of the features of one kind, component by component: lower x y z, upper x y z [m].

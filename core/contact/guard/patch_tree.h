@@ -17,7 +17,7 @@ struct PredictedMotion {
   Real radius = 0;             ///< of the balls [m]
 };
 
-/// A patch of a grid is at most so many cells wide. Wider: fewer boxes, and more features in those
+/// A patch of a grid is at most this many cells wide. Wider: fewer boxes, and more features in those
 /// that touch.
 inline constexpr int kPatchCells = 2;
 

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
-#include "core/contact/constants.h"
 #include "core/contact/guard/constants.h"
+#include "core/contact/smallest_gap.h"
 
 namespace weft {
 namespace {
@@ -138,8 +137,7 @@ Real smallest_gap_at(const QuadArray<Real>& x) {
   for (const Quad<Real>& p : x) all.add(p);
   Real largest = 0;
   for (int k = 0; k < 3; ++k) largest = std::max({largest, -all.lower[k], all.upper[k]});
-  return std::max(static_cast<Real>(kSmallestGap),
-                  largest * std::numeric_limits<Real>::epsilon() * Real(kRoundings));
+  return smallest_gap_for(largest);
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                 \

@@ -213,7 +213,7 @@ HWY_INLINE void warm(const RowLanes<D>& rows, const RowPass<Real>& pass) {
   }
 }
 
-/// What friction changes of the impulses. Who slides drags his anchor along.
+/// What friction changes of the impulses. What slides drags its anchor along.
 /// @param push   impulses along the normals [N s]
 /// @param slide  velocities across them [m/s]
 template <class D, class V = hn::Vec<D>>

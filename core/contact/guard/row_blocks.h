@@ -10,12 +10,12 @@
 
 namespace weft {
 
-/// Rows that push nobody forget what they slipped where their room is more than this part of the
-/// radius.
+/// Rows that push nothing forget what they slipped where their gap exceeds the radius by more than
+/// this fraction of it [1].
 inline constexpr double kBusyRoom = 0.02;
 
 /// Time in which a contact that sticks goes back to its anchor [s], but no faster than this, which
-/// nobody sees [m/s]; and how far that may be, as a part of the radius: what slides drags its
+/// is too slow to see [m/s]; and how far that may be, as a part of the radius: what slides drags its
 /// anchor along, and what did so for a moment, as the load went over to other rows, goes back.
 inline constexpr double kStickTime = 0.02, kFastestReturn = 1e-3, kMostSlip = 0.008;
 
@@ -26,7 +26,7 @@ inline constexpr double kPushSlack = 0.1;
 /// Pressure takes thickness from layers, in proportion: as much as laboratories press fabrics with
 /// (KES), which takes a third to a half of theirs, would take all of it [Pa], but for a part. What
 /// is pressed so is not pushed: the push would stretch it, and lift what presses, with energy that
-/// nobody gave.
+/// came from nowhere.
 inline constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
 
 /// Harder pressed than this, as only between objects, layers let go of so much of what they press
@@ -103,8 +103,8 @@ void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<doubl
                std::span<RowBlock<double>> blocks);
 
 /// Sets the normal velocity that each row must reach, no nearer than its radius within the step,
-/// and starts from its impulses of the last step. Adds to the slip how far it really went. Who
-/// bounces a little, as particles of a resting cloth do, keeps his anchor: it would creep down
+/// and starts from its impulses of the last step. Adds to the slip how far it really went. A
+/// row that bounces a little, as those of a resting cloth do, keeps its anchor: it would creep down
 /// every slope.
 ///
 /// What is pressed very hard keeps less of its impulse. Between objects that do not give way,

@@ -18,7 +18,7 @@ RowBatch batch_of(Index row) {
   return batch;
 }
 
-/// The first batch from `at` on that has room. Shortens the way there for who asks next.
+/// The first batch from `at` on that has room. Shortens the search for later calls.
 /// @param open  of each batch itself or a later one, up to which there is no room
 std::size_t first_open(std::vector<Index>& open, std::size_t at) {
   while (at < open.size() && open[at] != static_cast<Index>(at)) {

@@ -28,7 +28,7 @@ struct ClothPatches {
 /// Groups triangles that are near each other by splitting at the median of the longest side, as
 /// patches of up to eight. Particles go with the first triangle that they belong to, and edges with
 /// their first end.
-/// @param positions  of all particles, to tell who is near; any will do [m]
+/// @param positions  of all particles, by which neighbours are found; any will do [m]
 /// @param edges,triangles  of all cloths; ends and corners are numbers of particles. Those of no
 ///                         triangle get patches of their own.
 template <class Real>

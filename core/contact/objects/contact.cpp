@@ -1,206 +1,267 @@
-// The stages of contact with objects in a substep.
+// Calls detection, solver and certificates of contact with objects in their order.
 
 #include "core/contact/objects/contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/contact/constants.h"
 #include "core/contact/guard/cloth_guard.h"
+#include "core/contact/objects/constants.h"
+#include "core/contact/objects/moving_rows.h"
+#include "core/contact/objects/object_certificate.h"
 
 namespace weft {
-namespace {
-
-/// Sweeps at the end of a tick over the rows of cloths with each other and these in turn.
-constexpr int kClosingSweeps = 4;
-
-bool is_thinner(const ContactDef& a, const ContactDef& b) {
-  return a.thickness < b.thickness;
-}
-
-}  // namespace
 
 template <class Real>
 Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
                        const std::vector<ColliderDef>& colliders, ClothPatches patches,
                        Executor* executor)
-    : cloths_(cloths), executor_(executor), patches_(std::move(patches)) {
-  bounces_ = std::any_of(cloths.begin(), cloths.end(),
-                         [](const ContactDef& cloth) { return cloth.restitution > 0; });
-  thickness_ =
-      static_cast<Real>(std::max_element(cloths.begin(), cloths.end(), is_thinner)->thickness);
-  for (std::size_t k = 0; k < colliders.size(); ++k) {
-    validate(colliders[k], "colliders[" + std::to_string(k) + "].");
-    add_shape(colliders[k].shape, k);
-    frames_.emplace_back();
-    frames_.back().pivot = pivot_of(colliders[k].shape);
-    frames_.back().radius = radius_of(colliders[k].shape);
-    frames_.back().pose = rest_pose(colliders[k].shape);
+    : executor_(executor), shapes_(object_shapes<Real>(colliders)),
+      pairs_(object_pairs<Real>(shapes_.meshes.size(), patches.list.size())) {
+  assert(!cloths.empty());
+  cloths_.defs = cloths;
+  cloths_.patches = std::move(patches);
+  double thickest = 0;
+  for (const ContactDef& cloth : cloths) {
+    thickest = std::max(thickest, cloth.thickness);
+    cloths_.bounces |= cloth.restitution > 0;
   }
-  own_planes_ = planes_;
-  own_balls_ = balls_;
-  own_rods_ = rods_;
-  x_own_.resize(meshes_.size());
-  // Beyond the size of a triangle the pairs grow with the square of the skin.
-  for (const MeshShape<Real>& mesh : meshes_)
-    widest_skin_ = std::min(widest_skin_, mesh.triangle_size);
-  particle_pairs_.resize(meshes_.size());
-  edge_pairs_.resize(meshes_.size());
-  triangle_pairs_.resize(meshes_.size());
-  neighbourhoods_.assign(meshes_.size(), std::vector<Neighbourhood>(patches_.list.size()));
-}
-
-template <class Real>
-void Contact<Real>::add_shape(const ShapeDef& shape, std::size_t collider) {
-  if (const auto* plane = std::get_if<PlaneDef>(&shape)) {
-    const Vec3d n = plane->normal.normalized();
-    planes_.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point)), collider});
-  } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
-    balls_.push_back({sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius), collider});
-  } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
-    rods_.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
-                     static_cast<Real>(capsule->radius), collider});
-  } else {
-    const auto* box = std::get_if<BoxDef>(&shape);
-    meshes_.push_back(prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh));
-    mesh_collider_.push_back(collider);
-  }
-}
-
-template <class Real>
-Index Contact<Real>::cloth_of(Index particle) const {
-  std::size_t cloth = cloths_.size() - 1;
-  while (cloth > 0 && particle < cloths_[cloth].first_particle) --cloth;
-  return static_cast<Index>(cloth);
+  cloths_.thickness = static_cast<Real>(thickest);
 }
 
 template <class Real>
 void Contact<Real>::reset() {
-  collected_ = rows_built_ = false;
-  clearance_.clear();
-  rows_.clear();
+  clearance_.collected = reach_.made = resolved_ = false;
+  clearance_.distance.clear();
+  rows_.all.clear();
+  rows_.moving.clear();
+  rows_.exits.clear();
   log_.clear();
-  moving_rows_.clear();
-  exits_.clear();
-  v_came_.clear();
-  v_kicked_.clear();
-  impacts_.clear();
-  for (ColliderFrame<Real>& frame : frames_) frame.wary = frame.rest = 0;
-  // What they have room for decides how long pairs hold, and with it the coming ticks.
-  for (std::vector<Neighbourhood>& of_mesh : neighbourhoods_) {
-    for (Neighbourhood& about : of_mesh) about.box = {};
-  }
+  bounces_.v_came.clear();
+  bounces_.v_kicked.clear();
+  bounces_.impacts.clear();
+  for (ColliderFrame<Real>& frame : shapes_.frames) frame.wary = frame.rest = 0;
+  forget_neighbourhoods(pairs_);
 }
 
 template <class Real>
 void Contact<Real>::let_rest(const ClothState<Real>& state) {
-  collected_ = rows_built_ = false;
-  resting_.clear();
+  clearance_.collected = reach_.made = false;
+  clearance_.resting.clear();
   if (state.asleep.empty()) return;
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    resting_.push_back(state.asleep[static_cast<std::size_t>(cloth_of(static_cast<Index>(i)))]);
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Index cloth = cloth_of(cloths_, static_cast<Index>(i));
+    clearance_.resting.push_back(state.asleep[static_cast<std::size_t>(cloth)]);
+  }
 }
 
 template <class Real>
 void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
-  tick_seconds_ = static_cast<Real>(tick_seconds);
-  colliders_ = colliders;
-  work_ = 0;
+  resolved_ = false;
   log_.clear();
-  any_tracked_ = any_jaw_ = false;
-  first_substep_ = true;
-  surface_speed_ = 0;
-  if (!colliders) {
-    for (ColliderFrame<Real>& frame : frames_) frame.tracked = false;
-    return;
-  }
-  for (std::size_t k = 0; k < frames_.size(); ++k) {
-    ColliderFrame<Real>& frame = frames_[k];
-    const ColliderState& state = (*colliders)[k];
-    const bool tracked = state.is_active();
-    if (tracked && !frame.tracked) rows_built_ = false;  // the old ones do not follow it
-    frame.tracked = tracked;
-    any_tracked_ = any_tracked_ || tracked;
-    any_jaw_ = any_jaw_ || !state.press.isZero(0);
-    (*colliders)[k].facing = 0;
-    // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
-    if (state.squeeze > 0) rows_built_ = false;
-    const double turn = state.twist.angular.norm();
-    const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
-    surface_speed_ = std::max(surface_speed_, static_cast<Real>(speed));
-  }
+  if (begin_motion(tick_seconds, colliders, shapes_, motion_)) reach_.made = false;
 }
+
+template <class Real>
+void Contact<Real>::place(const ColliderStates& colliders) {
+  assert(colliders.size() == shapes_.frames.size());
+  for (std::size_t k = 0; k < colliders.size(); ++k) place_collider(k, colliders[k].pose, shapes_);
+}
+
+template <class Real>
+void Contact<Real>::note_motion(const ClothState<Real>& state) {
+  if (cloths_.bounces) bounces_.v_came = state.v;
+}
+
+template <class Real>
+void Contact<Real>::note_kicked(const ClothState<Real>& state) {
+  if (cloths_.bounces) bounces_.v_kicked = state.v;
+}
+
+// ---- detect ----
+
+template <class Real>
+void Contact<Real>::collect(const ClothState<Real>& state, Real dt, Profile& profile) {
+  const StageTimer timer(profile, Stage::broad_phase, 0);
+  measure_clearance(cloths_, shapes_, motion_, state, dt, executor_, clearance_, profile);
+  mark_near(cloths_, clearance_, near_);
+  take_to_own(shapes_, state.x, near_);
+  collect_pairs(cloths_, shapes_, near_, state.x, executor_, clearance_, pairs_, profile);
+  mark_paired(cloths_, shapes_, clearance_, pairs_, near_);
+  clearance_.x = state.x;
+  for (ColliderFrame<Real>& frame : shapes_.frames) frame.travel_since_pairs = 0;
+  motion_.since_pairs = 0;
+  clearance_.collected = true;
+}
+
+/// Gives particles that are in no list, and that go farther than they may, a new clearance.
+/// @return whether all stay within their reach then, so that every list stays valid
+template <class Real>
+bool Contact<Real>::renew_clear(const ClothState<Real>& state, Real dt, Profile& profile) {
+  if (!clearance_.collected || !reach_.made || !is_still(motion_, rows_)) return false;
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    if (reach_.travel2[i] <= reach_.reach[i] * reach_.reach[i]) continue;
+    if (near_.active[i] ||
+        !renew_clearance(cloths_, shapes_, state, i, dt, clearance_, reach_.reach))
+      return false;
+    reach_.x[i] = state.x[i];
+    ++profile[Stage::broad_phase].work;
+  }
+  return measure_travel(state, dt, executor_, reach_);
+}
+
+/// Makes the rows anew from the candidates, which are collected again first if they do not hold.
+template <class Real>
+void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile& profile) {
+  const std::size_t n = state.x.size();
+  reach_.reach.resize(n);
+  reach_.travel2.resize(n);
+  scratch_.moved.resize(n);
+  const auto allow = [&] {
+    return allow_rows(cloths_, shapes_, motion_, state, dt, clearance_, near_, scratch_.moved,
+                      reach_.reach);
+  };
+  if (!clearance_.collected || !allow()) {
+    collect(state, dt, profile);
+    allow();
+  }
+  const StageTimer timer(profile, Stage::narrow_phase, 0);
+  reach_.x = state.x;
+  for (ColliderFrame<Real>& frame : shapes_.frames) frame.travel_since_rows = 0;
+  motion_.since_rows = motion_.coming;
+  take_to_own(shapes_, state.x, near_);
+  log_.before_rebuild(rows_.all);
+  rows_.all.clear();
+  rows_.moving.clear();
+  scratch_.gap.resize(n);
+  for (std::size_t i = 0; i < n; ++i) scratch_.gap[i] = cloths_.thickness + reach_.reach[i];
+  const ObjectRowSource<Real> source{cloths_, shapes_, state,        clearance_,
+                                     near_,   pairs_,  reach_.reach, motion_.any_tracked};
+  add_particle_rows(source, scratch_, rows_, profile);
+  add_features_on_rounds(source, scratch_, rows_, profile);
+  add_features_on_meshes(source, scratch_, rows_, profile);
+  finish_rows(cloths_, n, rows_);
+  reach_.made = true;
+}
+
+template <class Real>
+Real Contact<Real>::calm_room(const ClothState<Real>& state) const {
+  const bool known = clearance_.collected && reach_.made;
+  if (!known || !rows_.all.empty() || !rows_.exits.empty() || !is_still(motion_, rows_)) return 0;
+  Real room = std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    room = std::min(room, reach_.reach[i] - (state.x[i] - reach_.x[i]).norm());
+  return std::max(room, Real(0));
+}
+
+// ---- solve and certify ----
 
 template <class Real>
 void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
                             ClothGuard<Real>* guard) {
-  if (empty()) return;
-  plan_colliders(dt);
-  bool holds;
+  if (shapes_.empty()) return;
+  assert((!resolved_ || !motion_.any_tracked) && "move_objects follows resolve");
+  resolved_ = true;
+  plan_objects(dt, shapes_, motion_);
+  bool hold = clearance_.collected && reach_.made;
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    holds = rows_hold(state, dt) || renew_clear(state, dt, profile);
+    hold = (hold && rows_hold(state, dt, motion_, rows_, executor_, reach_)) ||
+           renew_clear(state, dt, profile);
   }
-  if (!holds) {
+  if (!hold) {
     rebuild_rows(state, dt, profile);
-    measure_way(state, dt);
+    measure_travel(state, dt, executor_, reach_);
   }
-  if (!rows_.empty()) {
-    profile[Stage::contact].work += rows_.size();
-    if (log_.wanted()) log_.see(rows_, state);
-    find_busy_rows();
-    push_out(state, dt);
-    aim_rows(state, dt);
+  if (!rows_.all.empty()) {
+    ObjectSolve<Real> solve = solving(state);
+    profile[Stage::contact].work += rows_.all.size();
+    if (log_.wanted()) log_.see(rows_.all, state);
+    find_busy_rows(rows_, motion_, reach_.travel2, log_, response_);
+    push_out(clearance_.smallest_gap, dt, executor_, rows_, reach_, response_, state);
+    aim_rows(solve, shapes_, dt);
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
-    if (any_jaw_) share_squeeze(state, first_substep_ ? dt / 2 : dt);
-    solve_rows(state, dt, profile, guard);
-    bounce(state, profile, guard);
+    if (motion_.any_jaw) share_squeeze(solve, motion_.first_substep ? dt / 2 : dt);
+    solve_rows(solve, dt, guard);
+    bounce(solve, guard);
+    profile[Stage::friction].work += solve.friction_evaluations;
     if (guard) guard->push_apart(state);
-    certify(state, dt, guard != nullptr);
+    certify_drift(state, dt, guard != nullptr);
   } else if (guard) {
     guard->respond_alone(state, dt);
-    certify(state, dt, true);
+    certify_drift(state, dt, true);
   }
-  first_substep_ = false;
-  if (!any_tracked_ || !guard) return;
-  x_certified_ = state.x;
-  v_certified_ = state.v;
+  motion_.first_substep = false;
+  if (!motion_.any_tracked || !guard) return;
+  stops_.x = state.x;
+  stops_.v = state.v;
+}
+
+template <class Real>
+void Contact<Real>::certify_drift(ClothState<Real>& state, Real dt, bool others) {
+  ObjectCertificate<Real> certificate{
+      shapes_, motion_, rows_, reach_, response_, log_, executor_, state, clearance_.smallest_gap,
+      dt};
+  certify(certificate, others);
+}
+
+template <class Real>
+bool Contact<Real>::move_objects(ClothState<Real>& state, Real dt, bool truncated) {
+  assert((resolved_ || shapes_.empty()) && "resolve comes first");
+  resolved_ = false;
+  if (!motion_.any_tracked) return true;
+  bool moved = true;
+  if (truncated && !rows_.moving.empty()) {
+    StoppedStep<Real> step{
+        shapes_, motion_, rows_, response_.x_unpushed, state, clearance_.smallest_gap, dt};
+    moved = stand_before_stopped(step, stops_);
+  }
+  advance_objects(dt, shapes_, motion_);
+  turn_with_objects(shapes_, log_, rows_);
+  return moved;
 }
 
 template <class Real>
 void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
                            ClothGuard<Real>* guard) {
-  if (rows_.empty()) {
+  assert(!resolved_ || !motion_.any_tracked);
+  if (rows_.all.empty()) {
     if (guard) guard->sweep(state);
     return;
   }
-  profile[Stage::contact].work += rows_.size();
-  if (log_.wanted()) log_.see(rows_, state);
-  measure_way(state, dt);
-  find_busy_rows();
-  if (lone_apart_) lone_response_ = lone_rows_.respond(lone_pass(state, dt));
-  aim_rows(state, dt);
-  if (any_jaw_) share_squeeze(state, dt / 2);
-  solve_rows(state, dt, profile, guard);
-  bounce(state, profile, guard);
-  if (!guard || guard->rows().empty()) return;
-  std::uint64_t friction_evaluations = 0;
-  for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {
-    const bool changed = guard->sweep(state) > 0;
-    sweep_rows(state, friction_evaluations, !changed);
+  ObjectSolve<Real> solve = solving(state);
+  profile[Stage::contact].work += rows_.all.size();
+  if (log_.wanted()) log_.see(rows_.all, state);
+  measure_travel(state, dt, executor_, reach_);
+  find_busy_rows(rows_, motion_, reach_.travel2, log_, response_);
+  if (response_.lone_apart) response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt));
+  aim_rows(solve, shapes_, dt);
+  if (motion_.any_jaw) share_squeeze(solve, dt / 2);
+  solve_rows(solve, dt, guard);
+  bounce(solve, guard);
+  if (guard && !guard->rows().empty()) {
+    for (int sweep = 0; sweep < kClosingSweeps; ++sweep) {
+      const bool changed = guard->sweep(state) > 0;
+      sweep_rows(solve, !changed);
+    }
   }
-  profile[Stage::friction].work += friction_evaluations;
+  profile[Stage::friction].work += solve.friction_evaluations;
 }
+
+// ---- read-outs ----
 
 template <class Real>
 std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) {
-  return log_.contacts(rows_, x, kTouching, static_cast<double>(tick_seconds_));
+  return log_.contacts(rows_.all, x, kTouching, static_cast<double>(motion_.tick_seconds));
 }
 
 template <class Real>
 bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
-  return std::any_of(rows_.begin(), rows_.end(), [&x](const ContactRow<Real>& row) {
+  return std::any_of(rows_.all.begin(), rows_.all.end(), [&x](const ContactRow<Real>& row) {
     if (!row.responds) return false;
     Real height = -row.offset;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
@@ -209,19 +270,13 @@ bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
   });
 }
 
-/// Signed distance of a point from the nearest object; of meshes, only closed ones have an inside.
 template <class Real>
-Real Contact<Real>::signed_distance(const Vec3<Real>& p) const {
-  constexpr Real kFar = Real(1000);
-  Real nearest = analytic_clearance(p, kFar);
-  for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    const MeshShape<Real>& mesh = meshes_[m];
-    if (!mesh.closed) continue;
-    const Vec3<Real> own = frames_[mesh_collider_[m]].own(p);
-    const Real outside = std::sqrt(mesh.triangle_tree.bounds().squared_distance(own));
-    nearest = std::min(nearest, outside > 0 ? outside : distance_to_mesh(mesh, own, kFar).distance);
-  }
-  return nearest;
+Real Contact<Real>::gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const {
+  Vec3<Real> p = Vec3<Real>::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
+    p += x[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
+  const Real distance = distance_from(shapes_, static_cast<std::size_t>(row.collider), p);
+  return distance < Real(kFarAway) ? distance : row.normal.dot(p) - row.offset;
 }
 
 template <class Real>
@@ -229,25 +284,26 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
   Real least = 0;
   std::vector<Real> distance;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    // Nobody in the ball about a neighbour that reaches to the nearest surface needs measuring.
+    // No particle in the ball about a neighbour that reaches to the nearest surface needs
+    // measuring.
     Real known = 0, edge = 0;
-    for (const auto& neighbour : patches_.neighbours.of(i)) {
+    for (const auto& neighbour : cloths_.patches.neighbours.of(i)) {
       const auto j = static_cast<std::size_t>(neighbour.particle);
       if (j >= i) continue;
       edge = std::max(edge, (x[i] - x[j]).norm());
       known = std::max(known, distance[j] - (x[i] - x[j]).norm());
     }
-    distance.push_back(known > edge * 2 ? known : signed_distance(x[i]));
+    distance.push_back(known > edge * 2 ? known : signed_distance(shapes_, x[i]));
     least = std::min(least, distance.back());
   }
-  for (const Edge& edge : patches_.edges) {
+  for (const Edge& edge : cloths_.patches.edges) {
     const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
-    const Vec3<Real> way = x[j] - x[i];
-    const Real length = way.norm();
+    const Vec3<Real> along = x[j] - x[i];
+    const Real length = along.norm();
     for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) {
       // The ball about an end that reaches to the nearest surface holds no point of an object.
       if (length * t < distance[i] || length * (1 - t) < distance[j]) continue;
-      least = std::min(least, signed_distance(x[i] + way * t));
+      least = std::min(least, signed_distance<Real>(shapes_, x[i] + along * t));
     }
   }
   return static_cast<double>(-least);

@@ -18,7 +18,7 @@ namespace weft {
 struct ContactPoint {
   Index collider = kNone;  ///< the object; kNone: the other side is cloth too
   int count = 0;           ///< particles in it: 1 to 3 with an object, 4 of cloths
-  int first_side = 0;      ///< so many of them belong to the side that the normal points to
+  int first_side = 0;      ///< how many belong to the side that the normal points to
   std::array<Index, 4> particle = {0, 0, 0, 0};
   std::array<double, 4> weight = {0, 0, 0, 0};  ///< negative on the other side of cloths
   Vec3d point = Vec3d::Zero();                  ///< of the first side's mid-surface [m]
@@ -30,7 +30,7 @@ struct ContactPoint {
   Vec3d force() const { return normal * normal_force + friction; }
 };
 
-/// Impulses of contacts with objects over a tick, for those who want to know; else it stays empty.
+/// Impulses of contacts with objects over a tick, if they are wanted; else it stays empty.
 ///
 /// A substep pushes the same rows again and again, hundreds of times in a tick of a gripper. So
 /// impulses are added up per row, and these sums per contact as often as rows change: a tick costs

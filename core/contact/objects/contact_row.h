@@ -28,8 +28,8 @@ struct ContactCandidate {
 };
 
 /// One contact of up to three particles with a fixed plane: gap = sum w n.x - offset. The plane
-/// separates the cloth's feature from the (convex) feature of the object, so whoever stays on its
-/// side has not crossed.
+/// separates the cloth's feature from the (convex) feature of the object, so a particle that
+/// stays on its side has not crossed.
 template <class Real>
 struct ContactRow {
   std::array<Index, 3> particle = {0, 0, 0};
@@ -55,7 +55,7 @@ template <class Real>
 struct RowRoom {
   std::array<Index, 3> particle;
   Real touch2;  ///< squared, until it responds [m^2]
-  Real cross2;  ///< squared, until somebody could cross its plane [m^2]
+  Real cross2;  ///< squared, until one could cross its plane [m^2]
 };
 
 /// Squared way of the particle of a row that goes farthest [m^2].
@@ -97,7 +97,7 @@ struct BadStart {
   std::size_t collider = 0;
   Index cloth = 0;
   Vec3<Real> direction = Vec3<Real>::UnitY();  ///< in which it leaves, unit
-  std::size_t particles = 0;                   ///< so many are still inside
+  std::size_t particles = 0;                   ///< how many are still inside
 };
 
 }  // namespace weft

@@ -58,7 +58,7 @@ HWY_INLINE Triple<V> velocity_change(const Triple<V>& n, const Triple<V>& v, V v
   return select(rubs, change - stopped, change);
 }
 
-/// Sets the normal velocity that each row must reach, and moves out what lacks thickness; who is
+/// Sets the normal velocity that each row must reach, and moves out what lacks thickness; what is
 /// pushed still lacks some then, and has no room.
 /// @return which are pushed
 template <bool Pushes, class D, class Real = hn::TFromD<D>>

@@ -21,7 +21,7 @@ struct LonePass {
   Real* x = nullptr;            ///< [m]
   Real* v = nullptr;            ///< [m/s]
   Real dt = 0;                  ///< of the substep [s]
-  Real slack = 0;               ///< a gap so much wider than the thickness still touches [m]
+  Real slack = 0;               ///< a gap wider than the thickness by this still touches [m]
   Real push_part = 0;           ///< part of a lack that is pushed out in a step
   Real push_most = 0;           ///< but no farther than this [m]
   const Real* from = nullptr;   ///< where ways begin [m]
@@ -31,8 +31,8 @@ struct LonePass {
 
 inline constexpr std::size_t kLoneLanes = 8;
 
-/// The rows of as many particles that follow each other. Who of them is not in a lone row has room
-/// for any way, so that nothing is done to it.
+/// The rows of as many particles that follow each other. A particle without a lone row may go any
+/// distance, so that nothing is done to it.
 template <class Real>
 struct alignas(64) LoneBlock {
   Real normal[3][kLoneLanes];
@@ -47,7 +47,7 @@ struct alignas(64) LoneBlock {
 template <class Real>
 struct LoneResponse {
   Real largest = 0;                        ///< change of a normal velocity [m/s]
-  bool within = true;                      ///< who was moved or pushed ends within his reach
+  bool within = true;                      ///< what was moved or pushed ends within its reach
   std::uint64_t friction_evaluations = 0;  ///< times friction was worked out
 };
 
@@ -70,7 +70,7 @@ class LoneRows {
   const std::vector<LoneBlock<Real>>& blocks() const { return blocks_; }
 
   /// Works out the normal velocity that each row must reach, which is no farther down than the
-  /// thickness within the step, lets each respond once (see Contact::sweep_rows), and measures the
+  /// thickness within the step, lets each respond once (see sweep_rows), and measures the
   /// ways of those anew that have. Rows that are farther from touching than their particles go do
   /// nothing.
   LoneResponse<Real> respond(const LonePass<Real>& pass);

@@ -1,0 +1,43 @@
+// Books the reactions of moving objects, and turns the planes that go with them.
+
+#include "core/contact/objects/moving_rows.h"
+
+#include <cassert>
+
+namespace weft {
+
+template <class Real>
+void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& change,
+                   ObjectMotion<Real>& motion) {
+  assert(motion.colliders && row.mobility > 0);
+  ColliderState& state = (*motion.colliders)[row.collider];
+  const Vec3d impulse = (change / row.mobility).template cast<double>();
+  state.impulse += impulse;
+  state.angular_impulse += (point.template cast<double>() - state.pose.position).cross(impulse);
+  motion.work += impulse.dot(row.surface.template cast<double>());
+}
+
+template <class Real>
+void turn_with_objects(const ObjectShapes<Real>& shapes, ContactLog& log, ObjectRows<Real>& rows) {
+  for (const MovingRow<Real>& moving : rows.moving) {
+    const ColliderFrame<Real>& frame = shapes.frames[moving.collider];
+    if (!frame.moves) continue;
+    const Vec3d normal = frame.pose.rotation * moving.own_normal;
+    const Vec3d shift = frame.pose.position - frame.pose.rotation * frame.pivot;
+    ContactRow<Real>& row = rows.all[moving.row];
+    const Vec3<Real> turned = normal.template cast<Real>();
+    if (log.wanted() && turned != row.normal) log.before_turn(rows.all, moving.row);
+    row.normal = turned;
+    row.offset = static_cast<Real>(moving.own_offset + normal.dot(shift));
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template void take_reaction(const MovingRow<Real>&, const Vec3<Real>&, const Vec3<Real>&, \
+                              ObjectMotion<Real>&);                                         \
+  template void turn_with_objects(const ObjectShapes<Real>&, ContactLog&, ObjectRows<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

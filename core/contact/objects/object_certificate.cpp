@@ -1,0 +1,164 @@
+// Certifies a drift where no object moves.
+
+#include "core/contact/objects/object_certificate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/contact/objects/constants.h"
+#include "core/contact/objects/moving_rows.h"
+#include "core/contact/travel.h"
+
+namespace weft {
+namespace {
+
+/// Measures the displacements of those particles alone that the rows have moved or pushed since all
+/// were measured; those of lone rows have been as they responded.
+/// @return whether these stay within their reach
+template <class Real>
+bool measure_pushed_travel(ObjectCertificate<Real>& c) {
+  RowReach<Real>& reach = c.reach;
+  bool within = c.response.lone.within;
+  for (const std::size_t r : c.response.pushed) {
+    const ContactRow<Real>& row = c.rows.all[r];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      const auto i = static_cast<std::size_t>(row.particle[k]);
+      const Vec3<Real> moved = c.state.x[i] - reach.x[i];
+      const Real end2 = (moved + c.state.v[i] * c.dt).squaredNorm();
+      reach.travel2[i] = std::max(moved.squaredNorm(), end2);
+      within &= end2 <= reach.reach[i] * reach.reach[i];
+    }
+  }
+  return within;
+}
+
+/// Holds particles that would go beyond the reach within which the planes are all that matters. Not
+/// moving is always allowed.
+template <class Real>
+void hold_within_reach(ObjectCertificate<Real>& c) {
+  for (std::size_t i = 0; i < c.state.x.size(); ++i) {
+    const Vec3<Real> end = c.state.x[i] + c.state.v[i] * c.dt;
+    const Real reach = c.reach.reach[i] - c.motion.since_rows;
+    if (!((end - c.reach.x[i]).squaredNorm() <= reach * std::abs(reach))) c.state.v[i].setZero();
+  }
+}
+
+/// Keeps particles off the planes that they could cross. @return whether any had to be kept
+template <class Real>
+bool keep_off_near_rows(ObjectCertificate<Real>& c, bool still) {
+  const std::vector<Real>& travel2 = c.reach.travel2;
+  bool kept = false;
+  for_joint_rows(c.rows, c.response, [&](std::size_t r) {
+    const RowRoom<Real>& room = c.rows.rooms[r];
+    if (!still || !(farthest2(room, travel2) < room.cross2))
+      kept |= keep_off(c, c.rows.all[r], false);
+  });
+  if (c.response.lone_apart) {
+    c.rows.lone.for_each_crossing(
+        travel2.data(), [&](std::size_t r) { kept |= keep_off(c, c.rows.all[r], false); });
+  }
+  return kept;
+}
+
+}  // namespace
+
+template <class Real>
+bool measure_travel(const ClothState<Real>& state, Real dt, Executor* executor,
+                    RowReach<Real>& reach) {
+  assert(reach.x.size() == state.x.size() && reach.travel2.size() == state.x.size());
+  TravelPass<Real> pass;
+  pass.particles = state.x.size();
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.from = reach.x.data()->data();
+  pass.reach = reach.reach.data();
+  pass.travel2 = reach.travel2.data();
+  return measure_travel(pass, executor);
+}
+
+template <class Real>
+bool rows_hold(const ClothState<Real>& state, Real dt, const ObjectMotion<Real>& motion,
+               const ObjectRows<Real>& rows, Executor* executor, RowReach<Real>& reach) {
+  if (is_still(motion, rows)) return measure_travel(state, dt, executor, reach);
+  const Real less = motion.since_rows + motion.coming;  // what objects have taken, and will
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec3<Real> next = state.x[i] + state.v[i] * dt;
+    const Real left = reach.reach[i] - less;
+    const Real moved2 =
+        std::max((next - reach.x[i]).squaredNorm(), (state.x[i] - reach.x[i]).squaredNorm());
+    if (!(moved2 <= left * std::abs(left))) return false;
+  }
+  return true;
+}
+
+template <class Real>
+void log_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t k,
+              const Vec3<Real>& before) {
+  ContactRow<Real> single = row;
+  single.particle = {row.particle[k], 0, 0};
+  single.weight = {Real(1), 0, 0};
+  single.count = 1;
+  const Vec3<Real> change = c.state.v[static_cast<std::size_t>(row.particle[k])] - before;
+  c.log.add_apart(single, change, c.state);
+}
+
+template <class Real>
+bool keep_off(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool hold) {
+  ClothState<Real>& state = c.state;
+  bool kept = false;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    const auto i = static_cast<std::size_t>(row.particle[k]);
+    const Real now = row.normal.dot(state.x[i]) - row.offset;
+    const Real end = row.normal.dot(state.x[i] + state.v[i] * c.dt) - row.offset;
+    const Real least = least_end(row, now, c.smallest_gap);
+    if (end >= least || state.inverse_mass[i] == 0 || state.v[i].isZero(0)) continue;
+    kept = true;
+    const Vec3<Real> before = state.v[i];
+    if (hold)
+      state.v[i].setZero();
+    else
+      state.v[i] += row.normal * ((least - end) / c.dt * Real(kLiftSlack));
+    if (c.log.wanted()) log_stop(c, row, k, before);
+  }
+  return kept;
+}
+
+template <class Real>
+void certify(ObjectCertificate<Real>& c, bool others) {
+  assert(c.dt > 0 && c.rows.rooms.size() == c.rows.all.size());
+  if (!c.rows.moving.empty()) return certify_with_movers(c);
+  const bool still = is_still(c.motion, c.rows);
+  const auto is_within_reach = [&] {
+    return others ? measure_travel(c.state, c.dt, c.executor, c.reach) : measure_pushed_travel(c);
+  };
+  if (!still || !is_within_reach()) {
+    hold_within_reach(c);
+    measure_travel(c.state, c.dt, c.executor, c.reach);
+  }
+  bool kept = keep_off_near_rows(c, still);
+  if (!kept) return;
+  for (int round = 1; round < kCertifyRounds && kept; ++round) {
+    kept = false;
+    for (const ContactRow<Real>& row : c.rows.all) kept |= keep_off(c, row, false);
+  }
+  if (kept) {
+    for (const ContactRow<Real>& row : c.rows.all) keep_off(c, row, true);
+  }
+  hold_within_reach(c);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                             \
+  template bool measure_travel(const ClothState<Real>&, Real, Executor*, RowReach<Real>&); \
+  template bool rows_hold(const ClothState<Real>&, Real, const ObjectMotion<Real>&,        \
+                          const ObjectRows<Real>&, Executor*, RowReach<Real>&);            \
+  template void log_stop(ObjectCertificate<Real>&, const ContactRow<Real>&, std::size_t,   \
+                         const Vec3<Real>&);                                               \
+  template bool keep_off(ObjectCertificate<Real>&, const ContactRow<Real>&, bool);         \
+  template void certify(ObjectCertificate<Real>&, bool);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

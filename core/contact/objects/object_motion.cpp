@@ -1,0 +1,128 @@
+// Plans and executes the motion of objects, substep by substep.
+
+#include "core/contact/objects/object_motion.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/contact/objects/constants.h"
+
+namespace weft {
+namespace {
+
+/// Objects that have been resisted by more than their force stand in the coming substep, and both
+/// jaws if one does.
+template <class Real>
+void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& shapes) {
+  for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
+    ColliderFrame<Real>& frame = shapes.frames[k];
+    if (!frame.tracked || !count_resistance(dt, colliders[k])) continue;
+    frame.rest = std::max(frame.rest, 1);
+    if (colliders[k].mate == kNone) continue;
+    ColliderFrame<Real>& mate = shapes.frames[static_cast<std::size_t>(colliders[k].mate)];
+    mate.rest = std::max(mate.rest, 1);
+  }
+}
+
+}  // namespace
+
+template <class Real>
+bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<Real>& shapes,
+                  ObjectMotion<Real>& motion) {
+  assert(tick_seconds > 0);
+  motion.tick_seconds = static_cast<Real>(tick_seconds);
+  motion.colliders = colliders;
+  motion.work = 0;
+  motion.any_tracked = motion.any_jaw = false;
+  motion.first_substep = true;
+  motion.surface_speed = 0;
+  if (!colliders) {
+    for (ColliderFrame<Real>& frame : shapes.frames) frame.tracked = false;
+    return false;
+  }
+  assert(colliders->size() == shapes.frames.size());
+  bool rows_go = false;
+  for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
+    ColliderFrame<Real>& frame = shapes.frames[k];
+    ColliderState& state = (*colliders)[k];
+    const bool tracked = state.is_active();
+    rows_go |= tracked && !frame.tracked;  // the old ones do not follow it
+    frame.tracked = tracked;
+    motion.any_tracked = motion.any_tracked || tracked;
+    motion.any_jaw = motion.any_jaw || !state.press.isZero(0);
+    state.facing = 0;
+    // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
+    rows_go |= state.squeeze > 0;
+    const double turn = state.twist.angular.norm();
+    const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
+    motion.surface_speed = std::max(motion.surface_speed, static_cast<Real>(speed));
+  }
+  return rows_go;
+}
+
+template <class Real>
+void plan_objects(Real dt, ObjectShapes<Real>& shapes, ObjectMotion<Real>& motion) {
+  assert(dt > 0);
+  motion.coming = motion.since_rows = motion.since_pairs = 0;
+  if (!motion.colliders) return;
+  ColliderStates& colliders = *motion.colliders;
+  stop_overloaded(static_cast<double>(dt), colliders, shapes);
+  for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
+    ColliderFrame<Real>& frame = shapes.frames[k];
+    frame.wary = std::max(0, frame.wary - 1);
+    frame.blocked = frame.tracked && frame.rest > 0 && !colliders[k].forced;
+    if (frame.tracked && !frame.blocked)
+      frame.plan(colliders[k], static_cast<double>(dt), static_cast<double>(motion.tick_seconds));
+    else
+      frame.stand();
+    if (frame.blocked) colliders[k].blocked = true;
+    frame.rest = frame.blocked ? frame.rest - 1 : 0;
+    motion.coming = std::max(motion.coming, frame.travel);
+    motion.since_rows = std::max(motion.since_rows, frame.travel_since_rows + frame.travel);
+    motion.since_pairs = std::max(motion.since_pairs, frame.travel_since_pairs);
+  }
+}
+
+template <class Real>
+void advance_objects(Real dt, ObjectShapes<Real>& shapes, ObjectMotion<Real>& motion) {
+  assert(motion.colliders);
+  for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
+    ColliderFrame<Real>& frame = shapes.frames[k];
+    ColliderState& state = (*motion.colliders)[k];
+    if (!frame.tracked || frame.blocked) continue;
+    advance_collider(static_cast<double>(dt), static_cast<double>(motion.tick_seconds), state);
+    place_collider(k, state.pose, shapes);
+    frame.travel_since_pairs += frame.travel;
+    frame.travel_since_rows += frame.travel;
+  }
+}
+
+template <class Real>
+void block_object(std::size_t collider, ObjectShapes<Real>& shapes, ObjectMotion<Real>& motion) {
+  assert(motion.colliders && collider < shapes.frames.size());
+  const auto stop = [&](std::size_t k) {
+    ColliderFrame<Real>& frame = shapes.frames[k];
+    frame.stand();
+    frame.blocked = true;
+    frame.rest = kRest;
+    frame.wary = kWary;
+    (*motion.colliders)[k].blocked = true;
+  };
+  stop(collider);
+  const Index mate = (*motion.colliders)[collider].mate;
+  if (mate != kNone) stop(static_cast<std::size_t>(mate));
+  motion.since_rows = 0;
+  for (const ColliderFrame<Real>& frame : shapes.frames)
+    motion.since_rows = std::max(motion.since_rows, frame.travel_since_rows + frame.travel);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template bool begin_motion(double, ColliderStates*, ObjectShapes<Real>&, ObjectMotion<Real>&); \
+  template void plan_objects(Real, ObjectShapes<Real>&, ObjectMotion<Real>&);                    \
+  template void advance_objects(Real, ObjectShapes<Real>&, ObjectMotion<Real>&);                 \
+  template void block_object(std::size_t, ObjectShapes<Real>&, ObjectMotion<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,288 @@
+// Patches of cloth look up a mesh's triangles once for all their features; vector code then
+// measures every feature against everything found.
+
+#include "core/contact/objects/object_pairs.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/objects/constants.h"
+#include "core/contact/objects/feature_distance.h"
+#include "core/stop_signal.h"
+
+namespace weft {
+namespace {
+
+template <class Real>
+using Measure = void (*)(const FeatureTable<Real>&);
+
+/// Calls visit(n, distance) for each of the `others` of row f that are within reach.
+template <class Real, class Visit>
+void for_each_near(const FeatureTable<Real>& table, std::size_t f, std::size_t others,
+                   Visit&& visit) {
+  if (table.nearest2[f] > table.reach2[f]) return;
+  const Real* row = table.distance2 + f * table.stride;
+  for (std::size_t n = 0; n < others; ++n) {
+    if (row[n] <= table.reach2[f]) visit(n, std::sqrt(row[n]));
+  }
+}
+
+/// How far every point of a box is from the outside of one around it, at least.
+template <class Real>
+Real distance_to_border(const Aabb<Real>& inner, const Aabb<Real>& outer) {
+  return std::min((inner.lower - outer.lower).minCoeff(), (outer.upper - inner.upper).minCoeff());
+}
+
+/// Measures all of `cloth` against all of `mesh`, and how far each of the cloth's may go before it
+/// can touch what is beyond its reach.
+template <class Real>
+FeatureTable<Real> measure_all(const PairFeatures<Real>& cloth, const PairFeatures<Real>& mesh,
+                               const Aabb<Real>& box, Real thickness, Measure<Real> measure,
+                               FoundPairs<Real>& found, std::vector<Real>& free) {
+  FeatureTable<Real> table;
+  table.count = cloth.number.size();
+  table.stride = padded(mesh.number.size());
+  found.distance2.resize(table.count * (table.stride + 2));
+  table.cloth = cloth.values.data();
+  table.mesh = mesh.values.data();
+  table.reach2 = cloth.reach2.data();
+  table.distance2 = found.distance2.data();
+  table.nearest2 = table.distance2 + table.count * table.stride;
+  table.beyond2 = table.nearest2 + table.count;
+  measure(table);
+  found.tests += table.count * mesh.number.size();
+  for (std::size_t f = 0; f < table.count; ++f) {
+    const Real beyond =
+        std::min(std::sqrt(table.beyond2[f]), distance_to_border(cloth.boxes[f], box));
+    Real& known = free[static_cast<std::size_t>(cloth.number[f])];
+    known = std::min(known, beyond - cloth.rounding[f] - thickness);
+  }
+  return table;
+}
+
+/// All pairs within reach of one kind of features.
+template <class Real>
+void pair_all(const PairFeatures<Real>& cloth, const PairFeatures<Real>& mesh,
+              const Aabb<Real>& box, Real thickness, Measure<Real> measure, FoundPairs<Real>& found,
+              std::vector<ContactCandidate<Real>>& pairs, std::vector<Real>& free) {
+  const FeatureTable<Real> table = measure_all(cloth, mesh, box, thickness, measure, found, free);
+  for (std::size_t f = 0; f < table.count; ++f) {
+    for_each_near(table, f, mesh.number.size(), [&](std::size_t n, Real distance) {
+      pairs.push_back({cloth.number[f], mesh.number[n], distance - cloth.rounding[f]});
+    });
+  }
+}
+
+/// Particles against triangles; measures their clearance on the way.
+template <class Real>
+void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about,
+                    FoundPairs<Real>& found) {
+  const auto& [cloths, mesh, near, x, c, free, fresh] = pass;
+  const PairFeatures<Real>&particles = found.particles, &triangles = about.triangles;
+  std::vector<ContactCandidate<Real>>& pairs = found.particle_pairs;
+  const FeatureTable<Real> table =
+      measure_all<Real>(particles, triangles, about.box, cloths.thickness,
+                        measure_points_from_triangles, found, free.particle);
+  for (std::size_t f = 0; f < table.count; ++f) {
+    const auto p = static_cast<std::size_t>(particles.number[f]);
+    const Real rounding = particles.rounding[f];
+    ContactCandidate<Real> best;
+    best.feature = kNone;
+    for_each_near(table, f, triangles.number.size(), [&](std::size_t n, Real distance) {
+      pairs.push_back({particles.number[f], triangles.number[n], distance - rounding});
+      if (best.feature == kNone || distance < best.distance) best = pairs.back();
+    });
+    MeshDistance<Real> nearest;
+    if (best.feature != kNone) {
+      nearest = distance_to_triangle(mesh, best.feature, x[p]);
+    } else if (mesh.closed && c.distance[p] < 0) {
+      // Deep inside a solid nothing is within reach, yet the particle must find its way out.
+      nearest = distance_to_mesh(mesh, x[p], Real(kFarAway));
+      if (nearest.triangle != kNone && nearest.distance < 0)
+        pairs.push_back({particles.number[f], nearest.triangle, Real(0)});
+      else
+        nearest.triangle = kNone;
+    }
+    if (nearest.triangle == kNone) {
+      fresh[p] = std::min(fresh[p], cloths.thickness + c.skin[p]);
+      continue;
+    }
+    c.has_pairs[p] = 1;
+    fresh[p] = std::min(fresh[p], nearest.distance - rounding);
+  }
+}
+
+/// All pairs of one patch with one mesh.
+template <class Real>
+void pair_patch(const PairPass<Real>& pass, const NearPatch& patch, Neighbourhood<Real>& about,
+                FoundPairs<Real>& found) {
+  load_particles(pass, patch, found.particles);
+  load_edges(pass, patch, found.edges);
+  load_triangles(pass, patch, found.triangles);
+  Aabb<Real> around = found.particles.around;
+  around.add(found.edges.around);
+  around.add(found.triangles.around);
+  if (!about.box.contains(around)) {
+    about.box = around.grown(pass.mesh.triangle_size * Real(kNeighbourhoodMargin));
+    load_mesh(pass.mesh, about);
+  }
+  const Real thickness = pass.cloths.thickness;
+  pair_particles(pass, about, found);
+  pair_all<Real>(found.edges, about.edges, about.box, thickness, measure_segments, found,
+                 found.edge_pairs, pass.free.edge);
+  pair_all<Real>(found.triangles, about.vertices, about.box, thickness,
+                 measure_triangles_from_points, found, found.triangle_pairs, pass.free.triangle);
+}
+
+/// Joins what the chunks have found for a mesh, in their order.
+template <class Real>
+void join_found(std::size_t mesh, ObjectPairs<Real>& pairs, Profile& profile) {
+  using Found = FoundPairs<Real>;
+  const auto join = [&](std::vector<ContactCandidate<Real>> Found::*list,
+                        std::vector<ContactCandidate<Real>>& into) {
+    into.clear();
+    for (const Found& found : pairs.found)
+      into.insert(into.end(), (found.*list).begin(), (found.*list).end());
+    profile[Stage::broad_phase].work += into.size();
+  };
+  join(&Found::particle_pairs, pairs.particle[mesh]);
+  join(&Found::edge_pairs, pairs.edge[mesh]);
+  join(&Found::triangle_pairs, pairs.triangle[mesh]);
+  for (const Found& found : pairs.found) profile[Stage::narrow_phase].work += found.tests;
+}
+
+/// Lets particles go farther than was asked for, as far as is known now: until one of their
+/// features may touch what it has no pair with.
+template <class Real>
+void extend_skins(const ContactCloths<Real>& cloths, const NearFeatures<Real>& near,
+                  FreeDistance<Real>& free, Clearance<Real>& clearance) {
+  const auto limit = [&](Index i, Real most) {
+    Real& known = free.particle[static_cast<std::size_t>(i)];
+    known = std::min(known, most);
+  };
+  for (const Index e : near.edges) {
+    for (const Index i : cloths.patches.edges[static_cast<std::size_t>(e)])
+      limit(i, free.edge[static_cast<std::size_t>(e)]);
+  }
+  for (const Index t : near.triangles) {
+    for (const Index i : cloths.patches.triangles[static_cast<std::size_t>(t)])
+      limit(i, free.triangle[static_cast<std::size_t>(t)]);
+  }
+  for (const Index i : near.particles) {
+    const auto p = static_cast<std::size_t>(i);
+    Real most = free.particle[p];
+    // A particle that is only joined to near ones has features that are in no list.
+    if (!clearance.near[p])
+      most = std::min(most, clearance.distance[p] - cloths.thickness - clearance.span[p]);
+    Real& skin = clearance.skin[p];
+    skin = std::max(skin, std::min(most, skin * Real(kMostSkin)));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+ObjectPairs<Real> object_pairs(std::size_t meshes, std::size_t patches) {
+  ObjectPairs<Real> pairs;
+  pairs.particle.resize(meshes);
+  pairs.edge.resize(meshes);
+  pairs.triangle.resize(meshes);
+  pairs.found.resize(kContactChunks);
+  pairs.neighbourhoods.assign(meshes, std::vector<Neighbourhood<Real>>(patches));
+  return pairs;
+}
+
+template <class Real>
+void forget_neighbourhoods(ObjectPairs<Real>& pairs) {
+  for (std::vector<Neighbourhood<Real>>& of_mesh : pairs.neighbourhoods) {
+    for (Neighbourhood<Real>& about : of_mesh) about.box = {};
+  }
+}
+
+template <class Real>
+void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& shapes,
+                   const NearFeatures<Real>& near, const Vec3Array<Real>& x, Executor* executor,
+                   Clearance<Real>& clearance, ObjectPairs<Real>& pairs, Profile& profile) {
+  assert(pairs.particle.size() == shapes.meshes.size());
+  const Real thickness = cloths.thickness;
+  std::vector<Real>& fresh = pairs.fresh;
+  fresh.resize(x.size());
+  for (const Index i : near.particles) {
+    const auto p = static_cast<std::size_t>(i);
+    fresh[p] = analytic_clearance(shapes, x[p], thickness + clearance.skin[p]);
+    clearance.has_pairs[p] = 0;
+  }
+  constexpr Real kUnlimited = std::numeric_limits<Real>::infinity();
+  pairs.free.particle.assign(x.size(), kUnlimited);
+  pairs.free.edge.assign(cloths.patches.edges.size(), kUnlimited);
+  pairs.free.triangle.assign(cloths.patches.triangles.size(), kUnlimited);
+  const std::size_t count = near.patches.size();
+  for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
+    const PairPass<Real> pass{cloths,    shapes.meshes[m], near, in_frame_of(shapes, near, m, x),
+                              clearance, pairs.free,       fresh};
+    run_chunks(executor, kContactChunks, [&](int chunk) {
+      const auto c = static_cast<std::size_t>(chunk);
+      FoundPairs<Real>& found = pairs.found[c];
+      for (auto* list : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
+        list->clear();
+      found.tests = 0;
+      for (std::size_t n = count * c / kContactChunks; n < count * (c + 1) / kContactChunks; ++n) {
+        stop_point();
+        const NearPatch& patch = near.patches[n];
+        pair_patch(pass, patch, pairs.neighbourhoods[m][patch.patch], found);
+      }
+    });
+    join_found(m, pairs, profile);
+  }
+  // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
+  for (const Index i : near.particles) {
+    const auto p = static_cast<std::size_t>(i);
+    Real& distance = clearance.distance[p];
+    distance = fresh[p] < thickness + clearance.skin[p] ? fresh[p] : std::max(distance, fresh[p]);
+  }
+  extend_skins(cloths, near, pairs.free, clearance);
+}
+
+template <class Real>
+void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& shapes,
+                 const Clearance<Real>& clearance, const ObjectPairs<Real>& pairs,
+                 NearFeatures<Real>& near) {
+  const ClothPatches& patches = cloths.patches;
+  near.paired.assign(near.active.size(), 0);
+  const auto mark = [&](Index i) { near.paired[static_cast<std::size_t>(i)] = 1; };
+  for (const Index i : near.particles) {
+    const auto p = static_cast<std::size_t>(i);
+    if (clearance.distance[p] <= cloths.thickness + clearance.skin[p]) mark(i);
+  }
+  for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
+    for (const auto& pair : pairs.particle[m]) mark(pair.cloth);
+    for (const auto& pair : pairs.edge[m]) {
+      for (const Index i : patches.edges[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+    for (const auto& pair : pairs.triangle[m]) {
+      for (const Index i : patches.triangles[static_cast<std::size_t>(pair.cloth)]) mark(i);
+    }
+  }
+  if (shapes.balls.empty() && shapes.rods.empty()) return;
+  // Edges and triangles meet round shapes without pairs, so all near ones may.
+  for (const Index e : near.edges) {
+    for (const Index i : patches.edges[static_cast<std::size_t>(e)]) mark(i);
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template ObjectPairs<Real> object_pairs(std::size_t, std::size_t);                        \
+  template void forget_neighbourhoods(ObjectPairs<Real>&);                                  \
+  template void collect_pairs(const ContactCloths<Real>&, const ObjectShapes<Real>&,        \
+                              const NearFeatures<Real>&, const Vec3Array<Real>&, Executor*, \
+                              Clearance<Real>&, ObjectPairs<Real>&, Profile&);              \
+  template void mark_paired(const ContactCloths<Real>&, const ObjectShapes<Real>&,          \
+                            const Clearance<Real>&, const ObjectPairs<Real>&,               \
+                            NearFeatures<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,188 @@
+// Makes the rows of edges and triangles of the cloth with balls and rods.
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/constants.h"
+#include "core/contact/objects/apart.h"
+#include "core/contact/objects/bad_starts.h"
+#include "core/contact/objects/constants.h"
+#include "core/contact/objects/corners.h"
+#include "core/contact/objects/object_rows.h"
+#include "core/geometry/distance.h"
+
+namespace weft {
+namespace {
+
+bool between_ends(double s) {
+  return s > kEdgeEnd && s < 1 - kEdgeEnd;
+}
+
+/// The smallest of the corners' numbers.
+template <class Real, class Feature>
+Real nearest(const std::vector<Real>& numbers, const Feature& corners) {
+  Real least = numbers[static_cast<std::size_t>(corners[0])];
+  for (const Index i : corners) least = std::min(least, numbers[static_cast<std::size_t>(i)]);
+  return least;
+}
+
+/// Computed without a root: (a + b)^2 <= 2 a^2 + 2 b^2.
+template <class Real>
+CornerBound<Real> bound_of(const ObjectRowSource<Real>& source, std::span<const Index> corners) {
+  const Vec3Array<Real>& x = source.state.x;
+  const std::size_t count = corners.size();
+  const Real part = static_cast<Real>(count == 2 ? kEdgeSpan : kTriangleSpan);
+  Real longest2 = 0, reach = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(corners[k]),
+               j = static_cast<std::size_t>(corners[(k + 1) % count]);
+    longest2 = std::max(longest2, (x[i] - x[j]).squaredNorm());
+    reach = std::max(reach, source.reach[i]);
+  }
+  reach += source.cloths.thickness * Real(kRoomForPush);
+  const Real both2 = longest2 + 4 * reach * reach;
+  return {part * part * 2 * both2 * static_cast<Real>(kSurely)};
+}
+
+/// Distance of each active particle from the core of a round object, now and while the rows hold: a
+/// particle within reach of the object is kept over a plane.
+template <class Real>
+void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>& round,
+                   RowScratch<Real>& scratch) {
+  const ClothState<Real>& state = source.state;
+  const Vec3<Real>&a = round.rod.a, &b = round.rod.b;
+  const Real radius = round.rod.radius;
+  const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kCoreRoundings);
+  scratch.core.resize(state.x.size());
+  scratch.least_core.resize(state.x.size());
+  for (const Index k : source.near.particles) {
+    const auto i = static_cast<std::size_t>(k);
+    Real &core = scratch.core[i], &least = scratch.least_core[i];
+    const Vec3<Real> from = state.x[i] - a;
+    core = round.is_ball ? from.norm()
+                         : (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
+    least = core - source.reach[i] - source.cloths.thickness * Real(kRoomForPush);
+    if (state.inverse_mass[i] > 0 && core > radius)
+      least = std::max(
+          least, radius + kept_height(source, k, core - radius) - source.clearance.smallest_gap);
+    least -= rounding;
+  }
+}
+
+template <class Real>
+void add_edges_on(const RoundObject<Real>& round, const ObjectRowSource<Real>& source,
+                  const RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
+  const ObjectRod<Real>& rod = round.rod;
+  const Vec3d base = in_double(rod.a), tip = in_double(rod.b);
+  const Real most = rod.radius + source.clearance.smallest_gap;
+  const Real push = source.cloths.thickness * Real(kRoomForPush);
+  for (std::size_t n = 0; n < source.near.edges.size(); ++n) {
+    const Edge& e = source.cloths.patches.edges[static_cast<std::size_t>(source.near.edges[n])];
+    const Real least = nearest(scratch.least_core, e);
+    if (scratch.edge_bounds[n].clear(least, most)) continue;
+    const Corners<Real> ends = corners_of<Real>(source, scratch.gap, e);
+    if (ends.pushed(kEdgeSpan, push).clear(least, rod.radius)) continue;
+    if (is_inside(e[0], rod.collider, scratch.inside) ||
+        is_inside(e[1], rod.collider, scratch.inside))
+      continue;
+    const Vec3d from = in_double(source.state.x[static_cast<std::size_t>(e[0])]),
+                to = in_double(source.state.x[static_cast<std::size_t>(e[1])]);
+    const SegmentPoints<double> c = closest_of_segments<double>(from, to, base, tip);
+    const Apart side = apart(c.p, c.q);
+    const Real distance = static_cast<Real>(side.distance) - rod.radius;
+    if (distance > source.cloths.thickness + ends.reach) continue;
+    ContactBarrier<Real> barrier{side.normal.cast<Real>(), 0, distance};
+    const Vec3d normal = in_double(barrier.normal);
+    barrier.top = std::max(normal.dot(base), normal.dot(tip)) + static_cast<double>(rod.radius);
+    const bool carried =
+        ends.as_lying(kEdgeSpan, Real(0)).clear(nearest(scratch.core, e), rod.radius);
+    const Real s = static_cast<Real>(c.s);
+    add_row(source, {e[0], e[1]}, {Real(1) - s, s, 0}, barrier, rod.collider,
+            !carried && between_ends(c.s), rows);
+  }
+}
+
+/// Adds the row of a triangle with the ball about the end of a rod.
+/// @param reach  of the triangle while the rows hold [m]
+template <class Real>
+void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Real reach,
+                      const ObjectRod<Real>& rod, const Vec3<Real>& centre, bool responds,
+                      ObjectRows<Real>& rows) {
+  const auto at = [&](std::size_t n) {
+    return in_double(source.state.x[static_cast<std::size_t>(t[n])]);
+  };
+  const Vec3d q = in_double(centre);
+  const TrianglePoint<double> c = closest_on_triangle<double>(q, at(0), at(1), at(2));
+  const Apart side = apart(c.point, q);
+  const Real distance = static_cast<Real>(side.distance) - rod.radius;
+  if (distance > source.cloths.thickness + reach) return;
+  ContactBarrier<Real> barrier{side.normal.cast<Real>(), 0, distance};
+  barrier.top = in_double(barrier.normal).dot(q) + static_cast<double>(rod.radius);
+  std::array<Real, 3> weights;
+  for (std::size_t n = 0; n < 3; ++n) weights[n] = static_cast<Real>(c.barycentric[n]);
+  add_row(source, {t[0], t[1], t[2]}, weights, barrier, rod.collider, responds && c.feature == 0,
+          rows);
+}
+
+/// Adds the rows of the centre of a ball, or of both ends of a rod, with the inside of triangles.
+template <class Real>
+void add_triangles_on(const RoundObject<Real>& round, const ObjectRowSource<Real>& source,
+                      const RowScratch<Real>& scratch, ObjectRows<Real>& rows, Profile& profile) {
+  const ObjectRod<Real>& rod = round.rod;
+  const Real most = rod.radius + source.clearance.smallest_gap;
+  const Real push = source.cloths.thickness * Real(kRoomForPush);
+  for (std::size_t n = 0; n < source.near.triangles.size(); ++n) {
+    const Triangle& t =
+        source.cloths.patches.triangles[static_cast<std::size_t>(source.near.triangles[n])];
+    const Real least = nearest(scratch.least_core, t);
+    if (scratch.triangle_bounds[n].clear(least, most)) continue;
+    const Corners<Real> corners = corners_of<Real>(source, scratch.gap, t);
+    if (corners.pushed(kTriangleSpan, push).clear(least, rod.radius)) continue;
+    const auto is_barred = [&](Index i) { return is_inside(i, rod.collider, scratch.inside); };
+    if (std::any_of(t.begin(), t.end(), is_barred)) continue;
+    const bool responds =
+        !corners.as_lying(kTriangleSpan, Real(0)).clear(nearest(scratch.core, t), rod.radius);
+    const auto add = [&](const Vec3<Real>& centre) {
+      ++profile[Stage::narrow_phase].work;
+      add_triangle_row(source, t, corners.reach, rod, centre, responds, rows);
+    };
+    add(rod.a);
+    if (!round.is_ball) add(rod.b);
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
+                            ObjectRows<Real>& rows, Profile& profile) {
+  const ObjectShapes<Real>& shapes = source.shapes;
+  if (shapes.balls.empty() && shapes.rods.empty()) return;
+  assert(scratch.inside.size() == source.state.x.size() && "rows of particles come first");
+  const ClothPatches& patches = source.cloths.patches;
+  scratch.edge_bounds.clear();
+  scratch.triangle_bounds.clear();
+  for (const Index k : source.near.edges)
+    scratch.edge_bounds.push_back(
+        bound_of<Real>(source, patches.edges[static_cast<std::size_t>(k)]));
+  for (const Index k : source.near.triangles)
+    scratch.triangle_bounds.push_back(
+        bound_of<Real>(source, patches.triangles[static_cast<std::size_t>(k)]));
+  const auto add = [&](const RoundObject<Real>& round) {
+    measure_cores(source, round, scratch);
+    add_edges_on(round, source, scratch, rows);
+    add_triangles_on(round, source, scratch, rows, profile);
+  };
+  for (const ObjectBall<Real>& ball : shapes.balls)
+    add({{ball.centre, ball.centre, ball.radius, ball.collider}, true});
+  for (const ObjectRod<Real>& rod : shapes.rods) add({rod, false});
+}
+
+template void add_features_on_rounds(const ObjectRowSource<float>&, RowScratch<float>&,
+                                     ObjectRows<float>&, Profile&);
+template void add_features_on_rounds(const ObjectRowSource<double>&, RowScratch<double>&,
+                                     ObjectRows<double>&, Profile&);
+
+}  // namespace weft

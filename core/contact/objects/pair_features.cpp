@@ -1,0 +1,165 @@
+// Loads features of cloths as rows, and those of meshes as columns.
+
+#include "core/contact/objects/pair_features.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <initializer_list>
+
+namespace weft {
+namespace {
+
+/// Puts vector k of feature n into columns.
+template <class Real>
+void put(const Vec3<Real>& v, std::size_t k, std::size_t stride, std::size_t n,
+         std::vector<Real>& columns) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    columns[(3 * k + axis) * stride + n] = v[static_cast<Index>(axis)];
+}
+
+template <class Real>
+void add_feature(Index feature, Real reach, Real error, const Aabb<Real>& box,
+                 std::initializer_list<Vec3<Real>> vectors, PairFeatures<Real>& into) {
+  assert(feature >= 0 && !(reach < 0));
+  into.number.push_back(feature);
+  into.reach2.push_back(reach * reach);
+  into.rounding.push_back(error);
+  into.boxes.push_back(box);
+  into.around.add(box.grown(reach));
+  for (const Vec3<Real>& v : vectors) into.values.insert(into.values.end(), {v[0], v[1], v[2]});
+}
+
+template <class Real>
+void clear_features(PairFeatures<Real>& features) {
+  features.number.clear();
+  features.values.clear();
+  features.reach2.clear();
+  features.rounding.clear();
+  features.boxes.clear();
+  features.around = {};
+}
+
+}  // namespace
+
+template <class Real>
+void load_particles(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures<Real>& into) {
+  clear_features(into);
+  const Clearance<Real>& c = pass.clearance;
+  for (Index k = patch.particles.first; k < patch.particles.end(); ++k) {
+    const Index i = pass.near.particles[static_cast<std::size_t>(k)];
+    const auto p = static_cast<std::size_t>(i);
+    const Real reach = pass.cloths.thickness + c.skin[p];
+    if (c.distance[p] > reach) {
+      pass.free.particle[p] = c.distance[p] - pass.cloths.thickness;
+      continue;
+    }
+    Aabb<Real> box;
+    box.add(pass.x[p]);
+    add_feature(i, reach, pass.mesh.rounding, box, {pass.x[p]}, into);
+  }
+}
+
+template <class Real>
+void load_edges(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures<Real>& into) {
+  clear_features(into);
+  const Clearance<Real>& c = pass.clearance;
+  for (Index k = patch.edges.first; k < patch.edges.end(); ++k) {
+    const Index e = pass.near.edges[static_cast<std::size_t>(k)];
+    const Edge& ends = pass.cloths.patches.edges[static_cast<std::size_t>(e)];
+    const auto i = static_cast<std::size_t>(ends[0]), j = static_cast<std::size_t>(ends[1]);
+    const Real reach = pass.cloths.thickness + std::max(c.skin[i], c.skin[j]);
+    const Vec3<Real> along = pass.x[j] - pass.x[i];
+    // No point of the edge is nearer than this, by the clearances of its ends.
+    const Real length = along.norm(), clear = (c.distance[i] + c.distance[j] - length) / 2;
+    if (clear > reach) {
+      pass.free.edge[static_cast<std::size_t>(e)] = clear - pass.cloths.thickness;
+      continue;
+    }
+    Aabb<Real> box;
+    box.add(pass.x[i]);
+    box.add(pass.x[j]);
+    add_feature(e, reach, rounding_of_segments(length, pass.mesh.longest_edge), box,
+                {pass.x[i], along}, into);
+  }
+}
+
+template <class Real>
+void load_triangles(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures<Real>& into) {
+  clear_features(into);
+  const Clearance<Real>& clearance = pass.clearance;
+  const Vec3Array<Real>& x = pass.x;
+  const auto largest = [](const std::vector<Real>& of, std::size_t a, std::size_t b,
+                          std::size_t c) {
+    return std::max({of[a], of[b], of[c]});
+  };
+  for (Index k = patch.triangles.first; k < patch.triangles.end(); ++k) {
+    const Index t = pass.near.triangles[static_cast<std::size_t>(k)];
+    const Triangle& corners = pass.cloths.patches.triangles[static_cast<std::size_t>(t)];
+    const auto a = static_cast<std::size_t>(corners[0]), b = static_cast<std::size_t>(corners[1]),
+               c = static_cast<std::size_t>(corners[2]);
+    const Real reach = pass.cloths.thickness + largest(clearance.skin, a, b, c);
+    const std::vector<Real>& distance = clearance.distance;
+    const Real clear =
+        std::min({distance[a], distance[b], distance[c]}) - largest(clearance.span, a, b, c);
+    if (clear > reach) {
+      pass.free.triangle[static_cast<std::size_t>(t)] = clear - pass.cloths.thickness;
+      continue;
+    }
+    Aabb<Real> box;
+    for (const std::size_t corner : {a, b, c}) box.add(x[corner]);
+    const Vec3<Real> ab = x[b] - x[a], ac = x[c] - x[a];
+    const Real longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const Real error = rounding_of_triangle(std::sqrt(longest2), ab.cross(ac).norm());
+    add_feature(t, reach, error, box, {x[a], ab, ac}, into);
+  }
+}
+
+template <class Real>
+void load_mesh(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
+  PairFeatures<Real>&triangles = about.triangles, &edges = about.edges, &vertices = about.vertices;
+  for (PairFeatures<Real>* features : {&triangles, &edges, &vertices}) features->number.clear();
+  const auto take = [](const OwnedFeatures& owned, std::size_t t, std::vector<Index>& into) {
+    into.insert(into.end(), owned.list.begin() + owned.first[t],
+                owned.list.begin() + owned.first[t + 1]);
+  };
+  mesh.triangle_tree.for_each_overlap(about.box, [&](Index t) {
+    triangles.number.push_back(t);
+    take(mesh.sharp_edges, static_cast<std::size_t>(t), edges.number);
+    take(mesh.sharp_vertices, static_cast<std::size_t>(t), vertices.number);
+  });
+  const auto at = [&](Index v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+  // Padding is far away, yet near enough for its square to be a number.
+  constexpr Real kPadding = Real(1e9);
+  std::size_t stride = padded(triangles.number.size());
+  triangles.values.assign(kTriangleNumbers * stride, kPadding);
+  for (std::size_t n = 0; n < triangles.number.size(); ++n) {
+    const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangles.number[n])];
+    put<Real>(at(t[0]), 0, stride, n, triangles.values);
+    put<Real>(at(t[1]) - at(t[0]), 1, stride, n, triangles.values);
+    put<Real>(at(t[2]) - at(t[0]), 2, stride, n, triangles.values);
+  }
+  prepare_triangles(stride, triangles.values.data());
+  stride = padded(edges.number.size());
+  edges.values.assign(6 * stride, kPadding);
+  for (std::size_t n = 0; n < edges.number.size(); ++n) {
+    const MeshEdge& e = mesh.edges[static_cast<std::size_t>(edges.number[n])];
+    put<Real>(at(e.a), 0, stride, n, edges.values);
+    put<Real>(at(e.b) - at(e.a), 1, stride, n, edges.values);
+  }
+  stride = padded(vertices.number.size());
+  vertices.values.assign(3 * stride, kPadding);
+  for (std::size_t n = 0; n < vertices.number.size(); ++n)
+    put<Real>(at(vertices.number[n]), 0, stride, n, vertices.values);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                \
+  template void load_particles(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&); \
+  template void load_edges(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&);     \
+  template void load_triangles(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&); \
+  template void load_mesh(const MeshShape<Real>&, Neighbourhood<Real>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft

@@ -1,0 +1,245 @@
+// Velocities that respect the rows.
+
+#include "core/contact/objects/row_response.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/contact/constants.h"
+#include "core/contact/guard/cloth_guard.h"
+#include "core/contact/objects/constants.h"
+#include "core/contact/objects/moving_rows.h"
+#include "core/contact/objects/row_values.h"
+#include "core/stop_signal.h"
+
+namespace weft {
+namespace {
+
+/// Velocity of a row's point over the object there [m/s].
+template <class Real>
+Vec3<Real> velocity_over(const ObjectRows<Real>& rows, const ContactRow<Real>& row,
+                         const Vec3Array<Real>& v) {
+  Vec3<Real> over = weighted(row, v);
+  if (const MovingRow<Real>* moving = rows.moving_of(row)) over -= moving->surface;
+  return over;
+}
+
+/// Returns particles that a push brought too near to any plane to where they were: between objects
+/// that close, or where cloth is drawn between two, one pushes it out into the other. What started
+/// inside is led out however its edges lie.
+template <class Real>
+void take_back_pushes(const ObjectRows<Real>& rows, const Vec3Array<Real>& x_unpushed,
+                      Real smallest_gap, Vec3Array<Real>& x) {
+  const auto leaves = [&rows](const ContactRow<Real>& row) {
+    return row.mover == kNone &&
+           std::any_of(rows.exits.begin(), rows.exits.end(), [&row](const BadStart<Real>& exit) {
+             return static_cast<Index>(exit.collider) == row.collider && exit.cloth == row.cloth;
+           });
+  };
+  for (const ContactRow<Real>& row : rows.all) {
+    if (!rows.exits.empty() && leaves(row)) continue;
+    const Real wanted = least_height(row, row.mover != kNone, smallest_gap);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      const auto i = static_cast<std::size_t>(row.particle[k]);
+      if (x[i] == x_unpushed[i]) continue;
+      const Real before = row.normal.dot(x_unpushed[i]) - row.offset;
+      if (row.normal.dot(x[i]) - row.offset < std::min(before, wanted)) x[i] = x_unpushed[i];
+    }
+  }
+}
+
+/// Notes whether a row's point hits in this step, which would bring it there, and how fast it then
+/// leaves. Of the motion before the kick and after it the slower counts: forces of one step, as
+/// where cloth is pressed on an object, are no impact.
+template <class Real>
+void note_impact(ObjectSolve<Real>& solve, std::size_t r) {
+  Bounces<Real>& bounces = solve.bounces;
+  ContactRow<Real>& row = solve.rows.all[r];
+  row.impact = kNone;
+  const Real restitution = static_cast<Real>(settings_of(solve.cloths, row).restitution);
+  if (restitution == 0) return;
+  const auto speed_in = [&](const Vec3Array<Real>& v) {
+    return row.normal.dot(velocity_over(solve.rows, row, v));
+  };
+  Real speed = speed_in(bounces.v_kicked.empty() ? solve.state.v : bounces.v_kicked);
+  if (!bounces.v_came.empty()) speed = std::max(speed, speed_in(bounces.v_came));
+  if (!(speed < std::min(row.least_speed, -static_cast<Real>(kBounceSpeed)))) return;
+  row.impact = static_cast<Index>(bounces.impacts.size());
+  bounces.impacts.push_back({r, -restitution * speed, 0});
+}
+
+/// Pushes a row's point. Friction: the tangential velocity is stopped if that takes at most
+/// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
+/// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
+/// @param v,vn  velocity of the point over the object, and along the normal [m/s]
+/// @param push  change of the latter [m/s]
+template <class Real>
+void respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v, Real vn, Real push) {
+  const ContactRow<Real>& row = solve.rows.all[r];
+  MovingRow<Real>* const moving = solve.rows.moving_of(row);
+  Vec3<Real> change = row.normal * push;
+  const Real friction = static_cast<Real>(settings_of(solve.cloths, row).friction);
+  if (friction > 0) {
+    ++solve.friction_evaluations;
+    const Vec3<Real> slip = v - row.normal * vn;
+    const Real speed = slip.norm(), most = friction * push + (moving ? moving->grip : Real(0));
+    change -= speed > most ? (slip * (most / speed)).eval() : slip;
+    if (moving) moving->grip -= std::clamp(speed - friction * push, Real(0), moving->grip);
+  }
+  share_out(row, change, solve.state.v);
+  solve.response.pushed.push_back(r);
+  if (moving) take_reaction(*moving, weighted(row, solve.state.x), change, solve.motion);
+  if (solve.log.wanted()) solve.log.add(solve.rows.all, r, change);
+}
+
+}  // namespace
+
+template <class Real>
+void find_busy_rows(const ObjectRows<Real>& rows, const ObjectMotion<Real>& motion,
+                    const std::vector<Real>& travel2, const ContactLog& log,
+                    RowResponse<Real>& response) {
+  assert(rows.rooms.size() == rows.all.size());
+  response.busy.clear();
+  response.pushed.clear();
+  const bool all = !is_still(motion, rows);
+  response.lone_apart = !all && !log.wanted();
+  response.lone = {};
+  for_joint_rows(rows, response, [&](std::size_t r) {
+    if (all ? rows.all[r].responds : !(farthest2(rows.rooms[r], travel2) < rows.rooms[r].touch2))
+      response.busy.push_back(r);
+  });
+}
+
+template <class Real>
+LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt) {
+  LonePass<Real> pass;
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.slack = Real(kTouchSlack);
+  pass.push_part = Real(kPushOutPart);
+  pass.push_most = Real(kPushOutSpeed) * dt;
+  pass.from = reach.x.data()->data();
+  pass.reach = reach.reach.data();
+  pass.travel2 = reach.travel2.data();
+  return pass;
+}
+
+template <class Real>
+void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& rows,
+              RowReach<Real>& reach, RowResponse<Real>& response, ClothState<Real>& state) {
+  assert(response.pushed.empty() && dt > 0);
+  // Where nothing moves, only pushes are taken back.
+  if (!response.lone_apart) response.x_unpushed = state.x;
+  for (const std::size_t r : response.busy) {
+    const ContactRow<Real>& row = rows.all[r];
+    const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
+    if (!(lack > Real(kTouchSlack))) continue;
+    if (response.lone_apart && response.pushed.empty()) response.x_unpushed = state.x;
+    const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
+    share_out<Real>(row, row.normal * step, state.x);
+    response.pushed.push_back(r);
+  }
+  if (!response.pushed.empty()) take_back_pushes(rows, response.x_unpushed, smallest_gap, state.x);
+  // A lone particle leaves the only plane that it could come too near to.
+  if (response.lone_apart)
+    response.lone = rows.lone.push_and_respond(lone_pass(reach, state, dt), executor);
+}
+
+template <class Real>
+void aim_rows(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real dt) {
+  assert(dt > 0);
+  solve.bounces.impacts.clear();
+  for (const std::size_t r : solve.response.busy) {
+    ContactRow<Real>& row = solve.rows.all[r];
+    const Vec3<Real> point = weighted(row, solve.state.x);
+    const Real gap = row.normal.dot(point) - row.offset;
+    row.least_speed = -std::max(Real(0), gap - row.thickness - Real(kTouchSlack)) / dt;
+    if (MovingRow<Real>* moving = solve.rows.moving_of(row))
+      moving->surface = shapes.frames[moving->collider].velocity_at(point);
+    if (solve.cloths.bounces) note_impact(solve, r);
+  }
+}
+
+template <class Real>
+Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
+  ObjectRows<Real>& rows = solve.rows;
+  Real largest = 0;
+  if (solve.response.lone_apart && !again) {
+    const LoneResponse<Real> lone = rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0)));
+    largest = lone.largest;
+    solve.friction_evaluations += lone.friction_evaluations;
+  }
+  for (const std::size_t r : solve.response.busy) {
+    if (again && rows.lone.has(r)) continue;
+    const ContactRow<Real>& row = rows.all[r];
+    const Vec3<Real> v = velocity_over(rows, row, solve.state.v);
+    const Real vn = row.normal.dot(v);
+    Real push = row.least_speed - vn;
+    if (!(push > 0)) {
+      const MovingRow<Real>* moving = rows.moving_of(row);
+      if (!moving || moving->grip == 0) continue;
+      push = 0;
+    } else if (row.impact != kNone) {
+      solve.bounces.impacts[static_cast<std::size_t>(row.impact)].taken +=
+          vn * vn - row.least_speed * row.least_speed;
+    }
+    largest = std::max(largest, push);
+    respond(solve, r, v, vn, push);
+  }
+  return largest;
+}
+
+template <class Real>
+void solve_rows(ObjectSolve<Real>& solve, Real dt, ClothGuard<Real>* guard) {
+  const LoneResponse<Real>& lone = solve.response.lone;
+  solve.friction_evaluations += lone.friction_evaluations;
+  Real left = lone.largest, among_cloths = 0;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    stop_point();
+    const bool again = sweep == 0 ? solve.response.lone_apart : !(among_cloths > 0);
+    left = std::max(left, sweep_rows(solve, again));
+    if (guard && sweep == 0) among_cloths = guard->sweep(solve.state);
+  }
+  if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
+  const Real enough = solve.cloths.thickness * Real(kResidual) / dt;
+  for (int sweep = 0; guard && sweep < kMoreSweeps && (sweep == 0 || left > enough); ++sweep) {
+    if (!(guard->sweep(solve.state) > (sweep == 0 ? Real(0) : enough))) break;
+    left = sweep_rows(solve);
+  }
+}
+
+template <class Real>
+void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
+  solve.bounces.v_came.clear();
+  solve.bounces.v_kicked.clear();
+  if (solve.bounces.impacts.empty()) return;
+  for (const Impact<Real>& impact : solve.bounces.impacts) {
+    const ContactRow<Real>& row = solve.rows.all[impact.row];
+    const Real restitution = static_cast<Real>(settings_of(solve.cloths, row).restitution);
+    const Vec3<Real> v = velocity_over(solve.rows, row, solve.state.v);
+    const Real vn = row.normal.dot(v);
+    const Real fastest = std::sqrt(vn * vn + restitution * restitution * impact.taken);
+    const Real push = std::min(impact.speed, fastest) - vn;
+    if (push > 0) respond(solve, impact.row, v, vn, push);
+  }
+  if (guard) guard->sweep(solve.state);
+  sweep_rows(solve);
+}
+
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template void find_busy_rows(const ObjectRows<Real>&, const ObjectMotion<Real>&,               \
+                               const std::vector<Real>&, const ContactLog&, RowResponse<Real>&); \
+  template LonePass<Real> lone_pass(RowReach<Real>&, ClothState<Real>&, Real);                   \
+  template void push_out(Real, Real, Executor*, ObjectRows<Real>&, RowReach<Real>&,              \
+                         RowResponse<Real>&, ClothState<Real>&);                                 \
+  template void aim_rows(ObjectSolve<Real>&, const ObjectShapes<Real>&, Real);                   \
+  template Real sweep_rows(ObjectSolve<Real>&, bool);                                            \
+  template void solve_rows(ObjectSolve<Real>&, Real, ClothGuard<Real>*);                         \
+  template void bounce(ObjectSolve<Real>&, ClothGuard<Real>*);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
