@@ -70,13 +70,11 @@ void note_ends(const ClothState<Real>& state, Real dt, Real elapsed, Slack<Real>
   for (std::size_t i = 0; i < slack.ends.size(); ++i) slack.ends[i] = state.x[i] + state.v[i] * dt;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                  \
-  template bool stays_calm(const CalmPaths<Real>&, const PredictedPaths<Real>&, \
-                           const ClothState<Real>&, Real);                      \
-  template void note_calm_paths(const PredictedPaths<Real>&, CalmSteps<Real>&); \
-  template bool has_slack(const Slack<Real>&, const PredictedPaths<Real>&,      \
-                          const ClothState<Real>&, Real);                       \
-  template void note_ends(const ClothState<Real>&, Real, Real, Slack<Real>&);
+#define WEFT_INSTANTIATE(Real)                                    \
+  template decltype(stays_calm<Real>) stays_calm<Real>;           \
+  template decltype(note_calm_paths<Real>) note_calm_paths<Real>; \
+  template decltype(has_slack<Real>) has_slack<Real>;             \
+  template decltype(note_ends<Real>) note_ends<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -211,12 +211,9 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   critical.tight.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                                              \
-  template void stop_crossings(GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&,     \
-                               CriticalSteps<Real>&, Executor*, GuardCounts&);              \
-  template void truncate(const GuardedPairs<Real>&, Real, Real, bool, CriticalSteps<Real>&, \
-                         GuardedStep<Real>&, Regions<Real>&, PredictedPaths<Real>&,         \
-                         ClothState<Real>&);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(stop_crossings<Real>) stop_crossings<Real>; \
+  template decltype(truncate<Real>) truncate<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -122,12 +122,11 @@ bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, I
                       [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                     \
-  template GuardedCloths<Real> guarded_cloths(const ClothModel<Real>&);                            \
-  template Index cloth_of(const GuardedCloths<Real>&, Index);                                      \
-  template Real kept_distance(const GuardedCloths<Real>&, const GuardedPair<Real>&, Index, Index); \
-  template bool owns_nearest(const GuardedCloths<Real>&, const QuadArray<Real>&, Index,            \
-                             const std::array<Index, 4>&, const PairSeparation<Real>&);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(guarded_cloths<Real>) guarded_cloths<Real>; \
+  template decltype(cloth_of<Real>) cloth_of<Real>;             \
+  template decltype(kept_distance<Real>) kept_distance<Real>;   \
+  template decltype(owns_nearest<Real>) owns_nearest<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -95,13 +95,12 @@ void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs) {
   });
 }
 
-#define WEFT_INSTANTIATE(Real)                                                     \
-  template void forget_pairs(GuardedPairs<Real>&);                                 \
-  template void list_all_pairs(std::size_t, GuardedPairs<Real>&);                  \
-  template void list_pairs_from(std::size_t, GuardedPairs<Real>&);                 \
-  template void drop_pairs_of(const std::vector<Index>&, const std::vector<char>&, \
-                              GuardedPairs<Real>&);                                \
-  template void note_arrivals(std::size_t, GuardedPairs<Real>&);
+#define WEFT_INSTANTIATE(Real)                                    \
+  template decltype(forget_pairs<Real>) forget_pairs<Real>;       \
+  template decltype(list_all_pairs<Real>) list_all_pairs<Real>;   \
+  template decltype(list_pairs_from<Real>) list_pairs_from<Real>; \
+  template decltype(drop_pairs_of<Real>) drop_pairs_of<Real>;     \
+  template decltype(note_arrivals<Real>) note_arrivals<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -36,11 +36,10 @@ void halt(const std::vector<char>& is_active, GuardedStep<Real>& step, Vec3Array
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                             \
-  template void measure_lengths(GuardedStep<Real>&);                                       \
-  template void count_motion(const std::vector<Index>&, GuardedStep<Real>&, GuardCounts&); \
-  template void halt(const std::vector<char>&, GuardedStep<Real>&, Vec3Array<Real>&,       \
-                     Vec3Array<Real>&);
+#define WEFT_INSTANTIATE(Real)                                    \
+  template decltype(measure_lengths<Real>) measure_lengths<Real>; \
+  template decltype(count_motion<Real>) count_motion<Real>;       \
+  template decltype(halt<Real>) halt<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -142,15 +142,11 @@ std::vector<std::array<Index, 2>> tangled_cloths(const GuardedTangles<Real>& tan
   return list;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                   \
-  template void forget_tangles(GuardedTangles<Real>&);                           \
-  template void find_tangles(const PatchTree<Real>&, const GuardedCloths<Real>&, \
-                             const std::vector<char>&, const QuadArray<Real>&,   \
-                             const std::vector<Real>&, GuardedTangles<Real>&);   \
-  template void note_touches(const GuardedPairs<Real>&, const QuadArray<Real>&,  \
-                             GuardedTangles<Real>&);                             \
-  template std::vector<std::array<Index, 2>> tangled_cloths(                     \
-      const GuardedTangles<Real>&, const GuardedPairs<Real>&, const GuardedCloths<Real>&);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(forget_tangles<Real>) forget_tangles<Real>; \
+  template decltype(find_tangles<Real>) find_tangles<Real>;     \
+  template decltype(note_touches<Real>) note_touches<Real>;     \
+  template decltype(tangled_cloths<Real>) tangled_cloths<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -202,12 +202,11 @@ void test_near_patches(PatchSearch<Real>& search, const GuardedCloths<Real>& clo
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                       \
-  template PatchSearch<Real> patch_search(const ClothModel<Real>&);                  \
-  template void find_near_patches(PatchSearch<Real>&);                               \
-  template void find_near_patches_of(const std::vector<Index>&, PatchSearch<Real>&); \
-  template void test_near_patches(PatchSearch<Real>&, const GuardedCloths<Real>&,    \
-                                  const LeftOut<Real>&, Executor*, GuardedPairs<Real>&, Profile&);
+#define WEFT_INSTANTIATE(Real)                                              \
+  template decltype(patch_search<Real>) patch_search<Real>;                 \
+  template decltype(find_near_patches<Real>) find_near_patches<Real>;       \
+  template decltype(find_near_patches_of<Real>) find_near_patches_of<Real>; \
+  template decltype(test_near_patches<Real>) test_near_patches<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

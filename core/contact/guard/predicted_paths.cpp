@@ -140,16 +140,13 @@ Real smallest_gap_at(const QuadArray<Real>& x) {
   return smallest_gap_for(largest);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                 \
-  template void begin_paths(const GuardedStep<Real>&, const AwakeParticles&, Real, Real, Real, \
-                            PredictedPaths<Real>&);                                            \
-  template void begin_paths_of_strays(const GuardedStep<Real>&, Real, Real,                    \
-                                      PredictedPaths<Real>&);                                  \
-  template void predict(Real, PredictedPaths<Real>&, PredictedMotion<Real>&);                  \
-  template Real find_strays(const ClothState<Real>&, Real, Real, const AwakeParticles&,        \
-                            GuardedStep<Real>&, PredictedPaths<Real>&);                        \
-  template bool allows_for_common(const PredictedPaths<Real>&, Real);                          \
-  template Real smallest_gap_at(const QuadArray<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                \
+  template decltype(begin_paths<Real>) begin_paths<Real>;                     \
+  template decltype(begin_paths_of_strays<Real>) begin_paths_of_strays<Real>; \
+  template decltype(predict<Real>) predict<Real>;                             \
+  template decltype(find_strays<Real>) find_strays<Real>;                     \
+  template decltype(allows_for_common<Real>) allows_for_common<Real>;         \
+  template decltype(smallest_gap_at<Real>) smallest_gap_at<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

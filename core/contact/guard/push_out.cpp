@@ -85,11 +85,11 @@ void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
   forget_push(push);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                        \
-  template PushOut<Real> push_out(std::size_t);                                       \
-  template void forget_push(PushOut<Real>&);                                          \
-  template void add_push(RowSet<Real>&, PushOut<Real>&, Vec3Array<Real>&, Executor*); \
-  template void take_back_push(PushOut<Real>&, Vec3Array<Real>&);
+#define WEFT_INSTANTIATE(Real)                            \
+  template decltype(push_out<Real>) push_out<Real>;       \
+  template decltype(forget_push<Real>) forget_push<Real>; \
+  template decltype(add_push<Real>) add_push<Real>;       \
+  template decltype(take_back_push<Real>) take_back_push<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -296,15 +296,13 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template void anchor_anew(const GuardedPairs<Real>&, const GuardedStep<Real>&, Regions<Real>&); \
-  template void share_all_gaps(const GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&);    \
-  template void admit_pairs(std::size_t, GuardedStep<Real>&, Executor*, GuardedPairs<Real>&,      \
-                            Regions<Real>&);                                                      \
-  template Real find_loose(const std::vector<Index>&, const GuardedStep<Real>&, Regions<Real>&);  \
-  template void measure(const Regions<Real>&, GuardedPair<Real>&);                                \
-  template void anchor_loose(GuardedPairs<Real>&, GuardedStep<Real>&, Regions<Real>&, Executor*,  \
-                             GuardCounts&);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(anchor_anew<Real>) anchor_anew<Real>;       \
+  template decltype(share_all_gaps<Real>) share_all_gaps<Real>; \
+  template decltype(admit_pairs<Real>) admit_pairs<Real>;       \
+  template decltype(find_loose<Real>) find_loose<Real>;         \
+  template decltype(measure<Real>) measure<Real>;               \
+  template decltype(anchor_loose<Real>) anchor_loose<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -222,16 +222,12 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
   pairs.arrived.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                  \
-  template RowMaking<Real> row_making(std::size_t);                                             \
-  template void place_new_particles(const GuardedPairs<Real>&, std::size_t,                     \
-                                    const QuadArray<Real>&, RowMaking<Real>&);                  \
-  template bool find_moved(const std::vector<Index>&, const QuadArray<Real>&, Real,             \
-                           RowMaking<Real>&);                                                   \
-  template void renew_rows(const RowSource<Real>&, const QuadArray<Real>&, GuardedPairs<Real>&, \
-                           RowMaking<Real>&, RowSet<Real>&, Executor*, Profile&);               \
-  template void add_arrived(const RowSource<Real>&, GuardedPairs<Real>&, RowMaking<Real>&,      \
-                            RowSet<Real>&, Profile&);
+#define WEFT_INSTANTIATE(Real)                                            \
+  template decltype(row_making<Real>) row_making<Real>;                   \
+  template decltype(place_new_particles<Real>) place_new_particles<Real>; \
+  template decltype(find_moved<Real>) find_moved<Real>;                   \
+  template decltype(renew_rows<Real>) renew_rows<Real>;                   \
+  template decltype(add_arrived<Real>) add_arrived<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

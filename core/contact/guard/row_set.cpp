@@ -53,12 +53,12 @@ bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair) {
   return r != kNone;
 }
 
-#define WEFT_INSTANTIATE(Real)                                 \
-  template RowSet<Real> row_set(std::size_t);                  \
-  template void forget_rows(RowSet<Real>&);                    \
-  template void list_row(std::size_t, RowSet<Real>&);          \
-  template void add_row(const GuardRow<Real>&, RowSet<Real>&); \
-  template bool has_row(const RowSet<Real>&, const GuardedPair<Real>&);
+#define WEFT_INSTANTIATE(Real)                            \
+  template decltype(row_set<Real>) row_set<Real>;         \
+  template decltype(forget_rows<Real>) forget_rows<Real>; \
+  template decltype(list_row<Real>) list_row<Real>;       \
+  template decltype(add_row<Real>) add_row<Real>;         \
+  template decltype(has_row<Real>) has_row<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

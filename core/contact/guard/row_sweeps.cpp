@@ -134,18 +134,14 @@ Real sweep_once(const QuadArray<Real>& x, RowSet<Real>& rows, RowSweeps<Real>& s
                             [&](auto blocks) { return sweep_rows(blocks, upwards, pass); });
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template void copy_in(const Vec3Array<Real>&, QuadArray<Real>&, Executor*);                     \
-  template void load_velocities(const Vec3Array<Real>&, const RowSlabs<Real>&, QuadArray<Real>&,  \
-                                Executor*);                                                       \
-  template void store_velocities(const QuadArray<Real>&, const RowSlabs<Real>&, Vec3Array<Real>&, \
-                                 Executor*);                                                      \
-  template void find_busy_rows(const QuadArray<Real>&, const QuadArray<Real>&, Real,              \
-                               RowSet<Real>&, Executor*);                                         \
-  template void measure_pressures(const std::vector<Real>&, Real, RowSet<Real>&, Executor*);      \
-  template void warm_start(const QuadArray<Real>&, Real, Real, RowSet<Real>&, RowSweeps<Real>&,   \
-                           Executor*);                                                            \
-  template Real sweep_once(const QuadArray<Real>&, RowSet<Real>&, RowSweeps<Real>&, Executor*);
+#define WEFT_INSTANTIATE(Real)                                        \
+  template decltype(copy_in<Real>) copy_in<Real>;                     \
+  template decltype(load_velocities<Real>) load_velocities<Real>;     \
+  template decltype(store_velocities<Real>) store_velocities<Real>;   \
+  template decltype(find_busy_rows<Real>) find_busy_rows<Real>;       \
+  template decltype(measure_pressures<Real>) measure_pressures<Real>; \
+  template decltype(warm_start<Real>) warm_start<Real>;               \
+  template decltype(sweep_once<Real>) sweep_once<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

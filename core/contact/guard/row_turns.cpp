@@ -106,10 +106,9 @@ void remember(const QuadArray<Real>& x, RowMaking<Real>& making, GuardRow<Real>&
   old->apart = apart;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void turn_rows(const RowSource<Real>&, RowMaking<Real>&, RowSet<Real>&, Executor*, \
-                          Profile&);                                                          \
-  template void remember(const QuadArray<Real>&, RowMaking<Real>&, GuardRow<Real>&);
+#define WEFT_INSTANTIATE(Real)                        \
+  template decltype(turn_rows<Real>) turn_rows<Real>; \
+  template decltype(remember<Real>) remember<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -129,10 +129,9 @@ void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& 
   add(exit->direction, -distance_out(source.shapes, collider, x, exit->direction));
 }
 
-#define WEFT_INSTANTIATE(Real)                                                           \
-  template bool still_leaves(Index, std::size_t, std::vector<BadStart<Real>>&);          \
-  template void add_inside(const ObjectRowSource<Real>&, Index, const Vec3<Real>&, Real, \
-                           std::size_t, std::vector<Index>&, ObjectRows<Real>&);
+#define WEFT_INSTANTIATE(Real)                              \
+  template decltype(still_leaves<Real>) still_leaves<Real>; \
+  template decltype(add_inside<Real>) add_inside<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -184,15 +184,11 @@ void take_to_own(const ObjectShapes<Real>& shapes, const Vec3Array<Real>& x,
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void measure_clearance(const ContactCloths<Real>&, const ObjectShapes<Real>&,      \
-                                  const ObjectMotion<Real>&, const ClothState<Real>&, Real,   \
-                                  Executor*, Clearance<Real>&, Profile&);                     \
-  template void mark_near(const ContactCloths<Real>&, Clearance<Real>&, NearFeatures<Real>&); \
-  template bool renew_clearance(const ContactCloths<Real>&, const ObjectShapes<Real>&,        \
-                                const ClothState<Real>&, std::size_t, Real, Clearance<Real>&, \
-                                std::vector<Real>&);                                          \
-  template void take_to_own(const ObjectShapes<Real>&, const Vec3Array<Real>&, NearFeatures<Real>&);
+#define WEFT_INSTANTIATE(Real)                                        \
+  template decltype(measure_clearance<Real>) measure_clearance<Real>; \
+  template decltype(mark_near<Real>) mark_near<Real>;                 \
+  template decltype(renew_clearance<Real>) renew_clearance<Real>;     \
+  template decltype(take_to_own<Real>) take_to_own<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

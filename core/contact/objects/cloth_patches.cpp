@@ -109,9 +109,7 @@ ClothPatches make_patches(const Vec3Array<Real>& positions, const std::vector<Ed
   return patches;
 }
 
-template ClothPatches make_patches(const Vec3Array<float>&, const std::vector<Edge>&,
-                                   const std::vector<Triangle>&);
-template ClothPatches make_patches(const Vec3Array<double>&, const std::vector<Edge>&,
-                                   const std::vector<Triangle>&);
+template decltype(make_patches<float>) make_patches<float>;
+template decltype(make_patches<double>) make_patches<double>;
 
 }  // namespace weft

@@ -60,7 +60,7 @@ void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   }
 }
 
-template void share_squeeze(ObjectSolve<float>&, float);
-template void share_squeeze(ObjectSolve<double>&, double);
+template decltype(share_squeeze<float>) share_squeeze<float>;
+template decltype(share_squeeze<double>) share_squeeze<double>;
 
 }  // namespace weft

@@ -237,11 +237,10 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   return distance_to_triangle(mesh, best, p);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                    \
-  template MeshShape<Real> prepare_mesh(const TriangleMesh&);                     \
-  template MeshDistance<Real> distance_to_triangle(const MeshShape<Real>&, Index, \
-                                                   const Vec3<Real>&);            \
-  template MeshDistance<Real> distance_to_mesh(const MeshShape<Real>&, const Vec3<Real>&, Real);
+#define WEFT_INSTANTIATE(Real)                                              \
+  template decltype(prepare_mesh<Real>) prepare_mesh<Real>;                 \
+  template decltype(distance_to_triangle<Real>) distance_to_triangle<Real>; \
+  template decltype(distance_to_mesh<Real>) distance_to_mesh<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -131,7 +131,7 @@ void certify_with_movers(ObjectCertificate<Real>& c) {
   }
 }
 
-template void certify_with_movers(ObjectCertificate<float>&);
-template void certify_with_movers(ObjectCertificate<double>&);
+template decltype(certify_with_movers<float>) certify_with_movers<float>;
+template decltype(certify_with_movers<double>) certify_with_movers<double>;
 
 }  // namespace weft

@@ -109,7 +109,7 @@ bool stand_before_stopped(StoppedStep<Real>& step, MoverStops<Real>& stops) {
   return false;
 }
 
-template bool stand_before_stopped(StoppedStep<float>&, MoverStops<float>&);
-template bool stand_before_stopped(StoppedStep<double>&, MoverStops<double>&);
+template decltype(stand_before_stopped<float>) stand_before_stopped<float>;
+template decltype(stand_before_stopped<double>) stand_before_stopped<double>;
 
 }  // namespace weft

@@ -32,10 +32,9 @@ void turn_with_objects(const ObjectShapes<Real>& shapes, ContactLog& log, Object
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                              \
-  template void take_reaction(const MovingRow<Real>&, const Vec3<Real>&, const Vec3<Real>&, \
-                              ObjectMotion<Real>&);                                         \
-  template void turn_with_objects(const ObjectShapes<Real>&, ContactLog&, ObjectRows<Real>&);
+#define WEFT_INSTANTIATE(Real)                                \
+  template decltype(take_reaction<Real>) take_reaction<Real>; \
+  template decltype(turn_with_objects<Real>) turn_with_objects<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

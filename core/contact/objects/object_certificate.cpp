@@ -149,14 +149,12 @@ void certify(ObjectCertificate<Real>& c, bool others) {
   hold_within_reach(c);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                             \
-  template bool measure_travel(const ClothState<Real>&, Real, Executor*, RowReach<Real>&); \
-  template bool rows_hold(const ClothState<Real>&, Real, const ObjectMotion<Real>&,        \
-                          const ObjectRows<Real>&, Executor*, RowReach<Real>&);            \
-  template void log_stop(ObjectCertificate<Real>&, const ContactRow<Real>&, std::size_t,   \
-                         const Vec3<Real>&);                                               \
-  template bool keep_off(ObjectCertificate<Real>&, const ContactRow<Real>&, bool);         \
-  template void certify(ObjectCertificate<Real>&, bool);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(measure_travel<Real>) measure_travel<Real>; \
+  template decltype(rows_hold<Real>) rows_hold<Real>;           \
+  template decltype(log_stop<Real>) log_stop<Real>;             \
+  template decltype(keep_off<Real>) keep_off<Real>;             \
+  template decltype(certify<Real>) certify<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -165,9 +165,7 @@ void add_features_on_meshes(const ObjectRowSource<Real>& source, const RowScratc
   profile[Stage::narrow_phase].work += tests;
 }
 
-template void add_features_on_meshes(const ObjectRowSource<float>&, const RowScratch<float>&,
-                                     ObjectRows<float>&, Profile&);
-template void add_features_on_meshes(const ObjectRowSource<double>&, const RowScratch<double>&,
-                                     ObjectRows<double>&, Profile&);
+template decltype(add_features_on_meshes<float>) add_features_on_meshes<float>;
+template decltype(add_features_on_meshes<double>) add_features_on_meshes<double>;
 
 }  // namespace weft

@@ -116,11 +116,11 @@ void block_object(std::size_t collider, ObjectShapes<Real>& shapes, ObjectMotion
     motion.since_rows = std::max(motion.since_rows, frame.travel_since_rows + frame.travel);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template bool begin_motion(double, ColliderStates*, ObjectShapes<Real>&, ObjectMotion<Real>&); \
-  template void plan_objects(Real, ObjectShapes<Real>&, ObjectMotion<Real>&);                    \
-  template void advance_objects(Real, ObjectShapes<Real>&, ObjectMotion<Real>&);                 \
-  template void block_object(std::size_t, ObjectShapes<Real>&, ObjectMotion<Real>&);
+#define WEFT_INSTANTIATE(Real)                                    \
+  template decltype(begin_motion<Real>) begin_motion<Real>;       \
+  template decltype(plan_objects<Real>) plan_objects<Real>;       \
+  template decltype(advance_objects<Real>) advance_objects<Real>; \
+  template decltype(block_object<Real>) block_object<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -272,15 +272,11 @@ void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sh
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                              \
-  template ObjectPairs<Real> object_pairs(std::size_t, std::size_t);                        \
-  template void forget_neighbourhoods(ObjectPairs<Real>&);                                  \
-  template void collect_pairs(const ContactCloths<Real>&, const ObjectShapes<Real>&,        \
-                              const NearFeatures<Real>&, const Vec3Array<Real>&, Executor*, \
-                              Clearance<Real>&, ObjectPairs<Real>&, Profile&);              \
-  template void mark_paired(const ContactCloths<Real>&, const ObjectShapes<Real>&,          \
-                            const Clearance<Real>&, const ObjectPairs<Real>&,               \
-                            NearFeatures<Real>&);
+#define WEFT_INSTANTIATE(Real)                                                \
+  template decltype(object_pairs<Real>) object_pairs<Real>;                   \
+  template decltype(forget_neighbourhoods<Real>) forget_neighbourhoods<Real>; \
+  template decltype(collect_pairs<Real>) collect_pairs<Real>;                 \
+  template decltype(mark_paired<Real>) mark_paired<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

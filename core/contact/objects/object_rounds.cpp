@@ -180,9 +180,7 @@ void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real
   for (const ObjectRod<Real>& rod : shapes.rods) add({rod, false});
 }
 
-template void add_features_on_rounds(const ObjectRowSource<float>&, RowScratch<float>&,
-                                     ObjectRows<float>&, Profile&);
-template void add_features_on_rounds(const ObjectRowSource<double>&, RowScratch<double>&,
-                                     ObjectRows<double>&, Profile&);
+template decltype(add_features_on_rounds<float>) add_features_on_rounds<float>;
+template decltype(add_features_on_rounds<double>) add_features_on_rounds<double>;
 
 }  // namespace weft

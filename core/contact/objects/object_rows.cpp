@@ -286,20 +286,13 @@ void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, Objec
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template bool allow_rows(const ContactCloths<Real>&, const ObjectShapes<Real>&,                 \
-                           const ObjectMotion<Real>&, const ClothState<Real>&, Real,              \
-                           const Clearance<Real>&, const NearFeatures<Real>&, std::vector<Real>&, \
-                           std::vector<Real>&);                                                   \
-  template void add_row(const ObjectRowSource<Real>&, std::initializer_list<Index>,               \
-                        const std::array<Real, 3>&, const ContactBarrier<Real>&, std::size_t,     \
-                        bool, ObjectRows<Real>&);                                                 \
-  template void add_particle_rows(const ObjectRowSource<Real>&, RowScratch<Real>&,                \
-                                  ObjectRows<Real>&, Profile&);                                   \
-  template Corners<Real> corners_of(const ObjectRowSource<Real>&, const std::vector<Real>&,       \
-                                    std::span<const Index>);                                      \
-  template Real kept_height(const ObjectRowSource<Real>&, Index, Real);                           \
-  template void finish_rows(const ContactCloths<Real>&, std::size_t, ObjectRows<Real>&);
+#define WEFT_INSTANTIATE(Real)                                        \
+  template decltype(allow_rows<Real>) allow_rows<Real>;               \
+  template decltype(add_row<Real>) add_row<Real>;                     \
+  template decltype(add_particle_rows<Real>) add_particle_rows<Real>; \
+  template decltype(corners_of<Real>) corners_of<Real>;               \
+  template decltype(kept_height<Real>) kept_height<Real>;             \
+  template decltype(finish_rows<Real>) finish_rows<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

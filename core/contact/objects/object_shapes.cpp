@@ -178,16 +178,15 @@ double top_of(const ObjectShapes<Real>& shapes, std::size_t mesh, const Vec3<Rea
   return top;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                            \
-  template ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>&);             \
-  template void place_collider(std::size_t, const Pose&, ObjectShapes<Real>&);            \
-  template Real analytic_clearance(const ObjectShapes<Real>&, const Vec3<Real>&, Real);   \
-  template Real clearance_of(const ObjectShapes<Real>&, const Vec3<Real>&, Real);         \
-  template Real least_clearance(const ObjectShapes<Real>&, const Vec3<Real>&, Real);      \
-  template Real signed_distance(const ObjectShapes<Real>&, const Vec3<Real>&);            \
-  template Real distance_from(const ObjectShapes<Real>&, std::size_t, const Vec3<Real>&); \
-  template double top_of(const ObjectShapes<Real>&, std::size_t, const Vec3<Real>&,       \
-                         std::initializer_list<Index>);
+#define WEFT_INSTANTIATE(Real)                                          \
+  template decltype(object_shapes<Real>) object_shapes<Real>;           \
+  template decltype(place_collider<Real>) place_collider<Real>;         \
+  template decltype(analytic_clearance<Real>) analytic_clearance<Real>; \
+  template decltype(clearance_of<Real>) clearance_of<Real>;             \
+  template decltype(least_clearance<Real>) least_clearance<Real>;       \
+  template decltype(signed_distance<Real>) signed_distance<Real>;       \
+  template decltype(distance_from<Real>) distance_from<Real>;           \
+  template decltype(top_of<Real>) top_of<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -153,11 +153,11 @@ void load_mesh(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
     put<Real>(at(vertices.number[n]), 0, stride, n, vertices.values);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                \
-  template void load_particles(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&); \
-  template void load_edges(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&);     \
-  template void load_triangles(const PairPass<Real>&, const NearPatch&, PairFeatures<Real>&); \
-  template void load_mesh(const MeshShape<Real>&, Neighbourhood<Real>&);
+#define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(load_particles<Real>) load_particles<Real>; \
+  template decltype(load_edges<Real>) load_edges<Real>;         \
+  template decltype(load_triangles<Real>) load_triangles<Real>; \
+  template decltype(load_mesh<Real>) load_mesh<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

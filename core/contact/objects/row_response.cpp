@@ -231,13 +231,13 @@ void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
 #define WEFT_INSTANTIATE(Real)                                                                   \
   template void find_busy_rows(const ObjectRows<Real>&, const ObjectMotion<Real>&,               \
                                const std::vector<Real>&, const ContactLog&, RowResponse<Real>&); \
-  template LonePass<Real> lone_pass(RowReach<Real>&, ClothState<Real>&, Real);                   \
+  template decltype(lone_pass<Real>) lone_pass<Real>;                                            \
   template void push_out(Real, Real, Executor*, ObjectRows<Real>&, RowReach<Real>&,              \
                          RowResponse<Real>&, ClothState<Real>&);                                 \
-  template void aim_rows(ObjectSolve<Real>&, const ObjectShapes<Real>&, Real);                   \
-  template Real sweep_rows(ObjectSolve<Real>&, bool);                                            \
-  template void solve_rows(ObjectSolve<Real>&, Real, ClothGuard<Real>*);                         \
-  template void bounce(ObjectSolve<Real>&, ClothGuard<Real>*);
+  template decltype(aim_rows<Real>) aim_rows<Real>;                                              \
+  template decltype(sweep_rows<Real>) sweep_rows<Real>;                                          \
+  template decltype(solve_rows<Real>) solve_rows<Real>;                                          \
+  template decltype(bounce<Real>) bounce<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE
