@@ -137,9 +137,9 @@ inline constexpr double kSameWay = 0.99;
 /// that time [1]. Larger: more rows are swept. Smaller: a contact may begin a few steps late.
 inline constexpr double kBusyApproach = 2;
 
-/// Sweeps where cloths meet only each other, at most: see kResidual. What one sweep leaves under load
-/// sinks in, and the push that leads it out again does work that came from nowhere. More: slower
-/// steps under load.
+/// Sweeps where cloths meet only each other, at most: see kResidual. What one sweep leaves under
+/// load sinks in, and the push that leads it out again does work that came from nowhere. More:
+/// slower steps under load.
 inline constexpr int kMostSweeps = 3;
 
 /// Space is cut anew into slabs after this many steps, before a look. Larger: slabs that no longer

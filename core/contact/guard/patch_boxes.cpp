@@ -65,6 +65,7 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
 template <class Real>
 PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
   const Shape& shape = shapes_[static_cast<std::size_t>(p)];
+  assert(fits_[static_cast<std::size_t>(p)] != 0);
   const Real* at = numbers_.data() + shape.begin;
   const auto take = [&](std::size_t count) {
     const BoxColumns<Real> kind{at, count, padded(count)};
@@ -108,6 +109,7 @@ template <class Real>
 void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch,
                            const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
   const auto number = static_cast<std::size_t>(p);
+  assert(number < shapes_.size() && patch.particles.size() <= kMostPatchFeatures);
   CornerBoxes corner;
   QuadBox<Real> whole;
   std::uint32_t bits = 0;

@@ -3,6 +3,7 @@
 #include "core/contact/guard/patch_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -214,6 +215,7 @@ void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) c
 
 template <class Real>
 void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
+  assert(motion.start.size() == motion.end.size() && motion.radius >= 0);
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
   for (Node& node : nodes_) node.spread = {};
   if (!cull || nodes_.empty()) return;
@@ -223,6 +225,7 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
 template <class Real>
 void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
                                     const std::vector<char>& changed) {
+  assert(motion.start.size() == changed.size());
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     if (node.patch == kNone) {

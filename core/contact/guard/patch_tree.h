@@ -17,8 +17,8 @@ struct PredictedMotion {
   Real radius = 0;             ///< of the balls [m]
 };
 
-/// A patch of a grid is at most this many cells wide. Wider: fewer boxes, and more features in those
-/// that touch.
+/// A patch of a grid is at most this many cells wide. Wider: fewer boxes, and more features in
+/// those that touch.
 inline constexpr int kPatchCells = 2;
 
 /// A bit for each feature of a patch.

@@ -1,5 +1,7 @@
 #include "core/contact/guard/row_blocks.h"
 
+#include <cassert>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/contact/guard/row_blocks.cpp"
 #include <hwy/foreach_target.h>
@@ -41,6 +43,7 @@ double sweep_rows(std::span<RowBlock<double>> blocks, bool upwards, const RowPas
 template <class Real>
 RowBlock<Real>::RowBlock(const RowBatch& batch, std::span<const GuardRow<Real>> rows)
     : row(batch), lacks(0), count(0) {
+  assert(batch[0] != kNone);
   const GuardRow<Real> none = idle_row(rows[static_cast<std::size_t>(batch[0])]);
   for (std::size_t k = 0; k < kBatchRows; ++k) {
     const bool any = batch[k] != kNone;

@@ -15,8 +15,8 @@ namespace weft {
 inline constexpr double kBusyRoom = 0.02;
 
 /// Time in which a contact that sticks goes back to its anchor [s], but no faster than this, which
-/// is too slow to see [m/s]; and how far that may be, as a part of the radius: what slides drags its
-/// anchor along, and what did so for a moment, as the load went over to other rows, goes back.
+/// is too slow to see [m/s]; and how far that may be, as a part of the radius: what slides drags
+/// its anchor along, and what did so for a moment, as the load went over to other rows, goes back.
 inline constexpr double kStickTime = 0.02, kFastestReturn = 1e-3, kMostSlip = 0.008;
 
 /// A lack of this part of the radius is let be: what cannot part, in tight folds, would be pushed

@@ -2,6 +2,7 @@
 
 #include "core/contact/guard/row_deals.h"
 
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -41,6 +42,7 @@ void RowDeals<Real>::clear() {
 template <class Real>
 void RowDeals<Real>::take(const RowSlabs<Real>& slabs, std::span<const GuardRow<Real>> rows,
                           std::size_t particles, Executor* executor) {
+  assert(slabs.size() <= rows.size());
   next_batch_.resize(particles, 0);
   few_ = slabs.size() < kFewRows;
   changed_ = false;
@@ -127,6 +129,7 @@ void RowDeals<Real>::deal(std::size_t number, Index row, const std::array<Index,
 
 template <class Real>
 void RowDeals<Real>::add(std::size_t list, Index row, std::span<const GuardRow<Real>> rows) {
+  assert(list < RowSlabs<Real>::kLists && static_cast<std::size_t>(row) < rows.size());
   blocks_[deal_of(list)].emplace_back(batch_of(row), rows);
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/contact/guard/row_slabs.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -58,6 +59,7 @@ void RowSlabs<Real>::clear_particles() {
 
 template <class Real>
 std::uint8_t RowSlabs<Real>::list_of(const std::array<Index, 4>& particles) const {
+  assert(!slab_of_.empty() && "cut comes first");
   std::uint8_t first = kSlabs, last = 0;
   for (const Index i : particles) {
     const std::uint8_t slab = slab_of_[static_cast<std::size_t>(i)];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -69,7 +70,10 @@ class RowSlabs {
   /// Whether so few are that other threads are no help.
   bool are_few() const { return busy_count_ < kFewRows; }
   /// The busy rows of a list, of kLists.
-  const std::vector<Index>& list(std::size_t number) const { return busy_[number]; }
+  const std::vector<Index>& list(std::size_t number) const {
+    assert(number < kLists);
+    return busy_[number];
+  }
   /// How often the busy rows of a list have changed, by their numbers or what these stand for.
   std::uint64_t changes(std::size_t number) const { return changes_[number]; }
 
@@ -82,6 +86,7 @@ class RowSlabs {
 
   /// Lists a particle that rows have, once.
   void add_particle(Index particle) {
+    assert(slab_of_.empty() || static_cast<std::size_t>(particle) < slab_of_.size());
     particles_[slab_of_.empty() ? 0 : slab_of_[static_cast<std::size_t>(particle)]].push_back(
         particle);
     ++particle_count_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "core/contact/objects/object_rows.h"
@@ -14,12 +15,14 @@ inline constexpr Index kOutside = -1, kInsideSeveral = -2;
 
 /// Notes that a particle is inside a collider.
 inline void note_inside(Index particle, std::size_t collider, std::vector<Index>& inside) {
+  assert(static_cast<std::size_t>(particle) < inside.size());
   Index& known = inside[static_cast<std::size_t>(particle)];
   const auto number = static_cast<Index>(collider);
   known = known == kOutside || known == number ? number : kInsideSeveral;
 }
 
 inline bool is_inside(Index particle, std::size_t collider, const std::vector<Index>& inside) {
+  assert(static_cast<std::size_t>(particle) < inside.size());
   const Index known = inside[static_cast<std::size_t>(particle)];
   return known == static_cast<Index>(collider) || known == kInsideSeveral;
 }

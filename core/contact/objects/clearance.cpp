@@ -95,6 +95,7 @@ void mark_near(const ContactCloths<Real>& cloths, Clearance<Real>& clearance,
   Clearance<Real>& c = clearance;
   const ClothPatches& patches = cloths.patches;
   const std::size_t n = c.distance.size();
+  assert(c.span.size() == n && c.skin.size() == n && c.near.size() == n);
   for (std::size_t i = 0; i < n; ++i)
     c.near[i] = c.distance[i] <= cloths.thickness + c.span[i] + c.skin[i];
   near.active = c.near;

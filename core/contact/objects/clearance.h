@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -78,6 +79,7 @@ void take_to_own(const ObjectShapes<Real>& shapes, const Vec3Array<Real>& x,
 template <class Real>
 const Vec3Array<Real>& in_frame_of(const ObjectShapes<Real>& shapes, const NearFeatures<Real>& near,
                                    std::size_t mesh, const Vec3Array<Real>& x) {
+  assert(!shapes.mesh_frame(mesh).displaced || near.x_own[mesh].size() == x.size());
   return shapes.mesh_frame(mesh).displaced ? near.x_own[mesh] : x;
 }
 

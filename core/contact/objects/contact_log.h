@@ -58,6 +58,7 @@ class ContactLog {
   /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
   template <class Row, class Real>
   void add(const std::vector<Row>& rows, std::size_t r, const Vec3<Real>& change) {
+    assert(r < sums_.size());
     add_impulse(rows, r, change.template cast<double>() * sums_[r].mass);
   }
 

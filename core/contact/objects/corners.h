@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <limits>
 
 #include "core/contact/objects/mesh_shape.h"
@@ -27,6 +28,7 @@ struct Corners {
   /// by sum w_i w_j |x_i - x_j|^2 over pairs.
   /// @param least  that they are from it while the rows hold [m]
   bool clear(Real least, Real radius) const {
+    assert(radius >= 0 && unseen >= 0);
     const Real most = radius + unseen;
     return least > 0 && least * least - span * span > most * most;
   }

@@ -13,6 +13,7 @@ namespace {
 template <class Real>
 Real find_squeezed(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& rows,
                    ColliderState& jaw) {
+  assert(!jaw.press.isZero(0));
   jaw.facing = 0;
   Real touching = 0;
   for (MovingRow<Real>& moving : rows.moving) {

@@ -11,6 +11,7 @@
 #if HWY_ONCE
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 
 namespace weft {
@@ -57,6 +58,7 @@ template <class Real>
 void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
                           const std::vector<RowRoom<Real>>& rooms,
                           const std::vector<ContactDef>& cloths, std::size_t particles) {
+  assert(rooms.size() == rows.size());
   constexpr Index kNoRow = -1, kSeveral = -2;
   const auto cloth = [&](const ContactRow<Real>& row) -> const ContactDef& {
     return cloths[static_cast<std::size_t>(row.cloth)];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -65,7 +66,10 @@ class LoneRows {
             const std::vector<ContactDef>& cloths, std::size_t particles);
 
   /// Whether a row is one of them.
-  bool has(std::size_t row) const { return is_lone_[row] != 0; }
+  bool has(std::size_t row) const {
+    assert(row < is_lone_.size());
+    return is_lone_[row] != 0;
+  }
   /// By particle.
   const std::vector<LoneBlock<Real>>& blocks() const { return blocks_; }
 

@@ -3,6 +3,7 @@
 #include "core/contact/objects/mesh_shape.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -166,6 +167,7 @@ Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
 
 template <class Real>
 MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
+  assert(!mesh.triangles.empty());
   MeshShape<Real> shape;
   shape.closed = is_closed(mesh);
   shape.triangle_size = static_cast<Real>(
@@ -198,6 +200,7 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
 /// In double precision: at a sharp ridge or corner a small error would change sides.
 template <class Real>
 MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
+  assert(t >= 0 && static_cast<std::size_t>(t) < mesh.triangles.size());
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
   const auto corner = [&](std::size_t k) -> Vec3d {
     return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
@@ -219,6 +222,7 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
 
 template <class Real>
 MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real>& p, Real reach) {
+  assert(reach >= 0);
   Index best = kNone;
   mesh.triangle_tree.nearest(
       reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },

@@ -2,6 +2,7 @@
 // cannot yield the object stands still.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/contact/objects/constants.h"
@@ -16,6 +17,7 @@ namespace {
 /// stopped: so that it can stand still, no particle goes to where it still is [m].
 template <class Real>
 Real lack_behind(const ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t i) {
+  assert(c.rows.moving_of(row));
   const ColliderFrame<Real>& frame = c.shapes.frames[c.rows.moving_of(row)->collider];
   if (frame.wary == 0 || !frame.moves) return 0;
   const Real now = row.normal.dot(c.state.x[i]) - row.offset;

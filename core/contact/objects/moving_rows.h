@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/contact_log.h"
@@ -18,6 +19,7 @@ namespace weft {
 /// @param moves  the object does
 template <class Real>
 Real least_height(const ContactRow<Real>& row, bool moves, Real smallest_gap) {
+  assert(smallest_gap > 0 && row.thickness >= 0);
   return moves ? std::max(smallest_gap, row.thickness * Real(kMoverGap)) : row.keep;
 }
 

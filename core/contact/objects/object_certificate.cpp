@@ -100,6 +100,7 @@ void log_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size
   single.particle = {row.particle[k], 0, 0};
   single.weight = {Real(1), 0, 0};
   single.count = 1;
+  assert(c.log.wanted() && k < static_cast<std::size_t>(row.count));
   const Vec3<Real> change = c.state.v[static_cast<std::size_t>(row.particle[k])] - before;
   c.log.add_apart(single, change, c.state);
 }

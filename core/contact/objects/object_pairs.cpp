@@ -42,6 +42,7 @@ FeatureTable<Real> measure_all(const PairFeatures<Real>& cloth, const PairFeatur
                                const Aabb<Real>& box, Real thickness, Measure<Real> measure,
                                FoundPairs<Real>& found, std::vector<Real>& free) {
   FeatureTable<Real> table;
+  assert(cloth.reach2.size() == cloth.number.size());
   table.count = cloth.number.size();
   table.stride = padded(mesh.number.size());
   found.distance2.resize(table.count * (table.stride + 2));

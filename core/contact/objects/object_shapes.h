@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <initializer_list>
 #include <limits>
 #include <vector>
@@ -28,6 +29,7 @@ struct ObjectShapes {
 
   bool empty() const { return planes.empty() && balls.empty() && rods.empty() && meshes.empty(); }
   const ColliderFrame<Real>& mesh_frame(std::size_t mesh) const {
+    assert(mesh < mesh_collider.size());
     return frames[mesh_collider[mesh]];
   }
 };

@@ -77,6 +77,7 @@ void note_impact(ObjectSolve<Real>& solve, std::size_t r) {
 template <class Real>
 void respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v, Real vn, Real push) {
   const ContactRow<Real>& row = solve.rows.all[r];
+  assert(row.responds && push >= 0);
   MovingRow<Real>* const moving = solve.rows.moving_of(row);
   Vec3<Real> change = row.normal * push;
   const Real friction = static_cast<Real>(settings_of(solve.cloths, row).friction);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 
 #include "core/contact/objects/contact_row.h"
@@ -17,6 +18,7 @@ template <class Real>
   const auto at = [&](std::size_t k) -> const Vec3<Real>& {
     return values[static_cast<std::size_t>(row.particle[k])];
   };
+  assert(row.count >= 1 && row.count <= 3);
   if (row.count == 1) return at(0);
   const Vec3<Real> two = at(0) * row.weight[0] + at(1) * row.weight[1];
   return row.count == 2 ? two : (two + at(2) * row.weight[2]).eval();
