@@ -10,7 +10,7 @@
 
 #include "core/contact/constants.h"
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/guard_parts.h"
+#include "core/contact/parts.h"
 
 namespace weft {
 namespace {

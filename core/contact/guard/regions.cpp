@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/guard_parts.h"
+#include "core/contact/parts.h"
 #include "core/stop_signal.h"
 
 namespace weft {

@@ -6,8 +6,8 @@
 #include <cassert>
 
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/guard_parts.h"
 #include "core/contact/guard/row_turns.h"
+#include "core/contact/parts.h"
 
 namespace weft {
 namespace {

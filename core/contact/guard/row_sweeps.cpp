@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/guard_parts.h"
 #include "core/contact/guard/row_blocks.h"
+#include "core/contact/parts.h"
 #include "core/stop_signal.h"
 
 namespace weft {

@@ -8,6 +8,7 @@
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/corners.h"
+#include "core/contact/parts.h"
 #include "core/contact/smallest_gap.h"
 
 namespace weft {
@@ -61,10 +62,9 @@ void measure_clearance(const ContactCloths<Real>& cloths, const ObjectShapes<Rea
   }
   c.skin.resize(n);
   measure_spans(cloths.patches.edges, state.x, c.span);
-  std::array<std::uint64_t, kContactChunks> tests{};
-  run_chunks(executor, kContactChunks, [&](int number) {
-    const auto chunk = static_cast<std::size_t>(number);
-    for (std::size_t i = n * chunk / kContactChunks; i < n * (chunk + 1) / kContactChunks; ++i) {
+  std::array<std::uint64_t, kContactParts> tests{};
+  run_parts(executor, n, kContactParts, [&](std::size_t part, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
       if (!c.resting.empty() && c.resting[i]) {
         c.distance[i] = Real(kOutOfReach);
         c.skin[i] = 0;
@@ -82,7 +82,7 @@ void measure_clearance(const ContactCloths<Real>& cloths, const ObjectShapes<Rea
       // One that was clear of everything is still outside, and a bound is cheaper than a distance.
       const Real bound = c.distance[i] > 0 ? least_clearance(shapes, state.x[i], horizon) : Real(0);
       c.distance[i] = bound > needed ? bound : clearance_of(shapes, state.x[i], horizon);
-      ++tests[chunk];
+      ++tests[part];
     }
   });
   for (const std::uint64_t count : tests) profile[Stage::broad_phase].work += count;

@@ -34,8 +34,8 @@ inline constexpr double kBoundSlack = 0.6;
 /// particles that have left stay in the lists. Smaller: more measurements.
 inline constexpr std::size_t kTurns = 8;
 
-/// Chunks of the collection. More: more threads, and more lists to join.
-inline constexpr int kContactChunks = 8;
+/// Parts of the collection. More: more threads, and more lists to join.
+inline constexpr std::size_t kContactParts = 8;
 
 /// How far around a patch its part of a mesh reaches, in sizes of the mesh's triangles [1]. Larger:
 /// it is looked up less often, and more has to be measured.

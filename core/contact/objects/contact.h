@@ -39,7 +39,7 @@ class Contact {
 
   /// @param cloths        settings of each cloth, in the order of their particles; at least one
   /// @param patches       the features of all cloths
-  /// @param executor      runs the collection in chunks; may be null
+  /// @param executor      runs the collection in parts; may be null
   /// Throws DefinitionError if a collider is out of range.
   Contact(const std::vector<ContactDef>& cloths, const std::vector<ColliderDef>& colliders,
           ClothPatches patches, Executor* executor);

@@ -14,6 +14,8 @@
 #include <cassert>
 #include <limits>
 
+#include "core/contact/parts.h"
+
 namespace weft {
 
 namespace {
@@ -103,12 +105,10 @@ LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass,
   const std::span<LoneBlock<Real>> blocks = blocks_;
   if (!executor || blocks.size() < kFewBlocks) return run_push_and_respond(blocks, pass);
   std::array<LoneResponse<Real>, kParts> of_part;
-  run_chunks(executor, static_cast<int>(kParts), [&](int chunk) {
-    const auto part = static_cast<std::size_t>(chunk);
-    const std::size_t first = blocks.size() * part / kParts,
-                      last = blocks.size() * (part + 1) / kParts;
+  const auto work = [&](std::size_t part, std::size_t first, std::size_t last) {
     of_part[part] = run_push_and_respond(blocks.subspan(first, last - first), pass);
-  });
+  };
+  run_parts(executor, blocks.size(), kParts, work);
   LoneResponse<Real> whole;
   for (const LoneResponse<Real>& part : of_part) {
     whole.largest = std::max(whole.largest, part.largest);

@@ -10,6 +10,7 @@
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/feature_distance.h"
+#include "core/contact/parts.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -137,7 +138,7 @@ void pair_patch(const PairPass<Real>& pass, const NearPatch& patch, Neighbourhoo
                  measure_triangles_from_points, found, found.triangle_pairs, pass.free.triangle);
 }
 
-/// Joins what the chunks have found for a mesh, in their order.
+/// Joins what the parts have found for a mesh, in their order.
 template <class Real>
 void join_found(std::size_t mesh, ObjectPairs<Real>& pairs, Profile& profile) {
   using Found = FoundPairs<Real>;
@@ -190,7 +191,7 @@ ObjectPairs<Real> object_pairs(std::size_t meshes, std::size_t patches) {
   pairs.particle.resize(meshes);
   pairs.edge.resize(meshes);
   pairs.triangle.resize(meshes);
-  pairs.found.resize(kContactChunks);
+  pairs.found.resize(kContactParts);
   pairs.neighbourhoods.assign(meshes, std::vector<Neighbourhood<Real>>(patches));
   return pairs;
 }
@@ -223,18 +224,18 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
     const PairPass<Real> pass{cloths,    shapes.meshes[m], near, in_frame_of(shapes, near, m, x),
                               clearance, pairs.free,       fresh};
-    run_chunks(executor, kContactChunks, [&](int chunk) {
-      const auto c = static_cast<std::size_t>(chunk);
-      FoundPairs<Real>& found = pairs.found[c];
-      for (auto* list : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
-        list->clear();
-      found.tests = 0;
-      for (std::size_t n = count * c / kContactChunks; n < count * (c + 1) / kContactChunks; ++n) {
-        stop_point();
-        const NearPatch& patch = near.patches[n];
-        pair_patch(pass, patch, pairs.neighbourhoods[m][patch.patch], found);
-      }
-    });
+    run_parts(executor, count, kContactParts,
+              [&](std::size_t c, std::size_t first, std::size_t last) {
+                FoundPairs<Real>& found = pairs.found[c];
+                for (auto* list : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
+                  list->clear();
+                found.tests = 0;
+                for (std::size_t n = first; n < last; ++n) {
+                  stop_point();
+                  const NearPatch& patch = near.patches[n];
+                  pair_patch(pass, patch, pairs.neighbourhoods[m][patch.patch], found);
+                }
+              });
     join_found(m, pairs, profile);
   }
   // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.

@@ -15,7 +15,7 @@
 
 namespace weft {
 
-/// What a chunk of the collection finds, and room to work.
+/// What a part of the collection finds, and room to work.
 template <class Real>
 struct FoundPairs {
   std::vector<ContactCandidate<Real>> particle_pairs, edge_pairs, triangle_pairs;
@@ -30,7 +30,7 @@ struct ObjectPairs {
   using Pairs = std::vector<ContactCandidate<Real>>;
   std::vector<Pairs> particle, edge, triangle;
   std::vector<std::vector<Neighbourhood<Real>>> neighbourhoods;  ///< of each mesh and patch
-  std::vector<FoundPairs<Real>> found;                           ///< by each chunk
+  std::vector<FoundPairs<Real>> found;                           ///< by each part
   FreeDistance<Real> free;
   std::vector<Real> fresh;  ///< clearances that the pairs have measured, of active particles [m]
 };

@@ -6,7 +6,7 @@
 
 #include "core/executor.h"
 
-// The guard's work is done in parts that do not depend on each other, on whatever threads there
+// Work of contact is done in parts that do not depend on each other, on whatever threads there
 // are. The number of parts depends on the amount of work alone, and their results are merged in
 // order: threads make no difference.
 
