@@ -38,7 +38,8 @@ struct FreeDistance {
   std::vector<Real> particle, edge, triangle;
 };
 
-/// One mesh in a collection: all that its parts read, and what they write, each for its own patches.
+/// One mesh in a collection: all that its parts read, and what they write, each for its own
+/// patches.
 template <class Real>
 struct PairPass {
   const ContactCloths<Real>& cloths;
