@@ -65,7 +65,7 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
 template <class Real>
 PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
   const Shape& shape = shapes_[static_cast<std::size_t>(p)];
-  assert(fits_[static_cast<std::size_t>(p)] != 0);
+  assert(static_cast<std::size_t>(p) < fits_.size());
   const Real* at = numbers_.data() + shape.begin;
   const auto take = [&](std::size_t count) {
     const BoxColumns<Real> kind{at, count, padded(count)};
