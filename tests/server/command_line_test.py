@@ -118,6 +118,23 @@ class CommandLine(unittest.TestCase):
             self.assertIn(key, result)
         self.assertGreater(result["stages"]["stretch"]["work"], 0)
 
+    def test_a_balance_is_told_on_request_adds_up_and_changes_no_bit(self):
+        arguments = ("simulate", "--scene", "flag", "--ticks", "20", "--json")
+        plain = json.loads(run(*arguments).stdout)
+        self.assertEqual(plain["balance"], "not measured")
+        told = json.loads(run(*arguments, "--balance").stdout)
+        self.assertEqual(told["hash"], plain["hash"])
+        balance = told["balance"]
+        self.assertAlmostEqual(balance["now"], told["energy"]["total"], places=9)
+        self.assertAlmostEqual(balance["start"] + sum(balance["work"].values()) - sum(balance["losses"].values()),
+                               balance["now"], places=9)
+        self.assertGreater(balance["work"]["wind"], 0)
+        self.assertGreater(balance["losses"]["air"], 0)
+        self.assertEqual(balance["work"]["hands"], 0)
+        self.assertAlmostEqual(balance["losses"]["drag"], 0, delta=1e-6)  # but for rounding
+        # What no cause explains is the solver's error, which is small beside the work of the wind.
+        self.assertLess(abs(balance["losses"]["solver"]), 0.02 * balance["work"]["wind"])
+
     def test_a_measured_decay_is_converted_to_the_relaxation_time_that_has_it(self):
         strip = ("fabric", "--set", "fabric=wool", "--mode", "bending", "--length", "0.05", "--json")
         found = json.loads(run(*strip, "--decay-time", "0.5").stdout)["modes"][0]

@@ -14,9 +14,12 @@ from foreign_client import PROGRAM, main
 HAMMOCK = ("--scene", "hammock", "--set", "contact.self=none", "--set", "environment.wind=0,0,0")
 
 
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False)
+
+
 def simulate(*arguments):
-    return subprocess.run([PROGRAM, "simulate", *map(str, arguments)], capture_output=True, text=True, timeout=120,
-                          check=False)
+    return program("simulate", *arguments)
 
 
 def summary(*arguments):
@@ -43,6 +46,7 @@ class Series(unittest.TestCase):
         numpy.testing.assert_allclose(series["time"], series["tick"] / 60)
         for name in ("kinetic", "stretch", "bending", "gravity"):
             self.assertAlmostEqual(series[name][-1], told["energy"][name], places=9)
+        self.assertAlmostEqual(series["strain"][-1], told["strain"]["largest"], delta=1e-5)
         self.assertEqual(series["x"].shape, (4, told["particles"], 3))
         self.assertEqual(told["hash"], summary("--scene", "flag", "--ticks", 12)["hash"])
 
@@ -52,6 +56,22 @@ class Series(unittest.TestCase):
         self.assertTrue(numpy.isnan(series["pins"][0]).all())
         weight = -series["gravity"][-1] / series["x"][-1, :, 1].mean()
         numpy.testing.assert_allclose(series["pins"][-1].sum(axis=0), [0, -weight, 0], atol=0.01 * abs(weight))
+
+    def test_what_no_damping_takes_is_the_work_in_the_energies(self):
+        scene = json.loads(program("scenes", "--json", "hammock").stdout)
+        scene["environment"].update(drag=0, wind=[0, 0, 0], gust_speed=0)
+        scene["contact"]["self"] = "none"
+        scene["cloths"][0]["fabric"].update(damping_ratio=0)
+        scene["colliders"] = []
+        scene["hands"] = [{"u": 0.5, "v": 0.5, "radius": 0.1, "stiffness": 60, "max_force": 50,
+                           "path": [{"time": 0, "offset": [0, 0, 0]}, {"time": 10, "offset": [0, 5, 0.5]}]}]
+        path = self.folder / "pulled.json"
+        path.write_text(json.dumps(scene))
+        _, series = self.series("pulled.npy", "--scene", path, "--ticks", 12, "--series-every", 6)
+        energy = series["kinetic"] + series["stretch"] + series["bending"] + series["gravity"]
+        least = numpy.abs(series["work"][1:]).min()
+        self.assertGreater(least, 1e-3)
+        numpy.testing.assert_allclose(numpy.diff(energy), series["work"][1:], atol=0.02 * least)
 
     def test_work_and_energy_of_each_stretch_of_time_add_up_to_the_runs(self):
         _, fine = self.series("fine.npy", "--scene", "flag", "--ticks", 12)
