@@ -4,7 +4,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 // Where the camera stands by itself, without a browser.
 
-const { axes_of, part_outside, pose_around, pose_of_view } = await import_page_module('view/framing');
+const { axes_of, part_outside, pose_around, pose_of_view, reach_of_corners } = await import_page_module('view/framing');
 const { OrbitCamera } = await import_page_module('view/camera');
 const { best_side, Director, view_of_address } = await import_page_module('view/director');
 
@@ -184,6 +184,29 @@ test('who joins while the cloth is away from the scene’s view sees the cloth, 
   assert.ok(part_outside(points, orbit.heading, window()) <= 0.1, 'it follows the cloth home');
   begin(points, { ...view, radius: 0.05 });
   assert.ok(part_outside(points, orbit.heading, window()) > 0.9, 'a view of a part is kept');
+});
+
+test('no cloth of a first view is behind a panel in a corner, and what is behind none is as large as before', () => {
+  const orbit = new OrbitCamera();
+  orbit.resize(1280, 800);
+  const corners = [{ left: 0, right: 0.1, bottom: 0.15 }, { left: 0.75, right: 1, bottom: 0.1 }];
+  const free = () => orbit.window({ above: 0.01, below: 0.08 });
+  const window = () => ({ ...free(), corners });
+  for (const [width, clear] of [[0.4, true], [1.2, false]]) {
+    const { points, triangles } = sheet([0, 1, 0], [width, 0, 0], [0, 1, 0]);
+    for (const view of [null, { target: [0, 1, 0], direction: [0, 0, 1], radius: 0.55 }]) {
+      const begin = (seen) => {
+        const director = new Director(orbit, seen);
+        director.begin({ cloth: points, start: points, triangles, boxes: [], ground: null }, view, true);
+        return orbit.heading;
+      };
+      const before = begin(free);
+      const pose = begin(window);
+      assert.equal(reach_of_corners(points, pose, window()), 0, `${width} m wide`);
+      assert.equal(reach_of_corners(points, before, window()) === 0, clear);
+      assert.equal(pose.distance === before.distance, clear);
+    }
+  }
 });
 
 test('an address may ask for a view; what is none is left', () => {

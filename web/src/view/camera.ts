@@ -65,7 +65,7 @@ export class OrbitCamera {
   }
 
   /** Its opening, where panels cover these parts of the picture's height. */
-  window(covered: { above: number; below: number }): Window {
+  window(covered: Pick<Window, 'above' | 'below' | 'corners'>): Window {
     const slope = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     return { slope, aspect: this.camera.aspect, ...covered };
   }

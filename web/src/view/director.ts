@@ -1,7 +1,7 @@
 import { Box3, Vector3 } from 'three';
 import type { View } from '../../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
-import { axes_of, part_outside, pose_around, pose_of_view } from './framing.js';
+import { axes_of, part_outside, pose_around, pose_of_view, reach_of_corners } from './framing.js';
 import type { Pose, Window } from './framing.js';
 
 const MARGIN = 1.06; // of the picture around what is framed
@@ -10,6 +10,7 @@ const MOST_GONE = 0.25; // part of the cloth that has left a first view; else it
 const HOME_OUTSIDE = 0.02; // part outside of the first view at which the camera returns to it
 const LEAST_FOLLOWED = 0.7; // of the first view's distance, however small the cloth gets
 const MOST_APPROACH = 0.72; // of a view's distance, to a cloth that leaves room
+const MOST_RETREAT = 1.12; // of a first view's distance, to have nothing behind a panel in a corner
 const LOOK_INTERVAL = 0.2; // between two looks at whether the cloth is in the picture [s]
 const NEAR_OBJECT = 0.15; // of the cloth's diagonal: so much of the objects around is framed too
 const NEAR_GROUND = 0.35; // of the cloth's diagonal: so near the ground is framed too
@@ -48,12 +49,17 @@ export class Director {
 
   /** Shows a scene as one sees it first, from its own view if it has one, and follows it from there. */
   begin(subject: Subject, view: View | null, at_once: boolean): void {
-    const window = this.window();
-    const { cloth, start } = subject;
-    const whole = view ? pose_of_view(view, window) : framed(subject, window);
-    const gone = part_outside(cloth, whole, window) - part_outside(start, whole, window);
-    this.away = gone > MOST_GONE;
-    this.home = view && !this.away ? approached(whole, cloth, window) : whole;
+    const { cloth } = subject;
+    let window = this.window();
+    let first = first_look(subject, view, window);
+    const lowest = reach_of_corners(cloth, first.home, window);
+    if (lowest > window.above) {
+      const below_corners = { ...window, above: lowest };
+      const clear = first_look(subject, view, below_corners);
+      if (clear.home.distance <= MOST_RETREAT * first.home.distance) [first, window] = [clear, below_corners];
+    }
+    this.home = first.home;
+    this.away = first.away;
     const outside = part_outside(cloth, this.home, window);
     this.tolerated = this.away ? MOST_OUTSIDE : Math.max(MOST_OUTSIDE, 1.5 * outside);
     this.orbit.look(this.away ? pose_after(cloth, this.home, window) : this.home, at_once);
@@ -79,6 +85,14 @@ export class Director {
     this.away = true;
     this.orbit.look(pose_after(cloth, home, window), false);
   }
+}
+
+/** A scene's first view, and whether its cloth has left that already. */
+function first_look(subject: Subject, view: View | null, window: Window): { home: Pose; away: boolean } {
+  const { cloth, start } = subject;
+  const whole = view ? pose_of_view(view, window) : framed(subject, window);
+  const away = part_outside(cloth, whole, window) - part_outside(start, whole, window) > MOST_GONE;
+  return { home: view && !away ? approached(whole, cloth, window) : whole, away };
 }
 
 /** Where a cloth is seen that has left its first view, from the same side. */

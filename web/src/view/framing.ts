@@ -21,6 +21,15 @@ export interface Window {
   aspect: number;
   above: number;
   below: number;
+  /** Panels beside the middle, in the upper corners. */
+  corners?: Corner[];
+}
+
+/** A panel at the upper edge, in fractions of the picture's width and height. */
+export interface Corner {
+  left: number;
+  right: number;
+  bottom: number;
 }
 
 /** Unit vectors to the viewer's right, up and back. */
@@ -126,6 +135,24 @@ export function part_outside(points: ArrayLike<number>, pose: Pose, window: Wind
     if (!inside) outside += 1;
   }
   return (outside * 3) / Math.max(3, points.length);
+}
+
+/** How far down panels in corners reach that some of the points are behind; 0 if there are none. */
+export function reach_of_corners(points: ArrayLike<number>, pose: Pose, window: Window): number {
+  const { slope, aspect, corners = [] } = window;
+  const { right, up, back } = axes_of(pose);
+  const point = new Vector3();
+  let lowest = 0;
+  for (let i = 0; i < points.length; i += 3) {
+    point.set(points[i], points[i + 1], points[i + 2]).sub(pose.target);
+    const reach = 2 * slope * (pose.distance - point.dot(back));
+    const [x, y] = [0.5 + point.dot(right) / reach / aspect, 0.5 - point.dot(up) / reach];
+    for (const corner of corners) {
+      const behind = x > corner.left && x < corner.right && y < corner.bottom;
+      if (behind) lowest = Math.max(lowest, corner.bottom);
+    }
+  }
+  return lowest;
 }
 
 function middle(points: ArrayLike<number>, axis: number): number {
