@@ -82,6 +82,10 @@ inline constexpr double kCostMemory = 0.2;
 /// the light ones.
 inline constexpr int kPatience = 10;
 
+/// For how long a thread that serves light rooms or the network runs before others have their turn
+/// [ns]; the shorter, the sooner it is served when it wakes. Linux allows 1e5 to 1e8.
+inline constexpr unsigned long long kPromptSlice = 100'000;
+
 /// Threads that build scenes. More: memory and time that ticks lack. Fewer: a load waits for
 /// other loads.
 inline constexpr int kSceneBuilders = 2;

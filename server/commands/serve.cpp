@@ -27,6 +27,7 @@
 #include "server/output.h"
 #include "server/rooms/rooms.h"
 #include "server/scene/scene_library.h"
+#include "server/thread_priority.h"
 
 namespace weft::server {
 namespace {
@@ -156,6 +157,7 @@ class Network {
       });
     }
     poll();
+    be_prompt();
     io_.run();
   }
 

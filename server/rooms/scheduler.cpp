@@ -1,20 +1,14 @@
 #include "server/rooms/scheduler.h"
 
 #include <algorithm>
-#include <sys/resource.h>
 #include <utility>
 
 #include "server/constants.h"
+#include "server/thread_priority.h"
 #include "server/work_limit.h"
 
 namespace weft::server {
 namespace {
-
-/// Lowers the priority of the calling thread alone.
-void be_patient() {
-  const int now = getpriority(PRIO_PROCESS, 0);
-  setpriority(PRIO_PROCESS, 0, std::min(now + kPatience, 19));
-}
 
 /// Threads that ticks of this cost would keep busy [1].
 double demand_of(double tick_cost, double interval) {
@@ -26,9 +20,12 @@ double demand_of(double tick_cost, double interval) {
 
 Scheduler::Scheduler(int threads, Clock clock) : threads_(threads), clock_(std::move(clock)) {
   for (int k = 0; k < threads; ++k) {
-    workers_.emplace_back([this] { work(prompt); });
     workers_.emplace_back([this] {
-      be_patient();
+      be_prompt();
+      work(prompt);
+    });
+    workers_.emplace_back([this] {
+      be_patient(kPatience);
       work(patient);
     });
   }
