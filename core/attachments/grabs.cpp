@@ -155,6 +155,7 @@ Vec3<Real> hand_force(const Grab<Real>& grab, const HandStep<Real>& step, Real s
 template <class Real>
 void note_impulses(const Vec3<Real>& force, Real seconds, Grab<Real>& grab) {
   assert(grab.impulse.size() == grab.particles.size());
+  grab.given += force.template cast<double>() * static_cast<double>(seconds);
   for (std::size_t n = 0; n < grab.particles.size(); ++n)
     grab.impulse[n] = force * (grab.weights[n] * seconds);
 }
@@ -193,6 +194,7 @@ void hold_back(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
     const Vec3<Real> lost = (v - kept) / inverse_mass;
     grab.impulse[n] -= lost;
     grab.force -= lost / seconds;
+    grab.given -= lost.template cast<double>();
     v = kept;
   }
 }
@@ -284,8 +286,13 @@ void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grab
 }
 
 template <class Real>
-void finish_tick(Grabs<Real>& grabs) {
-  for (Grab<Real>& grab : grabs.list) grab.path_begin = grab.path_end;
+void finish_tick(double tick_seconds, Grabs<Real>& grabs) {
+  assert(tick_seconds > 0);
+  for (Grab<Real>& grab : grabs.list) {
+    grab.path_begin = grab.path_end;
+    grab.told = grab.def.mode == GrabMode::live ? (grab.given / tick_seconds).eval()
+                                                : grab.force.template cast<double>().eval();
+  }
   for (SlingImpulse<Real>& impulse : grabs.impulses) {
     assert(impulse.ticks_left > 0);
     --impulse.ticks_left;
@@ -345,17 +352,9 @@ void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
 }
 
 template <class Real>
-void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
-  for (const Grab<Real>& grab : grabs.list) {
-    if (grab.def.mode == GrabMode::live)
-      share_force(grab.particles, grab.weights, grab.force, force);
-  }
-  add_sling_forces(grabs, force);
-}
-
-template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) {
+    grab.given.setZero();
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
       grab.velocity[n] = v[static_cast<std::size_t>(grab.particles[n])];
   }
@@ -384,13 +383,12 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,        \
                                                 Grabs<Real>&);                               \
   template void lead_hands(double, const Vec3Array<Real>&, Grabs<Real>&);                    \
-  template void finish_tick(Grabs<Real>&);                                                   \
+  template void finish_tick(double, Grabs<Real>&);                                           \
   template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
   template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \
   template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,              \
                                 const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
   template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                      \
-  template void add_last_forces(const Grabs<Real>&, Vec3Array<Real>&);                       \
   template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
   template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);
 WEFT_INSTANTIATE(float)

@@ -51,6 +51,9 @@ struct Grab {
   Vec3Array<Real> velocity;  ///< of each particle when last observed [m/s]
   /// Live hand: on the cloth, in the last substep. Sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();
+  Vec3d given = Vec3d::Zero();  ///< of a live hand to the cloth, in this tick [N s]
+  /// Live hand: mean of its force over the last tick. Sling: as `force` [N].
+  Vec3d told = Vec3d::Zero();
 };
 
 /// A fired sling while its force still acts.
@@ -119,8 +122,9 @@ template <class Real>
 void lead_hands(double tick_seconds, const Vec3Array<Real>& x, Grabs<Real>& grabs);
 
 /// Call after each tick: hands are at the ends of their paths, sling impulses age.
+/// @param tick_seconds  [s]
 template <class Real>
-void finish_tick(Grabs<Real>& grabs);
+void finish_tick(double tick_seconds, Grabs<Real>& grabs);
 
 /// The present position of the held point [m].
 template <class Real>
@@ -153,11 +157,8 @@ void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gr
 template <class Real>
 void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 
-/// Adds the latest forces of hands and sling impulses [N].
-template <class Real>
-void add_last_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
-
-/// Call at the start of a tick: the held particles have the velocities `v` [m/s].
+/// Call at the start of a tick: the held particles have the velocities `v` [m/s], and nothing was
+/// given to them yet.
 template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 

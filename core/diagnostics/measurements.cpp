@@ -18,15 +18,16 @@ bool is_pinned(const ClothState<Real>& state, Index i) {
 }
 
 template <class Real>
-double largest_speed(const ClothPart<Real>& part, const ClothState<Real>& state) {
+double largest_speed(const ClothPart<Real>& part, const Vec3Array<Real>& v) {
   double largest = 0;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
-    largest = std::max(largest, static_cast<double>(state.v[static_cast<std::size_t>(i)].norm()));
+    largest = std::max(largest, static_cast<double>(v[static_cast<std::size_t>(i)].norm()));
   return largest;
 }
 
 template <class Real>
-std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<Real>& state) {
+std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<Real>& state,
+                               const Vec3Array<Real>& v) {
   const ClothPart<Real>& part = model.parts.front();
   Vec3d centre = Vec3d::Zero();
   int pinned = 0;
@@ -40,7 +41,7 @@ std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<R
   std::vector<NamedNumber> all = {{"drape_coefficient_percent", m.coefficient},
                                   {"folds", static_cast<double>(m.folds)},
                                   {"droop_m", m.droop},
-                                  {"largest_speed_m_s", largest_speed(part, state)}};
+                                  {"largest_speed_m_s", largest_speed(part, v)}};
   const DrapeBand published = published_drape(part.fabric);
   if (published.high > 0) {
     all.push_back({"published_low_percent", published.low});
@@ -51,7 +52,7 @@ std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<R
 
 template <class Real>
 std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothState<Real>& state,
-                                    double gravity) {
+                                    const Vec3Array<Real>& v, double gravity) {
   const ClothPart<Real>& part = model.parts.front();
   const auto at = [&](int row, int column) {
     return part.particles.first + row * part.columns + column;
@@ -79,24 +80,27 @@ std::vector<NamedNumber> cantilever(const ClothModel<Real>& model, const ClothSt
           {"chord_angle_degrees", m.chord_angle},
           {"bending_length_m", m.bending_length},
           {"bending_rigidity_n_m", rigidity},
-          {"largest_speed_m_s", largest_speed(part, state)}};
+          {"largest_speed_m_s", largest_speed(part, v)}};
 }
 
 }  // namespace
 
 template <class Real>
 std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,
-                                      const ClothState<Real>& state, double gravity) {
+                                      const ClothState<Real>& state, const Vec3Array<Real>& v,
+                                      double gravity) {
   assert(!model.parts.empty() && gravity >= 0);
-  assert(state.inverse_mass.size() == model.mass.size());
-  if (test == TextileTest::drape) return drape(model, state);
-  if (test == TextileTest::cantilever) return cantilever(model, state, gravity);
+  assert(state.inverse_mass.size() == model.mass.size() && v.size() == model.mass.size());
+  if (test == TextileTest::drape) return drape(model, state, v);
+  if (test == TextileTest::cantilever) return cantilever(model, state, v, gravity);
   return {};
 }
 
 template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<float>&,
-                                               const ClothState<float>&, double);
+                                               const ClothState<float>&, const Vec3Array<float>&,
+                                               double);
 template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<double>&,
-                                               const ClothState<double>&, double);
+                                               const ClothState<double>&, const Vec3Array<double>&,
+                                               double);
 
 }  // namespace weft

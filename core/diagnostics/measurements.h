@@ -25,17 +25,21 @@ struct NamedNumber {
 
 /// Results of the test on the first part of the model in its present state. Drape: the coefficient,
 /// folds and droop, and the published band of the coefficient if the fabric is a preset with one.
-/// Cantilever: droop, angle, bending length and rigidity. Both: the largest speed, which shows
-/// whether the cloth rests. Empty without a test, or if the first part does not suit it: nothing is
-/// pinned, or for the cantilever it is not a grid or does not overhang.
+/// Cantilever: droop, angle, bending length and rigidity. Both: the largest of these velocities,
+/// which shows whether the cloth rests. Empty without a test, or if the first part does not suit
+/// it: nothing is pinned, or for the cantilever it is not a grid or does not overhang.
+/// @param v        means over a tick: those at its end carry the fastest vibration of stiff cloth
 /// @param gravity  its magnitude [m/s^2], to which the rigidity is proportional
 template <class Real>
 std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& model,
-                                      const ClothState<Real>& state, double gravity);
+                                      const ClothState<Real>& state, const Vec3Array<Real>& v,
+                                      double gravity);
 
 extern template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<float>&,
-                                                      const ClothState<float>&, double);
+                                                      const ClothState<float>&,
+                                                      const Vec3Array<float>&, double);
 extern template std::vector<NamedNumber> measurements(TextileTest, const ClothModel<double>&,
-                                                      const ClothState<double>&, double);
+                                                      const ClothState<double>&,
+                                                      const Vec3Array<double>&, double);
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include "core/forces/hinge.h"
 #include "core/forces/membrane.h"
 #include "core/forces/spring.h"
+#include "core/forces/stencil_force.h"
 #include "core/geometry/hinge_angle.h"
 
 namespace weft {
@@ -30,16 +31,6 @@ template <class Real>
 MembraneStrain<Real> strain_of(const MembraneTriangle<Real>& t, const Vec3Array<Real>& x) {
   const Vec3<Real>& start = at(x, t.x[0]);
   return membrane_strain<Real>(t, at(x, t.x[1]) - start, at(x, t.x[2]) - start);
-}
-
-/// Value of one bending stencil, sum_k w_k x_k.
-template <class Real, class Stored>
-Vec3<Real> stencil_value(const Vec3Array<Stored>& x, const Index* corners, const double* weights,
-                         int count) {
-  Vec3<Real> sum = Vec3<Real>::Zero();
-  for (int k = 0; k < count; ++k)
-    sum += at(x, corners[k]).template cast<Real>() * static_cast<Real>(weights[k]);
-  return sum;
 }
 
 }  // namespace
@@ -93,11 +84,10 @@ template <class Real>
 void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force) {
   assert(force.size() == x.size());
-  visit_bending_stencils(part, [&](double k, const Index* corners, const double* weights,
-                                   int count) {
-    const Vec3<Real> pull = stencil_value<Real>(x, corners, weights, count) * -static_cast<Real>(k);
-    for (int n = 0; n < count; ++n) at(force, corners[n]) += pull * static_cast<Real>(weights[n]);
-  });
+  visit_bending_stencils(part,
+                         [&](double k, const Index* corners, const double* weights, int count) {
+                           add_stencil_force(k, {corners, weights, count}, x, force);
+                         });
 }
 
 template <class Real>
@@ -161,10 +151,10 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
   if (quadratic_stencil_count(part) == 0) return energy;
-  visit_bending_stencils(
-      part, [&](double k, const Index* corners, const double* weights, int count) {
-        energy.bending += 0.5 * k * stencil_value<double>(x, corners, weights, count).squaredNorm();
-      });
+  visit_bending_stencils(part, [&](double k, const Index* corners, const double* weights,
+                                   int count) {
+    energy.bending += 0.5 * k * stencil_value<double>({corners, weights, count}, x).squaredNorm();
+  });
   return energy;
 }
 

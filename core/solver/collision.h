@@ -8,6 +8,7 @@
 #include "core/contact/objects/contact.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/profile.h"
+#include "core/solver/held_forces.h"
 #include "core/solver/work_meter.h"
 
 // Interface of contact to the solvers.
@@ -24,6 +25,7 @@ struct Collision {
   ClothGuard<Real>* guard = nullptr;
   PinDrive<Real>* pins = nullptr;
   WorkMeter<Real>* meter = nullptr;  ///< if the work of all causes is wanted
+  HeldForces<Real>* held = nullptr;  ///< if the forces of pins are wanted
 
   bool empty() const { return !objects && !seed && !guard && !pins; }
 

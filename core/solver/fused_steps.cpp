@@ -55,6 +55,17 @@ double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   return work;
 }
 
+/// Takes the particles of all grids to the model's arrays, where the forces of pins are wanted.
+template <class Real>
+void hold_grids(Tick<Real>& tick, const Kick<Real>& kick) {
+  if (!tick.collision.held) return;
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    tick.grid(p).store_positions(tick.state.x);
+    tick.grid(p).store_velocities(tick.state.v);
+  }
+  hold_kick(tick, kick, tick.state.v);
+}
+
 /// As above, shown to the meter.
 template <class Real>
 double advance_metered(Tick<Real>& tick, const Kick<Real>& kick) {
@@ -116,19 +127,22 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
   assert(tick.by_rows(p) && substeps >= 1);
   assert(!tick.has_hands && tick.collision.empty() && "nothing else moves the particles");
   GridPass<Real>& grid = tick.grid(p);
+  HeldForces<Real>* const held = tick.collision.held;
   double work = 0;
   for (int s = 0; s <= substeps; ++s) {
     stop_point();
+    const bool last = s == substeps;
+    const Kick<Real>& kick = s == 0 ? kicks.opening : last ? kicks.closing : kicks.full;
+    if (held) {
+      grid.store_positions(tick.state.x);
+      grid.store_velocities(tick.state.v);
+      held->act(p, tick.surroundings, tick.state.x, tick.state.v, kick.seconds);
+    }
     if (tick.has_external_forces) {
       const StageTimer timer(tick.profile, Stage::air, size_of(tick.part(p).triangles));
       grid.compute_air_forces(tick.surroundings.air_density);
     }
-    const bool last = s == substeps;
-    work += advance_grid(tick, p,
-                         s == 0 ? kicks.opening
-                         : last ? kicks.closing
-                                : kicks.full,
-                         last ? Real(0) : tick.dt);
+    work += advance_grid(tick, p, kick, last ? Real(0) : tick.dt);
   }
   grid.store_positions(tick.state.x);
   grid.store_velocities(tick.state.v);
@@ -159,14 +173,17 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
   double work = 0, kept_work = 0;
   bool renew = false;
   WorkMeter<Real>* const meter = tick.collision.meter;
+  HeldForces<Real>* const held = tick.collision.held;
   for (; s < substeps && !renew && time + tick.dt <= paths->horizon; ++s) {
     stop_point();
     if ((s - first) % kCalmKeptSteps == 0) {
       for (GridPass<Real>& grid : tick.work.grids) grid.keep();
       if (meter) meter->keep();
+      if (held) held->keep();
       kept = s, kept_time = time, kept_box = box, kept_work = work;
     }
     const Kick<Real>& kick = s == 0 ? kicks.opening : kicks.full;
+    hold_grids(tick, kick);
     work += meter ? advance_metered(tick, kick) : advance_grids(tick, kick);
     time += tick.dt;
     box = box_off_paths(tick, time);
@@ -176,6 +193,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
       // contact.
       for (GridPass<Real>& grid : tick.work.grids) grid.take_back();
       if (meter) meter->take_back();
+      if (held) held->take_back();
       next.substep = s + 1;
       s = kept, time = kept_time, box = kept_box, work = kept_work;
       break;

@@ -169,6 +169,7 @@ void kick_awake(Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& fr
 template <class Real>
 void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
   if (tick.solver.damping_sweeps == 1) {
+    hold_kick(tick, k, tick.state.v);
     advance_kick(tick, k, true);
     meter_kick(tick, k);
     return;
@@ -182,6 +183,7 @@ void swept_kick(Tick<Real>& tick, const Kick<Real>& k, Real share) {
     for (std::size_t i = 0; i < v.size(); ++i)
       estimate[i] = v[i] * (Real(1) - share) + estimate[i] * share;
   }
+  hold_kick(tick, k, estimate);
   kick_awake(tick, k, v, v);
   meter_kick(tick, k, &estimate);
 }
@@ -232,6 +234,7 @@ double drift(Tick<Real>& tick) {
 
 template <class Real>
 void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
+  hold_kick(tick, k, tick.state.v);
   if (tick.solver.damping_sweeps == 1) {
     advance_kick(tick, k, false);
   } else {
@@ -244,13 +247,14 @@ void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
 /// Pulls of the hands, after the kick before substep `s` of `substeps`.
 template <class Real>
 void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
-  if (tick.grabs.list.empty()) return;
+  if (!tick.has_hands) return;
   assert(s >= 0 && s <= substeps);
   const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
   const auto count = static_cast<Real>(substeps);
   pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.scaled_dt,
                tick.state, tick.grabs);
   if (tick.collision.meter) tick.collision.meter->pulled(tick.state.v);
+  if (tick.collision.held) tick.collision.held->pull(tick.grabs, k.seconds);
 }
 
 /// Shows the meter, if there is one, the end of a drift [s], or of the tick.
@@ -363,7 +367,10 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   if (collision.empty() && !collision.meter && !has_hands && work.all_grids &&
       solver.damping_sweeps == 1) {
     for (std::size_t p = 0; p < tick.parts(); ++p) {
-      if (!tick.sleeps(p)) result.work += advance_alone(tick, p, kicks, substeps);
+      if (!tick.sleeps(p))
+        result.work += advance_alone(tick, p, kicks, substeps);
+      else if (collision.held)
+        collision.held->act(p, surroundings, state.x, state.v, dt * substeps);
     }
   } else {
     result.work = advance_together(tick, kicks, substeps, result.blow_up);

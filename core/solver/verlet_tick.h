@@ -65,6 +65,13 @@ void meter_kick(const Tick<Real>& tick, const Kick<Real>& k,
                                tick.state.v);
 }
 
+/// Shows the state in which a kick finds the forces, where the forces of pins are wanted.
+/// @param v  velocities that the dashpots see
+template <class Real>
+void hold_kick(const Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real>& v) {
+  if (tick.collision.held) tick.collision.held->act(tick.surroundings, tick.state.x, v, k.seconds);
+}
+
 inline std::size_t size_of(const IndexRange& range) {
   assert(range.count >= 0);
   return static_cast<std::size_t>(range.count);

@@ -77,7 +77,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
 template <class Real>
 void World<Real>::build_contact() {
   contact_ = make_contact(def_, model_, runtime_);
-  contact_.log_impulses(measures_forces_, energy_.has_value());
+  contact_.log_impulses(supports_.wanted, energy_.has_value());
   sleep_ = make_sleep(def_, model_);
   account_ = EnergyAccount(total_mass(model_));
   thickest_ = 0;
@@ -134,7 +134,7 @@ template <class Real>
 void World<Real>::accept_state() {
   assert(state_.x.size() == model_.mass.size() && state_.v.size() == model_.mass.size());
   assert(state_.inverse_mass.size() == model_.mass.size());
-  reactions_.reset();
+  supports_.told.reset();
   wake_all();
   last_good_.x = state_.x;
   last_good_.v = state_.v;
@@ -192,7 +192,7 @@ template <class Real>
 void World<Real>::finish_targets() {
   finish_motion(def_.colliders, tick_seconds(), colliders_);
   finish_grippers(tick_seconds(), colliders_, grippers_);
-  finish_tick(grabs_);
+  finish_tick(tick_seconds(), grabs_);
   finish_pins();
 }
 
@@ -200,7 +200,7 @@ template <class Real>
 void World<Real>::end_tick() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
-  if (measures_forces_) take_reactions();
+  if (supports_.wanted) take_reactions();
 }
 
 template <class Real>
@@ -213,6 +213,7 @@ void World<Real>::prepare_solver() {
   if (kind == SolverKind::implicit) implicit_.prepare(model_);
   if (guard_ && kind != SolverKind::relaxation) verlet_.allocate_paths();
   verlet_.elastic.reset();
+  supports_.held.forget();
   allocate_external();
 }
 
@@ -252,9 +253,10 @@ template <class Real>
 Collision<Real> World<Real>::collision() {
   PinDrive<Real>* pins = pins_.any_moving() ? &pin_drive_ : nullptr;
   WorkMeter<Real>* meter = energy_ ? &energy_->meter : nullptr;
-  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins, meter};
+  HeldForces<Real>* held = supports_.wanted && !pins_.list.empty() ? &supports_.held : nullptr;
+  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins, meter, held};
   const bool objects = contact_of(def_) == ContactModel::certified && !def_.colliders.empty();
-  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins, meter};
+  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins, meter, held};
 }
 
 /// One tick of the chosen solver.
@@ -268,6 +270,7 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
   if (guard_) guard_->begin_tick();
   if (energy_) energy_->meter.begin_tick();
+  if (supports_.wanted) supports_.held.begin_tick(model_, pins_);
   AdvanceResult result =
       kind == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),

@@ -201,7 +201,7 @@ class World {
   /// was set: `reactions` then returns those of `coming_reactions`.
   void measure_present_forces();
   /// Those of the last tick if they were measured in it, else of the coming one; null if unknown.
-  const Reactions* reactions() const { return reactions_ ? &*reactions_ : nullptr; }
+  const Reactions* reactions() const { return supports_.told ? &*supports_.told : nullptr; }
   /// Those of the coming tick without further commands. Works on a copy of the world: costs a tick
   /// and more memory than the world itself, and changes nothing. Throws Stopped if that tick was
   /// ended from outside, as do its two callers.
@@ -232,6 +232,10 @@ class World {
   const EnvironmentDef& environment() const { return environment_; }
   const ClothModel<Real>& model() const { return model_; }
   const ClothState<Real>& state() const { return state_; }
+  /// Means over the last tick: displacements over its length [m/s]. They tell whether cloth rests;
+  /// velocities at the end of a tick carry the fastest vibration of stiff cloth. Before the first
+  /// tick, and after one that was halted, those of the state.
+  Vec3Array<Real> mean_velocities() const;
   /// For tests that move the cloth; call `accept_state` afterwards.
   ClothState<Real>& state() { return state_; }
   /// Accepts the present state as the one to return to.
@@ -262,6 +266,7 @@ class World {
   World(const World&) = default;
   World copy() const;
   void take_reactions();
+  void hold_present_state();
   void apply_disturbance(const DisturbanceDef& disturbance, std::uint64_t seed);
   void gather(double radius, std::uint64_t seed);
   void run_script();
@@ -357,8 +362,13 @@ class World {
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;
-  bool measures_forces_ = false;
-  std::optional<Reactions> reactions_;
+  /// Forces of what holds the cloth.
+  struct Supports {
+    bool wanted = false;
+    HeldForces<Real> held;          ///< of the running tick, if they are wanted
+    std::optional<Reactions> told;  ///< of the last tick, or the coming one
+  };
+  Supports supports_;
   std::optional<EnergyLedger<Real>> energy_;  ///< if it is measured
 };
 

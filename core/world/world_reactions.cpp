@@ -12,15 +12,15 @@ namespace weft {
 
 template <class Real>
 void World<Real>::measure_forces(bool wanted) {
-  measures_forces_ = wanted;
+  supports_.wanted = wanted;
   contact_.log_impulses(wanted, energy_.has_value());
-  if (!wanted) reactions_.reset();
-  if (wanted && rests()) reactions_ = coming_reactions();  // no tick will measure them
+  if (!wanted) supports_.told.reset();
+  if (wanted && rests()) supports_.told = coming_reactions();  // no tick will measure them
 }
 
 template <class Real>
 void World<Real>::measure_present_forces() {
-  if (measures_forces_ && !reactions_) reactions_ = coming_reactions();
+  if (supports_.wanted && !supports_.told) supports_.told = coming_reactions();
 }
 
 template <class Real>
@@ -30,7 +30,7 @@ void World<Real>::measure_energy(bool wanted) {
     const std::size_t first_jaw = def_.colliders.size() - 2 * def_.grippers.size();
     energy_.emplace(EnergyLedger<Real>{WorkMeter<Real>(model_.mass.size(), first_jaw), {}});
   }
-  contact_.log_impulses(measures_forces_, wanted);
+  contact_.log_impulses(supports_.wanted, wanted);
   allocate_external();
   begin_balance();
 }
@@ -57,15 +57,27 @@ void World<Real>::take_reactions() {
     for (const ContactPoint& contact : contacts_of(*guard_, state_.x))
       found.contacts.push_back(contact);
   }
-  if (solver_of(def_) != SolverKind::relaxation) {
-    Vec3Array<Real> hand_forces;
-    if (!idle(grabs_)) {
-      hand_forces.assign(model_.mass.size(), Vec3<Real>::Zero());
-      add_last_forces(grabs_, hand_forces);
-    }
-    add_pin_reactions(model_, state_, surroundings_, hand_forces, pins_, found);
-  }
-  reactions_ = std::move(found);
+  if (solver_of(def_) != SolverKind::relaxation)
+    add_pin_reactions(model_, surroundings_.gravity, pins_, supports_.held, tick_seconds(), found);
+  supports_.told = std::move(found);
+}
+
+/// After a tick that could not be computed: pins hold the state that was restored.
+template <class Real>
+void World<Real>::hold_present_state() {
+  if (!supports_.wanted) return;
+  supports_.held.begin_tick(model_, pins_);
+  supports_.held.act(surroundings_, state_.x, state_.v, tick_seconds());
+}
+
+template <class Real>
+Vec3Array<Real> World<Real>::mean_velocities() const {
+  const Vec3Array<Real>& before = checkpoint_.state.x;
+  if (tick_ == 0 || report_.halted || before.size() != state_.x.size()) return state_.v;
+  Vec3Array<Real> mean(before.size());
+  const auto rate = static_cast<Real>(def_.tick_rate);
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (state_.x[i] - before[i]) * rate;
+  return mean;
 }
 
 /// The solvers' arrays contain pointers into themselves; the copy gets its own.
@@ -116,14 +128,16 @@ ComingStarts World<Real>::coming_bad_starts() const {
   return found;
 }
 
-#define WEFT_INSTANTIATE(Real)                              \
-  template void World<Real>::measure_forces(bool);          \
-  template void World<Real>::measure_present_forces();      \
-  template void World<Real>::measure_energy(bool);          \
-  template void World<Real>::begin_balance();               \
-  template void World<Real>::take_reactions();              \
-  template World<Real> World<Real>::copy() const;           \
-  template Reactions World<Real>::coming_reactions() const; \
+#define WEFT_INSTANTIATE(Real)                                   \
+  template void World<Real>::measure_forces(bool);               \
+  template void World<Real>::measure_present_forces();           \
+  template void World<Real>::measure_energy(bool);               \
+  template void World<Real>::begin_balance();                    \
+  template void World<Real>::take_reactions();                   \
+  template void World<Real>::hold_present_state();               \
+  template Vec3Array<Real> World<Real>::mean_velocities() const; \
+  template World<Real> World<Real>::copy() const;                \
+  template Reactions World<Real>::coming_reactions() const;      \
   template ComingStarts World<Real>::coming_bad_starts() const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

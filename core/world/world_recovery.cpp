@@ -47,6 +47,7 @@ DivergenceCause cause_of(const BlowUp& blow_up) {
 template <class Real>
 void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) {
+    grab.given.setZero();
     const auto known = std::find_if(before.list.begin(), before.list.end(),
                                     [&](const Grab<Real>& other) { return other.id == grab.id; });
     if (known != before.list.end()) {
@@ -182,6 +183,7 @@ void World<Real>::advance_or_recover(int substeps) {
       for (Vec3<Real>& v : state_.v) v.setZero();
       bring_to_rest(pins_);
       accept_state();
+      hold_present_state();
       if (energy_) energy_->book_loss(report_.energies, energy_->balance.recovery);
       return;
     }

@@ -91,7 +91,7 @@ const TickReport& World<Real>::rest() {
   report_.substeps = 0;
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
-  if (reactions_) reactions_->tick = tick_;
+  if (supports_.told) supports_.told->tick = tick_;
   return report_;
 }
 

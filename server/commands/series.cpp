@@ -55,7 +55,7 @@ const Vec3d kUnknown = Vec3d::Constant(std::numeric_limits<double>::quiet_NaN())
 template <class Real>
 Vec3d hand_force(const World<Real>& world, std::size_t hand) {
   for (const Grab<Real>& grab : world.grabs().list) {
-    if (world.scene_hand(grab.id) == hand) return grab.force.template cast<double>();
+    if (world.scene_hand(grab.id) == hand) return grab.told;
   }
   return Vec3d::Zero();
 }

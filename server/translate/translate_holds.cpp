@@ -56,14 +56,14 @@ proto::GrabInfo grab_info(const ServedWorld& world, const Grab<float>& grab, pro
   info.held = to_wire(Vec3d(held_point(grab, world.state().x).cast<double>()));
   info.target = to_wire(Vec3d(grab.target.cast<double>()));
   info.mode = grab.def.mode == GrabMode::sling ? proto::DragMode::sling : proto::DragMode::live;
-  info.force = to_wire(Vec3d(grab.force.cast<double>()));
+  info.force = to_wire(grab.told);
   return info;
 }
 
 proto::GrabSample grab_sample(const ServedWorld& world, const Grab<float>& grab,
                               proto::ViewerId owner) {
   return {grab.id, owner, to_wire_float(held_point(grab, world.state().x)),
-          to_wire_float(grab.target), grab.force.norm()};
+          to_wire_float(grab.target), static_cast<float>(grab.told.norm())};
 }
 
 }  // namespace weft::server

@@ -110,11 +110,13 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
   bool solved = true;
   brought = 0;
   step.flows = {};
+  take_back_forces(step);
   for (int k = 1; k <= pieces; ++k) {
     const Real passed = static_cast<Real>(k) / static_cast<Real>(pieces);
     solved = solve_displacements(step, begin + (end - begin) * passed) && solved;
     brought += outer_work(step);
     meter_displacements(step);
+    book_forces(step);
     state.x = work.x;
     state.v = work.v;
   }
@@ -139,6 +141,7 @@ bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& 
   brought = outer_work(step);
   step.flows = {};
   meter_displacements(step);
+  book_forces(step);
   for (int pieces = 1;; pieces *= 2) {
     after = energies_at(step, work.x, work.v);
     const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
@@ -258,6 +261,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   assert(!surroundings.air || surroundings.wind.size() == model.mass.size());
   Step<Real> step{model, surroundings, solver, static_cast<Real>(dt), grabs, state, work, profile};
   step.metered = collision.meter != nullptr;
+  step.held = collision.held;
   AdvanceResult result;
   EnergyReading reading = energies_at(step, state.x, state.v);
   result.before = reading.energies;
@@ -278,6 +282,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
     if (step.metered) collision.meter->add(step.flows);
+    finish_forces(step);
     work.touching = work.refuses && moves_far(step, collision);
     if (work.touching) return result;
     result.blow_up = move(step, collision);

@@ -45,6 +45,7 @@ struct HandTerm {
   Real stiffness = 0;                              ///< [N/m]
   std::vector<std::array<std::size_t, 3>> places;  ///< of the held particles in a vector
   std::vector<Real> weights;                       ///< 0 for pinned ones
+  Vec3d given = Vec3d::Zero();                     ///< to the cloth in this substep [N s]
 };
 
 /// Arrays that live across ticks.

@@ -205,6 +205,7 @@ void take_hands(Step<Real>& step) {
     HandTerm<Real>& hand = work.hands[work.hand_count++];
     hand.grab = g;
     hand.part = 0;
+    hand.given.setZero();
     hand.places.clear();
     hand.weights.clear();
     while (!step.model.parts[hand.part].particles.contains(grab.particles.front())) ++hand.part;
@@ -295,11 +296,43 @@ void meter_displacements(Step<Real>& step) {
   flows.damping += dashpot_loss(step.model, work.x, work.v, moved);
 }
 
+template <class Real>
+void book_forces(Step<Real>& step) {
+  ImplicitWorkspace<Real>& work = step.work;
+  const auto dt = static_cast<double>(step.dt);
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    HandTerm<Real>& hand = work.hands[h];
+    hand.given += step.grabs.list[hand.grab].force.template cast<double>() * dt;
+  }
+  if (!step.held) return;
+  step.held->act(step.surroundings, work.x, work.v, dt);
+  step.held->pull(step.grabs, dt);
+}
+
+template <class Real>
+void take_back_forces(Step<Real>& step) {
+  for (std::size_t h = 0; h < step.work.hand_count; ++h) step.work.hands[h].given.setZero();
+  if (step.held) step.held->take_back();
+}
+
+template <class Real>
+void finish_forces(Step<Real>& step) {
+  for (std::size_t h = 0; h < step.work.hand_count; ++h) {
+    HandTerm<Real>& hand = step.work.hands[h];
+    step.grabs.list[hand.grab].given += hand.given;
+    hand.given.setZero();
+  }
+  if (step.held) step.held->keep();
+}
+
 #define WEFT_INSTANTIATE(Real)                          \
   template void take_hands(Step<Real>&);                \
   template bool solve_displacements(Step<Real>&, Real); \
   template double outer_work(const Step<Real>&);        \
-  template void meter_displacements(Step<Real>&);
+  template void meter_displacements(Step<Real>&);       \
+  template void book_forces(Step<Real>&);               \
+  template void take_back_forces(Step<Real>&);          \
+  template void finish_forces(Step<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

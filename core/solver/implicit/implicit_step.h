@@ -17,9 +17,10 @@ struct Step {
   ClothState<Real>& state;
   ImplicitWorkspace<Real>& work;
   Profile& profile;
-  bool metered = false;    ///< `flows` are wanted
-  bool damped = false;     ///< by backward Euler
-  EnergyFlows flows = {};  ///< of this substep so far, without contact
+  bool metered = false;              ///< `flows` are wanted
+  bool damped = false;               ///< by backward Euler
+  EnergyFlows flows = {};            ///< of this substep so far, without contact
+  HeldForces<Real>* held = nullptr;  ///< if the forces of pins are wanted
 
   bool movable(std::size_t i) const { return state.inverse_mass[i] > 0; }
 };
@@ -66,5 +67,18 @@ double outer_work(const Step<Real>& step);
 /// is at the substep's end.
 template <class Real>
 void meter_displacements(Step<Real>& step);
+
+/// Books the forces at the end of the present displacements, which act over them: of hands, and on
+/// fixed particles.
+template <class Real>
+void book_forces(Step<Real>& step);
+
+/// Before the same substep is solved otherwise: takes those of this substep back.
+template <class Real>
+void take_back_forces(Step<Real>& step);
+
+/// Gives the hands what was booked in the substep that is over.
+template <class Real>
+void finish_forces(Step<Real>& step);
 
 }  // namespace weft

@@ -145,7 +145,8 @@ TEST_CASE("the cantilever test finds the bending length of every preset, to 1 % 
     def.cloths[0].fabric = preset.fabric;
     World<float> world(def);
     test::advance(world, 3);
-    const auto m = measurements(def.test, world.model(), world.state(), 9.81);
+    const auto m =
+        measurements(def.test, world.model(), world.state(), world.mean_velocities(), 9.81);
     REQUIRE(m.size() == 5);
     INFO(preset.name << ": droop " << m[0].value << " m, " << m[1].value << " degrees");
     CHECK(m[4].value < 0.01);  // what rounding keeps moving in single precision
@@ -182,10 +183,14 @@ TEST_CASE("a fabric measured by its bending lengths has B = sigma g c^3 and the 
 TEST_CASE("a scene that is no test measures nothing, and one that does not fit its test neither") {
   WorldDef def = make_scene("wall");
   World<float> wall(def);
-  CHECK(measurements(def.test, wall.model(), wall.state(), 9.81).empty());
+  CHECK(measurements(def.test, wall.model(), wall.state(), wall.mean_velocities(), 9.81).empty());
   def = make_scene("cantilever-test");
   def.pins.clear();
   World<float> loose(def);
-  CHECK(measurements(TextileTest::cantilever, loose.model(), loose.state(), 9.81).empty());
-  CHECK(measurements(TextileTest::drape, loose.model(), loose.state(), 9.81).empty());
+  CHECK(measurements(TextileTest::cantilever, loose.model(), loose.state(), loose.mean_velocities(),
+                     9.81)
+            .empty());
+  CHECK(
+      measurements(TextileTest::drape, loose.model(), loose.state(), loose.mean_velocities(), 9.81)
+          .empty());
 }

@@ -1,9 +1,11 @@
 #include "core/world/reactions.h"
 
 #include <algorithm>
+#include <string>
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/sheets_of_triangles.h"
 #include "tests/support/worlds.h"
 
 // What holds a cloth gets the opposite of what it gives.
@@ -65,6 +67,100 @@ TEST_CASE("in each tick objects get the momentum that gravity gave and the cloth
   }
   CHECK(most[0] > 0.1);
   CHECK(most[1] > 0.1);
+}
+
+TEST_CASE("in each tick pins and hands give what momentum the cloth gains beside gravity") {
+  const auto solver = GENERATE(as<std::string>(), "grid", "hinges", "swept", "guarded", "mesh");
+  CAPTURE(solver);
+  ClothDef cloth = test::flat_cloth(9, 9, 0.4, 0.4);
+  if (solver == "mesh") cloth = test::triangle_sheet(test::Cut::irregular, 0.4, 0.4, 0.05, 0.5);
+  if (solver == "hinges") cloth.bending_model = BendingModel::hinges;
+  cloth.fabric.bending_damping = 1e-4;
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = kGravity;
+  def.pins = {{Corner::top_left, 0.11, {}}, {Corner::bottom_right, 0.2, {}}};
+  if (solver == "swept") def.solver.damping_sweeps = 2;
+  if (solver == "guarded") def.contact.seed.self = SelfContact::guard;
+  World<double> world(def);
+  world.measure_forces(true);
+  // A hand whose disc reaches onto pinned particles; it pulls cloth into a fold that touches, and
+  // forces between cloths are not means over the tick.
+  if (GENERATE(false, true) && solver != "guarded")
+    world.grab({3, {0.2, 0.3, 0.5}, 0.12, 100, 50, Vec3d(0, 0.3, 0)});
+  // Dashpots of a mesh see how far its strains have changed, which is a velocity but for the step.
+  const double accuracy = solver == "mesh" ? 1e-3 : 1e-9;
+  for (int tick = 0; tick < (solver == "guarded" ? 10 : 30); ++tick) {
+    const Vec3d before = momentum(world);
+    REQUIRE_FALSE(world.step().divergence);
+    const Vec3d gained = (momentum(world) - before) / world.tick_seconds();
+    Vec3d given = kGravity * mass_of(world);
+    for (const PinReaction& pin : world.reactions()->pins) given += pin.force;
+    for (const Grab<double>& grab : world.grabs().list) given += grab.told;
+    REQUIRE((given - gained).norm() < accuracy * mass_of(world) * kGravity.norm());
+  }
+}
+
+TEST_CASE("what implicit tells of pins carries a swinging cloth, to 2 % over a second") {
+  WorldDef def = test::empty_world(test::flat_cloth(9, 9, 0.4, 0.4));
+  def.environment.gravity = kGravity;
+  def.pins = {{Corner::top_left, 0.1, {}}};
+  def.solver.kind = SolverKind::implicit;
+  World<double> world(def);
+  world.measure_forces(true);
+  Vec3d given = Vec3d::Zero();
+  constexpr int kTicks = 60;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    REQUIRE_FALSE(world.step().divergence);
+    given += world.reactions()->pins[0].force * world.tick_seconds();
+  }
+  const double weight = mass_of(world) * kGravity.norm(), seconds = kTicks * world.tick_seconds();
+  const Vec3d gained = momentum(world) - kGravity * mass_of(world) * seconds;
+  CHECK((given - gained).norm() < 0.02 * weight * seconds);
+}
+
+TEST_CASE("the pins of a stiff cable at rest tell its weight in each tick, to 1 %") {
+  ClothDef cloth = test::flat_cloth(2, 41, 1, 0.02);
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 3e5;
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = kGravity;
+  def.environment.damping = 5;
+  def.pins = {{EdgeStrip{Side::left, 0}, 0, {}}, {EdgeStrip{Side::right, 0}, 0, {}}};
+  World<float> world(def);
+  test::advance(world, 4);
+  world.measure_forces(true);
+  double weight = 0;
+  for (const float m : world.model().mass) weight += m * kGravity.norm();
+  for (int tick = 0; tick < 30; ++tick) {
+    world.step();
+    const std::vector<PinReaction>& pins = world.reactions()->pins;
+    REQUIRE(pins[0].force[1] + pins[1].force[1] == Approx(weight).epsilon(0.01));
+  }
+}
+
+TEST_CASE(
+    "mean velocities are displacements over a tick, and of a stiff strip at rest below 1 mm/s") {
+  ClothDef cloth = test::flat_cloth(9, 41, 0.12, 0.02);
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 3e5;
+  cloth.fabric.shear = 3e4;
+  cloth.fabric.bending_warp = cloth.fabric.bending_weft = 3.6e-4;
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = kGravity;
+  def.environment.damping = 5;
+  def.pins = {{EdgeStrip{Side::left, 0.01}, 0, {}}};
+  World<float> world(def);
+  CHECK(world.mean_velocities() == world.state().v);  // no tick has passed
+  test::advance(world, 4);
+  for (int tick = 0; tick < 10; ++tick) {
+    const Vec3Array<float> before = world.state().x;
+    world.step();
+    const Vec3Array<float> mean = world.mean_velocities();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      REQUIRE(mean[i] == (world.state().x[i] - before[i]) * 60.0F);
+      REQUIRE(mean[i].norm() < 1e-3F);
+    }
+  }
+  world.halt();
+  CHECK(world.mean_velocities() == world.state().v);  // of its tick nothing is left
 }
 
 TEST_CASE("pins that hold the same particles share their force evenly, as if one held them") {

@@ -1,0 +1,184 @@
+// Sums forces at fixed particles over a tick, from the elements that touch them.
+
+#include "core/solver/held_forces.h"
+
+#include <algorithm>
+
+#include "core/cloth/bending_stencil.h"
+#include "core/forces/force_pass.h"
+#include "core/forces/stencil_force.h"
+#include "core/solver/verlet.h"
+
+namespace weft {
+namespace {
+
+/// Copies the elements of a range that `wanted` says, and returns their range in `to`.
+template <class Element, class Wanted>
+IndexRange take(const std::vector<Element>& from, const IndexRange& range, const Wanted& wanted,
+                std::vector<Element>& to) {
+  const auto first = static_cast<Index>(to.size());
+  for (Index n = range.first; n < range.end(); ++n) {
+    const Element& element = from[static_cast<std::size_t>(n)];
+    if (wanted(element)) to.push_back(element);
+  }
+  return {first, static_cast<Index>(to.size()) - first};
+}
+
+}  // namespace
+
+template <class Real>
+void HeldForces<Real>::Stencils::clear() {
+  stiffness.clear();
+  weights.clear();
+  corners.clear();
+  begin.assign(1, 0);
+  first_of_part.assign(1, 0);
+}
+
+template <class Real>
+void HeldForces<Real>::Stencils::add(double k, const Index* corner, const double* weight,
+                                     int count) {
+  stiffness.push_back(k);
+  corners.insert(corners.end(), corner, corner + count);
+  weights.insert(weights.end(), weight, weight + count);
+  begin.push_back(corners.size());
+}
+
+template <class Real>
+template <class Visit>
+void HeldForces<Real>::Stencils::visit(std::size_t part, Visit&& visit) const {
+  for (std::size_t s = first_of_part[part]; s < first_of_part[part + 1]; ++s) {
+    visit(stiffness[s], StencilView{corners.data() + begin[s], weights.data() + begin[s],
+                                    static_cast<int>(begin[s + 1] - begin[s])});
+  }
+}
+
+template <class Real>
+void HeldForces<Real>::begin_tick(const ClothModel<Real>& model, const Pins& pins) {
+  found_.clear();
+  for (const Pin& pin : pins.list) {
+    if (!pin.path) found_.insert(found_.end(), pin.particles.begin(), pin.particles.end());
+  }
+  if (stale_ || found_ != held_) {
+    held_ = found_;
+    list(model);
+  }
+  std::fill(force_.begin(), force_.end(), Vec3<Real>::Zero());
+  std::fill(impulse_.begin(), impulse_.end(), Vec3d::Zero());
+  keep();
+}
+
+/// Lists the elements that have a fixed particle.
+template <class Real>
+void HeldForces<Real>::list(const ClothModel<Real>& model) {
+  place_.assign(model.mass.size(), kNone);
+  force_.resize(model.mass.size());
+  impulse_.clear();
+  for (const Index i : held_) {
+    Index& place = place_[static_cast<std::size_t>(i)];
+    if (place != kNone) continue;  // several pins hold it
+    place = static_cast<Index>(impulse_.size());
+    impulse_.push_back(Vec3d::Zero());
+  }
+  near_.parts.resize(model.parts.size());
+  near_.springs.clear();
+  near_.membrane.clear();
+  near_.hinges.clear();
+  near_.triangles.clear();
+  bending_.clear();
+  damping_.clear();
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    ClothPart<Real>& part = near_.parts[p];
+    part.particles = model.parts[p].particles;
+    part.fabric = model.parts[p].fabric;
+    part.membrane_tensor = model.parts[p].membrane_tensor;
+    part.bending_time = model.parts[p].bending_time;
+    list_part(model, model.parts[p]);
+  }
+  stale_ = false;
+}
+
+template <class Real>
+bool HeldForces<Real>::touches(const Index* particles, std::size_t count) const {
+  return std::any_of(particles, particles + count, [this](Index i) { return holds(i); });
+}
+
+template <class Real>
+void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<Real>& part) {
+  ClothPart<Real>& near = near_.parts[static_cast<std::size_t>(&part - model.parts.data())];
+  near.springs = take(
+      model.springs, part.springs, [this](const auto& s) { return holds(s.i) || holds(s.j); },
+      near_.springs);
+  near.membrane = take(
+      model.membrane, part.membrane, [this](const auto& t) { return touches(&t.x[0], 3); },
+      near_.membrane);
+  near.hinges = take(
+      model.hinges, part.hinges, [this](const auto& h) { return touches(&h.x[0], 4); },
+      near_.hinges);
+  near.triangles = take(
+      model.triangles, part.triangles, [this](const auto& t) { return touches(&t[0], 3); },
+      near_.triangles);
+  const auto adder = [this](Stencils& list) {
+    return [this, &list](double k, const Index* corners, const double* weights, int count) {
+      if (touches(corners, static_cast<std::size_t>(count))) list.add(k, corners, weights, count);
+    };
+  };
+  visit_bending_stencils(part, adder(bending_));
+  bending_.first_of_part.push_back(bending_.stiffness.size());
+  visit_damped_stencils(part, adder(damping_));
+  damping_.first_of_part.push_back(damping_.stiffness.size());
+}
+
+template <class Real>
+void HeldForces<Real>::act(std::size_t part, const Surroundings<Real>& around,
+                           const Vec3Array<Real>& x, const Vec3Array<Real>& v, double seconds) {
+  assert(!stale_ && "begin_tick comes first");
+  assert(seconds >= 0 && x.size() == force_.size() && v.size() == force_.size());
+  const ClothPart<Real>& near = near_.parts[part];
+  add_spring_forces(near_, near, x, v, force_);
+  add_membrane_forces(near_, near, x, v, force_);
+  add_hinge_forces(near_, near, x, v, force_);
+  bending_.visit(part, [&](double k, const StencilView& stencil) {
+    add_stencil_force(k, stencil, x, force_);
+  });
+  damping_.visit(part, [&](double k, const StencilView& stencil) {
+    add_stencil_damping(k, near.bending_time, stencil, x, v, force_);
+  });
+  if (around.air) add_air_forces(near_, near, around.wind, around.air_density, x, v, force_);
+  for (const Index i : held_) {
+    Vec3<Real>& force = force_[static_cast<std::size_t>(i)];
+    if (!near.particles.contains(i)) continue;
+    impulse_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])] +=
+        force.template cast<double>() * seconds;
+    force.setZero();
+  }
+}
+
+template <class Real>
+void HeldForces<Real>::act(const Surroundings<Real>& around, const Vec3Array<Real>& x,
+                           const Vec3Array<Real>& v, double seconds) {
+  for (std::size_t p = 0; p < near_.parts.size(); ++p) act(p, around, x, v, seconds);
+}
+
+template <class Real>
+void HeldForces<Real>::pull(const Grabs<Real>& grabs, double seconds) {
+  const auto give = [this](Index i, const Vec3<Real>& impulse) {
+    if (!holds(i)) return;
+    impulse_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])] +=
+        impulse.template cast<double>();
+  };
+  for (const Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode != GrabMode::live) continue;
+    for (std::size_t n = 0; n < grab.particles.size(); ++n)
+      give(grab.particles[n], grab.impulse[n]);
+  }
+  for (const SlingImpulse<Real>& sling : grabs.impulses) {
+    for (std::size_t n = 0; n < sling.particles.size(); ++n)
+      give(sling.particles[n], sling.force * (sling.weights[n] * static_cast<Real>(seconds)));
+  }
+}
+
+template class HeldForces<float>;
+template class HeldForces<double>;
+
+}  // namespace weft
