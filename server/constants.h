@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 // The numbers that the server assumes about work, time and viewers. Ranges of options stand in
 // options.h, those of commands in proto/limits.h.
@@ -18,6 +19,11 @@ inline constexpr double kBetweenTicks = 0.4;
 /// the largest scene takes 18 MB. Larger: joining a scene of many meshes takes longer. Smaller:
 /// fine meshes are refused.
 inline constexpr std::size_t kMostMeshBytes = std::size_t{32} << 20U;
+
+/// Contacts and reactions that a query asked for are measured in so many further ticks, after which
+/// the next query looks one tick ahead again. More: ticks are dearer for longer after a single
+/// question. Fewer: who asks now and then pays for a tick each time.
+inline constexpr std::uint64_t kForcesAskedTicks = 600;
 
 /// Commands of one turn may take this long before the next tick [s]. Larger: a crowd of commands
 /// delays ticks. Smaller: it waits for more of them.

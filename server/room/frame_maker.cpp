@@ -23,7 +23,7 @@ proto::FrameView FrameMaker::view(const ServedWorld& world, const Holds& holds,
   view.grabs = grabs_;
   view.applied = applied_;
   view.poses = poses_;
-  if (world.reactions()) {
+  if (facts.forces && world.reactions()) {
     contacts_ = contact_samples(world);
     reactions_ = reaction_samples(world);
   }
@@ -36,7 +36,7 @@ Frame FrameMaker::make(const ServedWorld& world, const Holds& holds, const Facts
   proto::Bytes bytes, with_forces;
   proto::encode_frame(view, bytes);
   Frame frame{SharedBytes(std::move(bytes)), sequence_};
-  if (world.reactions()) {
+  if (facts.forces && world.reactions()) {
     view.contacts = contacts_;
     view.reactions = reactions_;
     proto::encode_frame(view, with_forces);

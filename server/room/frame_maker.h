@@ -15,13 +15,14 @@ class FrameMaker {
   /// What a frame tells besides the world.
   struct Facts {
     bool jumped = false, paused = false;
+    bool forces = false;     ///< a viewer wants them in its frames
     double server_time = 0;  ///< when its tick was done [s]
     std::uint32_t epoch = 0;
   };
 
   /// Which commands the coming frame includes.
   std::vector<proto::AppliedCommand>& applied() { return applied_; }
-  /// Contacts and reactions are in its second encoding, if they are measured.
+  /// Contacts and reactions are in its second encoding, if they are wanted and measured.
   Frame make(const ServedWorld& world, const Holds& holds, const Facts& facts);
   /// One with what `advance` observes, in the same encoding.
   SharedBytes make_observed(const ServedWorld& world, const Holds& holds, const Facts& facts,

@@ -42,7 +42,7 @@ void Room::start_world(BuiltScene&& scene) {
   for (const SceneNotice& notice : scene_notices_)
     spdlog::log(notice.warns ? spdlog::level::warn : spdlog::level::info, "scene {}: {}",
                 world_->def().name, notice.message);
-  measures_forces_ = false;
+  forces_ = {};
   saves_.clear();
   holds_.clear();
   told_.restart();
@@ -69,7 +69,7 @@ void Room::go_on(RoomPast&& past) {
   paused ? time_.pause() : time_.resume(clock_());
   order_.log = std::move(past.log);
   guarantee_ = std::move(past.guarantee);
-  measures_forces_ = past.measures_forces;
+  forces_ = past.forces;
   note_sleep(*world_, told_);
   note_pins(*world_, told_);
   note_grabs(*world_, told_);

@@ -21,6 +21,7 @@
 #include "server/room/frame_turns.h"
 #include "server/room/guarantee_watch.h"
 #include "server/room/holds.h"
+#include "server/room/measured_forces.h"
 #include "server/room/news.h"
 #include "server/room/order.h"
 #include "server/room/other_rooms.h"
@@ -303,7 +304,7 @@ class Room {
   Outcome query_numbers(const proto::Query& command, std::span<const float> values,
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);
-  Reactions coming_reactions();
+  const Reactions& present_reactions();
   Outcome release_pins(const std::vector<std::uint32_t>& ids);
   void end_hand(const Hand& hand, CommandOrigin origin);
 
@@ -332,7 +333,7 @@ class Room {
   Told told_;
   FrameTurns frames_;
   FrameMaker frame_maker_;
-  bool measures_forces_ = false;  // whether the world measures them
+  MeasuredForces forces_;
   GuaranteeWatch guarantee_;
   std::vector<SceneNotice> scene_notices_;
   Saves saves_;

@@ -39,7 +39,7 @@ Room::Outcome Room::apply(proto::ViewerId, const proto::Set& command) {
   if (command.softness || command.budget_ms || command.over_budget)
     ask_for_budget(with_settings(time_.budget().budget(), command));
   news_.state = true;
-  if (measures_forces_) frames_.note_command();  // the forces of the coming tick have changed
+  if (forces_.measured) frames_.note_command();  // the forces of the coming tick have changed
   return proto::Reply(proto::DoneReply{"set", world_->tick()});
 }
 

@@ -232,7 +232,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Save& command) {
     return *std::move(error);
   std::unique_ptr<ServedWorld> kept = world_->fork();
   for (const Hand& hand : holds_.hands()) kept->release(hand.grab);
-  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, measures_forces_});
+  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, forces_});
   return proto::Reply(proto::DoneReply{"save", world_->tick()});
 }
 
@@ -244,7 +244,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Restore& command) {
   world_ = save.world->fork();
   mesh_ = save.mesh;
   guarantee_ = save.guarantee;
-  measures_forces_ = save.measures_forces;
+  forces_ = save.forces;
   tell_jump("restored", "the cloth is back in its state " + command.name, viewer);
   tell_guarantee();
   return proto::Reply(proto::DoneReply{"restore", world_->tick()});

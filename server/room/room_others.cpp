@@ -47,7 +47,7 @@ BuiltScene Room::fork() const {
   copy.mesh_bytes = mesh_bytes_;
   copy.order = coding_order_;
   copy.notices = scene_notices_;
-  copy.past = RoomPast{time_, order_.log.newest(kForkedLog), guarantee_, measures_forces_};
+  copy.past = RoomPast{time_, order_.log.newest(kForkedLog), guarantee_, forces_};
   for (const Hand& hand : holds_.hands()) {
     copy.world->release(hand.grab);
     copy.past->log.add(world_->tick(), hand.viewer, CommandOrigin::leave,

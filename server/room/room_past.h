@@ -2,6 +2,7 @@
 
 #include "server/room/command_log.h"
 #include "server/room/guarantee_watch.h"
+#include "server/room/measured_forces.h"
 #include "server/room/room_clock.h"
 
 namespace weft::server {
@@ -11,7 +12,7 @@ struct RoomPast {
   RoomClock time;
   CommandLog log;
   GuaranteeWatch guarantee;
-  bool measures_forces = false;  ///< whether its world does
+  MeasuredForces forces;
 };
 
 }  // namespace weft::server

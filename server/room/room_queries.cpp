@@ -82,10 +82,10 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       reply.data = measurements_of(*world_);
       break;
     case proto::QueryWhat::contacts:
-      reply.data = contacts_of(*world_, coming_reactions());
+      reply.data = contacts_of(*world_, present_reactions());
       break;
     case proto::QueryWhat::reactions: {
-      proto::ReactionInfo reactions = reactions_of(*world_, coming_reactions());
+      proto::ReactionInfo reactions = reactions_of(*world_, present_reactions());
       for (const proto::GrabInfo& grab : grabs_of(*world_, holds_, true))
         reactions.grabs.push_back({grab.id, grab.viewer, *grab.force});
       reply.data = std::move(reactions);
@@ -120,11 +120,13 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
   return proto::Reply(std::move(reply));
 }
 
-/// Looks one tick ahead. Throws Stopped if that takes more than what is allowed between two ticks.
-Reactions Room::coming_reactions() {
-  Reactions found;
-  if (!within_limit([&] { found = world_->coming_reactions(); }, kBetweenTicks)) throw Stopped();
-  return found;
+/// Those of the last tick. Where it did not measure them, looks one tick ahead, and throws Stopped
+/// if that takes more than what is allowed between two ticks. Later ticks do measure them.
+const Reactions& Room::present_reactions() {
+  forces_.asked_until = world_->tick() + kForcesAskedTicks;
+  measure_forces();
+  if (!within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks)) throw Stopped();
+  return *world_->reactions();
 }
 
 /// Announces that the promise of no crossings has ended or is restored.

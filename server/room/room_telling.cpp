@@ -21,17 +21,19 @@ bool observes_forces(const proto::Advance& advance) {
 
 /// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
-  bool wanted = output_.wants_forces();
+  bool in_frames = output_.wants_forces();
   if (order_.advance && order_.advance->left <= 1)
-    wanted = wanted || observes_forces(order_.advance->wanted);
+    in_frames = in_frames || observes_forces(order_.advance->wanted);
   if (order_.advance && order_.advance->wanted.frames.value_or(proto::AdvanceFrames::none) !=
                             proto::AdvanceFrames::none) {
     const auto caller = viewers_.find(order_.advance->viewer);
-    wanted = wanted || (caller != viewers_.end() && caller->second.wants_forces);
+    in_frames = in_frames || (caller != viewers_.end() && caller->second.wants_forces);
   }
-  if (wanted == measures_forces_) return;
-  measures_forces_ = wanted;
-  within_limit([this] { world_->measure_forces(measures_forces_); });
+  forces_.in_frames = in_frames;
+  const bool wanted = in_frames || forces_.asked_at(world_->tick());
+  if (wanted == forces_.measured) return;
+  forces_.measured = wanted;
+  within_limit([this] { world_->measure_forces(forces_.measured); });
 }
 
 void Room::show_to_those_who_lack(double now) {
@@ -132,12 +134,12 @@ void Room::show_to(proto::ViewerId viewer) {
 /// they are wanted.
 FrameMaker::Facts Room::frame_facts() {
   measure_forces();
-  within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
+  if (forces_.in_frames) within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
   std::vector<proto::AppliedCommand>& applied = frame_maker_.applied();
   applied.clear();
   for (const auto& [id, viewer] : viewers_)
     if (viewer.applied > 0) applied.push_back({id, viewer.applied});
-  return {frames_.jumped(), paused(), time_.last_tick_done(), epoch_};
+  return {frames_.jumped(), paused(), forces_.in_frames, time_.last_tick_done(), epoch_};
 }
 
 /// A frame of the present state.

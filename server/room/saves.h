@@ -9,6 +9,7 @@
 #include "proto/error.h"
 #include "proto/messages/events.h"
 #include "server/room/guarantee_watch.h"
+#include "server/room/measured_forces.h"
 #include "server/translate/translate.h"
 
 namespace weft::server {
@@ -18,7 +19,7 @@ struct Save {
   std::unique_ptr<const ServedWorld> world;
   GuaranteeWatch guarantee;
   proto::MeshAnnouncement mesh;  ///< with the thickness of its fabrics
-  bool measures_forces = false;  ///< whether its world does
+  MeasuredForces forces;
 };
 
 /// States that a room keeps in memory, by name; all of its present scene.

@@ -1,3 +1,4 @@
+#include <array>
 #include <span>
 #include <string>
 
@@ -62,6 +63,54 @@ TEST_CASE("a cloth that lies tells its contacts, and their sum carries it") {
     normal += contact["normal_force"].get<double>();
   }
   CHECK(normal == Approx(weight_of(*t.room)).epsilon(0.02));
+}
+
+/// What a query for reactions tells of the first pin.
+Vec3d asked_force(TestRoom& t) {
+  const json pins = t.say(1, R"({"op":"query","id":9,"what":"reactions"})")["data"]["pins"];
+  const auto force = pins[0]["force"].get<std::array<double, 3>>();
+  return Vec3d(force[0], force[1], force[2]);
+}
+
+TEST_CASE(
+    "the first question for forces looks a tick ahead, later ones tell the last tick's means") {
+  TestRoom t;
+  t.join(1);
+  t.say(1, R"({"op":"advance","n":30})");
+  CHECK(t.room->world().reactions() == nullptr);
+  const Vec3d first = asked_force(t);
+  REQUIRE(t.room->world().reactions() != nullptr);
+  CHECK(t.room->world().reactions()->tick == 31);
+  CHECK(first == t.room->world().reactions()->pins[0].force);
+  CHECK(asked_force(t) == first);
+  t.say(1, R"({"op":"advance","n":5})");
+  CHECK(t.room->world().reactions()->tick == 35);
+  CHECK(asked_force(t) == t.room->world().reactions()->pins[0].force);
+  CHECK(asked_force(t) != t.room->world().coming_reactions().pins[0].force);
+  CHECK(t.room->world().reactions()->tick == 35);
+}
+
+TEST_CASE("forces that nobody asks for any more are measured no longer, nor after a reset") {
+  TestRoom t;
+  t.join(1);
+  asked_force(t);
+  t.say(1, R"({"op":"advance","n":)" + std::to_string(kForcesAskedTicks - 1) + "}");
+  CHECK(t.room->world().reactions() != nullptr);
+  t.say(1, R"({"op":"advance","n":1})");
+  CHECK(t.room->world().reactions() == nullptr);
+  asked_force(t);
+  t.say(1, R"({"op":"reset"})");
+  t.say(1, R"({"op":"advance","n":1})");
+  CHECK(t.room->world().reactions() == nullptr);
+}
+
+TEST_CASE("frames have no forces because a query asked for them") {
+  TestRoom t(false);
+  t.join(1);
+  asked_force(t);
+  t.tick(3);
+  CHECK(t.room->world().reactions() != nullptr);
+  CHECK(t.output.frames_with_forces.empty());
 }
 
 TEST_CASE("frames tell forces only to those who ask, and nothing is measured before") {
