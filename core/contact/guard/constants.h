@@ -87,10 +87,9 @@ inline constexpr double kStopShort = 1e-4;
 
 // Tangles.
 
-/// A gap of less than this many roundings of its particles' coordinates is none [1]: cloths that
-/// start in one plane, pulled off it by 1e-28 m, would change sides by rounding. What was apart
-/// once keeps eight times as much. Larger: more pairs of cloths that start near are drawn apart
-/// without a side.
+/// What touched is apart once its gap is more than this many roundings of its particles'
+/// coordinates [1]: cloths that start in one plane, pulled off it by 1e-28 m, would change sides by
+/// rounding. Larger: such cloths stay without a promise for longer.
 inline constexpr double kRoundingsOfNoGap = 8;
 
 /// A cloth is a hopeless tangle if it has more crossings than 1 / this of its particles, and more

@@ -12,6 +12,18 @@ void forget_pairs(GuardedPairs<Real>& pairs) {
   pairs.all.clear();
   pairs.active.clear();
   pairs.arrived.clear();
+  pairs.open_keys.clear();
+  pairs.open = 0;
+}
+
+template <class Real>
+void drop_all_pairs(GuardedPairs<Real>& pairs) {
+  pairs.open_keys.clear();
+  for (const GuardedPair<Real>& pair : pairs.all) {
+    if (pair.open && !pair.gone) pairs.open_keys.push_back(key_of(pair));
+  }
+  std::sort(pairs.open_keys.begin(), pairs.open_keys.end());
+  pairs.all.clear();
   pairs.open = 0;
 }
 
@@ -64,6 +76,7 @@ void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>&
                    GuardedPairs<Real>& pairs) {
   assert(changed.size() == pairs.is_active.size());
   pairs.dropped_keys.clear();
+  pairs.open_keys.clear();
   for (const Index k : particles) {
     const auto i = static_cast<std::size_t>(k);
     assert(changed[i] != 0);
@@ -82,8 +95,11 @@ void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>&
     if (!pair.open || pair.gone) continue;
     pair.gone = std::any_of(pair.particle.begin(), pair.particle.end(),
                             [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
-    pairs.open -= pair.gone ? 1 : 0;
+    if (!pair.gone) continue;
+    --pairs.open;
+    pairs.open_keys.push_back(key_of(pair));
   }
+  std::sort(pairs.open_keys.begin(), pairs.open_keys.end());
 }
 
 template <class Real>
@@ -97,6 +113,7 @@ void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs) {
 
 #define WEFT_INSTANTIATE(Real)                                    \
   template decltype(forget_pairs<Real>) forget_pairs<Real>;       \
+  template decltype(drop_all_pairs<Real>) drop_all_pairs<Real>;   \
   template decltype(list_all_pairs<Real>) list_all_pairs<Real>;   \
   template decltype(list_pairs_from<Real>) list_pairs_from<Real>; \
   template decltype(drop_pairs_of<Real>) drop_pairs_of<Real>;     \

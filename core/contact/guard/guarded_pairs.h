@@ -24,6 +24,7 @@ struct GuardedPairs {
   std::vector<char> is_active;        ///< of each particle
   std::uint32_t listing = 0;          ///< number of the last pass that visits each pair once
   std::vector<std::uint64_t> dropped_keys;  ///< of those that went last, ascending
+  std::vector<std::uint64_t> open_keys;     ///< of those that went last and were open, ascending
   std::vector<GuardedPair<Real>> arrived;   ///< came since rows were made
 
   const GuardedPair<Real>& operator[](Index number) const {
@@ -68,6 +69,10 @@ void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
 /// Forgets all pairs.
 template <class Real>
 void forget_pairs(GuardedPairs<Real>& pairs);
+
+/// Drops all pairs, and notes the keys of those that were open.
+template <class Real>
+void drop_all_pairs(GuardedPairs<Real>& pairs);
 
 /// Lists all pairs with their particles.
 /// @param particles  number of all
