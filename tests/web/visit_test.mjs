@@ -32,7 +32,7 @@ test('a viewer types a name, which others see and the browser remembers', bounde
   with_page({}, async (page, script) => {
     const other = await open_page(browser, server.url, { name: 'Ben' });
     await page.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
-    const dialog = page.getByRole('dialog', { name: 'Your name' });
+    const dialog = page.getByRole('dialog', { name: 'People' });
     const input = dialog.getByRole('textbox', { name: 'Name' });
     await input.fill('  Ada Lovelace  ');
     await page.keyboard.press('Enter');
