@@ -19,10 +19,12 @@ void forget_pairs(GuardedPairs<Real>& pairs) {
 template <class Real>
 void drop_all_pairs(GuardedPairs<Real>& pairs) {
   pairs.open_keys.clear();
-  for (const GuardedPair<Real>& pair : pairs.all) {
-    if (pair.open && !pair.gone) pairs.open_keys.push_back(key_of(pair));
+  if (pairs.open > 0) {
+    for (const GuardedPair<Real>& pair : pairs.all) {
+      if (pair.open && !pair.gone) pairs.open_keys.push_back(key_of(pair));
+    }
+    std::sort(pairs.open_keys.begin(), pairs.open_keys.end());
   }
-  std::sort(pairs.open_keys.begin(), pairs.open_keys.end());
   pairs.all.clear();
   pairs.open = 0;
 }

@@ -31,7 +31,6 @@ constexpr double kJoining = 60;   // [s]
 constexpr double kSettling = 2;   // before the measurement [s]
 constexpr int kPings = 40;        // the least round trip of so many tells the server's clock
 constexpr int kJoinsAtOnce = 32;  // connections that are not ready yet
-constexpr std::size_t kReadAtOnce = 256 * 1024;  // bytes of one viewer: a frame, or several
 
 double percentile(const std::vector<float>& sorted, double share) {
   if (sorted.empty()) return 0;
@@ -46,7 +45,6 @@ class Load {
     plan_.server = {address, options.port};
     plan_.host = options.address + ":" + std::to_string(options.port);
     plan_.codec = options.codec;
-    plan_.part.resize(kReadAtOnce);
     for (int k = 0; k < options.viewers; ++k)
       viewers_.push_back(std::make_unique<Viewer>(
           io_, plan_, options.rooms > 0 ? "room-" + std::to_string(k % options.rooms) : ""));
