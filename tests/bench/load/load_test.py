@@ -53,7 +53,7 @@ class Load(unittest.TestCase):
     def test_it_says_why_nobody_joined(self):
         done = load(self.port, "--viewers", "1", "--rooms", "1")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("404", done.stderr)
+        self.assertIn("handshake", done.stderr)
 
 
 if __name__ == "__main__":
