@@ -13,11 +13,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <spdlog/spdlog.h>
 
 #include "proto/hash_text.h"
 #include "proto/limits.h"
 #include "proto/utf8.h"
+#include "server/descriptor.h"
 #include "server/options.h"
 
 namespace weft::server {
@@ -54,24 +57,6 @@ std::optional<proto::Role> role_of(std::string_view word) {
   return static_cast<proto::Role>(found - words.begin());
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
-}
-
-/// A file that is open, closed at the end.
-struct OpenFile {
-  int descriptor;
-  explicit OpenFile(const std::string& path)
-      : descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~OpenFile() {
-    if (descriptor >= 0) ::close(descriptor);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-};
-
 }  // namespace
 
 void Tokens::add_line(const char* source, int number, std::string_view line) {
@@ -80,7 +65,7 @@ void Tokens::add_line(const char* source, int number, std::string_view line) {
   words >> role_word >> token;
   if (role_word.empty() || role_word.front() == '#') return;
   std::getline(words, name);
-  name = trimmed(name);
+  boost::algorithm::trim_if(name, boost::algorithm::is_any_of(" \t\r"));
   const auto role = role_of(role_word);
   if (!role) refuse(source, number, "viewer, operator or admin, a token, and perhaps a name");
   if (token.size() < kLeastTokenBytes || token.size() > proto::kMostTokenBytes ||
@@ -110,9 +95,9 @@ void Tokens::read(const char* source, const std::string& text) {
 }
 
 void Tokens::read_file(const std::string& path) {
-  const OpenFile file(path);
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
-  if (file.descriptor < 0 || ::fstat(file.descriptor, &status) != 0)
+  if (file.number < 0 || ::fstat(file.number, &status) != 0)
     throw OptionError("--tokens", path, std::string("a file (") + std::strerror(errno) + ")");
   if (!S_ISREG(status.st_mode)) throw OptionError("--tokens", path, "a plain file");
   if (static_cast<std::size_t>(status.st_size) > kMostFileBytes)
@@ -122,7 +107,7 @@ void Tokens::read_file(const std::string& path) {
     spdlog::warn("others than its owner may open the file of tokens {}; chmod 600 mends that",
                  path);
   std::string text(kMostFileBytes, '\0');
-  const ::ssize_t bytes = ::read(file.descriptor, text.data(), text.size());
+  const ::ssize_t bytes = ::read(file.number, text.data(), text.size());
   if (bytes < 0) throw OptionError("--tokens", path, "a file that can be read");
   text.resize(static_cast<std::size_t>(bytes));
   read("--tokens", text);

@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "server/clock.h"
+#include "server/descriptor.h"
 #include "server/scene/sandbox.h"
 
 namespace weft::server {
@@ -24,18 +25,6 @@ constexpr double kMostWallSeconds = 30;
 constexpr rlim_t kMostProcessorSeconds = 5;
 constexpr rlim_t kMostMemory = rlim_t{1} << 30;
 constexpr char kGood = 'M', kRefused = 'E';
-
-/// Owns a file descriptor.
-struct Descriptor {
-  int number = -1;
-  explicit Descriptor(int given) : number(given) {}
-  Descriptor(const Descriptor&) = delete;
-  ~Descriptor() { close_now(); }
-  void close_now() {
-    if (number >= 0) ::close(number);
-    number = -1;
-  }
-};
 
 DefinitionError refused(const std::string& path, const std::string& limit,
                         const std::string& hint = {}) {
