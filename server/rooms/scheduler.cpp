@@ -159,7 +159,6 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   else
     book(*turns, turn, cpu);
   judge();
-  if (lane_of(*turns) != lane) call(lane_of(*turns));
 }
 
 void Scheduler::book(Turns& turns, const Turn& turn, double cpu) {
@@ -172,7 +171,8 @@ void Scheduler::book(Turns& turns, const Turn& turn, double cpu) {
   turns.due_ = turns.woken_ ? clock_() : turn.next;
 }
 
-/// Tells light rooms from heavy ones.
+/// Tells light rooms from heavy ones. What one room wants changes the shares of all, so any of them
+/// may change its lane, whose threads then look anew.
 void Scheduler::judge() {
   int busy = 0;
   double least_served = kNever;
@@ -181,17 +181,20 @@ void Scheduler::judge() {
     if (each->demand_ > 0) least_served = std::min(least_served, each->served_);
   }
   const double share = static_cast<double>(threads_) / std::max(busy, 1);
-  bool light = false, heavy = false;
+  bool light = false;
   for (const std::shared_ptr<Turns>& each : all_) {
     each->heavy_ = each->demand_ > share && each->tick_cost_ > kShortTick;
     // What it left unused while it stood is not saved up.
     if (each->demand_ == 0 && least_served < kNever)
       each->served_ = std::max(each->served_, least_served);
-    heavy = heavy || each->heavy_;
     light = light || (!each->heavy_ && (each->running_ || each->due_ < kNever));
   }
-  const bool crowded = light && heavy;
-  if (std::exchange(crowded_, crowded) == crowded) return;
+  bool moved = false;
+  for (const std::shared_ptr<Turns>& each : all_) {
+    const bool after = each->heavy_ && light;
+    moved = std::exchange(each->patient_, after) != after || moved;
+  }
+  if (!moved) return;
   for (const Lane lane : {prompt, patient}) call(lane);
 }
 

@@ -46,7 +46,8 @@ class Turns {
   double tick_cost_ = 0;  ///< of CPU, mean of the last ticks [s]
   double demand_ = 0;     ///< threads that its ticks would keep busy [1]
   bool running_ = false, woken_ = false, removed_ = false;
-  bool heavy_ = false;  ///< wants more than its share
+  bool heavy_ = false;    ///< wants more than its share
+  bool patient_ = false;  ///< is served after light ones
 };
 
 /// Gives rooms their turns on a few threads, each room on one at a time.
@@ -93,7 +94,7 @@ class Scheduler {
   void run(Lane lane, const std::shared_ptr<Turns>& turns, std::unique_lock<std::mutex>& lock);
   void book(Turns& turns, const Turn& turn, double cpu);
   void judge();
-  Lane lane_of(const Turns& turns) const { return turns.heavy_ && crowded_ ? patient : prompt; }
+  static Lane lane_of(const Turns& turns) { return turns.patient_ ? patient : prompt; }
   std::shared_ptr<Turns> pick(Lane lane, double now) const;
   double earliest(Lane lane) const;
   void call(Lane lane);
@@ -103,7 +104,6 @@ class Scheduler {
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<Turns>> all_;
   std::array<Waiting, 2> waiting_;
-  bool crowded_ = false;  ///< there are light rooms beside heavy ones
   bool stopped_ = false;
   std::atomic<int> running_ = 0;
   std::vector<std::jthread> workers_;

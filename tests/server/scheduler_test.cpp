@@ -119,6 +119,26 @@ TEST_CASE("a room whose ticks want more than its share is heavy, and only then")
   CHECK_FALSE(scheduler.is_heavy(*light));
 }
 
+TEST_CASE("a heavy room that is light once another one has closed goes on to have turns") {
+  Scheduler scheduler(1, process_seconds);
+  // A quarter of the thread is the share of each, then a third.
+  const auto rare = room([](FakeTurns&) { return Turn{process_seconds() + 1000, 1000, true}; });
+  const auto between =
+      room([](FakeTurns&) { return costly_tick(3 * kShortTick, 10 * kShortTick); });
+  const auto heavy = overrunning(), closing = overrunning();
+  for (const auto& each : {rare, between, heavy, closing}) scheduler.add(each);
+  until([&] {
+    for (const auto& each : {between, heavy, closing})
+      if (!scheduler.is_heavy(*each) || each->turns < 20) return false;
+    return true;
+  });
+  scheduler.remove(*closing);
+  until([&] { return closing->ends == 1; });
+  const int before = between->turns;
+  until([&] { return between->turns > before + 20; });
+  CHECK_FALSE(scheduler.is_heavy(*between));
+}
+
 TEST_CASE("while turns of heavy rooms do not end, light ones have theirs") {
   constexpr int kThreads = 2;
   Scheduler scheduler(kThreads, process_seconds);
