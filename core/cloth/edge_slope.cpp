@@ -70,8 +70,8 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 }
 
 EdgeSlopes::EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles)
-    : x_(x), triangles_(triangles), edges_(sides_of(triangles)),
-      of_(edges_of_triangles(edges_, triangles)), neighbours_(x.size(), ends_of(edges_)) {}
+    : x_(x), edges_(sides_of(triangles)), of_(edges_of_triangles(edges_, triangles)),
+      neighbours_(x.size(), ends_of(edges_)) {}
 
 /// Coordinates in the plane of an edge, from its middle.
 struct EdgeSlopes::Frame {

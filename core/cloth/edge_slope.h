@@ -79,7 +79,6 @@ class EdgeSlopes {
   Members grown(const Members& members) const;
 
   const Vec3Array<double>& x_;
-  const std::vector<Triangle>& triangles_;
   std::vector<EdgeSides> edges_;
   std::vector<std::array<Index, 3>> of_;  // edges of each triangle
   Neighbours neighbours_;
