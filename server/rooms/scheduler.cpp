@@ -159,6 +159,8 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   else
     book(*turns, turn, cpu);
   judge();
+  // It may also have moved during this turn, when a thread of its new lane found it running.
+  if (lane_of(*turns) != lane) call(lane_of(*turns));
 }
 
 void Scheduler::book(Turns& turns, const Turn& turn, double cpu) {

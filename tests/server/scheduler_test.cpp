@@ -139,6 +139,27 @@ TEST_CASE("a heavy room that is light once another one has closed goes on to hav
   CHECK_FALSE(scheduler.is_heavy(*between));
 }
 
+TEST_CASE("a room that changes its lane while its turn runs goes on to have turns") {
+  Scheduler scheduler(1, process_seconds);
+  std::atomic<bool> held = false, inside = false;
+  const auto heavy = room([&](FakeTurns&) {
+    const Turn turn = costly_tick(3 * kShortTick, 1.5 * kShortTick);
+    inside = held.load();
+    until([&] { return !held; });
+    return turn;
+  });
+  scheduler.add(heavy);
+  until([&] { return scheduler.is_heavy(*heavy) && heavy->turns > 10; });
+  held = true;
+  until([&] { return inside.load(); });
+  // Alone it is served as light ones are; from now on after them.
+  scheduler.add(room([](FakeTurns&) { return Turn{process_seconds() + 1000, 1000, true}; }));
+  held = false;
+  const int before = heavy->turns;
+  until([&] { return heavy->turns > before + 20; });
+  CHECK(scheduler.is_heavy(*heavy));
+}
+
 TEST_CASE("while turns of heavy rooms do not end, light ones have theirs") {
   constexpr int kThreads = 2;
   Scheduler scheduler(kThreads, process_seconds);
