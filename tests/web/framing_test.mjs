@@ -189,10 +189,10 @@ test('who joins while the cloth is away from the scene’s view sees the cloth, 
 test('no cloth of a first view is behind a panel in a corner, and what is behind none is as large as before', () => {
   const orbit = new OrbitCamera();
   orbit.resize(1280, 800);
-  const corners = [{ left: 0, right: 0.1, bottom: 0.15 }, { left: 0.75, right: 1, bottom: 0.1 }];
   const free = () => orbit.window({ above: 0.01, below: 0.08 });
-  const window = () => ({ ...free(), corners });
-  for (const [width, clear] of [[0.4, true], [1.2, false]]) {
+  for (const [width, bottom, clear] of [[0.4, 0.1, true], [1.2, 0.1, false], [1.2, 0.12, false]]) {
+    const corners = [{ left: 0, right: 0.1, bottom: 0.15 }, { left: 0.75, right: 1, bottom }];
+    const window = () => ({ ...free(), corners });
     const { points, triangles } = sheet([0, 1, 0], [width, 0, 0], [0, 1, 0]);
     for (const view of [null, { target: [0, 1, 0], direction: [0, 0, 1], radius: 0.55 }]) {
       const begin = (seen) => {
@@ -202,7 +202,7 @@ test('no cloth of a first view is behind a panel in a corner, and what is behind
       };
       const before = begin(free);
       const pose = begin(window);
-      assert.equal(reach_of_corners(points, pose, window()), 0, `${width} m wide`);
+      assert.equal(reach_of_corners(points, pose, window()), 0, `${width} m wide, a panel of ${bottom}`);
       assert.equal(reach_of_corners(points, before, window()) === 0, clear);
       assert.equal(pose.distance === before.distance, clear);
     }
