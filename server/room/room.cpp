@@ -135,6 +135,7 @@ std::optional<double> Room::step_world() {
   const double start = clock_();
   tick_.replaced = tick_.over_limit = false;
   tick_.runs = true;
+  tick_.until = world_->tick() + 1;
   tick_.failure.clear();
   // A halted tick does not throw: its report says so.
   try {

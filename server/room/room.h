@@ -162,6 +162,7 @@ class Room {
   /// The tick that runs, or the last one.
   struct RunningTick {
     bool runs = false;
+    std::uint64_t until = 0;  ///< the world's tick at its end
     bool replaced = false;    ///< a command that replaces the state ends it
     bool over_limit = false;  ///< it exceeds its limit
     std::string failure;      ///< what it threw; empty: nothing

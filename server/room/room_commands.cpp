@@ -190,7 +190,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Pause&) {
   news_.state = true;
   if (order_.advance) order_.advance->paused = true;
   if (order_.advance && !tick_.runs) end_paused_advance();
-  return proto::Reply(proto::PauseReply{world_->tick(), true});
+  // The tick under way ends before the cloth stands.
+  return proto::Reply(proto::PauseReply{tick_.runs ? tick_.until : world_->tick(), true});
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Resume&) {

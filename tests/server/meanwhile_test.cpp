@@ -99,6 +99,23 @@ TEST_CASE("while a tick of an advance runs, others join and are answered") {
   CHECK(t.answer(4)["op"] == "result");
 }
 
+TEST_CASE("a pause is answered with the tick at which the cloth then stands") {
+  BusyRoom t;
+  t.room->join(1);
+  t.room->tick(10);
+  CHECK(t.room->say(1, R"({"op":"pause","id":3})")["tick"] == 10);
+  t.room->say(1, R"({"op":"resume"})");
+  for (const int stop : {0, 1, 5}) {
+    INFO("stop point " << stop);
+    t.do_at(stop, [&] { t.say_meanwhile(1, R"({"op":"pause","id":4})"); });
+    t.room->tick(1);
+    REQUIRE(t.done);
+    CHECK(t.answer(4)["tick"] == t.get().world().tick());
+    CHECK(t.room->say(1, R"({"op":"hash","id":5})")["tick"] == t.answer(4)["tick"]);
+    t.room->say(1, R"({"op":"resume"})");
+  }
+}
+
 TEST_CASE("a pause within a tick of an advance is answered at once and ends it with that tick") {
   for (const proto::ViewerId viewer : {1u, 2u}) {
     INFO("by viewer " << viewer);
