@@ -47,7 +47,7 @@ function mesh_of(cells, colliders) {
 
 test('thirty scenes one after the other leave no buffer, vertex array or texture behind', async () => {
   const alive = {};
-  const stage = new Stage(made_up_canvas(alive), { lost() {}, changed() {} });
+  const stage = new Stage(made_up_canvas(alive), false, { lost() {}, changed() {} });
   const { camera } = new OrbitCamera();
   const meshes = [mesh_of(6, [GROUND]), mesh_of(9, [GROUND, BALL, BOARD]), mesh_of(4, [])];
   const show = async ({ announcement, data }) => {
@@ -69,9 +69,33 @@ test('thirty scenes one after the other leave no buffer, vertex array or texture
   for (let i = 6; i < 30; i++) assert.deepEqual(await show(meshes[i % 3]), kept[i % 3]);
 });
 
+test('where simple light was asked for, no reflections or shadows are made, and still pictures get finer', async () => {
+  const alive_when = {};
+  for (const simple of [true, false]) {
+    const alive = {};
+    const stage = new Stage(made_up_canvas(alive), simple, { lost() {}, changed() {} });
+    const { camera } = new OrbitCamera();
+    const { announcement, data } = mesh_of(6, [GROUND]);
+    new WorldView(announcement, data, stage).look_from(camera);
+    stage.draw(camera);
+    const before = { ...alive };
+    await stage.complete(camera);
+    stage.draw(camera);
+    assert.equal(stage.lit, !simple);
+    alive_when[simple] = { before, after: { ...alive } };
+    assert.ok(!stage.fine);
+    for (let i = 0; i < EXPOSURES; i++) stage.expose(camera);
+    assert.ok(stage.fine);
+  }
+  assert.deepEqual(alive_when[true].after, alive_when[true].before, 'nothing is made');
+  const { before, after } = alive_when[false];
+  assert.deepEqual(before, alive_when[true].before, 'the first picture is the same');
+  for (const kind of ['Texture', 'Framebuffer', 'Program']) assert.ok(after[kind] > before[kind], kind);
+});
+
 test('the ring on the cloth keeps what it had when it was first seen, wherever it goes', () => {
   const alive = {};
-  const stage = new Stage(made_up_canvas(alive), { lost() {}, changed() {} });
+  const stage = new Stage(made_up_canvas(alive), false, { lost() {}, changed() {} });
   const { camera } = new OrbitCamera();
   const { announcement, data } = mesh_of(6, [GROUND]);
   const world = new WorldView(announcement, data, stage);

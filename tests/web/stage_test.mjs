@@ -36,6 +36,14 @@ test('lost graphics are told, and come back with the same picture while nothing 
   }),
 );
 
+test('the first, simple light stays where the address asks for it', bounded, () =>
+  with_page({ paused: true, simple: true }, async (page) => {
+    await camera_at_rest(page);
+    await fine(page); // which takes the whole light anywhere else
+    assert.equal(await read(page, 'lit'), false);
+  }),
+);
+
 test('a room of one tick a second does not change the size of the canvas at each of them', bounded, () =>
   with_server(['--scene', 'hard-step-second'], async (page) => {
     await page.evaluate(() => {

@@ -14,6 +14,7 @@ import type { Window } from './view/framing.js';
 import { KEY_HAND, KeyHand } from './hold/key_hand.js';
 import { listen_to_keys } from './hold/keys.js';
 import { Laboratory } from './view/laboratory.js';
+import { asks_for_simple_light } from './view/light.js';
 import { loss_text, notice_text } from './panel/events.js';
 import { element } from './panel/element.js';
 import { Panels, type Phase } from './panel/panels.js';
@@ -56,7 +57,7 @@ export class Page {
   phase: Phase = 'connecting';
   pictures = 0;
   private panels = new Panels();
-  readonly stage = new Stage(this.canvas, {
+  readonly stage = new Stage(this.canvas, asks_for_simple_light(window.location.search), {
     lost: (away) => {
       this.panels.picture_lost(away);
       this.dirty = true;

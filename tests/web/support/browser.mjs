@@ -31,13 +31,14 @@ export function launch_browser() {
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[], visited?: boolean, before?: () => void}} [options]
- *     view: target, direction and radius of the first view; visited: not for the first time;
+ *   view?: number[], simple?: boolean, visited?: boolean, before?: () => void}} [options]
+ *     view: target, direction and radius of the first view; simple: in simple light; visited: not for
+ *     the first time;
  *     before: runs in the page before its own scripts
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
-  const { view, visited = false, before } = options;
+  const { view, simple = false, visited = false, before } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
@@ -61,7 +62,7 @@ export async function open_page(browser, url, options = {}) {
   page.on('response', (response) => {
     if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
   });
-  const asked = [name && `name=${name}`, view && `view=${view}`].filter(Boolean).join('&');
+  const asked = [name && `name=${name}`, view && `view=${view}`, simple && 'light=simple'].filter(Boolean).join('&');
   await page.goto(asked ? `${url}?${asked}` : url);
   const opened = Object.assign(page, { complaints });
   await until(() => page.evaluate(() => window.weft.phase === 'open' && window.weft.tick >= 0));

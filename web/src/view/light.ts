@@ -107,6 +107,9 @@ export class Light {
   }
 }
 
+/** Whether an address asks for light without reflections and shadows: `?light=simple`. */
+export const asks_for_simple_light = (search: string) => new URLSearchParams(search).get('light') === 'simple';
+
 /**
  * Reflections of large bright panels in a dim room, prepared for rough and smooth surfaces. They
  * have to be made again when the graphics were lost.

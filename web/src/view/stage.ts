@@ -40,8 +40,10 @@ export class Stage {
   lit = false;
   private room: WebGLRenderTarget | null = null; // that surfaces reflect
 
+  /** @param simple whether its first, simple light is to stay */
   constructor(
     private canvas: HTMLCanvasElement,
+    private simple: boolean,
     private heard: Heard,
   ) {
     soften_shadows();
@@ -111,12 +113,16 @@ export class Stage {
 
   /** Whether the picture is as fine as it gets. */
   get fine(): boolean {
-    return this.lit && (this.exposed >= EXPOSURES[this.drawn_in] || !this.exposure.averages);
+    return this.lights_stay && (this.exposed >= EXPOSURES[this.drawn_in] || !this.exposure.averages);
+  }
+
+  private get lights_stay(): boolean {
+    return this.lit || this.simple;
   }
 
   /** Makes a picture that does not change finer by one more exposure. */
   expose(camera: PerspectiveCamera): void {
-    if (!this.lit || this.fine) return;
+    if (!this.lights_stay || this.fine) return;
     const { width, height } = this.canvas;
     const sample = this.exposed > 0 ? sample_of(this.exposed - 1) : null;
     if (sample) camera.setViewOffset(width, height, ...sample.pixel, width, height);
@@ -130,10 +136,11 @@ export class Stage {
   }
 
   /**
-   * Prepares reflections and shadows beside the pictures that are drawn meanwhile, and adds them.
-   * Call it when a first picture is on the screen.
+   * Prepares reflections and shadows beside the pictures that are drawn meanwhile, and adds them,
+   * unless the light stays simple. Call it when a first picture is on the screen.
    */
   complete(camera: PerspectiveCamera): Promise<void> {
+    if (this.simple) return Promise.resolve();
     this.completing ??= this.prepare(camera);
     return this.completing;
   }

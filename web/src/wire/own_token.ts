@@ -6,7 +6,7 @@ export function own_token(): string {
 /** The page's address with another token. */
 export function link_with(token: string): string {
   const url = new URL(window.location.href);
-  url.searchParams.delete('name'); // of this person alone
+  for (const own of ['name', 'light']) url.searchParams.delete(own); // of this person and this machine
   url.hash = `token=${token}`;
   return url.href;
 }
