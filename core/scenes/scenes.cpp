@@ -143,18 +143,21 @@ void build_hammock(WorldDef& def, const std::string&) {
 }
 
 void build_two_flags(WorldDef& def, const std::string&) {
-  constexpr double kWidth = 0.9, kHeight = 0.6;
+  constexpr double kWidth = 0.9, kHeight = 0.6, kTop = 1.8, kAbove = 0.15;
+  constexpr double kApart = 1.02;  // so that neither flag reaches the other's pole
   def.cloths.clear();
-  for (const auto& [name, top] : {std::pair("silk", 2.4), std::pair("denim", 1.6)}) {
-    ClothDef flag = hanging_cloth(21, 31, kWidth, kHeight, top, 0);
+  def.colliders = {ground()};
+  for (const auto& [name, x] : {std::pair("silk", 0.0), std::pair("denim", kApart)}) {
+    ClothDef flag = hanging_cloth(21, 31, kWidth, kHeight, kTop, 0);
     flag.name = name;
-    flag.origin = Vec3d(0.03, top, 0);
+    flag.origin = Vec3d(x + 0.03, kTop, 0);
     flag.fabric = make_fabric(name);
     def.cloths.push_back(flag);
     for (const Corner corner : {Corner::top_left, Corner::bottom_left})
       def.pins.push_back({corner, 0.05, name});
+    const CapsuleDef pole{Vec3d(x, 0, 0), Vec3d(x, kTop + kAbove, 0), 0.02};
+    def.colliders.push_back({name + std::string("-pole"), pole});
   }
-  def.colliders = {ground(), {"pole", CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2.55, 0), 0.02}}};
   def.environment.wind = Vec3d(1.8, 0, 0.3);
   def.environment.gust_speed = 0.4;
   let_sleep(def);
@@ -263,7 +266,7 @@ std::vector<SceneEntry> own_scenes() {
         "end."},
        build_hammock},
       {{"two-flags",
-        "Silk above and denim below in the same wind: the light flag streams, the heavy one "
+        "Silk and denim on two poles in the same wind: the light flag streams, the heavy one "
         "hangs."},
        build_two_flags},
       {{"drop-on-bunny",

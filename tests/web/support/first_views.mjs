@@ -1,5 +1,5 @@
 import { execFileSync } from 'node:child_process';
-import { camera_at_rest, open_page, read, until } from './browser.mjs';
+import { camera_at_rest, open_page, pixel_of, read, until } from './browser.mjs';
 import { fill_of } from './figures.mjs';
 import { server_at, tick_of } from './moments.mjs';
 
@@ -14,8 +14,9 @@ export function scene_names() {
 /**
  * Looks at a scene as one sees it first, at the moment of its picture.
  * @param {import('playwright-core').Browser} browser
- * @returns {Promise<{cloths: number, fill: number, complaints: string[]}>} the number of its cloths,
- *     and the part of the picture that is cloth, 0 to 1
+ * @returns {Promise<{cloths: number, fill: number, jaws: {x: number, y: number}[], complaints: string[]}>}
+ *     the number of its cloths, the part of the picture that is cloth, 0 to 1, and where the jaws of
+ *     grippers are in it, 0 to 1 from its upper left
  */
 export async function first_view(browser, scene) {
   const tick = tick_of(scene);
@@ -25,8 +26,11 @@ export async function first_view(browser, scene) {
     await until(async () => (await read(page, 'tick')) === tick, 'the tick is shown');
     await camera_at_rest(page);
     const [cloths, fill] = [await read(page, 'cloths'), await fill_of(page)];
+    const jaws = (await read(page, 'objects')).filter(({ name }) => name.startsWith('gripper.'));
+    const pixels = await Promise.all(jaws.map(({ position }) => pixel_of(page, position)));
+    const places = pixels.map(({ x, y }) => ({ x: x / DESKTOP.width, y: y / DESKTOP.height }));
     await page.context().close();
-    return { cloths, fill, complaints: page.complaints };
+    return { cloths, fill, jaws: places, complaints: page.complaints };
   } finally {
     await server.stop();
   }
