@@ -6,10 +6,10 @@ import { import_page_module } from './support/page_module.mjs';
 // What the page keeps on the graphics card, with graphics that are made up.
 
 make_up_browser();
-const { Stage } = await import_page_module('view/stage');
-const { WorldView } = await import_page_module('view/world_view');
-const { Reticle } = await import_page_module('view/reticle');
-const { OrbitCamera } = await import_page_module('view/camera');
+// As one, because the renderer knows geometries by numbers, which two copies of three give twice.
+const { Stage, WorldView, Reticle, Hands, OrbitCamera } = await import_page_module(
+  'view/stage', 'view/world_view', 'view/reticle', 'view/hands', 'view/camera',
+);
 
 const EXPOSURES = 24;
 const place = { pivot: [0, 0, 0] };
@@ -112,4 +112,36 @@ test('the ring on the cloth keeps what it had when it was first seen, wherever i
   const first = show(3);
   assert.deepEqual(first, { Buffer: without.Buffer + 8, VertexArray: without.VertexArray + 2 });
   for (const triangle of [null, 7, 20, null, 41, 3]) assert.deepEqual(show(triangle), first);
+});
+
+test('a hand that lets go leaves nothing behind, in simple light and in the whole', async () => {
+  const alive = {};
+  const stage = new Stage(made_up_canvas(alive), false, { lost() {}, changed() {} });
+  const orbit = new OrbitCamera();
+  orbit.update(1); // towards where the hand is
+  const { camera } = orbit;
+  const { announcement, data } = mesh_of(6, [GROUND]);
+  const world = new WorldView(announcement, data, stage);
+  const hands = new Hands({ append() {} });
+  stage.scene.add(hands.group);
+  const show = (shown) => {
+    hands.update(shown, camera, 64, 48);
+    world.look_from(camera);
+    stage.draw(camera);
+    const { Buffer, VertexArray } = alive;
+    return { Buffer, VertexArray };
+  };
+  const hand = { key: 'own', id: 1, name: '', color: '#aa3333', held: [0.5, 1, 0.5], target: [0.5, 1.2, 0.5],
+    own: true, finger: false, hidden: false, force: 1 };
+  for (const lit of [false, true]) {
+    if (lit) await stage.complete(camera);
+    const without = show([]);
+    const first = show([hand]);
+    assert.ok(first.Buffer >= without.Buffer + 12, 'its line and its two dots are drawn');
+    for (let time = 0; time < 3; time++) {
+      assert.deepEqual(show([]), without);
+      assert.deepEqual(show([{ ...hand, key: `hand ${time}` }]), first);
+    }
+    show([]);
+  }
 });

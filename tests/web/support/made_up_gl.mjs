@@ -58,12 +58,15 @@ export function made_up_canvas(alive) {
   return canvas;
 }
 
-/** Stands in for what the renderer asks of a browser. */
+const made_up_label = () =>
+  ({ style: { setProperty() {} }, toggleAttribute() {}, remove() {}, textContent: '', offsetWidth: 20 });
+
+/** Stands in for what the renderer and labels ask of a browser. */
 export function make_up_browser() {
   globalThis.self ??= globalThis;
   globalThis.window ??= { devicePixelRatio: 1 };
   globalThis.document ??= {
-    createElement: () => made_up_canvas({}),
+    createElement: (kind) => (kind === 'span' ? made_up_label() : made_up_canvas({})),
     createElementNS: () => made_up_canvas({}),
   };
 }
