@@ -249,8 +249,8 @@ export interface AdvanceCommand {
 
 /** The fields of `query`. */
 export interface QueryCommand {
-  /** what to read; see the table below; `positions` or `velocities` or `energies` or `strain` or `pins` or `grabs` or `camera` or `roster` or `state` or `work` or `trees` or `boxes` or `colliders` or `measurements` or `contacts` or `reactions` or `grippers` or `crossings` */
-  what: 'positions' | 'velocities' | 'energies' | 'strain' | 'pins' | 'grabs' | 'camera' | 'roster' | 'state' | 'work' | 'trees' | 'boxes' | 'colliders' | 'measurements' | 'contacts' | 'reactions' | 'grippers' | 'crossings';
+  /** what to read; see the table below; `positions` or `velocities` or `energies` or `strain` or `pins` or `grabs` or `camera` or `roster` or `state` or `work` or `trees` or `boxes` or `colliders` or `measurements` or `contacts` or `reactions` or `grippers` or `crossings` or `balance` */
+  what: 'positions' | 'velocities' | 'energies' | 'strain' | 'pins' | 'grabs' | 'camera' | 'roster' | 'state' | 'work' | 'trees' | 'boxes' | 'colliders' | 'measurements' | 'contacts' | 'reactions' | 'grippers' | 'crossings' | 'balance';
   /** binary ones are for positions, velocities and boxes alone; `json` or `f32` or `f64` */
   format?: 'json' | 'f32' | 'f64';
   /** of `camera`: that one alone; 0 to 4294967295 */

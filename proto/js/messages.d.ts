@@ -7,6 +7,7 @@ import type {
   Contact,
   Crossings,
   Energy,
+  EnergyBalance,
   Grab,
   GripperState,
   Pin,
@@ -36,6 +37,7 @@ export type {
   Contact,
   Crossings,
   Energy,
+  EnergyBalance,
   Fabric,
   Fan,
   Grab,
@@ -151,6 +153,7 @@ export interface QueryData {
   reactions: Reactions;
   grippers: GripperState[];
   crossings: Crossings;
+  balance: EnergyBalance;
 }
 
 export interface QueryOptions {

@@ -127,6 +127,59 @@ export interface Energy {
   total: number;
 }
 
+export interface EnergyWork {
+  hands: number;
+  slings: number;
+  /** moving ones, and pins that stop what they take hold of [J] */
+  pins: number;
+  /** moving ones [J] */
+  objects: number;
+  /** their jaws [J] */
+  grippers: number;
+  /** force of the air times the speed of the air [J] */
+  wind: number;
+  /** contact: positions corrected without a velocity [J] */
+  push_out: number;
+  /** of the scene [J] */
+  disturbances: number;
+  /** other gravity, softness or fabric, pins that stop [J] */
+  commands: number;
+}
+
+export interface EnergyLosses {
+  /** of the fabric [J] */
+  damping: number;
+  /** of the scene [J] */
+  drag: number;
+  /** its resistance [J] */
+  air: number;
+  /** of objects [J] */
+  friction: number;
+  /** on objects [J] */
+  impacts: number;
+  /** of cloth with cloth, with friction [J] */
+  self_contact: number;
+  /** motion of cloth that fell asleep [J] */
+  sleep: number;
+  /** of cloth that was stopped, as it diverged [J] */
+  recovery: number;
+  /** what no cause explains; negative: brought by it [J] */
+  solver: number;
+}
+
+export interface EnergyBalance {
+  /** tick at whose end measuring began */
+  since: number;
+  /** total then [J] */
+  start: number;
+  /** of what acts on the cloth */
+  work: EnergyWork;
+  /** to what takes energy from it */
+  losses: EnergyLosses;
+  /** total [J] */
+  now: number;
+}
+
 export interface PinForce {
   /** its id */
   pin: number;
@@ -352,6 +405,8 @@ export interface State {
   /** of the springs */
   strain: Strain;
   energy: Energy;
+  /** of energy; while it is measured: see the query `balance` */
+  balance?: EnergyBalance;
 }
 
 export interface Notice {

@@ -9,6 +9,7 @@
 
 #include "proto/hash_text.h"
 #include "proto/messages/commands.h"
+#include "proto/messages/energy.h"
 #include "proto/types.h"
 
 // Messages that the server sends unasked. README.md section 4 gives the meaning of each field.
@@ -111,19 +112,6 @@ struct Strain {
   }
 };
 
-struct Energy {
-  double kinetic = 0, stretch = 0, bending = 0, gravity = 0, total = 0;  ///< [J]
-
-  static constexpr const char* kName = "Energy";
-  static void describe(auto& io, auto& energy) {
-    io.required(Field{"kinetic", "", {}, "J"}, energy.kinetic);
-    io.required(Field{"stretch", "of the membrane", {}, "J"}, energy.stretch);
-    io.required(Field{"bending", "", {}, "J"}, energy.bending);
-    io.required(Field{"gravity", "above the height 0", {}, "J"}, energy.gravity);
-    io.required(Field{"total", "", {}, "J"}, energy.total);
-  }
-};
-
 /// Cloths at rest, which are not stepped until something acts on them.
 struct Sleeping {
   std::uint32_t islands = 0;  ///< groups of touching cloths that sleep and wake together
@@ -184,6 +172,25 @@ struct Guarantee {
   }
 };
 
+/// What moves and resists the cloth everywhere; its fields are `state`'s own on the wire.
+struct Air {
+  Vec3 wind{};
+  double gust_speed = 0, gust_length = 0, density = 0;
+  bool still = false;
+  double drag = 0;
+  std::vector<Fan> fans;
+
+  static void describe(auto& io, auto& air) {
+    io.required(Field{"wind", "mean velocity", {}, "m/s"}, air.wind);
+    io.required(Field{"gust_speed", "typical speed of the gusts", {}, "m/s"}, air.gust_speed);
+    io.required(Field{"gust_length", "size of an eddy", {}, "m"}, air.gust_length);
+    io.required(Field{"air_density", "", {}, "kg/m³"}, air.density);
+    io.required(Field{"still_air", "air resists without wind too"}, air.still);
+    io.required(Field{"drag", "uniform damping of velocities", {}, "1/s"}, air.drag);
+    io.required(Field{"fans", "all local winds"}, air.fans);
+  }
+};
+
 struct State {
   std::uint64_t tick = 0;
   double time = 0;  ///< simulated [s]
@@ -194,11 +201,8 @@ struct State {
   OverBudget over_budget = OverBudget::slow;
   std::string scene;
   double tick_rate = 60;
-  Vec3 gravity{}, wind{};
-  double gust_speed = 0, gust_length = 0, air_density = 0;
-  bool still_air = false;
-  double drag = 0;
-  std::vector<Fan> fans;
+  Vec3 gravity{};
+  Air air;
   std::string fabric, solver;
   std::vector<FabricChange> fabrics;  ///< of each cloth, every value
   std::uint32_t substeps = 0;
@@ -210,6 +214,7 @@ struct State {
   std::optional<Crossings> crossings;  ///< as last counted
   Strain strain;
   Energy energy;
+  std::optional<EnergyBalance> balance;  ///< while a viewer wants it
 
   static constexpr const char* kOp = "state";
   static void describe(auto& io, auto& state) {
@@ -227,13 +232,7 @@ struct State {
     io.required(Field{"scene", "its name"}, state.scene);
     io.required(Field{"tick_rate", "", {}, "1/s"}, state.tick_rate);
     io.required(Field{"gravity", "acceleration", {}, "m/s²"}, state.gravity);
-    io.required(Field{"wind", "mean velocity", {}, "m/s"}, state.wind);
-    io.required(Field{"gust_speed", "typical speed of the gusts", {}, "m/s"}, state.gust_speed);
-    io.required(Field{"gust_length", "size of an eddy", {}, "m"}, state.gust_length);
-    io.required(Field{"air_density", "", {}, "kg/m³"}, state.air_density);
-    io.required(Field{"still_air", "air resists without wind too"}, state.still_air);
-    io.required(Field{"drag", "uniform damping of velocities", {}, "1/s"}, state.drag);
-    io.required(Field{"fans", "all local winds"}, state.fans);
+    Air::describe(io, state.air);
     io.required(Field{"fabric", "names of all cloths' fabrics"}, state.fabric);
     io.required(Field{"fabrics", "of each cloth, every value; without `preset` if it is of none"},
                 state.fabrics);
@@ -250,6 +249,8 @@ struct State {
                 state.crossings);
     io.required(Field{"strain", "of the springs"}, state.strain);
     io.required(Field{"energy", ""}, state.energy);
+    io.optional(Field{"balance", "of energy; while it is measured: see the query `balance`"},
+                state.balance);
   }
 };
 

@@ -33,13 +33,14 @@ enum class QueryWhat : std::uint8_t {
   contacts,
   reactions,
   grippers,
-  crossings
+  crossings,
+  balance
 };
 template <>
-inline constexpr std::array<const char*, 18> kWords<QueryWhat> = {
-    "positions", "velocities",   "energies", "strain",    "pins",     "grabs",
-    "camera",    "roster",       "state",    "work",      "trees",    "boxes",
-    "colliders", "measurements", "contacts", "reactions", "grippers", "crossings"};
+inline constexpr std::array<const char*, 19> kWords<QueryWhat> = {
+    "positions", "velocities", "energies", "strain",    "pins",   "grabs",     "camera",
+    "roster",    "state",      "work",     "trees",     "boxes",  "colliders", "measurements",
+    "contacts",  "reactions",  "grippers", "crossings", "balance"};
 
 enum class QueryFormat : std::uint8_t { json, f32, f64 };
 template <>
@@ -55,11 +56,12 @@ struct Query {
 
   static constexpr const char* kOp = "query";
   static constexpr Right kRight = Right::look;
-  static constexpr FurtherRight kFurther{"`contacts`, `reactions`, `crossings`", Right::operate};
+  static constexpr FurtherRight kFurther{"`contacts`, `reactions`, `crossings`, `balance`",
+                                         Right::operate};
   /// What is computed for it alone takes the time of all.
   constexpr Right right() const {
-    const bool computed =
-        what == QueryWhat::contacts || what == QueryWhat::reactions || what == QueryWhat::crossings;
+    const bool computed = what == QueryWhat::contacts || what == QueryWhat::reactions ||
+                          what == QueryWhat::crossings || what == QueryWhat::balance;
     return computed ? kFurther.right : kRight;
   }
   static void describe(auto& io, auto& query) {

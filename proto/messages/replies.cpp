@@ -44,6 +44,7 @@ struct DataName {
   QueryWhat operator()(const ReactionInfo&) const { return QueryWhat::reactions; }
   QueryWhat operator()(const std::vector<GripperInfo>&) const { return QueryWhat::grippers; }
   QueryWhat operator()(const Crossings&) const { return QueryWhat::crossings; }
+  QueryWhat operator()(const EnergyBalance&) const { return QueryWhat::balance; }
 };
 
 struct ReplyWriter {

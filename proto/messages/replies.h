@@ -369,7 +369,8 @@ struct QueryReply {
   std::variant<Energy, Strain, std::vector<PinInfo>, std::vector<GrabInfo>,
                std::vector<ViewerCamera>, std::vector<ViewerInfo>, State, std::vector<StageWork>,
                std::vector<TreeInfo>, std::vector<ColliderPose>, Measurements,
-               std::vector<ContactInfo>, ReactionInfo, std::vector<GripperInfo>, Crossings>
+               std::vector<ContactInfo>, ReactionInfo, std::vector<GripperInfo>, Crossings,
+               EnergyBalance>
       data;
 };
 

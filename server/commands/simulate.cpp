@@ -19,6 +19,7 @@
 #include "core/world/object_repair.h"
 #include "core/world/verdict.h"
 #include "core/world/world.h"
+#include "proto/messages/command_writer.h"
 #include "server/clock.h"
 #include "server/commands/error_of_run.h"
 #include "server/commands/series.h"
@@ -163,17 +164,8 @@ Json guard_summary(const World<float>& world) {
 
 /// What each cause did to the cloth's energy over the run [J].
 Json balance_summary(const World<float>& world) {
-  const EnergyBalance* balance = world.energy_balance();
-  if (!balance) return "not measured";
-  Json work = Json::object(), losses = Json::object();
-  visit_work(balance->flows, [&](const char* name, double value) { work[name] = value; });
-  work["disturbances"] = balance->disturbances;
-  visit_losses(balance->flows, [&](const char* name, double value) { losses[name] = value; });
-  losses["sleep"] = balance->sleep;
-  losses["recovery"] = balance->recovery;
-  losses["solver"] = balance->lost();
-  return {
-      {"start", balance->start}, {"work", work}, {"losses", losses}, {"now", balance->now.total()}};
+  const std::optional<proto::EnergyBalance> balance = balance_of(world);
+  return balance ? proto::CommandWriter::json_of(*balance) : Json("not measured");
 }
 
 /// Result of a hard case; null for other scenes.

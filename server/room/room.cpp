@@ -132,6 +132,7 @@ void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
 /// @returns its duration [s]; nothing if the tick was given up
 std::optional<double> Room::step_world() {
   measure_forces();
+  measure_balance();
   const double start = clock_();
   tick_.replaced = tick_.over_limit = false;
   tick_.runs = true;

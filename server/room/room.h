@@ -142,6 +142,7 @@ class Room {
     bool mesh_over_http = false;
     bool wants_frame = false;   ///< it lacks the present one
     bool wants_forces = false;  ///< in its frames
+    bool wants_balance = false;  ///< of energy: it has asked for it
     std::uint32_t applied = 0;  ///< number of its last text message that was taken
     /// Every frame of its own `advance` that is in flight holds a copy.
     std::shared_ptr<const int> ticket = std::make_shared<int>();
@@ -247,6 +248,7 @@ class Room {
               proto::ViewerId viewer = 0, std::optional<std::uint32_t> drag = {},
               std::optional<double> value = {});
   void measure_forces();
+  void measure_balance();
   bool frames_stand() const;
   double next_frame() const;
   FrameMaker::Facts frame_facts();

@@ -44,7 +44,7 @@ Room::Outcome Room::query_boxes(const proto::Query& command) {
   return query_numbers(command, box_values_, 6);
 }
 
-Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
+Room::Outcome Room::apply(ViewerId asking, const proto::Query& command) {
   proto::QueryReply reply;
   reply.tick = world_->tick();
   switch (command.what) {
@@ -98,6 +98,11 @@ Room::Outcome Room::apply(ViewerId, const proto::Query& command) {
       }
       reply.data = guarantee_.count(*world_);
       tell_guarantee();
+      break;
+    case proto::QueryWhat::balance:
+      viewers_.at(asking).wants_balance = true;
+      measure_balance();
+      reply.data = *balance_of(*world_);
       break;
     case proto::QueryWhat::grippers:
       reply.data = grippers_of(*world_);

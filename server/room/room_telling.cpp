@@ -36,6 +36,13 @@ void Room::measure_forces() {
   within_limit([this] { world_->measure_forces(forces_.measured); });
 }
 
+/// Measures the balance of energy as long as a viewer that has asked for it is here.
+void Room::measure_balance() {
+  const bool wanted = std::any_of(viewers_.begin(), viewers_.end(),
+                                  [](const auto& entry) { return entry.second.wants_balance; });
+  if (wanted != (world_->energy_balance() != nullptr)) world_->measure_energy(wanted);
+}
+
 void Room::show_to_those_who_lack(double now) {
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.wants_frame) continue;

@@ -157,6 +157,35 @@ proto::Energy to_wire(const Energies& energies) {
   return {energies.kinetic, energies.stretch, energies.bending, energies.gravity, energies.total()};
 }
 
+std::optional<proto::EnergyBalance> balance_of(const ServedWorld& world) {
+  const EnergyBalance* balance = world.energy_balance();
+  if (!balance) return std::nullopt;
+  const EnergyFlows& f = balance->flows;
+  proto::EnergyBalance out;
+  out.since = balance->since;
+  out.start = balance->start;
+  out.work = {.hands = f.hands,
+              .slings = f.slings,
+              .pins = f.pins,
+              .objects = f.objects,
+              .grippers = f.grippers,
+              .wind = f.wind,
+              .push_out = f.push_out,
+              .disturbances = balance->disturbances,
+              .commands = balance->commands};
+  out.losses = {.damping = f.damping,
+                .drag = f.drag,
+                .air = f.air,
+                .friction = f.friction,
+                .impacts = f.impacts,
+                .self_contact = f.self_contact,
+                .sleep = balance->sleep,
+                .recovery = balance->recovery,
+                .solver = balance->lost()};
+  out.now = balance->now.total();
+  return out;
+}
+
 proto::State state_of(const ServedWorld& world) {
   proto::State state;
   state.tick = world.tick();
@@ -177,6 +206,7 @@ proto::State state_of(const ServedWorld& world) {
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   state.strain = {strain.largest, strain.p99};
   state.energy = to_wire(world.report().energies);
+  state.balance = balance_of(world);
   return state;
 }
 

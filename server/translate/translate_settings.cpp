@@ -146,14 +146,14 @@ proto::Result<std::optional<FabricWanted>> fabric_wanted(const ServedWorld& worl
 void tell_settings(const ServedWorld& world, proto::State& state) {
   const EnvironmentDef& environment = world.environment();
   state.gravity = to_wire(environment.gravity);
-  state.wind = to_wire(environment.wind);
-  state.gust_speed = environment.gust_speed;
-  state.gust_length = environment.gust_length;
-  state.air_density = environment.air_density;
-  state.still_air = environment.still_air;
-  state.drag = environment.damping;
+  state.air.wind = to_wire(environment.wind);
+  state.air.gust_speed = environment.gust_speed;
+  state.air.gust_length = environment.gust_length;
+  state.air.density = environment.air_density;
+  state.air.still = environment.still_air;
+  state.air.drag = environment.damping;
   for (const FanDef& f : environment.fans)
-    state.fans.push_back(
+    state.air.fans.push_back(
         {to_wire(f.position), to_wire(f.direction), f.speed, f.radius, f.spread, f.reach});
   state.fabric = fabric_names(world.def().cloths);
   state.fabrics = fabrics_of(world.def().cloths);

@@ -103,7 +103,7 @@ class CommandDraw {
     advance.n = count(kAdvanceRange, 8);
   }
   void operator()(Query& query) {
-    query.what = static_cast<QueryWhat>(dice_.below(static_cast<int>(QueryWhat::crossings) + 1));
+    query.what = static_cast<QueryWhat>(dice_.below(static_cast<int>(kWords<QueryWhat>.size())));
     if (query.what == QueryWhat::positions || query.what == QueryWhat::velocities)
       query.format = static_cast<QueryFormat>(dice_.below(3));
     if (query.what == QueryWhat::camera && some()) query.viewer = viewer();

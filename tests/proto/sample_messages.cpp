@@ -96,11 +96,11 @@ State sample_state() {
   s.time = 86;
   s.scene = "default";
   s.gravity = {0, -9.81, 0};
-  s.wind = {0, 0, 1.5};
-  s.gust_speed = 0.5;
-  s.gust_length = 0.6;
-  s.air_density = 1.225;
-  s.drag = 0.1;
+  s.air.wind = {0, 0, 1.5};
+  s.air.gust_speed = 0.5;
+  s.air.gust_length = 0.6;
+  s.air.density = 1.225;
+  s.air.drag = 0.1;
   s.fabric = "default";
   s.fabrics = {{{}, 0.2, 400, 400, 40, 1e-5, 1e-5, 0.05, 0, 0.004, 0.4}};
   s.solver = "verlet";
@@ -113,6 +113,18 @@ State sample_state() {
   s.strain = {0.021, 0.012};
   s.energy = kEnergy;
   return s;
+}
+
+EnergyBalance sample_balance() {
+  EnergyBalance balance;
+  balance.since = 300;
+  balance.start = 1.75;
+  balance.work.hands = 0.5;
+  balance.work.wind = 0.25;
+  balance.losses.damping = 0.125;
+  balance.losses.air = 0.375;
+  balance.now = 2;
+  return balance;
 }
 
 ReactionInfo sample_reactions() {
@@ -197,6 +209,7 @@ std::vector<std::string> sample_replies() {
       encode_reply(24, QueryReply{600, std::vector<ContactInfo>{contact()}}),
       encode_reply(25, QueryReply{600, sample_reactions()}),
       encode_reply(27, QueryReply{600, Crossings{0, 600, {}}}),
+      encode_reply(28, QueryReply{600, sample_balance()}),
       encode_reply(23, HashReply{600, kHash}),
       encode_reply(24, PingReply{1712.25, 91.000125, 91.000131}),
       encode_reply(25, LoadReply{0, "flag", 2}),

@@ -15,6 +15,7 @@ inline const proto::Camera kCamera{{0, 1.2, 3}, {0, 1, 0}, {0, 1, 0}, 45};
 
 proto::State sample_state();
 proto::ReactionInfo sample_reactions();
+proto::EnergyBalance sample_balance();
 std::vector<std::string> sample_events();
 std::vector<std::string> sample_replies();
 std::vector<std::string> sample_http_bodies();

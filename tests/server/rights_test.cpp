@@ -38,8 +38,8 @@ std::vector<proto::Command> every_form() {
 /// The commands that need more than their op alone.
 std::vector<proto::Command> further_forms() {
   std::vector<proto::Command> list;
-  for (const auto what :
-       {proto::QueryWhat::contacts, proto::QueryWhat::reactions, proto::QueryWhat::crossings}) {
+  for (const auto what : {proto::QueryWhat::contacts, proto::QueryWhat::reactions,
+                          proto::QueryWhat::crossings, proto::QueryWhat::balance}) {
     proto::Query query;
     query.what = what;
     list.emplace_back(query);

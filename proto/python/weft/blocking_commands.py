@@ -7,8 +7,8 @@ from typing import Any, Literal, overload
 
 from .fields import Hold
 from .messages import (
-    Camera, ColliderPose, Contact, Crossings, Energy, Fabric, Fan, Grab, GripperState, Pin, Reactions, StageWork,
-    State, Strain, Tree, Viewer,
+    Camera, ColliderPose, Contact, Crossings, Energy, EnergyBalance, Fabric, Fan, Grab, GripperState, Pin, Reactions,
+    StageWork, State, Strain, Tree, Viewer,
 )  # fmt: skip
 from .queries import Binary, ViewerCamera
 from .results import (
@@ -280,6 +280,9 @@ class BlockingCommands(Runner):
 
     @overload
     def query(self, what: Literal["crossings"], *, timeout: float | None = CLIENTS) -> Crossings: ...
+
+    @overload
+    def query(self, what: Literal["balance"], *, timeout: float | None = CLIENTS) -> EnergyBalance: ...
 
     def query(
         self, what: str, *, format: str | None = None, viewer: int | None = None, tree: str | None = None,

@@ -104,6 +104,44 @@ class Energy(TypedDict):
     total: float
 
 
+class EnergyWork(TypedDict):
+    """`EnergyWork`, as part of a message."""
+
+    hands: float
+    slings: float
+    pins: float  # moving ones, and pins that stop what they take hold of [J]
+    objects: float  # moving ones [J]
+    grippers: float  # their jaws [J]
+    wind: float  # force of the air times the speed of the air [J]
+    push_out: float  # contact: positions corrected without a velocity [J]
+    disturbances: float  # of the scene [J]
+    commands: float  # other gravity, softness or fabric, pins that stop [J]
+
+
+class EnergyLosses(TypedDict):
+    """`EnergyLosses`, as part of a message."""
+
+    damping: float  # of the fabric [J]
+    drag: float  # of the scene [J]
+    air: float  # its resistance [J]
+    friction: float  # of objects [J]
+    impacts: float  # on objects [J]
+    self_contact: float  # of cloth with cloth, with friction [J]
+    sleep: float  # motion of cloth that fell asleep [J]
+    recovery: float  # of cloth that was stopped, as it diverged [J]
+    solver: float  # what no cause explains; negative: brought by it [J]
+
+
+class EnergyBalance(TypedDict):
+    """`EnergyBalance`, as part of a message."""
+
+    since: int  # tick at whose end measuring began
+    start: float  # total then [J]
+    work: EnergyWork  # of what acts on the cloth
+    losses: EnergyLosses  # to what takes energy from it
+    now: float  # total [J]
+
+
 class PinForce(TypedDict):
     """`PinForce`, as part of a message."""
 
@@ -272,6 +310,7 @@ class State(TypedDict):
     crossings: Crossings | None  # as last counted; null before the first count
     strain: Strain  # of the springs
     energy: Energy
+    balance: NotRequired[EnergyBalance]  # of energy; while it is measured: see the query balance
 
 
 class Notice(TypedDict):

@@ -7,7 +7,7 @@ from typing import Any, Literal, overload
 from .commands import Commands
 from .fields import without_none
 from .messages import (
-    Camera, ColliderPose, Contact, Crossings, Energy, Grab, GripperState, Pin, Reactions, StageWork, State, Strain,
+    Camera, ColliderPose, Contact, Crossings, Energy, EnergyBalance, Grab, GripperState, Pin, Reactions, StageWork, State, Strain,
     Tree, Viewer,
 )  # fmt: skip
 from .samples import Data
@@ -76,6 +76,8 @@ class Queries(Commands):
     async def query(self, what: Literal["grippers"], *, timeout: float | None = CLIENTS) -> list[GripperState]: ...
     @overload
     async def query(self, what: Literal["crossings"], *, timeout: float | None = CLIENTS) -> Crossings: ...
+    @overload
+    async def query(self, what: Literal["balance"], *, timeout: float | None = CLIENTS) -> EnergyBalance: ...
     async def query(
         self, what: str, *, format: str | None = None, viewer: int | None = None, tree: str | None = None,
         level: int | None = None, timeout: float | None = CLIENTS,
