@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/moving_rows.h"
@@ -33,6 +34,26 @@ bool measure_pushed_travel(ObjectCertificate<Real>& c) {
   return within;
 }
 
+/// Notes that a particle was held, as an impulse of the object whose plane is nearest to it.
+/// @param before  its velocity until then [m/s]
+template <class Real>
+void log_hold(ObjectCertificate<Real>& c, std::size_t i, const Vec3<Real>& before) {
+  const ContactRow<Real>* nearest = nullptr;
+  std::size_t place = 0;
+  Real least = std::numeric_limits<Real>::infinity();
+  for (const ContactRow<Real>& row : c.rows.all) {
+    const Real room = row.normal.dot(c.state.x[i]) - row.offset;
+    if (!(room < least)) continue;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+      if (static_cast<std::size_t>(row.particle[k]) != i) continue;
+      nearest = &row;
+      place = k;
+      least = room;
+    }
+  }
+  if (nearest) log_stop(c, *nearest, place, before);
+}
+
 /// Holds particles that would go beyond the reach within which the planes are all that matters. Not
 /// moving is always allowed.
 template <class Real>
@@ -40,7 +61,10 @@ void hold_within_reach(ObjectCertificate<Real>& c) {
   for (std::size_t i = 0; i < c.state.x.size(); ++i) {
     const Vec3<Real> end = c.state.x[i] + c.state.v[i] * c.dt;
     const Real reach = c.reach.reach[i] - c.motion.since_rows;
-    if (!((end - c.reach.x[i]).squaredNorm() <= reach * std::abs(reach))) c.state.v[i].setZero();
+    if ((end - c.reach.x[i]).squaredNorm() <= reach * std::abs(reach)) continue;
+    const Vec3<Real> before = c.state.v[i];
+    c.state.v[i].setZero();
+    if (c.log.wanted()) log_hold(c, i, before);
   }
 }
 
