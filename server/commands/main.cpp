@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "server/commands/convert_damping.h"
+#include "server/commands/drape.h"
 #include "server/commands/list_scenes.h"
 #include "server/commands/log_sink.h"
 #include "server/commands/serve.h"
@@ -42,6 +43,7 @@ Examples:
   weft scenes --json flag                         one as a file to start from
   weft fabric --set fabric=wool --mode bending --length 0.05 --decay-time 0.5
                                                   the damping of a strip that was seen to swing
+  weft drape --fabric silk --threads 2            what the drape test says of a fabric
 
 Exit codes: 0 done, 1 failed, 2 what was asked for is refused; simulate: 3 something crossed, 4 a
 tick took too long; 5 output could not be written
@@ -194,6 +196,17 @@ void add_fabric(CLI::App& app, FabricOptions& o, std::vector<std::string>& setti
   add_switch(fabric, "--json", o.json, "Print JSON");
 }
 
+void add_drape(CLI::App& app, DrapeOptions& o, std::vector<std::string>& settings) {
+  CLI::App& drape = *app.add_subcommand(
+      "drape", "Predict the drape of a fabric from several starts, grids and a mesh");
+  drape.add_option("--fabric", o.fabric, "Name of a preset")->capture_default_str();
+  drape.add_option("--set", settings, "Value of the fabric as key=value; may be repeated");
+  add_number(drape, "--starts", o.starts, kDrapeStarts, "Runs of each specimen (5)");
+  add_number(drape, "--seconds", o.seconds, kDrapeSeconds, "Simulated seconds of a run (4)");
+  add_number(drape, "--threads", o.threads, kThreadCounts, "Threads, each with runs of its own (1)");
+  add_switch(drape, "--json", o.json, "Print JSON");
+}
+
 /// One line that names the error and the allowed values.
 std::string describe(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string allowed;
@@ -236,12 +249,14 @@ int run(int argc, char** argv) {
   ServerOptions serve_options;
   SimulateOptions simulate_options;
   FabricOptions fabric_options;
-  std::vector<std::string> serve_settings, simulate_settings, fabric_settings;
+  DrapeOptions drape_options;
+  std::vector<std::string> serve_settings, simulate_settings, fabric_settings, drape_settings;
   ScenesOptions scenes_options;
   add_serve(app, serve_options, serve_settings);
   add_simulate(app, simulate_options, simulate_settings);
   add_scenes(app, scenes_options);
   add_fabric(app, fabric_options, fabric_settings);
+  add_drape(app, drape_options, drape_settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -260,6 +275,9 @@ int run(int argc, char** argv) {
     simulate_options.settings.push_back(split_setting(text));
   for (const std::string& text : fabric_settings)
     fabric_options.settings.push_back(split_setting(text));
+  for (const std::string& text : drape_settings)
+    drape_options.settings.push_back(split_setting(text));
+  if (app.got_subcommand("drape")) return predict_drape(drape_options);
   if (app.got_subcommand("fabric")) return convert_damping(fabric_options);
   if (app.got_subcommand("scenes")) return list_scenes(scenes_options);
   if (app.got_subcommand("simulate")) return simulate(simulate_options);

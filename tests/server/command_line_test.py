@@ -149,6 +149,25 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(loss["relaxation_time_s"], found["relaxation_time_s"], delta=1e-8)
         self.assertIn("fabric.bending_damping=0\n", run("fabric").stdout)
 
+    def test_a_drape_is_told_of_each_specimen_and_of_all_with_its_error(self):
+        told = json.loads(run("drape", "--fabric", "denim", "--starts", "2", "--seconds", "0.5", "--threads", "2",
+                              "--json").stdout)
+        self.assertEqual((told["fabric"], told["published_percent"]), ("denim", [70, 90]))
+        specimens = told["specimens"]
+        self.assertEqual([s["runs"] for s in specimens], [2, 2, 2, 2])
+        means = [s["coefficient_percent"]["mean"] for s in specimens]
+        self.assertAlmostEqual(told["all"]["coefficient_percent"]["mean"], sum(means) / 4, delta=1e-9)
+        for s in (*specimens, told["all"]):
+            # No shadow is larger than the flat specimen's, and none smaller than the disc's.
+            self.assertTrue(0 < s["least_percent"] <= s["coefficient_percent"]["mean"] <= s["most_percent"] < 100)
+        for s in specimens:  # of two runs: half their distance
+            self.assertAlmostEqual(s["coefficient_percent"]["standard_error"],
+                                   (s["most_percent"] - s["least_percent"]) / 2, delta=1e-9)
+        for wrong in (("--fabric", "tin"), ("--starts", "1"), ("--set", "cloth.rows=9")):
+            refused = run("drape", *wrong)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(wrong[1].split("=")[0], refused.stderr)
+
     def test_errors_of_a_run_are_told_on_request_and_change_no_bit_of_it(self):
         # So many that the difference of the energies is far above the rounding of their floats.
         arguments = ("simulate", "--scene", "cantilever-test", "--ticks", "12")

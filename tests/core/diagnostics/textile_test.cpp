@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -7,6 +8,7 @@
 #include "core/diagnostics/drape.h"
 #include "core/error.h"
 #include "core/scenes/scenes.h"
+#include "core/scenes/textile_scenes.h"
 #include "core/world/world.h"
 #include "tests/support/worlds.h"
 
@@ -49,6 +51,37 @@ TEST_CASE("a grid cut to a disc has the disc's area and mass, to 1 %, and whole 
   CHECK(model.triangles.size() % 2 == 0);
   for (const auto& m : model.material)
     CHECK(std::hypot(m[0] - 0.15, m[1] - 0.15) < 0.15 + std::sqrt(0.5) * 0.005);
+}
+
+TEST_CASE(
+    "the drape's mesh of rings is the specimen, in triangles of about one size that face up") {
+  for (const int rings : {2, 5, 10, 40}) {
+    INFO(rings << " rings");
+    const WorldDef def = drape_test_on_rings(make_fabric("cotton"), rings);
+    const TriangleMesh& mesh = def.cloths[0].mesh->mesh;
+    const double gap = (kDrapeSpecimenRadius - kDrapeSupportRadius) / (rings + 0.5);
+    double area = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const auto at = [&](Index i) { return mesh.positions[static_cast<std::size_t>(i)]; };
+      const double twice = (at(b) - at(a)).cross(at(c) - at(a)).y();
+      REQUIRE(twice > 0.4 * gap * gap);
+      REQUIRE(twice < 1.6 * gap * gap);
+      area += twice / 2;
+    }
+    std::size_t border = 0;
+    for (const MeshEdge& edge : edges_of(mesh)) border += edge.triangle[1] == kNone ? 1U : 0U;
+    const double corners = static_cast<double>(border);  // of the polygon that the hem is
+    CHECK(area == Approx(kDrapeSpecimenRadius * kDrapeSpecimenRadius * corners / 2 *
+                         std::sin(2 * kPi / corners)));
+    World<double> world(def);
+    double held = 0;
+    for (const auto i : world.pins().list[0].particles) {
+      const Vec3d& x = world.state().x[static_cast<std::size_t>(i)];
+      held = std::max(held, std::hypot(x.x(), x.z()));
+    }
+    CHECK(held == Approx(kDrapeSupportRadius + gap / 2));
+  }
 }
 
 TEST_CASE("the springs and hinges of a cut grid are those of the whole grid at the same places") {
