@@ -62,9 +62,9 @@ bool any_measured(const std::vector<QuantityError>& all) {
 
 }  // namespace
 
-std::string ErrorOfRun::cost_told_before(const World<float>& run) const {
+std::string ErrorOfRun::cost_told_before(const TickCost& run) const {
   const double once = once_.cost_in(once_.environment()).updates();
-  const double part = once / run.cost_in(run.environment()).updates();
+  const double part = once / run.updates();
   return "--error repeats the run: about " +
          text_of("%.3g", part * (1 + error_.relative_cost(once_))) +
          " times its cost besides, in double precision";

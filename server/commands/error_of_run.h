@@ -19,8 +19,8 @@ class ErrorOfRun {
       : once_(def, runtime), error_(def, runtime, once_) {}
 
   /// What it will cost besides the run, in one line.
-  /// @param run  at its start
-  std::string cost_told_before(const World<float>& run) const;
+  /// @param run  cost of its ticks, at its start
+  std::string cost_told_before(const TickCost& run) const;
 
   void step() {
     once_.step();

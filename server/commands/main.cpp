@@ -148,6 +148,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
              "Measure what each cause did to the cloth's energy; takes longer");
   add_switch(simulate, "--error", o.error,
              "Repeat the run with finer steps, with noise and on a finer mesh, and tell its error");
+  add_switch(simulate, "--double", o.in_double,
+             "Compute in double precision, in place of the float that a server takes");
   add_switch(simulate, "--json", o.json, "Print JSON");
   add_number(simulate, "--threads", o.threads, kThreadCounts, "Threads for the physics (1)");
   add_number(simulate, "--tick-limit", o.tick_limit, kTickLimits,
@@ -203,7 +205,8 @@ void add_drape(CLI::App& app, DrapeOptions& o, std::vector<std::string>& setting
   drape.add_option("--set", settings, "Value of the fabric as key=value; may be repeated");
   add_number(drape, "--starts", o.starts, kDrapeStarts, "Runs of each specimen (5)");
   add_number(drape, "--seconds", o.seconds, kDrapeSeconds, "Simulated seconds of a run (4)");
-  add_number(drape, "--threads", o.threads, kThreadCounts, "Threads, each with runs of its own (1)");
+  add_number(drape, "--threads", o.threads, kThreadCounts,
+             "Threads, each with runs of its own (1)");
   add_switch(drape, "--json", o.json, "Print JSON");
 }
 

@@ -24,6 +24,7 @@
 #include "server/commands/error_of_run.h"
 #include "server/commands/series.h"
 #include "server/commands/start_file.h"
+#include "server/commands/table.h"
 #include "server/options.h"
 #include "server/output.h"
 #include "server/room/guarantee_watch.h"
@@ -49,6 +50,7 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
+template <class Real>
 struct Measurement {
   double cpu = 0, wall = 0;   ///< of the steps alone [s]
   std::vector<double> ticks;  ///< [s], sorted
@@ -64,12 +66,13 @@ struct Measurement {
   int crossed_ticks = 0, first_crossed = 0;  ///< number of the first one; 0: none
   std::size_t late_crossings = 0;            ///< after the scene's grace time for crossings
   std::size_t broken_promises = 0;           ///< those that its contact rules out
-  Verdict<float> verdict;                    // of a hard case
+  Verdict<Real> verdict;                     // of a hard case
   proto::Guarantee guarantee;                ///< at the end
 };
 
 /// @returns false if the tick exceeded its limit; the state is then unchanged
-bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
+template <class Real>
+bool measure_tick(World<Real>& world, WorkLimit& limit, Measurement<Real>& m) {
   const double cpu = cpu_seconds(), wall = process_seconds();
   const TickReport& report = [&]() -> const TickReport& {
     const WorkLimit::Scope scope(limit);
@@ -94,13 +97,15 @@ bool measure_tick(World<float>& world, WorkLimit& limit, Measurement& m) {
 
 /// Crossings that break the scene's promise: contact of the seed promises nothing, and without
 /// self-contact cloths may pass through each other.
-std::size_t broken_promises(const World<float>& world, const WorldCrossings& found) {
+template <class Real>
+std::size_t broken_promises(const World<Real>& world, const WorldCrossings& found) {
   if (contact_of(world.def()) != ContactModel::certified) return 0;
   return found.objects.all() + (has_guard(world.def()) ? found.cloths.all() : 0);
 }
 
 /// Checks for penetrations and counts crossings.
-void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Measurement& m) {
+template <class Real>
+void look(World<Real>& world, bool judged, CrossingCounter<Real>& counter, Measurement<Real>& m) {
   ++m.checks;
   m.deepest = std::max(m.deepest, world.deepest_penetration());
   const WorldCrossings found = judged ? m.verdict.crossing_now : counter.count(world);
@@ -116,17 +121,18 @@ void look(World<float>& world, bool judged, CrossingCounter<float>& counter, Mea
 
 /// @param error  repetitions that go along with it; null: none
 /// @returns nothing if a tick was given up
-std::optional<Measurement> run(World<float>& world, const SimulateOptions& options,
-                               ErrorOfRun* error) {
+template <class Real>
+std::optional<Measurement<Real>> run(World<Real>& world, const SimulateOptions& options,
+                                     ErrorOfRun* error) {
   WorkLimit limit(options.tick_limit);
   const LimitWatch watch(limit);
-  Measurement m;
+  Measurement<Real> m;
   m.ticks.reserve(static_cast<std::size_t>(options.ticks));
-  CrossingCounter<float> counter;
+  CrossingCounter<Real> counter;
   const bool judged = world.def().verdict.strain > 0;
-  GuaranteeWatch promise(0, &process_seconds);
+  GuaranteeWatch<Real> promise(0, &process_seconds);
   promise.start(world, look_ahead(world, options.tick_limit));
-  std::optional<Series<float>> series;
+  std::optional<Series<Real>> series;
   if (!options.series.empty())
     series.emplace(options.series, world, options.series_every, options.ticks);
   for (int i = 1; i <= options.ticks; ++i) {
@@ -149,7 +155,8 @@ double percentile(const std::vector<double>& sorted, std::size_t percent) {
 }
 
 /// Counters of the guard; null without one.
-Json guard_summary(const World<float>& world) {
+template <class Real>
+Json guard_summary(const World<Real>& world) {
   if (!world.guard()) return nullptr;
   const GuardCounts& counts = world.guard()->counts();
   return {{"wanted_motion", counts.wanted},
@@ -163,13 +170,15 @@ Json guard_summary(const World<float>& world) {
 }
 
 /// What each cause did to the cloth's energy over the run [J].
-Json balance_summary(const World<float>& world) {
+template <class Real>
+Json balance_summary(const World<Real>& world) {
   const std::optional<proto::EnergyBalance> balance = balance_of(world);
   return balance ? proto::CommandWriter::json_of(*balance) : Json("not measured");
 }
 
 /// Result of a hard case; null for other scenes.
-Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
+template <class Real>
+Json verdict_summary(const World<Real>& world, const Verdict<Real>& verdict) {
   if (!(world.def().verdict.strain > 0)) return nullptr;
   const std::vector<std::string> failures = verdict.failures(world.def().verdict);
   return {
@@ -196,10 +205,11 @@ Json verdict_summary(const World<float>& world, const Verdict<float>& verdict) {
         {"hands_lag", world.def().verdict.hands_lag}}}};
 }
 
-Json summary(const SimulateOptions& options, const World<float>& world, const Measurement& m,
+template <class Real>
+Json summary(const SimulateOptions& options, const World<Real>& world, const Measurement<Real>& m,
              const std::vector<std::string>& notices, const ErrorOfRun* error) {
   const double simulated = options.ticks * world.tick_seconds();
-  std::vector<float> scratch;
+  std::vector<Real> scratch;
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   const Energies& energy = world.report().energies;
   Json measured = Json::object();
@@ -219,6 +229,7 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"ticks", options.ticks},
       {"tick_rate", world.def().tick_rate},
       {"threads", options.threads},
+      {"precision", options.in_double ? "double" : "single"},
       {"simulated_seconds", simulated},
       {"cpu_seconds", m.cpu},
       {"wall_seconds", m.wall},
@@ -259,34 +270,18 @@ Json summary(const SimulateOptions& options, const World<float>& world, const Me
       {"notices", notices}};
 }
 
-void print_row(const std::string& name, const Json& value) {
-  if (value.is_number_float())
-    std::printf("%-34s %.6g\n", name.c_str(), value.get<double>());
-  else if (value.is_string())
-    std::printf("%-34s %s\n", name.c_str(), value.get<std::string>().c_str());
-  else
-    std::printf("%-34s %s\n", name.c_str(), value.dump().c_str());
-}
-
-void print_table(const Json& object, const std::string& prefix) {
-  for (const auto& [key, value] : object.items()) {
-    if (value.is_object())
-      print_table(value, prefix + key + ".");
-    else
-      print_row(prefix + key, value);
-  }
-}
-
-TriangleMesh cloth_mesh(const World<float>& world) {
+template <class Real>
+TriangleMesh cloth_mesh(const World<Real>& world) {
   TriangleMesh mesh;
-  for (const Vec3f& x : world.state().x) mesh.positions.push_back(x.cast<double>());
+  for (const auto& x : world.state().x) mesh.positions.push_back(x.template cast<double>());
   mesh.triangles = world.model().triangles;
   return mesh;
 }
 
 /// Reports crossings on standard error.
 /// @return exit code: failure if any came after the scene's grace time
-int warn_of_crossings(const Measurement& m) {
+template <class Real>
+int warn_of_crossings(const Measurement<Real>& m) {
   if (m.crossed_ticks == 0) return 0;
   std::fprintf(stderr,
                "weft: %zu crossings of cloth with cloth and %zu with objects in %d of %d ticks, "
@@ -329,7 +324,8 @@ WorldDef definition_of(const SimulateOptions& options) {
 }
 
 /// Throws CostError, which tells how to lift the bound.
-void bound_cost(const SimulateOptions& options, const World<float>& world) {
+template <class Real>
+void bound_cost(const SimulateOptions& options, const World<Real>& world) {
   if (options.any_cost) return;
   try {
     check_cost(world.cost_in(world.environment()), "scene", world.def().name);
@@ -339,15 +335,14 @@ void bound_cost(const SimulateOptions& options, const World<float>& world) {
   }
 }
 
-}  // namespace
-
-int simulate(const SimulateOptions& options) {
-  check_options(options);
+/// @param Real  of the state
+template <class Real>
+int simulate_in(const SimulateOptions& options) {
   WorldDef def = definition_of(options);
   check_size(def);
   const std::vector<std::string> repairs = repair_objects(def);
   ThreadPool pool(options.threads);
-  World<float> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
+  World<Real> world(def, {options.threads > 1 ? &pool : nullptr, &process_seconds});
   bound_cost(options, world);
   world.measure_energy(options.balance);
   std::vector<std::string> notices;
@@ -358,9 +353,10 @@ int simulate(const SimulateOptions& options) {
   std::optional<ErrorOfRun> error;
   if (options.error) {
     error.emplace(def, Runtime{options.threads > 1 ? &pool : nullptr, nullptr});
-    std::fprintf(stderr, "weft: %s\n", error->cost_told_before(world).c_str());
+    const TickCost cost = world.cost_in(world.environment());
+    std::fprintf(stderr, "weft: %s\n", error->cost_told_before(cost).c_str());
   }
-  const std::optional<Measurement> measured = run(world, options, error ? &*error : nullptr);
+  const std::optional<Measurement<Real>> measured = run(world, options, error ? &*error : nullptr);
   if (!measured) {
     std::fprintf(stderr,
                  "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
@@ -369,7 +365,7 @@ int simulate(const SimulateOptions& options) {
                  options.tick_limit);
     return kHalted;
   }
-  const Measurement& measurement = *measured;
+  const Measurement<Real>& measurement = *measured;
   const Json result = summary(options, world, measurement, notices, error ? &*error : nullptr);
   if (options.json)
     std::printf("%s\n", result.dump(2).c_str());
@@ -378,6 +374,13 @@ int simulate(const SimulateOptions& options) {
   // The summary is printed even if the file cannot be written.
   if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
   return warn_of_crossings(measurement);
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  check_options(options);
+  return options.in_double ? simulate_in<double>(options) : simulate_in<float>(options);
 }
 
 }  // namespace weft::server

@@ -19,7 +19,8 @@ bool contains(const std::vector<std::string>& list, const std::string& text) {
 
 }  // namespace
 
-void GuaranteeWatch::start(const ServedWorld& world, ComingStarts starts) {
+template <class Real>
+void GuaranteeWatch<Real>::start(const World<Real>& world, ComingStarts starts) {
   counter_ = {};
   crossings_.reset();
   crossings_at_start_.reset();
@@ -32,7 +33,8 @@ void GuaranteeWatch::start(const ServedWorld& world, ComingStarts starts) {
   restart();
 }
 
-void GuaranteeWatch::restart() {
+template <class Real>
+void GuaranteeWatch<Real>::restart() {
   crossings_ = crossings_at_start_;
   uncounted_ = crossings_ ? 0 : 1;
   unfinished_ = pause_ > 0 && !crossings_;
@@ -44,7 +46,8 @@ void GuaranteeWatch::restart() {
   tell_bad_starts({starts_.what, starts_.pairs});
 }
 
-void GuaranteeWatch::note_tick(const ServedWorld& world) {
+template <class Real>
+void GuaranteeWatch<Real>::note_tick(const World<Real>& world) {
   ++uncounted_;
   began_ = true;
   displaced_ = displaced_ || world.report().brought != 0;
@@ -60,7 +63,8 @@ void GuaranteeWatch::note_tick(const ServedWorld& world) {
 }
 
 /// Compares what contact knows now with the last count.
-void GuaranteeWatch::look(const ServedWorld& world) {
+template <class Real>
+void GuaranteeWatch<Real>::look(const World<Real>& world) {
   BadStarts found{world.bad_starts(), world.open_pairs()};
   const std::size_t known = found.what.size();
   if (bad_starts_.what.empty()) late_ = true;
@@ -71,7 +75,8 @@ void GuaranteeWatch::look(const ServedWorld& world) {
 }
 
 /// Announces once each start about which nothing can be promised, and when all are clear.
-void GuaranteeWatch::tell_bad_starts(BadStarts found) {
+template <class Real>
+void GuaranteeWatch<Real>::tell_bad_starts(BadStarts found) {
   for (const std::string& what : found.what) {
     if (contains(bad_starts_.what, what)) continue;
     news_.push_back({proto::NoticeLevel::warning, "guarantee_void",
@@ -83,7 +88,8 @@ void GuaranteeWatch::tell_bad_starts(BadStarts found) {
   bad_starts_ = std::move(found);
 }
 
-const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
+template <class Real>
+const proto::Crossings& GuaranteeWatch<Real>::count(const World<Real>& world) {
   if (crossings_ && uncounted_ == 0) return *crossings_;
   const double start = clock_();
   // A count that is given up is tried again as late as if it had finished.
@@ -106,7 +112,8 @@ const proto::Crossings& GuaranteeWatch::count(const ServedWorld& world) {
   return *crossings_;
 }
 
-bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
+template <class Real>
+bool GuaranteeWatch<Real>::count_if_due(const World<Real>& world) {
   const std::uint32_t pause =
       bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
   const bool may = clock_() >= next_count_;
@@ -118,14 +125,16 @@ bool GuaranteeWatch::count_if_due(const ServedWorld& world) {
   return count(world).count != before || unknown;
 }
 
-bool GuaranteeWatch::count_if_stale(const ServedWorld& world) {
+template <class Real>
+bool GuaranteeWatch<Real>::count_if_stale(const World<Real>& world) {
   if (pause_ == 0 || uncounted_ == 0) return false;
   if (unfinished_ && clock_() < next_count_) return false;
   count(world);
   return true;
 }
 
-proto::Guarantee GuaranteeWatch::guarantee(const ServedWorld& world) const {
+template <class Real>
+proto::Guarantee GuaranteeWatch<Real>::guarantee(const World<Real>& world) const {
   proto::Guarantee guarantee = guarantee_of(world, bad_starts_);
   if (guarantee.state == proto::GuaranteeState::bad_start && late_)
     guarantee.state = proto::GuaranteeState::broken;
@@ -144,8 +153,12 @@ proto::Guarantee GuaranteeWatch::guarantee(const ServedWorld& world) const {
   return guarantee;
 }
 
-std::vector<GuaranteeWatch::News> GuaranteeWatch::take_news() {
+template <class Real>
+std::vector<GuaranteeNews> GuaranteeWatch<Real>::take_news() {
   return std::exchange(news_, {});
 }
+
+template class GuaranteeWatch<float>;
+template class GuaranteeWatch<double>;
 
 }  // namespace weft::server

@@ -10,17 +10,18 @@
 
 namespace weft::server {
 
+/// Something of it that viewers should be told.
+struct GuaranteeNews {
+  proto::NoticeLevel level = proto::NoticeLevel::info;
+  const char* code = "";
+  std::string message;
+};
+
 /// Watches a world's promise that nothing crosses: counts crossings from time to time, and reports
 /// when the promise ends or is restored. It only observes, so it changes no bit of the motion.
+template <class Real>
 class GuaranteeWatch {
  public:
-  /// Something that viewers should be told.
-  struct News {
-    proto::NoticeLevel level = proto::NoticeLevel::info;
-    const char* code = "";
-    std::string message;
-  };
-
   /// @param pause  ticks between two counts; 0: counts only on request. Counts are also at least a
   ///               hundred times as far apart as one takes, so that a large cloth does not stall.
   /// @param clock  [s], for spacing the counts
@@ -28,38 +29,38 @@ class GuaranteeWatch {
 
   /// Takes another world, at its start. A stop signal of the thread ends only its first count.
   /// @param starts  faults that its first tick will find
-  void start(const ServedWorld& world, ComingStarts starts);
+  void start(const World<Real>& world, ComingStarts starts);
   /// The same world is back at its start.
   void restart();
 
   /// Call after a tick that changed the cloth or an object.
-  void note_tick(const ServedWorld& world);
+  void note_tick(const World<Real>& world);
   /// Counts if a count is due.
   /// @returns whether more is known, or another number of crossings. A stop signal of the thread
   /// that ends a count makes it, and the others, throw Stopped.
-  bool count_if_due(const ServedWorld& world);
+  bool count_if_due(const World<Real>& world);
   /// Counts if the state has changed since the last count.
   /// @returns whether it counted
-  bool count_if_stale(const ServedWorld& world);
+  bool count_if_stale(const World<Real>& world);
 
   /// Crossings of the present state: counted now unless the count is up to date.
-  const proto::Crossings& count(const ServedWorld& world);
+  const proto::Crossings& count(const World<Real>& world);
 
   /// The last count, if there was one.
   const std::optional<proto::Crossings>& crossings() const { return crossings_; }
   /// Not held while anything crosses in the last count, or if that was given up.
-  proto::Guarantee guarantee(const ServedWorld& world) const;
+  proto::Guarantee guarantee(const World<Real>& world) const;
 
   /// News since the last call.
-  std::vector<News> take_news();
+  std::vector<GuaranteeNews> take_news();
 
  private:
-  void look(const ServedWorld& world);
+  void look(const World<Real>& world);
   void tell_bad_starts(BadStarts found);
 
   std::uint32_t pause_;
   Clock clock_;
-  ServedCrossings counter_;
+  CrossingCounter<Real> counter_;
   std::optional<proto::Crossings> crossings_, crossings_at_start_;
   std::uint32_t uncounted_ = 0;      ///< ticks since the last count
   double next_count_ = 0;            ///< earliest time of the next one [s]
@@ -71,7 +72,10 @@ class GuaranteeWatch {
   bool displaced_ = false;           ///< the scene has moved particles since the last count
   bool late_ = false;                ///< the crossings appeared after the start
   std::vector<std::string> voided_;  ///< objects already announced
-  std::vector<News> news_;
+  std::vector<GuaranteeNews> news_;
 };
+
+extern template class GuaranteeWatch<float>;
+extern template class GuaranteeWatch<double>;
 
 }  // namespace weft::server

@@ -140,10 +140,10 @@ class Room {
   struct Viewer {
     proto::ViewerInfo info;
     bool mesh_over_http = false;
-    bool wants_frame = false;   ///< it lacks the present one
-    bool wants_forces = false;  ///< in its frames
+    bool wants_frame = false;    ///< it lacks the present one
+    bool wants_forces = false;   ///< in its frames
     bool wants_balance = false;  ///< of energy: it has asked for it
-    std::uint32_t applied = 0;  ///< number of its last text message that was taken
+    std::uint32_t applied = 0;   ///< number of its last text message that was taken
     /// Every frame of its own `advance` that is in flight holds a copy.
     std::shared_ptr<const int> ticket = std::make_shared<int>();
     bool stalled = false;  ///< it took none for too long, and has not taken one since
@@ -337,7 +337,7 @@ class Room {
   FrameTurns frames_;
   FrameMaker frame_maker_;
   MeasuredForces forces_;
-  GuaranteeWatch guarantee_;
+  GuaranteeWatch<float> guarantee_;
   std::vector<SceneNotice> scene_notices_;
   Saves saves_;
 

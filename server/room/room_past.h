@@ -11,7 +11,7 @@ namespace weft::server {
 struct RoomPast {
   RoomClock time;
   CommandLog log;
-  GuaranteeWatch guarantee;
+  GuaranteeWatch<float> guarantee;
   MeasuredForces forces;
 };
 

@@ -136,7 +136,7 @@ const Reactions& Room::present_reactions() {
 
 /// Announces that the promise of no crossings has ended or is restored.
 void Room::tell_guarantee() {
-  for (GuaranteeWatch::News& news : guarantee_.take_news()) {
+  for (GuaranteeNews& news : guarantee_.take_news()) {
     notify(news.level, news.code, std::move(news.message));
     news_.state = true;
   }

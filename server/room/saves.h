@@ -17,7 +17,7 @@ namespace weft::server {
 /// A state of a room's scene to go back to.
 struct Save {
   std::unique_ptr<const ServedWorld> world;
-  GuaranteeWatch guarantee;
+  GuaranteeWatch<float> guarantee;
   proto::MeshAnnouncement mesh;  ///< with the thickness of its fabrics
   MeasuredForces forces;
 };

@@ -27,7 +27,8 @@ void check_mesh_bytes(const WorldDef& def) {
 
 }  // namespace
 
-ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
+template <class Real>
+ComingStarts look_ahead(const World<Real>& world, double tick_limit) {
   WorkLimit limit(tick_limit);
   // The thread's own signal still ends the build, without an answer.
   StopSignal* const outer = current_stop_signal();
@@ -42,7 +43,8 @@ ComingStarts look_ahead(const ServedWorld& world, double tick_limit) {
   }
 }
 
-std::vector<SceneNotice> notices_of(const ServedWorld& world,
+template <class Real>
+std::vector<SceneNotice> notices_of(const World<Real>& world,
                                     const std::vector<std::string>& repairs) {
   std::vector<SceneNotice> notices;
   for (const std::string& repair : repairs) notices.push_back({"mesh_repaired", repair});
@@ -108,5 +110,12 @@ BuiltScene SceneBuild::take() {
   if (failure_) std::rethrow_exception(failure_);
   return std::move(*scene_);
 }
+
+#define WEFT_INSTANTIATE(Real)                                  \
+  template ComingStarts look_ahead(const World<Real>&, double); \
+  template std::vector<SceneNotice> notices_of(const World<Real>&, const std::vector<std::string>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
 
 }  // namespace weft::server

@@ -19,7 +19,8 @@ namespace weft::server {
 /// Finds crossings and penetrations that exist at the start or arise in the first tick of a world,
 /// if that takes no longer than the limit.
 /// @param tick_limit  CPU time [s]
-ComingStarts look_ahead(const ServedWorld& world, double tick_limit);
+template <class Real>
+ComingStarts look_ahead(const World<Real>& world, double tick_limit);
 
 /// A remark on a scene as built, for viewers.
 struct SceneNotice {
@@ -41,7 +42,8 @@ struct BuiltScene {
 };
 
 /// All remarks on a world at its start, including the `repairs` of its objects.
-std::vector<SceneNotice> notices_of(const ServedWorld& world,
+template <class Real>
+std::vector<SceneNotice> notices_of(const World<Real>& world,
                                     const std::vector<std::string>& repairs);
 
 /// Builds a scene, and looks one tick ahead for bad starts. Throws DefinitionError if it cannot be

@@ -157,7 +157,8 @@ proto::Energy to_wire(const Energies& energies) {
   return {energies.kinetic, energies.stretch, energies.bending, energies.gravity, energies.total()};
 }
 
-std::optional<proto::EnergyBalance> balance_of(const ServedWorld& world) {
+template <class Real>
+std::optional<proto::EnergyBalance> balance_of(const World<Real>& world) {
   const EnergyBalance* balance = world.energy_balance();
   if (!balance) return std::nullopt;
   const EnergyFlows& f = balance->flows;
@@ -185,6 +186,9 @@ std::optional<proto::EnergyBalance> balance_of(const ServedWorld& world) {
   out.now = balance->now.total();
   return out;
 }
+
+template std::optional<proto::EnergyBalance> balance_of(const World<float>&);
+template std::optional<proto::EnergyBalance> balance_of(const World<double>&);
 
 proto::State state_of(const ServedWorld& world) {
   proto::State state;

@@ -6,7 +6,8 @@
 
 namespace weft::server {
 
-proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
+template <class Real>
+proto::Crossings crossings_of(const World<Real>& world, CrossingCounter<Real>& counter,
                               std::vector<Meeting>& meetings) {
   proto::Crossings found;
   found.count = counter.count(world, &meetings).total();
@@ -16,14 +17,16 @@ proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter
   return found;
 }
 
-std::vector<std::string> voiding_colliders(const ServedWorld& world) {
+template <class Real>
+std::vector<std::string> voiding_colliders(const World<Real>& world) {
   std::vector<std::string> names;
   for (std::size_t k = 0; k < world.colliders().size(); ++k)
     if (world.colliders()[k].voided) names.push_back(object_name(world.def(), k));
   return names;
 }
 
-proto::Guarantee guarantee_of(const ServedWorld& world, const BadStarts& bad_starts) {
+template <class Real>
+proto::Guarantee guarantee_of(const World<Real>& world, const BadStarts& bad_starts) {
   proto::Guarantee guarantee;
   if (contact_of(world.def()) != ContactModel::certified) {
     guarantee.state = proto::GuaranteeState::none;
@@ -42,5 +45,14 @@ proto::Guarantee guarantee_of(const ServedWorld& world, const BadStarts& bad_sta
   guarantee.pairs = bad_starts.pairs;
   return guarantee;
 }
+
+#define WEFT_INSTANTIATE(Real)                                                       \
+  template proto::Crossings crossings_of(const World<Real>&, CrossingCounter<Real>&, \
+                                         std::vector<Meeting>&);                     \
+  template std::vector<std::string> voiding_colliders(const World<Real>&);           \
+  template proto::Guarantee guarantee_of(const World<Real>&, const BadStarts&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
 
 }  // namespace weft::server

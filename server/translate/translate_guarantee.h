@@ -10,18 +10,19 @@
 
 namespace weft::server {
 
-using ServedCrossings = CrossingCounter<float>;
-
 /// Counts crossings in the present state.
 /// @param counter   of this world
 /// @param meetings  receives which pairs cross
-proto::Crossings crossings_of(const ServedWorld& world, ServedCrossings& counter,
+template <class Real>
+proto::Crossings crossings_of(const World<Real>& world, CrossingCounter<Real>& counter,
                               std::vector<Meeting>& meetings);
 
 /// Objects that were forced through the cloth since the start.
-std::vector<std::string> voiding_colliders(const ServedWorld& world);
+template <class Real>
+std::vector<std::string> voiding_colliders(const World<Real>& world);
 
 /// @param bad_starts  those still in force
-proto::Guarantee guarantee_of(const ServedWorld& world, const BadStarts& bad_starts);
+template <class Real>
+proto::Guarantee guarantee_of(const World<Real>& world, const BadStarts& bad_starts);
 
 }  // namespace weft::server

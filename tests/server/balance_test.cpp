@@ -28,7 +28,8 @@ void advance(TestRoom& t, int ticks) {
   t.say(1, json{{"op", "advance"}, {"id", 8}, {"n", ticks}}.dump());
 }
 
-TEST_CASE("what a hand brings is the height that the cloth gains, and the sums are the energy now") {
+TEST_CASE(
+    "what a hand brings is the height that the cloth gains, and the sums are the energy now") {
   TestRoom t;
   t.join(1);
   t.say(1, R"({"op":"set","drag":20})");
@@ -49,8 +50,9 @@ TEST_CASE("what a hand brings is the height that the cloth gains, and the sums a
   CHECK(after["since"] == 300);
   const double start = after["start"], now = after["now"], hands = after["work"]["hands"];
   CHECK(start == Approx(before["now"].get<double>()));
-  CHECK(now == Approx(t.say(1, R"({"op":"query","id":7,"what":"energies"})")["data"]["total"]
-                          .get<double>()));
+  CHECK(now ==
+        Approx(
+            t.say(1, R"({"op":"query","id":7,"what":"energies"})")["data"]["total"].get<double>()));
   CHECK(start + sum_of(after["work"]) - sum_of(after["losses"]) == Approx(now).margin(1e-9));
   REQUIRE(now - start > 0.02);
   CHECK(sum_of(after["work"]) == Approx(hands).epsilon(0.01));

@@ -150,7 +150,7 @@ class CommandLine(unittest.TestCase):
         self.assertIn("fabric.bending_damping=0\n", run("fabric").stdout)
 
     def test_a_drape_is_told_of_each_specimen_and_of_all_with_its_error(self):
-        told = json.loads(run("drape", "--fabric", "denim", "--starts", "2", "--seconds", "0.5", "--threads", "2",
+        told = json.loads(run("drape", "--fabric", "denim", "--starts", "2", "--seconds", "0.1", "--threads", "2",
                               "--json").stdout)
         self.assertEqual((told["fabric"], told["published_percent"]), ("denim", [70, 90]))
         specimens = told["specimens"]

@@ -359,7 +359,7 @@ TEST_CASE("what the scene throws through itself is not held while its count does
 TEST_CASE("a first count that did not end holds nothing, and neither does a reset") {
   FakeClock clock;
   const World<float> world(bad_scene("through"));
-  GuaranteeWatch watch(60, clock.clock());
+  GuaranteeWatch<float> watch(60, clock.clock());
   StopSignal signal;
   signal.raise();
   {
@@ -369,7 +369,7 @@ TEST_CASE("a first count that did not end holds nothing, and neither does a rese
   CHECK(watch.guarantee(world).state == proto::GuaranteeState::broken);
   watch.restart();
   CHECK(watch.guarantee(world).state == proto::GuaranteeState::broken);
-  GuaranteeWatch uncounted(0, clock.clock());
+  GuaranteeWatch<float> uncounted(0, clock.clock());
   uncounted.start(world, {});
   CHECK(uncounted.guarantee(world).state == proto::GuaranteeState::held);
 }
@@ -377,7 +377,7 @@ TEST_CASE("a first count that did not end holds nothing, and neither does a rese
 TEST_CASE("counts are a hundred times as far apart as one takes") {
   FakeClock clock;
   const World<float> world(bad_scene("through"));
-  GuaranteeWatch watch(1, clock.clock());
+  GuaranteeWatch<float> watch(1, clock.clock());
   clock.between_reads = [] { return 1.0; };  // so a count takes a second
   watch.start(world, world.coming_bad_starts());
   const double counted = clock.now;

@@ -86,6 +86,20 @@ class Series(unittest.TestCase):
             numpy.testing.assert_array_equal(rest[name], whole[name][10:])
             self.assertGreater(numpy.ptp(whole[name][10:], axis=0).max(), 1e-3, "it moves")
 
+    def test_in_double_precision_a_run_is_that_in_single_without_its_rounding(self):
+        _, single = self.series("single.npy", *HAMMOCK, "--ticks", 20)
+        half, _ = self.series("half.npy", *HAMMOCK, "--ticks", 10, "--double")
+        _, rest = self.series("rest.npy", *HAMMOCK, "--ticks", 10, "--start", half, "--double")
+        _, whole = self.series("whole.npy", *HAMMOCK, "--ticks", 20, "--double")
+        self.assertEqual((single["x"].dtype, whole["x"].dtype), ("f4", "f8"))
+        numpy.testing.assert_array_equal(rest["x"], whole["x"][10:])
+        # The state has more digits than a float, and is where the float run is but for its rounding.
+        self.assertGreater(numpy.abs(whole["x"][-1] - whole["x"][-1].astype("f4")).max(), 0)
+        self.assertLess(numpy.abs(whole["x"] - single["x"]).max(), 1e-4)
+        told = [summary(*HAMMOCK, "--ticks", 20, *more) for more in ((), ("--double",))]
+        self.assertEqual([t["precision"] for t in told], ["single", "double"])
+        self.assertAlmostEqual(told[0]["energy"]["total"], told[1]["energy"]["total"], places=4)
+
     def test_an_array_of_positions_starts_at_rest_and_one_with_velocities_moves(self):
         half, series = self.series("half.npy", *HAMMOCK, "--ticks", 10)
         x, v = series["x"][-1], series["v"][-1]
