@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Writes what follows from the descriptions of the messages (proto/messages): the declarations in js/commands.d.ts,
-js/results.d.ts and js/parts.d.ts, the names in js/fields.js, the declarations of the Python client with its commands in both forms, the version of both
+js/results.d.ts, js/parts.d.ts and js/events.d.ts, the names in js/fields.js, the declarations of the Python client with its commands in both forms, the version of both
 packages, and the tables of README.md.
 
 Usage: generate.py PROGRAM [--check]. PROGRAM is weft_messages, which prints the descriptions. With --check nothing is
@@ -79,15 +79,25 @@ def script_fields(fields, loose=False):
 
 
 def part_declarations(messages):
-    """Of what stands in messages, and of those of the server."""
+    """Of what stands in messages."""
     yield from (HEAD, "", "import type { Vec3 } from './messages.js';")
     everything = [field for kind in messages.values() for m in kind for field in m["fields"]]
     everything += [{"type": part} for part in messages["parts"]]
     for name, fields in objects_of(everything).items():
         yield from ("", f"export interface {name} {{", *script_fields(fields), "}")
+
+
+def event_declarations(messages):
+    """Of what the server sends by itself."""
+    body = []
     for event in messages["events"]:
         name = type_name(event["op"])
-        yield from ("", f"export interface {name} {{", f"  op: '{event['op']}';", *script_fields(event["fields"]), "}")
+        body += ["", f"export interface {name} {{", f"  op: '{event['op']}';", *script_fields(event["fields"]), "}"]
+    parts = objects_of([field for event in messages["events"] for field in event["fields"]])
+    named = sorted(part for part in parts if any(re.search(rf": {part}\b", line) for line in body))
+    yield from (HEAD, "", "import type { Vec3 } from './messages.js';")
+    yield f"import type {{ {', '.join(named)} }} from './parts.js';"
+    yield from body
 
 
 def command_declarations(messages):
@@ -231,6 +241,7 @@ def written(messages):
     yield PROTO / "js/commands.d.ts", "\n".join(command_declarations(messages)) + "\n"
     yield PROTO / "js/results.d.ts", "\n".join(result_declarations(messages)) + "\n"
     yield PROTO / "js/parts.d.ts", "\n".join(part_declarations(messages)) + "\n"
+    yield PROTO / "js/events.d.ts", "\n".join(event_declarations(messages)) + "\n"
     yield PROTO / "js/fields.js", "\n".join(field_names(messages)) + "\n"
     package = PROTO / "js/package.json"
     told = re.sub(r'("version": ")[^"]*', rf"\g<1>{version()}", package.read_text(encoding="utf-8"), count=1)

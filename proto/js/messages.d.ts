@@ -1,6 +1,7 @@
 // Types of the messages of weft.v1. proto/README.md gives the meaning and unit of each field.
 
 import type { AdvanceCommand, DragCommand1, QueryCommand } from './commands.js';
+import type { State } from './events.js';
 import type {
   Camera,
   ColliderPose,
@@ -14,7 +15,6 @@ import type {
   Presence,
   Reactions,
   StageWork,
-  State,
   Strain,
   Tree,
   Viewer,
@@ -31,7 +31,6 @@ export type {
   View,
 } from './announcement.js';
 export type {
-  Bye,
   Camera,
   ColliderPose,
   Contact,
@@ -44,12 +43,10 @@ export type {
   GripperState,
   Guarantee,
   Hit,
-  Notice,
   Pin,
   Presence,
   Reactions,
   StageWork,
-  State,
   Strain,
   Tree,
   Viewer,
@@ -62,6 +59,7 @@ export type {
   SetCommand,
   ViewCommand,
 } from './commands.js';
+export type { Bye, Notice, State } from './events.js';
 export type { Results } from './results.js';
 export type QueryWhat = QueryCommand['what'];
 

@@ -19,7 +19,6 @@
 #include "core/world/object_repair.h"
 #include "core/world/verdict.h"
 #include "core/world/world.h"
-#include "proto/messages/command_writer.h"
 #include "server/clock.h"
 #include "server/commands/error_of_run.h"
 #include "server/commands/series.h"
@@ -32,6 +31,7 @@
 #include "server/scene/scene_library.h"
 #include "server/thread_pool.h"
 #include "server/translate/translate.h"
+#include "server/translate/translate_energy.h"
 #include "server/work_limit.h"
 
 namespace weft::server {
@@ -173,7 +173,7 @@ Json guard_summary(const World<Real>& world) {
 template <class Real>
 Json balance_summary(const World<Real>& world) {
   const std::optional<proto::EnergyBalance> balance = balance_of(world);
-  return balance ? proto::CommandWriter::json_of(*balance) : Json("not measured");
+  return balance ? json_of(*balance) : Json("not measured");
 }
 
 /// Result of a hard case; null for other scenes.

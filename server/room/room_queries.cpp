@@ -6,6 +6,7 @@
 #include "server/room/refusals.h"
 #include "server/room/room.h"
 #include "server/translate/translate.h"
+#include "server/translate/translate_energy.h"
 #include "server/translate/translate_forces.h"
 
 // Answers of a room to queries about its cloth.

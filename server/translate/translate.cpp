@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/strain.h"
 #include "core/error.h"
+#include "server/translate/translate_energy.h"
 #include "server/translate/translate_settings.h"
 
 namespace weft::server {
@@ -156,39 +157,6 @@ std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit) {
 proto::Energy to_wire(const Energies& energies) {
   return {energies.kinetic, energies.stretch, energies.bending, energies.gravity, energies.total()};
 }
-
-template <class Real>
-std::optional<proto::EnergyBalance> balance_of(const World<Real>& world) {
-  const EnergyBalance* balance = world.energy_balance();
-  if (!balance) return std::nullopt;
-  const EnergyFlows& f = balance->flows;
-  proto::EnergyBalance out;
-  out.since = balance->since;
-  out.start = balance->start;
-  out.work = {.hands = f.hands,
-              .slings = f.slings,
-              .pins = f.pins,
-              .objects = f.objects,
-              .grippers = f.grippers,
-              .wind = f.wind,
-              .push_out = f.push_out,
-              .disturbances = balance->disturbances,
-              .commands = balance->commands};
-  out.losses = {.damping = f.damping,
-                .drag = f.drag,
-                .air = f.air,
-                .friction = f.friction,
-                .impacts = f.impacts,
-                .self_contact = f.self_contact,
-                .sleep = balance->sleep,
-                .recovery = balance->recovery,
-                .solver = balance->lost()};
-  out.now = balance->now.total();
-  return out;
-}
-
-template std::optional<proto::EnergyBalance> balance_of(const World<float>&);
-template std::optional<proto::EnergyBalance> balance_of(const World<double>&);
 
 proto::State state_of(const ServedWorld& world) {
   proto::State state;

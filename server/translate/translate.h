@@ -44,9 +44,6 @@ GrabDef grab_def(const ServedWorld& world, const proto::DragStart& start,
 
 std::optional<proto::ClothHit> to_wire(const std::optional<ClothHit>& hit);
 proto::Energy to_wire(const Energies& energies);
-/// Nothing unless it is measured.
-template <class Real>
-std::optional<proto::EnergyBalance> balance_of(const World<Real>& world);
 proto::State state_of(const ServedWorld& world);  ///< without the room's own values
 std::vector<proto::StageWork> work_of(const ServedWorld& world);
 std::vector<proto::TreeInfo> trees_of(ServedWorld& world);
