@@ -3,8 +3,9 @@ const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], [
 /**
  * The address of a server's socket; `given` may be that of its page.
  * @param {string} given
+ * @param {'socket' | 'http'} [mesh]  where the mesh is to come from
  */
-export function socketAddress(given) {
+export function socketAddress(given, mesh) {
   const wanted = 'give one as ws://127.0.0.1:8080/ws, or that of its page';
   let url;
   try {
@@ -17,5 +18,6 @@ export function socketAddress(given) {
   url.protocol = protocol;
   url.hash = '';
   if (url.pathname === '/') url.pathname = '/ws';
+  if (mesh === 'http') url.searchParams.set('mesh', 'http');
   return url;
 }

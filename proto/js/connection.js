@@ -1,6 +1,7 @@
 import { Emitter } from './emitter.js';
 
 const SUBPROTOCOL = 'weft.v1';
+const OPEN = 1; // readyState of a socket
 const FIRST_PAUSE = 250; // before the first new attempt [ms]
 const LONGEST_PAUSE = 8000; // [ms]
 const OPENING_LIMIT = 10000; // for the handshake [ms]
@@ -92,7 +93,9 @@ export class Connection extends Emitter {
 
   /** @param {string | Uint8Array} data */
   send(data) {
-    if (this.phase === 'open') this.#socket?.send(data);
+    // While the server's close is on its way, a browser complains of what is sent.
+    const closes = (this.#socket?.readyState ?? OPEN) > OPEN;
+    if (this.phase === 'open' && !closes) this.#socket?.send(data);
   }
 
   /** Closes for good. */
@@ -101,6 +104,14 @@ export class Connection extends Emitter {
     if (this.phase === 'closed') return;
     this.#detach()?.close(NORMAL_CLOSE);
     this.#enter({ phase: 'closed', code: NORMAL_CLOSE, reason: 'closed by this side' });
+  }
+
+  /** Closes, and opens another address. @param {string} url */
+  move(url) {
+    this.close();
+    this.#url = url;
+    this.#attempts = 0;
+    this.open();
   }
 
   /**

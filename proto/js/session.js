@@ -97,8 +97,7 @@ export class Session extends Emitter {
     this.#frames = new LiveFrames(options.frames ?? new FrameReader());
     this.#pace = new Pace(this.timers);
     this.#key = new KeyWish(this.timers);
-    this.#url = socketAddress(url);
-    if (options.mesh === 'http') this.#url.searchParams.set('mesh', 'http');
+    this.#url = socketAddress(url, options.mesh);
     this.#connection = new Connection(this.#url.href, {
       WebSocket: options.WebSocket ?? globalThis.WebSocket,
       timers: this.timers,
@@ -135,6 +134,12 @@ export class Session extends Emitter {
 
   close() {
     this.#connection.close();
+  }
+
+  /** Leaves for another room, or another server, where it connects at once. @param {string} url */
+  enter(url) {
+    this.#url = socketAddress(url, this.options.mesh);
+    this.#connection.move(this.#url.href);
   }
 
   get connected() {

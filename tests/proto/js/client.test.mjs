@@ -528,6 +528,47 @@ test('close ends for good, and connect rejects when it may not try again', async
   await assert.rejects(connected, ConnectionLost);
 });
 
+test('nothing is sent on a socket that the server closes, of which a browser would complain', async () => {
+  const { client, socket } = await join();
+  socket.readyState = 1;
+  client.post('camera', {});
+  assert.equal(socket.ops('camera').length, 1);
+  socket.readyState = 2;
+  client.post('camera', {});
+  assert.equal(socket.ops('camera').length, 1);
+  socket.lose(4004, 'the room is closed');
+});
+
+test('a client that moves to another room leaves the first, and has its name and view there', async () => {
+  const { client, socket, sockets } = await join({ name: 'Ada' });
+  client.view({ hz: 30 }).catch(() => {});
+  const phases = [];
+  client.on('status', ({ phase }) => phases.push(phase));
+  const asked = client.pause();
+  client.enter('ws://host:1/ws/mine');
+  await assert.rejects(asked, ConnectionLost);
+  assert.equal(socket.closedWith.code, 1000);
+  assert.deepEqual(phases, ['closed', 'connecting']);
+  assert.equal(client.connected, false);
+  const there = sockets.at(-1);
+  assert.equal(there.url, 'ws://host:1/ws/mine');
+  there.open();
+  there.say({ ...welcome, room: 'mine' });
+  assert.equal(client.welcome.room, 'mine');
+  assert.equal(there.ops('hello')[0].name, 'Ada');
+  assert.equal(there.ops('view')[0].hz, 30);
+  socket.say({ ...example('state') });
+  socket.lose(1006);
+  assert.equal(client.connected, true, 'what the first room says is not heard any more');
+});
+
+test('a client that was closed for good moves to a room that there is', async () => {
+  const { client, socket, sockets } = await join({ mesh: 'http' });
+  socket.lose(4004, 'the room is closed');
+  client.enter('ws://host:1/ws/other');
+  assert.equal(sockets.at(-1).url, 'ws://host:1/ws/other?mesh=http');
+});
+
 test('a server that falls silent is given up, one that speaks is not', async () => {
   const { client, sockets, timers } = await join();
   for (let i = 0; i < 10; ++i) {
