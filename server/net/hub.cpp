@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kKeptMeshes = 4;
 constexpr double kNoticePause = 5;          // between two notices of dropped frames [s]
+constexpr double kGlancePause = 1;          // between two states for one who glances [s]
 constexpr std::uint64_t kDropsToTell = 10;  // fewer are ordinary jitter
 
 }  // namespace
@@ -40,8 +41,13 @@ void Hub::send(proto::ViewerId viewer, Message message) {
 }
 
 void Hub::broadcast(const Message& message) {
-  for (auto& [id, viewer] : viewers_)
-    if (viewer.welcomed) viewer.channel->send(message);
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.welcomed) continue;
+    if (!viewer.glances)
+      viewer.channel->send(message);
+    else if (message.topic == Topic::state)
+      viewer.state = message;
+  }
 }
 
 void Hub::welcome_done(proto::ViewerId viewer) {
@@ -54,7 +60,10 @@ void Hub::welcome_done(proto::ViewerId viewer) {
 
 void Hub::offer_mesh(std::uint64_t hash, SharedBytes bytes, const PackedMesh& packed) {
   packer_.begin(packed);
-  for (auto& [id, viewer] : viewers_) viewer.channel->drop_frame();
+  for (auto& [id, viewer] : viewers_) {
+    viewer.channel->drop_frame();
+    viewer.state.reset();
+  }
   meshes_.emplace_front(hash, std::move(bytes));
   if (meshes_.size() > kKeptMeshes) meshes_.pop_back();
 }
@@ -97,6 +106,11 @@ proto::Role Hub::role(proto::ViewerId viewer) const {
   return found == viewers_.end() ? proto::Role::viewer : found->second.role;
 }
 
+void Hub::set_glance(proto::ViewerId viewer) {
+  const auto found = viewers_.find(viewer);
+  if (found != viewers_.end()) found->second.glances = true;
+}
+
 void Hub::want_packed(proto::ViewerId viewer, double usual, double most) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
@@ -108,6 +122,7 @@ void Hub::poll() {
   for (auto& [id, viewer] : viewers_) {
     viewer.channel->poll();
     count_frames(viewer);
+    tell_state(viewer);
     tell_dropped(viewer);
     tell_quality(viewer);
   }
@@ -140,6 +155,13 @@ void Hub::count_frames(Viewer& viewer) {
   const std::uint64_t dropped = viewer.channel->frames_dropped();
   metrics_.count_frames(sent - std::exchange(viewer.sent_counted, sent),
                         dropped - std::exchange(viewer.dropped_counted, dropped));
+}
+
+void Hub::tell_state(Viewer& viewer) {
+  const double now = clock_();
+  if (!viewer.state || now < viewer.next_state) return;
+  viewer.next_state = now + kGlancePause;
+  viewer.channel->send(*std::exchange(viewer.state, std::nullopt));
 }
 
 void Hub::tell_dropped(Viewer& viewer) {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "proto/messages/right.h"
@@ -37,6 +38,8 @@ class Hub {
   void want_forces(proto::ViewerId viewer, bool wanted);
   void set_role(proto::ViewerId viewer, proto::Role role);
   proto::Role role(proto::ViewerId viewer) const;
+  /// Of what is told to all the viewer gets the state alone from now on, at most once a second.
+  void set_glance(proto::ViewerId viewer);
   /// Packs the viewer's frames from now on, the first one as a key.
   /// @param usual  bound of their error [m]; 0: float32
   /// @param most   bound while the viewer does not keep up, at least as large [m]
@@ -65,11 +68,15 @@ class Hub {
     bool welcomed = false;
     proto::Role role = proto::Role::viewer;
     double next_notice = 0;  ///< of dropped frames [s]
+    bool glances = false;
+    std::optional<Message> state;  ///< that waits for one who glances
+    double next_state = 0;         ///< earliest time of it [s]
     std::uint64_t sent_counted = 0, dropped_counted = 0;
   };
 
   void count_takers();
   void count_frames(Viewer& viewer);
+  void tell_state(Viewer& viewer);
   void tell_dropped(Viewer& viewer);
   void tell_quality(Viewer& viewer);
 

@@ -40,6 +40,9 @@ class NetworkOutput : public RoomOutput {
   void set_role(proto::ViewerId viewer, proto::Role role) override {
     post([viewer, role](Hub& hub) { hub.set_role(viewer, role); });
   }
+  void set_glance(proto::ViewerId viewer) override {
+    post([viewer](Hub& hub) { hub.set_glance(viewer); });
+  }
   bool wants_frames() const override { return hub_->wants_frames(); }
   bool wants_forces() const override { return hub_->wants_forces(); }
   void offer_frame(Frame frame) override {

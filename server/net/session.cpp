@@ -149,9 +149,9 @@ void Session::on_accepted() {
 /// The viewer's own messages are read from its welcome on.
 void Session::join(const Grant& grant) {
   const std::string_view target(request_.target().data(), request_.target().size());
-  const bool mesh_over_http = target.find("mesh=http") != std::string_view::npos;
+  const auto asks = [target](const char* what) { return target.find(what) != target.npos; };
   pauses_ = true;
-  room_->put({viewer_, 0, Join{mesh_over_http, grant}});
+  room_->put({viewer_, 0, Join{asks("mesh=http"), grant, asks("glance=1")}});
   watch();
 }
 

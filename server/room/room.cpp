@@ -225,10 +225,11 @@ void Room::finish_turn() {
 }
 
 double Room::next_wake() const {
-  if (rests() && order_.waiting.empty() && !order_.building)
-    return std::numeric_limits<double>::infinity();
-  const double now = clock_();
-  double wake = std::min(now + kLongestSleep, next_frame());
+  const bool stands = rests() && order_.waiting.empty() && !order_.building;
+  if (stands && viewers_.empty()) return std::numeric_limits<double>::infinity();
+  // Who glances at a room that rests is shown what changes, and nothing more wakes it.
+  double wake = next_frame();
+  if (!stands) wake = std::min(wake, clock_() + kLongestSleep);
   if (news_.any()) wake = std::min(wake, news_.next);
   if (news_.presence) wake = std::min(wake, news_.next_presence);
   if (!order_.waiting.empty()) wake = std::min(wake, next_turn());

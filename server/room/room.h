@@ -128,7 +128,8 @@ class Room {
 
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return order_.log; }
-  std::size_t viewers() const { return viewers_.size(); }
+  /// Those that are in it; who glances at it is not.
+  std::size_t viewers() const { return viewers_.size() - glances_; }
   bool paused() const { return time_.paused(); }
   /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
   double speed() const { return time_.speed(); }
@@ -140,6 +141,7 @@ class Room {
   struct Viewer {
     proto::ViewerInfo info;
     bool mesh_over_http = false;
+    bool glances = false;        ///< see Join
     bool wants_frame = false;    ///< it lacks the present one
     bool wants_forces = false;   ///< in its frames
     bool wants_balance = false;  ///< of energy: it has asked for it
@@ -171,7 +173,7 @@ class Room {
 
   using Outcome = proto::Result<proto::Reply>;
 
-  bool rests() const { return options_.rests_when_empty && viewers_.empty(); }
+  bool rests() const { return options_.rests_when_empty && viewers() == 0; }
 
   // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
@@ -329,6 +331,7 @@ class Room {
   RunningTick tick_;
 
   std::map<proto::ViewerId, Viewer> viewers_;
+  std::size_t glances_ = 0;  ///< how many of them glance
   Rights rights_;
   Holds holds_;
 

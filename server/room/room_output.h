@@ -29,6 +29,9 @@ class RoomOutput {
   /// What the viewer may do from now on.
   virtual void set_role(proto::ViewerId, proto::Role) {}
 
+  /// The viewer glances at the room: of what is told to all it gets the state alone, and seldom.
+  virtual void set_glance(proto::ViewerId) {}
+
   /// Tells that the viewer has been sent everything that precedes frames.
   virtual void welcome_done(proto::ViewerId viewer) = 0;
 

@@ -32,14 +32,19 @@ const char* describe(Policy policy) {
 }  // namespace
 
 void Room::join(ViewerId id, const Join& join) {
-  if (rests()) time_.restart_meter(clock_());
+  if (rests() && !join.glances) time_.restart_meter(clock_());
   Viewer& viewer = viewers_[id];
+  viewer.glances = join.glances;
+  if (join.glances) {
+    ++glances_;
+    output_.set_glance(id);
+  }
   viewer.info.id = id;
   viewer.info.name = "viewer " + std::to_string(id);
   viewer.info.color = kColors[id % kColors.size()];
   viewer.mesh_over_http = join.mesh_over_http;
   admit(viewer, join.grant);
-  if (options_.linked && viewers_.size() > kMostUnasked) ask_newcomer(viewer);
+  if (options_.linked && !join.glances && viewers() > kMostUnasked) ask_newcomer(viewer);
   tell_changes_if_due(clock_());
   welcome(id, viewer);
 }
@@ -59,13 +64,24 @@ void Room::admit(Viewer& viewer, const Grant& grant) {
   viewer.by_token = grant.by_token;
   if (viewer.hand != HandRight::muted) viewer.hand = grant.hand;
   if (!grant.name.empty()) viewer.info.name = grant.name;
+  if (viewer.glances) {
+    viewer.info.role = Role::viewer;
+    viewer.hand = HandRight::muted;
+  }
   output_.set_role(viewer.info.id, viewer.info.role);
   let_go_forbidden(viewer.info.id);
-  news_.roster = true;
+  news_.roster = news_.roster || !viewer.glances;
 }
 
 void Room::leave(ViewerId viewer) {
-  if (viewers_.erase(viewer) == 0) return;
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  const bool glanced = found->second.glances;
+  viewers_.erase(found);
+  if (glanced) {
+    --glances_;
+    return;
+  }
   for (const Hand& hand : holds_.of(viewer)) end_hand(hand, CommandOrigin::leave);
   for (auto& [id, other] : viewers_)
     if (other.presence.follows == viewer) other.presence.follow(0);
@@ -80,8 +96,9 @@ void Room::pass_on_operation() {
     return entry.second.info.role != Role::viewer;
   });
   if (operated) return;
-  const auto oldest = std::find_if(viewers_.begin(), viewers_.end(),
-                                   [](const auto& entry) { return !entry.second.by_token; });
+  const auto oldest = std::find_if(viewers_.begin(), viewers_.end(), [](const auto& entry) {
+    return !entry.second.by_token && !entry.second.glances;
+  });
   if (oldest == viewers_.end()) return;
   oldest->second.info.role = Role::operator_;
   output_.set_role(oldest->first, Role::operator_);
@@ -124,7 +141,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Hello& command) {
   if (changes) self.next_name = clock_() + kNamePause;
   if (command.name) self.info.name = *command.name;
   if (command.color) self.info.color = *command.color;
-  news_.roster = true;
+  news_.roster = news_.roster || !self.glances;
   return proto::Reply(proto::HelloReply{viewer, self.info.name, self.info.color, self.info.role});
 }
 
@@ -147,7 +164,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::SetPolicy& command) {
 std::optional<proto::Error> Room::set_hand(ViewerId by, ViewerId viewer, HandRight right,
                                            bool set) {
   const auto found = viewers_.find(viewer);
-  if (found == viewers_.end()) return unknown_viewer(viewer);
+  if (found == viewers_.end() || found->second.glances) return unknown_viewer(viewer);
   Viewer& other = found->second;
   if (other.info.role > viewers_.at(by).info.role)
     return field_error(proto::ErrorCode::not_allowed, "this viewer is an admin", "viewer", viewer,
@@ -239,7 +256,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Invite& command) {
 /// Tells who points and looks where, within the rate that many hands may cost each viewer.
 void Room::tell_presence(double now) {
   std::vector<Present> all;
-  for (auto& [id, viewer] : viewers_) all.push_back({id, &viewer.presence});
+  for (auto& [id, viewer] : viewers_)
+    if (!viewer.glances) all.push_back({id, &viewer.presence});
   const auto told = take_news(all, now, news_.presence);
   if (told.empty()) return;
   const Message message = text_message(proto::encode_presence(told));
@@ -251,6 +269,7 @@ void Room::tell_presence(double now) {
 std::vector<proto::ViewerInfo> Room::roster() const {
   std::vector<proto::ViewerInfo> list;
   for (const auto& [id, viewer] : viewers_) {
+    if (viewer.glances) continue;
     list.push_back(viewer.info);
     list.back().hand = may_hold(viewer);
   }

@@ -39,6 +39,25 @@ class ManyRooms(SocketTest):
         self.assertEqual(await inside.wait_closed(), 4004)
         self.assertEqual((await viewer.ask("close_room", name="class-7"))["code"], "unknown_room")
 
+    async def test_a_glance_keeps_a_room_neither_awake_nor_open(self):
+        viewer = await self.viewer()
+        await viewer.ask("create_room", name="watched")
+        wall = await Viewer.open(self.server, query="/watched?glance=1")
+        self.addAsyncCleanup(wall.socket.close)
+        self.assertEqual((wall.welcome["room"], wall.welcome["role"]), ("watched", "viewer"))
+        first = await wall.wait_frame(lambda f: True)
+        await wall.ask("view", hz=1)
+        here = (await viewer.ask("query", what="state"))["data"]["tick"]
+        await viewer.wait_frame(lambda f: f.tick > here + 20)
+        room = (await viewer.ask("list_rooms"))["rooms"][1]
+        self.assertEqual((room["name"], room["viewers"], room["tick"]), ("watched", 0, first.tick))
+        for command in ("pause", "fork"):
+            self.assertEqual((await wall.ask(command, name="mine"))["code"], "not_allowed")
+        pupil = await self.enter("watched")
+        await wall.wait_text(lambda m: m["op"] == "state" and m["tick"] > first.tick)
+        roster = await pupil.ask("query", what="roster")
+        self.assertEqual([one["id"] for one in roster["data"]], [pupil.id])
+
     async def test_what_happens_in_one_room_is_not_seen_in_another(self):
         here = await self.viewer()
         await here.ask("create_room", name="there")
