@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cassert>
 #include <cmath>
+#include <limits>
 
 // Sine and cosine from + - * / only, like the inverse tangent in angle.h: the same bits on every
 // processor.
@@ -13,8 +13,12 @@ struct SineCosine {
 };
 
 /// Sine and cosine of an angle within +-1000 [rad]. Absolute error below 4e-16 times (1 + |angle|).
+/// NaN for all others: the angle of a hinge whose corners have flown too far apart is infinite.
 inline SineCosine sine_cosine(double angle) {
-  assert(!(std::abs(angle) > 1000));
+  if (!(std::abs(angle) <= 1000)) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none};
+  }
   // A quarter turn in two parts; the first has few enough bits that its multiples are exact.
   constexpr double kQuarterHigh = 1.5707963267341256, kQuarterLow = 6.0771005065061922e-11;
   const double quarters = std::nearbyint(angle / (kQuarterHigh + kQuarterLow));

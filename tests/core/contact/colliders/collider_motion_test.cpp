@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include <catch2/catch.hpp>
 
@@ -58,6 +59,15 @@ TEST_CASE("sine and cosine are right to 4e-16 (1 + |angle|)") {
     CHECK(std::abs(sc.sine - std::sin(angle)) <= 4e-16 * (1 + std::abs(angle)));
     CHECK(std::abs(sc.cosine - std::cos(angle)) <= 4e-16 * (1 + std::abs(angle)));
   }
+}
+
+TEST_CASE("an angle that is infinite, beyond 1000 or not a number has no sine") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double angle : {infinity, -infinity, 1001.0, -1e300, std::nan("")}) {
+    CHECK(std::isnan(sine_cosine(angle).sine));
+    CHECK(std::isnan(sine_cosine(angle).cosine));
+  }
+  CHECK(sine_cosine(1000).sine == Approx(std::sin(1000.0)));
 }
 
 TEST_CASE("a rotation vector and its rotation are inverse to each other up to half a turn") {
