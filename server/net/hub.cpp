@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kKeptMeshes = 4;
 constexpr double kNoticePause = 5;          // between two notices of dropped frames [s]
-constexpr double kGlancePause = 1;          // between two states for one who glances [s]
+constexpr double kGlancePause = 1;          // between two states for a viewer that glances [s]
 constexpr std::uint64_t kDropsToTell = 10;  // fewer are ordinary jitter
 
 }  // namespace

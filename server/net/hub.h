@@ -69,7 +69,7 @@ class Hub {
     proto::Role role = proto::Role::viewer;
     double next_notice = 0;  ///< of dropped frames [s]
     bool glances = false;
-    std::optional<Message> state;  ///< that waits for one who glances
+    std::optional<Message> state;  ///< waits for a viewer that glances
     double next_state = 0;         ///< earliest time of it [s]
     std::uint64_t sent_counted = 0, dropped_counted = 0;
   };

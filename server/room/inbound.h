@@ -13,7 +13,7 @@ namespace weft::server {
 struct Join {
   bool mesh_over_http = false;  ///< it fetches the binary mesh message itself
   Grant grant;                  ///< what it is let in with
-  bool glances = false;         ///< sees the room from outside, and counts as nobody in it
+  bool glances = false;         ///< sees the room from outside, and does not count as in it
 };
 
 /// A viewer has left.

@@ -227,7 +227,7 @@ void Room::finish_turn() {
 double Room::next_wake() const {
   const bool stands = rests() && order_.waiting.empty() && !order_.building;
   if (stands && viewers_.empty()) return std::numeric_limits<double>::infinity();
-  // Who glances at a room that rests is shown what changes, and nothing more wakes it.
+  // A room that rests shows what changes to viewers that glance, and nothing more wakes it.
   double wake = next_frame();
   if (!stands) wake = std::min(wake, clock_() + kLongestSleep);
   if (news_.any()) wake = std::min(wake, news_.next);

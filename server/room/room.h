@@ -128,7 +128,7 @@ class Room {
 
   const ServedWorld& world() const { return *world_; }
   const CommandLog& log() const { return order_.log; }
-  /// Those that are in it; who glances at it is not.
+  /// Those that are in it; those that glance at it are not.
   std::size_t viewers() const { return viewers_.size() - glances_; }
   bool paused() const { return time_.paused(); }
   /// Simulated per real time: the wanted speed, reduced if a time budget requires it.
