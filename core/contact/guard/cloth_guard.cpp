@@ -74,13 +74,15 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
 template <class Real>
 void ClothGuard<Real>::reset() {
   phase_ = GuardPhase::between_steps;
-  paths_.collected = making_.made = false;
-  making_.passed.clear();
+  paths_.collected = false;
+  forget_found(search_);
+  forget_making(making_);
+  forget_waves(regions_);
+  forget_critical(critical_);
   forget_rows(rows_);
   forget_pairs(pairs_);
   forget_push(push_);
   forget_tangles(tangled_);
-  regions_.dirty.clear();
   sweeps_.kicked = 0;
   sweeps_.upwards = false;
   settled_ = true;

@@ -150,6 +150,14 @@ void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
 }  // namespace
 
 template <class Real>
+void forget_critical(CriticalSteps<Real>& critical) {
+  critical.pairs.clear();
+  critical.tight.clear();
+  std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
+  std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
+}
+
+template <class Real>
 void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
                     CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts) {
   while (find_critical(pairs, step, regions, critical)) {
@@ -211,8 +219,9 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   critical.tight.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(stop_crossings<Real>) stop_crossings<Real>; \
+#define WEFT_INSTANTIATE(Real)                                    \
+  template decltype(forget_critical<Real>) forget_critical<Real>; \
+  template decltype(stop_crossings<Real>) stop_crossings<Real>;   \
   template decltype(truncate<Real>) truncate<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -58,6 +58,9 @@ class ColumnsByKind {
       (*this)[kind].kind = kind;
   }
   PairColumns<Real>& operator[](PairKind kind) { return both_[static_cast<std::size_t>(kind)]; }
+  void clear() {
+    for (PairColumns<Real>& columns : both_) columns.clear();
+  }
   auto begin() { return both_.begin(); }
   auto end() { return both_.end(); }
 

@@ -158,6 +158,14 @@ PatchSearch<Real> patch_search(const ClothModel<Real>& model) {
 }
 
 template <class Real>
+void forget_found(PatchSearch<Real>& search) {
+  for (PairSearch<Real>& part : search.parts) {
+    part.columns.clear();
+    part.found.clear();
+  }
+}
+
+template <class Real>
 void find_near_patches(PatchSearch<Real>& search) {
   search.changed.assign(search.motion.start.size(), 1);
   list_near_patches(search, [&](auto&& visit) { search.tree.for_each_near_pair(visit); });
@@ -204,6 +212,7 @@ void test_near_patches(PatchSearch<Real>& search, const GuardedCloths<Real>& clo
 
 #define WEFT_INSTANTIATE(Real)                                              \
   template decltype(patch_search<Real>) patch_search<Real>;                 \
+  template decltype(forget_found<Real>) forget_found<Real>;                 \
   template decltype(find_near_patches<Real>) find_near_patches<Real>;       \
   template decltype(find_near_patches_of<Real>) find_near_patches_of<Real>; \
   template decltype(test_near_patches<Real>) test_near_patches<Real>;

@@ -42,6 +42,10 @@ struct PatchSearch {
 template <class Real>
 PatchSearch<Real> patch_search(const ClothModel<Real>& model);
 
+/// Forgets what a search that was ended from outside has found.
+template <class Real>
+void forget_found(PatchSearch<Real>& search);
+
 /// Lists all patches that are near each other. The tree must be fitted to `search.motion`.
 template <class Real>
 void find_near_patches(PatchSearch<Real>& search);

@@ -43,10 +43,8 @@ PushOut<Real> push_out(std::size_t particles) {
 
 template <class Real>
 void forget_push(PushOut<Real>& push) {
-  for (const Index i : push.particles) {
-    push.extra[static_cast<std::size_t>(i)] = {};
-    push.is_pushed[static_cast<std::size_t>(i)] = 0;
-  }
+  std::fill(push.extra.begin(), push.extra.end(), Quad<Real>());
+  std::fill(push.is_pushed.begin(), push.is_pushed.end(), 0);
   push.particles.clear();
   push.v.clear();
 }
@@ -81,8 +79,11 @@ void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
       part = size > 0 ? std::clamp(v[i].dot(extra) / size, Real(0), Real(1)) : Real(0);
     }
     v[i] -= extra * part;
+    push.extra[i] = {};
+    push.is_pushed[i] = 0;
   }
-  forget_push(push);
+  push.particles.clear();
+  push.v.clear();
 }
 
 #define WEFT_INSTANTIATE(Real)                            \

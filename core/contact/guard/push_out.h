@@ -24,7 +24,7 @@ struct PushOut {
 template <class Real>
 PushOut<Real> push_out(std::size_t particles);
 
-/// Forgets a push.
+/// Forgets a push, and one that was ended from outside before its particles were listed.
 template <class Real>
 void forget_push(PushOut<Real>& push);
 

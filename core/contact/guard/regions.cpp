@@ -199,6 +199,16 @@ void anchor_all(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real
 }  // namespace
 
 template <class Real>
+void forget_waves(Regions<Real>& regions) {
+  regions.dirty.clear();
+  regions.columns.clear();
+  for (AnchorPart<Real>& part : regions.parts) {
+    part.columns.clear();
+    part.next.clear();
+  }
+}
+
+template <class Real>
 void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  Regions<Real>& regions) {
   for (const Index k : pairs.active) {
@@ -297,6 +307,7 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
 }
 
 #define WEFT_INSTANTIATE(Real)                                  \
+  template decltype(forget_waves<Real>) forget_waves<Real>;     \
   template decltype(anchor_anew<Real>) anchor_anew<Real>;       \
   template decltype(share_all_gaps<Real>) share_all_gaps<Real>; \
   template decltype(admit_pairs<Real>) admit_pairs<Real>;       \

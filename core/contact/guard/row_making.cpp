@@ -130,6 +130,18 @@ RowMaking<Real> row_making(std::size_t particles) {
 }
 
 template <class Real>
+void forget_making(RowMaking<Real>& making) {
+  making.made = false;
+  making.passed.clear();
+  std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
+  for (RowPart<Real>& part : making.parts) {
+    part.columns.clear();
+    part.passed.clear();
+    for (std::vector<GuardRow<Real>>& rows : part.rows) rows.clear();
+  }
+}
+
+template <class Real>
 void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
                          const QuadArray<Real>& x, RowMaking<Real>& making) {
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
@@ -224,6 +236,7 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
 
 #define WEFT_INSTANTIATE(Real)                                            \
   template decltype(row_making<Real>) row_making<Real>;                   \
+  template decltype(forget_making<Real>) forget_making<Real>;             \
   template decltype(place_new_particles<Real>) place_new_particles<Real>; \
   template decltype(find_moved<Real>) find_moved<Real>;                   \
   template decltype(renew_rows<Real>) renew_rows<Real>;                   \
