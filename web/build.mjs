@@ -1,4 +1,4 @@
-// Bundles src/main.ts and styles/styles.css with all they import, and copies the files of static/
+// Bundles src/main.ts, styles/styles.css and styles/rooms.css with all they import, and copies the files of static/
 // and the pictures of scenes beside them.
 // usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
@@ -29,7 +29,7 @@ await writeFile(
 
 const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: ["src/main.ts", "src/wire/frame_worker.ts", "styles/styles.css"],
+  entryPoints: ["src/main.ts", "src/wire/frame_worker.ts", "styles/styles.css", "styles/rooms.css"],
   entryNames: "[name]",
   outdir: output,
   bundle: true,

@@ -14,6 +14,8 @@ import {
 
 const CONTROLS = [
   ['button', /^Scenes: /],
+  ['button', /^Room: /],
+  ['button', 'Try it yourself'],
   ...['Pause', 'One step', 'Reset', 'Sling', 'Move objects', 'Fan', 'Boxes', 'Frame the cloth', 'Dark', 'Help']
     .concat('Figures', 'Full screen', 'Hide the panels')
     .map((name) => ['button', name]),

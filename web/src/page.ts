@@ -27,6 +27,7 @@ import { title_of } from './panel/scene_title.js';
 import { PictureClock } from './view/picture_clock.js';
 import { Pins } from './view/pins.js';
 import { Reticle } from './view/reticle.js';
+import { RoomPanel } from './panel/rooms.js';
 import { Stage } from './view/stage.js';
 import { ThemeSwitch } from './panel/theme.js';
 import type { Theme } from './panel/theme.js';
@@ -88,6 +89,7 @@ export class Page {
     this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
     this.stage.scene.add(this.box_view.boxes.lines);
     new NameDialog(this.client, tell);
+    const rooms = new RoomPanel(this.client, tell);
     this.laboratory_panel = new LaboratoryPanel(this.client, (test) => {
       void this.laboratory.show(test).then(() => (this.dirty = true));
     });
@@ -123,10 +125,6 @@ export class Page {
       pressable: (hand, point) => this.holding.pressable(hand, point),
       press: (point) => this.holding.press(point),
       ...this.camera_actions(),
-      pan: (dx, dy) => {
-        this.crowd.leave();
-        this.orbit.pan(dx, dy);
-      },
       changed: () => (this.dirty = true),
     });
     listen_to_keys({
@@ -146,6 +144,8 @@ export class Page {
       squeeze: () => this.holding.taking.squeeze(this.input.point),
       frame: () => this.frame(),
       scenes: () => this.toolbar.show_scenes(),
+      rooms: () => void rooms.open(),
+      copy: () => void rooms.copy(),
       help: () => this.toolbar.show_help(),
       figures: () => this.panels.toggle_figures(),
       hide_panels: () => this.window_tools.toggle_panels(),
@@ -272,17 +272,13 @@ export class Page {
     else this.input.drop(hand);
   }
 
-  /** Turns and approaches by the viewer's hand, who keeps the camera from then on. */
+  /** Moves the camera by the viewer's hand, who keeps it from then on. */
   private camera_actions() {
+    const { crowd, orbit } = this;
     return {
-      orbit: (azimuth: number, elevation: number) => {
-        this.crowd.leave();
-        this.orbit.orbit(azimuth, elevation);
-      },
-      zoom: (factor: number) => {
-        this.crowd.leave();
-        this.orbit.zoom(factor);
-      },
+      orbit: (azimuth: number, elevation: number) => (crowd.leave(), orbit.orbit(azimuth, elevation)),
+      zoom: (factor: number) => (crowd.leave(), orbit.zoom(factor)),
+      pan: (dx: number, dy: number) => (crowd.leave(), orbit.pan(dx, dy)),
     };
   }
 

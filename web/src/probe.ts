@@ -12,6 +12,10 @@ export function expose_probe(page: Page): void {
     get viewer() {
       return page.client.viewer;
     },
+    /** The room that the server says the page is in. */
+    get room() {
+      return page.client.welcome?.room ?? null;
+    },
     get scene() {
       return page.world?.announcement.scene ?? null;
     },

@@ -17,6 +17,10 @@ export interface KeyActions {
   squeeze(): void;
   frame(): void;
   scenes(): void;
+  /** The list of rooms. */
+  rooms(): void;
+  /** A copy of this room, for this viewer to try. */
+  copy(): void;
   help(): void;
   figures(): void;
   /** Puts the keyboard's cursor on the cloth, or takes it away. */
@@ -56,6 +60,8 @@ export function listen_to_keys(actions: KeyActions): void {
     ']': () => actions.widen(RADIUS_STEP),
     f: () => actions.frame(),
     l: () => actions.scenes(),
+    a: () => actions.rooms(),
+    t: () => actions.copy(),
     i: () => actions.figures(),
     h: () => actions.hide_panels(),
     '<': () => actions.change_speed(-1),

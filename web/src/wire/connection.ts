@@ -1,8 +1,10 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
+import { own_room, socket_of } from './own_room.js';
 import { own_token } from './own_token.js';
 import { WorkerFrames } from './worker_frames.js';
 
 const SHOWN_ERROR = 4e-4; // how far off a vertex may be on a slow link; 1e-4 else [m]
+const GLANCES = 1; // frames per second of a small picture
 const EVERY_TICK = 240; // frames per second; more than any display shows
 const ASKING_LIMIT = 5000; // for the answer to a plain request [ms]
 const PATIENCE = 3; // failed attempts before a proxy is suspected
@@ -22,16 +24,18 @@ const UNKNOWN_TOKEN: Refusal = {
   message: 'this server lets in only those who have a link',
   hint: 'open the whole link that you were given, with what follows #token=',
 };
-const TOKEN_REFUSED = 4003; // the close code
+const UNKNOWN_ROOM: Refusal = {
+  message: 'there is no such room any more',
+  hint: 'rooms that nobody is in close after a while; the first room is always there',
+};
+const CLOSED_ROOM: Refusal = { ...UNKNOWN_ROOM, message: 'this room was closed' };
+const REFUSALS = new Map([[4003, UNKNOWN_TOKEN], [4004, CLOSED_ROOM]]); // by close code
 
 /** Connects to the server that the page came from. @param name of the viewer; may be empty */
 export function connect_client(name: string): WeftClient {
-  const url = new URL('ws', window.location.href);
-  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-  url.search = url.hash = '';
   const token = own_token();
   const frames = new WorkerFrames(new Worker('frame_worker.js', { type: 'module' }));
-  const client = new WeftClient(url.href, { frames, ...(name ? { name } : {}), ...(token ? { token } : {}) });
+  const client = new WeftClient(socket_of(own_room()), { frames, ...(name ? { name } : {}), ...(token ? { token } : {}) });
   const look = () => void client.view({ hz: document.hidden ? 0 : EVERY_TICK }).catch(() => {});
   document.addEventListener('visibilitychange', look);
   client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
@@ -42,24 +46,43 @@ export function connect_client(name: string): WeftClient {
 }
 
 /**
+ * Glances at a room for a small picture of it, without being in it: a frame a second of the cloth, as coarse as the
+ * server has them, and the mesh from the cache, which copies of one room share.
+ */
+export function glance_at(room: string): WeftClient {
+  const token = own_token();
+  const client = new WeftClient(`${socket_of(room)}?glance=1`, { mesh: 'http', ...(token ? { token } : {}) });
+  client.wantedView = { hz: document.hidden ? 0 : GLANCES, codec: 'packed', error: SHOWN_ERROR };
+  client.connect().catch(() => {}); // the room may be gone
+  return client;
+}
+
+/** Asks for the present frame and those that follow, or for none. */
+export function glance_on(client: WeftClient, on: boolean): void {
+  client.view({ hz: on ? GLANCES : 0, codec: 'packed' }).catch(() => {});
+}
+
+/**
  * Reports after each failed attempt why the socket does not open; null if the reason is unknown,
  * and once it is open. Browsers hide the answer to a refused upgrade, so a plain request asks.
  */
 export function explain_refusals(client: WeftClient, tell: (refusal: Refusal | null) => void): void {
   let failures = 0;
+  let question = 0; // the newest; answers to others come too late
   let last: string = 'connecting'; // as left by connect_client
   client.on('status', ({ phase, code }) => {
-    if (phase === 'closed' && code === TOKEN_REFUSED) return tell(UNKNOWN_TOKEN);
     const failed = last === 'connecting' && phase === 'waiting';
     last = phase;
-    if (phase === 'open') {
+    // What is closed by the page itself is left for another room.
+    if (phase === 'open' || phase === 'closed') {
       failures = 0;
-      tell(null);
+      question += 1;
+      tell(REFUSALS.get(code ?? 0) ?? null);
     }
     if (!failed) return;
-    const attempt = ++failures;
-    void ask_refusal(attempt >= PATIENCE).then((refusal) => {
-      if (attempt === failures) tell(refusal);
+    const asked = ++question;
+    void ask_refusal(++failures >= PATIENCE).then((refusal) => {
+      if (asked === question) tell(refusal);
     });
   });
 }
@@ -67,12 +90,13 @@ export function explain_refusals(client: WeftClient, tell: (refusal: Refusal | n
 async function ask_refusal(suspect_proxy: boolean): Promise<Refusal | null> {
   const url = new URL('api/v1/connect', window.location.href);
   url.hash = '';
-  url.search = `origin=${window.location.origin}`;
+  url.search = `origin=${window.location.origin}&room=${encodeURIComponent(own_room())}`;
   try {
     const signal = AbortSignal.timeout(ASKING_LIMIT);
     const answer = await fetch(url, { signal, cache: 'no-store' });
     if (answer.ok) return suspect_proxy ? SUSPECTED_PROXY : null;
-    const { error } = (await answer.json()) as { error: Refusal };
+    const { error } = (await answer.json()) as { error: Refusal & { code: string } };
+    if (error.code === 'unknown_room') return UNKNOWN_ROOM;
     return { message: error.message, hint: error.hint ?? '' };
   } catch {
     return null; // no answer, or not from a Weft server

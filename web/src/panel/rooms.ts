@@ -1,0 +1,106 @@
+import { CommandError, type WeftClient } from '../../../proto/js/index.js';
+import { address_in, FIRST_ROOM, own_room, socket_of } from '../wire/own_room.js';
+import { element } from './element.js';
+import type { RoomDialog } from './room_dialog.js';
+import { room_tools } from './room_tools.js';
+
+/** The room that the page is in: its name, a copy of it in one click, the way back, and all rooms. */
+export class RoomPanel {
+  private dialog: Promise<RoomDialog> | null = null; // loaded when it is first opened
+  private role = 'viewer';
+  private address = socket_of(own_room()); // of the socket that is open
+  private copies = false; // a copy is being made
+  private many = false; // whether the server has more than one room
+
+  constructor(
+    private client: WeftClient,
+    private tell: (text: string) => void,
+  ) {
+    client.on('welcome', ({ capabilities }) => {
+      this.many = capabilities.includes('rooms');
+      this.show();
+    });
+    client.on('status', ({ phase }) => (element<HTMLButtonElement>('copy').disabled = phase !== 'open'));
+    client.on('roster', ({ viewers }) => {
+      this.role = viewers.find(({ id }) => id === client.viewer)?.role ?? 'viewer';
+      void this.dialog?.then((dialog) => dialog.show_role(this.role));
+    });
+    element('room').addEventListener('click', () => void this.open());
+    element('copy').addEventListener('click', () => void this.copy());
+    element('room-back').addEventListener('click', () => this.go_back());
+    window.addEventListener('popstate', () => this.follow_address());
+    this.show();
+  }
+
+  /** Opens a room that is like this one at this moment, and goes there. */
+  async copy(): Promise<void> {
+    if (this.copies) return;
+    this.copies = true;
+    try {
+      const { fork_room } = await import('./room_copy.js');
+      this.go(await fork_room(this.client));
+    } catch (error) {
+      if (error instanceof CommandError) this.tell(refusal_text(error));
+    }
+    this.copies = false;
+  }
+
+  /** Goes to a room; the browser's Back leads here again. */
+  go(room: string): void {
+    if (room === own_room()) return;
+    window.history.pushState({ from: own_room() }, '', address_in(room));
+    this.follow_address();
+  }
+
+  /** The list of rooms is no part of the first load. */
+  async open(): Promise<void> {
+    if (element<HTMLButtonElement>('room').closest('[hidden]')) return;
+    const go = (room: string) => this.go(room);
+    this.dialog ??= import('./room_dialog.js').then(
+      ({ RoomDialog }) => new RoomDialog(this.client, { ...room_tools, go, tell: this.tell }),
+    );
+    try {
+      const dialog = await this.dialog;
+      dialog.show_role(this.role);
+      await dialog.open();
+    } catch {
+      this.dialog = null; // the server is away; the next press tries again
+    }
+  }
+
+  private go_back(): void {
+    if (this.from) window.history.back();
+    else this.go(FIRST_ROOM);
+  }
+
+  /** The room from which the viewer came to this one; empty if it came by a link. */
+  private get from(): string {
+    const state: unknown = window.history.state;
+    return state !== null && typeof state === 'object' && 'from' in state ? String(state.from) : '';
+  }
+
+  /** Goes where the address leads, as after the browser's Back. */
+  private follow_address(): void {
+    const address = socket_of(own_room());
+    this.show();
+    if (address !== this.address) this.client.enter(address);
+    this.address = address;
+  }
+
+  private show(): void {
+    const room = own_room();
+    const first = room === FIRST_ROOM;
+    element('room-line').hidden = first && !this.many;
+    element('room-name').textContent = room;
+    document.title = first ? 'Weft' : `${room} · Weft`;
+    element('room-line').toggleAttribute('data-first', first);
+    element('room-back').hidden = first && !this.from;
+    element('room-back').title = `Back to ${this.from || FIRST_ROOM}`;
+  }
+}
+
+/** Why there is no copy, in words. */
+function refusal_text({ code, message }: CommandError): string {
+  if (code === 'not_allowed') return 'You only look: with a hand you can make a copy of your own';
+  return `No copy was made: ${message}`;
+}
