@@ -27,7 +27,7 @@ const in_room = (page, name) =>
 async function enter_all(browser, url) {
   const pupils = [];
   for (let k = 1; k <= PUPILS; k++)
-    pupils.push(await open_page(browser, `${url}?name=Pupil%20${k}&light=simple#token=${PUPIL}`, SMALL));
+    pupils.push(await open_page(browser, `${url}#token=${PUPIL}`, { ...SMALL, name: `Pupil ${k}` }));
   return pupils;
 }
 
@@ -130,7 +130,7 @@ test(`a class of ${PUPILS} is led, tries for itself, is watched on the wall, and
   const server = await start_server(['--tokens', tokens, '--max-seconds', '2300']);
   try {
     const script = await server.script('script', { token: LEADER });
-    const teacher = await open_page(browser, `${server.url}?light=simple#token=${LEADER}`, { width: 900, height: 640 });
+    const teacher = await open_page(browser, `${server.url}#token=${LEADER}`, { width: 900, height: 640 });
     const pupils = await enter_all(browser, server.url);
     await hands_are_given_and_taken(teacher, pupils, script);
     await all_follow(teacher, pupils);

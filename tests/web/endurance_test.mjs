@@ -72,7 +72,7 @@ test('thirty scenes and ten minutes leave memory, buffers and vertex arrays as t
   const browser = await launch_browser();
   const script = await server.script();
   try {
-    const page = await open_page(browser, server.url, { width: 400, height: 300, before: count_graphics });
+    const page = await open_page(browser, server.url, { width: 400, height: 300, simple: false, before: count_graphics });
     const show = async (scene) => {
       await script.load(scene);
       await until(async () => (await read(page, 'scene')) === scene, `${scene} is shown`);

@@ -32,7 +32,7 @@ export async function figures_of(folder, only = {}) {
   const browser = await launch_browser();
   const complaints = [];
   const open = async (options) => {
-    const page = await open_page(browser, server.url, { width: 480, height: 360, ...options });
+    const page = await open_page(browser, server.url, { width: 480, height: 360, simple: false, ...options });
     return { page, script, folder, end: () => complaints.push(...page.complaints) };
   };
   try {

@@ -47,7 +47,7 @@ const server = await start_server(['--scene', 'wall']);
 const browser = await launch_browser();
 const random = numbers(29);
 try {
-  const page = await open_page(browser, server.url, { ...SIZE, visited: true, before: watch });
+  const page = await open_page(browser, server.url, { ...SIZE, simple: false, visited: true, before: watch });
   await until(() => read(page, 'lit'), 'the light is whole');
   await sleep(1000); // quality has settled
   for (let pick = 0; pick < picks; pick++) {

@@ -38,7 +38,7 @@ async function turn_view(page, pixels) {
 }
 
 test('the cloth that is drawn is the projection of the positions of the server', bounded, () =>
-  with_page({ width: 720, height: 540 }, async (page, script) => {
+  with_page({ width: 720, height: 540, simple: false }, async (page, script) => {
     for (const turn of [0, -160]) {
       await turn_view(page, turn);
       await script.pause();
@@ -58,7 +58,7 @@ test('a cloth seen edge-on differs from its projection on the outline alone', bo
   const seen = [];
   for (const azimuth of [1.4, 1.47]) {
     const view = [0, 1, 0, Math.sin(azimuth), 0.2, Math.cos(azimuth), 1];
-    await with_page({ width: 720, height: 540, view, paused: true }, async (page, script) => {
+    await with_page({ width: 720, height: 540, view, paused: true, simple: false }, async (page, script) => {
       await script.advance(60);
       const { outline, differing, inside, area } = await silhouettes(page, script);
       assert.equal(inside, 0, `from an azimuth of ${azimuth}`);
@@ -104,7 +104,7 @@ test('a cloth lies in the light, whichever of its sides is turned to it', bounde
       await camera_at_rest(page);
       await until(() => read(page, 'fine'));
       brightness.push(await brightness_at(page, await pixel_of(page, [0, 1.1, 0.15])));
-    });
+    }, { simple: false });
   }
   const ratio = brightness[0] / brightness[1];
   assert.ok(ratio > 0.9 && ratio < 1.1, `${brightness}`);

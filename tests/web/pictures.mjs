@@ -71,7 +71,7 @@ async function draw(scene) {
   const pictures = [];
   const views = [{ view: 'desktop', title: '', options: DESKTOP }, ...(EXTRA[scene.name] ?? [])];
   for (const { view, title, options, act, moving } of views) {
-    const page = await open_page(browser, server.url, { ...options, name: 'Ada', visited: true });
+    const page = await open_page(browser, server.url, { ...options, simple: false, name: 'Ada', visited: true });
     await until(async () => (await read(page, 'tick')) === scene.tick, 'the tick is shown');
     await act?.(page);
     if (!moving) {

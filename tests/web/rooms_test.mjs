@@ -66,7 +66,7 @@ test('one click makes a copy of this moment and goes there, and Back leads back,
     await press(page, 'Back');
     await in_room(page, 'default');
     assert.deepEqual((await rooms_of(script)).map(({ name }) => name), ['ada', 'ada-2', 'default']);
-  }, { name: 'Ada', simple: true }),
+  }, { name: 'Ada' }),
 );
 
 test('no copy is made beyond the limit of rooms, and the page says so', bounded, () =>
@@ -76,7 +76,7 @@ test('no copy is made beyond the limit of rooms, and the page says so', bounded,
     await until(() => page.getByText('No copy was made: at most 2 rooms at a time').isVisible());
     assert.equal(await read(page, 'room'), 'default');
     assert.equal((await rooms_of(script)).length, 2);
-  }, { simple: true }),
+  }),
 );
 
 test('a room that is closed, or that there is not, is told, and Back leads to the first', bounded, () =>
@@ -100,7 +100,7 @@ test('a room that is closed, or that there is not, is told, and Back leads to th
     await press(other, 'Back');
     await in_room(other, 'default');
     await lost.close();
-  }, { name: 'Ada', simple: true }),
+  }, { name: 'Ada' }),
 );
 
 test('an operator opens, sees and closes rooms by the list, and goes into one', bounded, () =>
@@ -128,7 +128,7 @@ test('an operator opens, sees and closes rooms by the list, and goes into one', 
     await until(async () => (await list.getByRole('row').count()) === 3, 'and gone from the list');
     assert.equal(await list.getByRole('button', { name: 'Close default' }).count(), 0);
     await page.keyboard.press('Escape');
-  }, { simple: true }),
+  }),
 );
 
 test('who may only look neither makes a copy nor opens or closes rooms, and a link keeps the room', bounded, async () => {
@@ -136,7 +136,7 @@ test('who may only look neither makes a copy nor opens or closes rooms, and a li
   const tokens = join(folder, 'tokens');
   await writeFile(tokens, 'viewer look-0123456789abcdef Ben\noperator operate-0123456789abcdef Ada\n', { mode: 0o600 });
   const server = await start_server([...CALM, '--paused', '--tokens', tokens]);
-  const ada = await open_page(browser, `${server.url}?light=simple#token=operate-0123456789abcdef`);
+  const ada = await open_page(browser, `${server.url}#token=operate-0123456789abcdef`);
   await press(ada, 'Try it yourself');
   await in_room(ada, 'ada');
   assert.match(fragment_of(ada), /^#token=operate-0123456789abcdef&room=ada$/);
@@ -199,5 +199,5 @@ test('the wall shows each room live with its people and its truth, wakes none, a
     await until(async () => (await read(page, 'tick')) > 3, 'its time passes now');
     await until(() => sockets.slice(0, 3).every((socket) => socket.isClosed()), 'the wall leaves no socket behind');
     await done(page);
-  }, { simple: true }),
+  }),
 );

@@ -86,7 +86,7 @@ async function gzipped(url) {
 }
 
 test('the first load is at most 180 kB, by gzip too, without what is opened later', bounded, () =>
-  with_page({}, async (page) => {
+  with_page({ simple: false }, async (page) => {
     await until(() => read(page, 'lit'), 'all that follows the first picture has come');
     const entries = await page.evaluate(() =>
       ['navigation', 'resource'].flatMap((type) =>

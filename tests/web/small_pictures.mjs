@@ -20,7 +20,7 @@ async function take(browser, scene) {
   const tick = tick_of(scene);
   const server = await server_at(scene, tick);
   try {
-    const page = await open_page(browser, server.url, VIEW);
+    const page = await open_page(browser, server.url, { ...VIEW, simple: false });
     await page.locator('#view').focus();
     await page.keyboard.press('h');
     await page.keyboard.press('f');

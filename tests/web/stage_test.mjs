@@ -16,7 +16,7 @@ const graphics = (page, act) =>
   }, act);
 
 test('lost graphics are told, and come back with the same picture while nothing moves', bounded, () =>
-  with_page({ paused: true }, async (page, script) => {
+  with_page({ paused: true, simple: false }, async (page, script) => {
     await until(() => read(page, 'lit'), 'the light is whole');
     await camera_at_rest(page);
     await fine(page);
@@ -37,7 +37,7 @@ test('lost graphics are told, and come back with the same picture while nothing 
 );
 
 test('the first, simple light stays where the address asks for it', bounded, () =>
-  with_page({ paused: true, simple: true }, async (page) => {
+  with_page({ paused: true }, async (page) => {
     await camera_at_rest(page);
     await fine(page); // which takes the whole light anywhere else
     assert.equal(await read(page, 'lit'), false);

@@ -32,13 +32,14 @@ export function launch_browser() {
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
  *   view?: number[], simple?: boolean, visited?: boolean, before?: () => void}} [options]
- *     view: target, direction and radius of the first view; simple: in simple light; visited: not for
- *     the first time;
+ *     view: target, direction and radius of the first view; simple: in simple light, which software
+ *     draws several times as fast, as all is that is not judged by its looks; visited: not for the
+ *     first time;
  *     before: runs in the page before its own scripts
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
-  const { view, simple = false, visited = false, before } = options;
+  const { view, simple = true, visited = false, before } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
@@ -62,8 +63,10 @@ export async function open_page(browser, url, options = {}) {
   page.on('response', (response) => {
     if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
   });
-  const asked = [name && `name=${name}`, view && `view=${view}`, simple && 'light=simple'].filter(Boolean).join('&');
-  await page.goto(asked ? `${url}?${asked}` : url);
+  const address = new URL(url);
+  for (const [key, value] of Object.entries({ name, view, light: simple && 'simple' }))
+    if (value) address.searchParams.set(key, String(value));
+  await page.goto(address.href);
   const opened = Object.assign(page, { complaints });
   await until(() => page.evaluate(() => window.weft.phase === 'open' && window.weft.tick >= 0));
   return opened;

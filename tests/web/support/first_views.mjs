@@ -22,7 +22,7 @@ export async function first_view(browser, scene) {
   const tick = tick_of(scene);
   const server = await server_at(scene, tick);
   try {
-    const page = await open_page(browser, server.url, { ...DESKTOP, visited: true });
+    const page = await open_page(browser, server.url, { ...DESKTOP, simple: false, visited: true });
     await until(async () => (await read(page, 'tick')) === tick, 'the tick is shown');
     await camera_at_rest(page);
     const [cloths, fill] = [await read(page, 'cloths'), await fill_of(page)];
