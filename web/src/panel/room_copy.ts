@@ -2,7 +2,7 @@ import type { WeftClient } from '../../../proto/js/index.js';
 
 // Copies of a room: no part of the page's first load, of which it imports nothing.
 
-const MOST_RACES = 40; // lost to others who took the same name, before none is made
+const MOST_RACES = 40; // names that other viewers take first, before no copy is made
 
 /** Makes a copy of the room that the viewer is in, by the first name that no other room has. @returns the name */
 export async function fork_room(client: WeftClient): Promise<string> {

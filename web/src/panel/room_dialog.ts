@@ -1,6 +1,7 @@
 import type { WeftClient } from '../../../proto/js/index.js';
 import type { RoomTools } from './room_tools.js';
 import { type Room, RoomWatch } from './room_watch.js';
+import { write } from './room_words.js';
 import { Wall } from './wall.js';
 
 const part = <Type extends HTMLElement>(id: string) => document.getElementById(id) as Type;
@@ -51,7 +52,11 @@ export class RoomDialog {
 
   async open(): Promise<void> {
     if (this.dialog.open) return;
-    await (this.styles ??= fetch_styles());
+    this.styles ??= fetch_styles();
+    await this.styles.catch((error) => {
+      this.styles = null; // the next press tries again
+      throw error;
+    });
     if (!this.scene.options.length) await this.fetch_scenes();
     this.dialog.showModal();
     this.watch.start();
@@ -153,10 +158,6 @@ function fetch_styles(): Promise<void> {
   });
   document.head.append(link);
   return loaded;
-}
-
-function write(element: HTMLElement, text: string): void {
-  if (element.textContent !== text) element.textContent = text;
 }
 
 function cell(tag: 'th' | 'td', text: string, scope = ''): HTMLElement {

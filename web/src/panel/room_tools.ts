@@ -28,5 +28,4 @@ export const room_tools = {
 export type RoomTools = typeof room_tools & {
   /** Goes to a room. */
   go(room: string): void;
-  tell(text: string): void;
 };

@@ -23,7 +23,7 @@ export class RoomPanel {
     client.on('status', ({ phase }) => (element<HTMLButtonElement>('copy').disabled = phase !== 'open'));
     client.on('roster', ({ viewers }) => {
       this.role = viewers.find(({ id }) => id === client.viewer)?.role ?? 'viewer';
-      void this.dialog?.then((dialog) => dialog.show_role(this.role));
+      void this.dialog?.then((dialog) => dialog.show_role(this.role)).catch(() => {});
     });
     element('room').addEventListener('click', () => void this.open());
     element('copy').addEventListener('click', () => void this.copy());
@@ -57,15 +57,11 @@ export class RoomPanel {
     if (element<HTMLButtonElement>('room').closest('[hidden]')) return;
     const go = (room: string) => this.go(room);
     this.dialog ??= import('./room_dialog.js').then(
-      ({ RoomDialog }) => new RoomDialog(this.client, { ...room_tools, go, tell: this.tell }),
+      ({ RoomDialog }) => new RoomDialog(this.client, { ...room_tools, go }),
     );
-    try {
-      const dialog = await this.dialog;
-      dialog.show_role(this.role);
-      await dialog.open();
-    } catch {
-      this.dialog = null; // the server is away; the next press tries again
-    }
+    const dialog = await this.dialog.catch(() => (this.dialog = null));
+    dialog?.show_role(this.role);
+    await dialog?.open().catch(() => {}); // the server is away; the next press tries again
   }
 
   private go_back(): void {
@@ -93,7 +89,6 @@ export class RoomPanel {
     element('room-line').hidden = first && !this.many;
     element('room-name').textContent = room;
     document.title = first ? 'Weft' : `${room} · Weft`;
-    element('room-line').toggleAttribute('data-first', first);
     element('room-back').hidden = first && !this.from;
     element('room-back').title = `Back to ${this.from || FIRST_ROOM}`;
   }

@@ -2,6 +2,7 @@ import type { WeftClient } from '../../../proto/js/index.js';
 import type { Frame, State } from '../../../proto/js/messages.js';
 import { SmallPainter, type SmallScene } from '../view/small_picture.js';
 import type { RoomTools } from './room_tools.js';
+import { write } from './room_words.js';
 import { type Room, RoomWatch } from './room_watch.js';
 
 const SIZE = { width: 288, height: 192 }; // of a picture [pixels]
@@ -107,10 +108,6 @@ export class Wall {
     cell.item.remove();
     this.cells.delete(name);
   }
-}
-
-function write(element: HTMLElement, text: string): void {
-  if (element.textContent !== text) element.textContent = text;
 }
 
 function piece(tag: string, kind: string, text = ''): HTMLElement {
