@@ -41,8 +41,8 @@ constexpr double kSlower = 5;  // than without sanitizers, as bounds of time tak
 constexpr double kSlower = 1;
 #endif
 
-// CPU time of one scene [s]: 30 minutes on two cores, with sanitizers, then see more than 2,000
-// scenes, without those that are refused. More seconds show more of each and fewer of them.
+// CPU time of one scene [s]: 30 minutes on two cores, with sanitizers, then see about 2,000 scenes,
+// of which a fifth is refused. More seconds show more of each and fewer of them.
 constexpr double kSceneSeconds = 0.3;
 
 struct Options {

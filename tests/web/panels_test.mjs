@@ -28,7 +28,7 @@ test('on screens wide and narrow every control is within reach and has a name', 
     await show_controls(page);
     await page.getByRole('button', { name: 'Fan', exact: true }).click();
     await until(() => page.getByRole('slider', { name: 'Fan' }).isVisible());
-    for (const [width, height] of [[1280, 700], [900, 500], [700, 500], [360, 640], [400, 720]]) {
+    for (const [width, height] of [[1280, 700], [900, 500], [700, 500], [560, 420], [360, 640], [400, 720]]) {
       await page.setViewportSize({ width, height });
       await until(async () => (await read(page, 'size')).width === width);
       await show_controls(page);
@@ -38,6 +38,8 @@ test('on screens wide and narrow every control is within reach and has a name', 
         assert.ok(box.x >= 0 && box.x + box.width <= width, `${at} across`);
         assert.ok(box.y >= 0 && box.y + box.height <= height, `${at} down`);
       }
+      const readable = (title) => title.clientWidth >= Math.min(title.scrollWidth, 90);
+      assert.ok(await page.locator('#scene-title').evaluate(readable), `the scene’s name in ${width} x ${height}`);
     }
     await page.getByRole('button', { name: 'Fan', exact: true }).click();
     // The slider goes when the server says that the fan has gone, not with the click.

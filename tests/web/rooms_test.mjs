@@ -185,9 +185,12 @@ test('the wall shows each room live with its people and its truth, wakes none, a
     await until(async () => /2 people\s+Cloth passes through nothing\s+0 crossings/.test(await cell('default').innerText()));
     assert.match(await cell('empty').innerText(), /nobody there/);
     assert.match(await cell('still').innerText(), /nobody there, paused\s+It began tangled, and comes free/);
+    const [tick, pictures] = [await read(page, 'tick'), await read(page, 'pictures')];
     const moving = await picture_of(cell('default').locator('canvas'));
     const standing = await picture_of(cell('empty').locator('canvas'));
     await until(async () => (await picture_of(cell('default').locator('canvas'))).sum !== moving.sum, 'the flag moves');
+    await until(async () => (await read(page, 'tick')) > tick + 10);
+    assert.equal(await read(page, 'pictures'), pictures, 'the picture behind the wall costs nothing');
     assert.deepEqual(await picture_of(cell('empty').locator('canvas')), standing, 'an empty room stands');
     assert.equal((await rooms_of(script)).find(({ name }) => name === 'empty').tick, 0);
     await script.closeRoom('still');

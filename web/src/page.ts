@@ -41,6 +41,7 @@ import { WorldView } from './view/world_view.js';
  */
 export class Page {
   readonly canvas = element<HTMLCanvasElement>('view');
+  private wall = element<HTMLDialogElement>('wall');
   readonly orbit = new OrbitCamera();
   private director = new Director(this.orbit, () => this.window());
   readonly hands = new Hands(element('labels'));
@@ -345,6 +346,7 @@ export class Page {
     if (this.world) this.told_camera.tell(this.orbit.description(), now);
     this.box_view.follow(this.world?.playback.tick ?? -1);
     this.laboratory_panel.follow(now);
+    if (this.wall.open) return; // it covers the picture, and paints its own
     const { still, interval } = this.clock.judge(this.dirty, moved && !this.state?.paused);
     if (this.stage.refine(still, interval)) this.resize();
     if (this.dirty) this.draw_picture();
