@@ -169,6 +169,8 @@ export interface ForkResult {
   tick: number;
   /** as it begins */
   room: RoomInfo;
+  /** with which its maker, who comes by a token, operates the copy */
+  token?: string;
 }
 
 /** What the answer to `view` has. */

@@ -78,7 +78,6 @@ export class Session extends Emitter {
   #meter = new LatencyMeter();
   #frames;
   #key;
-
   /** @type {import('./messages.js').Welcome | null} */
   welcome = null;
   /** @type {Mesh | null} */
@@ -92,7 +91,7 @@ export class Session extends Emitter {
    */
   constructor(url, options = {}) {
     super();
-    this.options = options;
+    this.options = { ...options };
     this.timers = options.timers ?? systemTimers;
     this.#frames = new LiveFrames(options.frames ?? new FrameReader());
     this.#pace = new Pace(this.timers);
@@ -136,8 +135,9 @@ export class Session extends Emitter {
     this.#connection.close();
   }
 
-  /** Leaves for another room, or another server, where it connects at once. @param {string} url */
-  enter(url) {
+  /** Leaves for another room or server, where it connects at once. @param {string} url @param {string} [token] */
+  enter(url, token = this.options.token) {
+    this.options.token = token;
     this.#url = socketAddress(url, this.options.mesh);
     this.#connection.move(this.#url.href);
   }

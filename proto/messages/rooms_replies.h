@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,10 +44,13 @@ struct CloseRoomReply {
 struct ForkReply {
   std::uint64_t tick = 0;
   RoomInfo room;
+  std::optional<std::string> token;
   static constexpr const char* kOp = "fork";
   static void describe(auto& io, auto& reply) {
     io.required(kReplyTick, reply.tick);
     io.required(Field{"room", "as it begins"}, reply.room);
+    io.optional(Field{"token", "with which its maker, who comes by a token, operates the copy"},
+                reply.token);
   }
 };
 

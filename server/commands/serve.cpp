@@ -110,9 +110,13 @@ RoomOptions with_rights(RoomOptions room, const ServerOptions& options, Tokens& 
   return room;
 }
 
-RoomsOptions rooms_options(const ServerOptions& options) {
-  return {options.threads, static_cast<std::size_t>(options.rooms), options.room_idle,
-          options.tick_limit, options.limits.waiting_commands};
+RoomsOptions rooms_options(const ServerOptions& options, Tokens& tokens) {
+  return {options.threads,
+          static_cast<std::size_t>(options.rooms),
+          options.room_idle,
+          options.tick_limit,
+          options.limits.waiting_commands,
+          [&tokens](const std::string& room) { tokens.forget(room); }};
 }
 
 void print_addresses(const ServerOptions& options, int port) {
@@ -231,7 +235,7 @@ int serve(const ServerOptions& options) {
   auto io = std::make_unique<asio::io_context>(1);
   const ChannelLimits limits{options.limits.queued_messages, options.limits.queued_bytes};
   Rooms rooms(
-      rooms_options(options), with_rights(room_options(options, library), options, tokens),
+      rooms_options(options, tokens), with_rights(room_options(options, library), options, tokens),
       [&library](const std::string& name) { return library.named(name); },
       [&io, &limits](Metrics& counts) {
         return std::make_shared<NetworkOutput>(

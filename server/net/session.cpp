@@ -170,8 +170,8 @@ void Session::on_first(std::string_view text) {
   ++number_;
   auto request = proto::parse_request(text);
   auto* const hello = request ? std::get_if<proto::Hello>(&request->command) : nullptr;
-  const auto grant =
-      hello && hello->token ? context_.tokens.find(*hello->token) : std::optional<Grant>();
+  const auto grant = hello && hello->token ? context_.tokens.find(*hello->token, room_->name())
+                                           : std::optional<Grant>();
   if (grant) {
     awaits_token_ = false;
     hello->token.reset();
@@ -247,7 +247,7 @@ void Session::on_request(const proto::Request& request, double received) {
 void Session::on_hello(proto::Request request) {
   auto& hello = std::get<proto::Hello>(request.command);
   if (const auto token = std::exchange(hello.token, std::nullopt)) {
-    const auto grant = context_.tokens.find(*token);
+    const auto grant = context_.tokens.find(*token, room_->name());
     if (!grant && context_.tokens.required()) {
       refuse(unknown_token(false, request.id));
       return note();

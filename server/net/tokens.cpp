@@ -77,7 +77,7 @@ void Tokens::add_line(const char* source, int number, std::string_view line) {
       proto::character_count(name) > proto::kMostNameCharacters)
     refuse(source, number,
            "a name of at most " + std::to_string(proto::kMostNameCharacters) + " characters");
-  if (find(token)) refuse(source, number, "each token once");
+  if (find(token, {})) refuse(source, number, "each token once");
   const std::lock_guard lock(mutex_);
   entries_.push_back({token, {*role, HandRight::by_policy, name, true}, false});
   required_ = true;
@@ -127,12 +127,17 @@ std::string Tokens::make(const Grant& grant) {
   return token;
 }
 
-std::optional<Grant> Tokens::find(std::string_view token) const {
+std::optional<Grant> Tokens::find(std::string_view token, std::string_view room) const {
   const std::lock_guard lock(mutex_);
   std::optional<Grant> found;
   for (const Entry& entry : entries_)
-    if (equal(entry.token, token)) found = entry.grant;
+    if (equal(entry.token, token)) found = grant_in(entry.grant, room);
   return found;
+}
+
+void Tokens::forget(std::string_view room) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [room](const Entry& entry) { return entry.grant.room == room; });
 }
 
 proto::Error unknown_token(bool entry, const std::optional<proto::Id>& id) {

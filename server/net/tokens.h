@@ -24,8 +24,11 @@ class Tokens {
   /// Makes a token that was never given before.
   std::string make(const Grant& grant);
 
-  /// What a token grants. Takes as long for a wrong token as for a right one.
-  std::optional<Grant> find(std::string_view token) const;
+  /// What a token grants in a room. Takes as long for a wrong token as for a right one.
+  std::optional<Grant> find(std::string_view token, std::string_view room) const;
+
+  /// Forgets those that count in a room: it has gone, and another may take its name.
+  void forget(std::string_view room);
 
   /// Whether viewers need one: some were given at the start.
   bool required() const { return required_; }

@@ -17,6 +17,13 @@ proto::Error not_allowed(const proto::Command& command, std::string message,
 
 }  // namespace
 
+Grant grant_in(Grant grant, std::string_view room) {
+  if (grant.room.empty() || grant.room == room) return grant;
+  grant.role = proto::Role::viewer;
+  if (grant.hand == HandRight::given) grant.hand = HandRight::by_policy;
+  return grant;
+}
+
 bool may_hold(HandRight hand, proto::Policy policy) {
   if (hand == HandRight::by_policy) return policy != proto::Policy::watch;
   return hand == HandRight::given;

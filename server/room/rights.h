@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "proto/messages/commands.h"
 
@@ -24,8 +25,13 @@ struct Grant {
   HandRight hand = HandRight::by_policy;
   std::string name;       ///< of the person that has the token; may be empty
   bool by_token = false;  ///< otherwise as everyone without a token
+  std::string room = {};  ///< where it counts; empty: in all rooms
   bool operator==(const Grant&) const = default;
 };
+
+/// What a grant is worth in a room. One that counts in another room lets its viewer look, and hold
+/// by the policy if it grants a hand there.
+Grant grant_in(Grant grant, std::string_view room);
 
 /// Whether a viewer may hold the cloth under a policy.
 bool may_hold(HandRight hand, proto::Policy policy);

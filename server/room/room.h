@@ -152,6 +152,7 @@ class Room {
     double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
     HandRight hand = HandRight::by_policy;
     bool by_token = false;
+    bool by_link = false;  ///< its token counts in one room
     double next_name = 0;  ///< it may change its name from then on [s]
     Presence presence;
   };
@@ -306,6 +307,7 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::CloseRoom& command);
   Outcome apply(proto::ViewerId viewer, const proto::Fork& command);
   BuiltScene fork() const;
+  bool operates_here_alone(proto::ViewerId viewer) const;
   Outcome query_numbers(const proto::Query& command, std::span<const float> values,
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);

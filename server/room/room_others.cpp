@@ -7,17 +7,33 @@
 #include "server/room/room.h"
 
 namespace weft::server {
+
+using proto::Role;
+using proto::ViewerId;
+
 namespace {
 
 proto::Error no_other_rooms() {
   return proto::make_error(proto::ErrorCode::not_supported, "this server has one room only");
 }
 
+proto::Error beyond_link(const char* what, const char* hint) {
+  return proto::make_error(proto::ErrorCode::not_allowed, what, hint);
+}
+
 }  // namespace
 
+/// Whether what lets a viewer operate counts in this room alone.
+bool Room::operates_here_alone(ViewerId viewer) const {
+  return options_.has_tokens && viewers_.at(viewer).by_link;
+}
+
 /// The scene is built beside the one of this room, as by a `load`.
-Room::Outcome Room::apply(proto::ViewerId viewer, const proto::CreateRoom& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::CreateRoom& command) {
   if (!options_.others) return no_other_rooms();
+  if (operates_here_alone(viewer))
+    return beyond_link("this link lets its viewer operate one room, and open none",
+                       "fork makes a copy of this room");
   if (command.scene) {
     if (auto error = check_scene_name(*command.scene, options_.scene_names))
       return *std::move(error);
@@ -56,22 +72,30 @@ BuiltScene Room::fork() const {
   return copy;
 }
 
-Room::Outcome Room::apply(proto::ViewerId, const proto::Fork& command) {
+/// Who may operate its copy alone gets a token for that.
+Room::Outcome Room::apply(ViewerId viewer, const proto::Fork& command) {
   if (!options_.others) return no_other_rooms();
   auto name = options_.others->reserve(command.name);
   if (!name) return std::move(name).error();
   const auto room = options_.others->open(*name, fork(), command.paused.value_or(paused()));
   if (!room) return room.error();
-  return proto::Reply(proto::ForkReply{world_->tick(), *room});
+  proto::ForkReply reply{world_->tick(), *room, {}};
+  const Viewer& maker = viewers_.at(viewer);
+  if (options_.make_token && maker.by_token && (maker.by_link || maker.info.role == Role::viewer))
+    reply.token = options_.make_token({Role::operator_, HandRight::given, "", true, room->name});
+  return proto::Reply(std::move(reply));
 }
 
-Room::Outcome Room::apply(proto::ViewerId, const proto::ListRooms&) {
+Room::Outcome Room::apply(ViewerId, const proto::ListRooms&) {
   if (!options_.others) return no_other_rooms();
   return proto::Reply(options_.others->list());
 }
 
-Room::Outcome Room::apply(proto::ViewerId, const proto::CloseRoom& command) {
+Room::Outcome Room::apply(ViewerId viewer, const proto::CloseRoom& command) {
   if (!options_.others) return no_other_rooms();
+  if (operates_here_alone(viewer) && command.name != options_.name)
+    return beyond_link("this link lets its viewer operate one room, and close no other",
+                       "an operator of the server can close it");
   if (auto error = options_.others->close(command.name)) return *std::move(error);
   return proto::Reply(proto::CloseRoomReply{command.name});
 }

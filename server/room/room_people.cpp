@@ -62,6 +62,7 @@ void Room::ask_newcomer(Viewer& viewer) {
 void Room::admit(Viewer& viewer, const Grant& grant) {
   viewer.info.role = grant.role;
   viewer.by_token = grant.by_token;
+  viewer.by_link = !grant.room.empty();
   if (viewer.hand != HandRight::muted) viewer.hand = grant.hand;
   if (!grant.name.empty()) viewer.info.name = grant.name;
   if (viewer.glances) {
@@ -249,8 +250,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Invite& command) {
   const HandRight hand =
       command.right == proto::Invitation::look ? HandRight::muted : HandRight::given;
   const Role role = operates ? Role::operator_ : Role::viewer;
-  return proto::Reply(
-      proto::InviteReply{world_->tick(), options_.make_token({role, hand, "", true})});
+  return proto::Reply(proto::InviteReply{
+      world_->tick(), options_.make_token({role, hand, "", true, options_.name})});
 }
 
 /// Tells who points and looks where, within the rate that many hands may cost each viewer.

@@ -210,6 +210,7 @@ bool Rooms::shut(const std::string& name) {
     room = std::move(found->second);
     rooms_.erase(found);
     costs_.erase(name);
+    options_.on_closed(name);
   }
   room->close();
   scheduler_.remove(*room);

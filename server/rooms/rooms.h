@@ -24,6 +24,8 @@ struct RoomsOptions {
   double idle_seconds = 0;           ///< an empty room closes after this; 0: never
   double tick_limit = 0;             ///< of CPU [s]; 0: none
   std::size_t waiting_commands = 0;  ///< of one viewer
+  /// Called with the name of a room that closes, before another can take it; from any thread.
+  std::function<void(const std::string&)> on_closed = [](const std::string&) {};
 };
 
 /// The rooms of a server: the default one, and those that viewers open. Callable from any thread.

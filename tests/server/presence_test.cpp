@@ -177,6 +177,7 @@ TEST_CASE("a link lets in whom it was made for, and only an admin makes operator
   t.say(1, R"({"op":"invite","id":4,"right":"hold"})");
   t.say(2, R"({"op":"invite","id":5,"right":"operate"})");
   REQUIRE(made.size() == 3);
+  for (const Grant& grant : made) CHECK(grant.room == "default");
   for (proto::ViewerId viewer = 4; viewer <= 6; ++viewer)
     t.room->take({viewer, 0, Join{false, made[viewer - 4]}});
   const json people = t.say(1, R"({"op":"query","id":9,"what":"roster"})")["data"];

@@ -326,13 +326,13 @@ TEST_CASE("tokens grant what their line says, and lines that are wrong are refus
               "# who may what\n\nviewer 0123456789abcdef Class 7b \r\n"
               "operator ABCDEFGHIJKLMNOP\nadmin a~b.c-d_e~f.g-h_ Ada\n");
   CHECK(tokens.required());
-  CHECK(tokens.find("0123456789abcdef") ==
+  CHECK(tokens.find("0123456789abcdef", "default") ==
         Grant{Role::viewer, HandRight::by_policy, "Class 7b", true});
-  CHECK(tokens.find("ABCDEFGHIJKLMNOP")->role == Role::operator_);
-  CHECK(tokens.find("a~b.c-d_e~f.g-h_")->role == Role::admin);
+  CHECK(tokens.find("ABCDEFGHIJKLMNOP", "ada")->role == Role::operator_);
+  CHECK(tokens.find("a~b.c-d_e~f.g-h_", "default")->role == Role::admin);
   for (const char* wrong : {"", "0", "0123456789abcde", "0123456789abcdef0", "0123456789abcdeF",
                             "0123456789abcdef0123456789abcdef"})
-    CHECK_FALSE(tokens.find(wrong));
+    CHECK_FALSE(tokens.find(wrong, "default"));
   for (const std::string line :
        {"owner 0123456789abcdef", "viewer", "viewer 0123456789", "viewer 0123456789abcd/f",
         "operator 0123456789abcdef\nviewer 0123456789abcdef",

@@ -50,9 +50,9 @@ def goldens():
     return [entry["text"] for entry in texts]
 
 
-async def enter(server, token=None, **hello):
+async def enter(server, token=None, room="default", **hello):
     """A viewer that tells its token first; None without an answer to wait for."""
-    connection = await websockets.connect(server.websocket, subprotocols=["weft.v1"], compression=None,
+    connection = await websockets.connect(f"{server.websocket}/{room}", subprotocols=["weft.v1"], compression=None,
                                           max_size=None, ping_interval=None)
     viewer = Viewer(connection, True)
     if token is not None:
@@ -93,6 +93,34 @@ class WithTokens(SocketTest):
         self.assertEqual([v["role"] for v in roster["viewers"]], ["viewer", "operator", "admin", "viewer"])
         frame = await named.wait_frame(lambda f: True)
         self.assertGreater(frame.vertices, 0)
+
+    async def test_a_link_counts_in_its_room_and_who_makes_a_copy_operates_that_alone(self):
+        teacher = await self.enter(OPERATOR)
+        link = (await teacher.ask("invite", right="hold"))["token"]
+        pupil = await self.enter(link)
+        self.assertEqual((await pupil.ask("reset"))["code"], "not_allowed")
+        token = (await pupil.ask("fork", name="mine"))["token"]
+        own = await self.enter(token, room="mine")
+        self.assertEqual(own.welcome["role"], "operator")
+        self.assertEqual((await own.ask("reset"))["op"], "result")
+        for op, name in (("create_room", "more"), ("close_room", "other")):
+            self.assertEqual((await own.ask(op, name=name))["code"], "not_allowed", op)
+        self.assertEqual((await own.ask("fork", name="again"))["op"], "result")
+        for elsewhere, room in ((link, "mine"), (token, "default")):
+            guest = await self.enter(elsewhere, room=room)
+            self.assertEqual(guest.welcome["role"], "viewer")
+            self.assertEqual((await guest.ask("reset"))["code"], "not_allowed")
+            self.assertEqual((await guest.ask("pin", particle=0))["op"], "result", "everybody may hold there")
+        watcher = await self.enter((await teacher.ask("invite", right="look"))["token"], room="mine")
+        self.assertEqual((await watcher.ask("pin", particle=0))["code"], "not_allowed")
+        self.assertNotIn("token", await teacher.ask("fork", name="theirs"), "it operates all rooms already")
+        # A room that takes the name of another has other links.
+        await own.tell("close_room", name="mine")
+        self.assertEqual(await own.wait_closed(), 4004)
+        self.assertEqual((await teacher.ask("create_room", name="mine"))["op"], "result")
+        late = await enter(self.server, room="mine")
+        await late.tell("hello", token=token)
+        self.assertEqual(await late.wait_closed(), 4003)
 
     async def test_whoever_has_no_token_is_let_in_to_nothing(self):
         loop = asyncio.get_running_loop()

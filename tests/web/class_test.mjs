@@ -137,6 +137,9 @@ test(`a class of ${PUPILS} is led, tries for itself, is watched on the wall, and
     for (const [k, page] of pupils.entries()) {
       await press(page, 'Try it yourself');
       await in_room(page, `pupil-${k + 1}`);
+      await press(page, 'Pause');
+      await until(async () => await read(page, 'paused'), 'its maker operates the copy');
+      await press(page, 'Resume');
     }
     assert.equal((await script.listRooms()).rooms.length, PUPILS + 1);
     const cells = await watch_wall(teacher, pupils, script);

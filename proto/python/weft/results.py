@@ -233,6 +233,7 @@ class ForkResult(Answer):
 
     tick: int  # the command's place in the order: after it
     room: RoomInfo  # as it begins
+    token: NotRequired[str]  # with which its maker, who comes by a token, operates the copy
 
 
 class ViewResult(Answer):

@@ -539,8 +539,8 @@ test('nothing is sent on a socket that the server closes, of which a browser wou
   socket.lose(4004, 'the room is closed');
 });
 
-test('a client that moves to another room leaves the first, and has its name and view there', async () => {
-  const { client, socket, sockets } = await join({ name: 'Ada' });
+test('a client that moves to another room leaves the first, and has its name, token and view there', async () => {
+  const { client, socket, sockets } = await join({ name: 'Ada', token: 'of a link' });
   client.view({ hz: 30 }).catch(() => {});
   const phases = [];
   client.on('status', ({ phase }) => phases.push(phase));
@@ -556,7 +556,12 @@ test('a client that moves to another room leaves the first, and has its name and
   there.say({ ...welcome, room: 'mine' });
   assert.equal(client.welcome.room, 'mine');
   assert.equal(there.ops('hello')[0].name, 'Ada');
+  assert.equal(there.ops('hello')[0].token, 'of a link');
   assert.equal(there.ops('view')[0].hz, 30);
+  client.enter('ws://host:1/ws/copy', 'of the copy');
+  sockets.at(-1).open();
+  assert.equal(sockets.at(-1).ops('hello')[0].token, 'of the copy');
+  sockets.at(-1).say(welcome);
   socket.say({ ...example('state') });
   socket.lose(1006);
   assert.equal(client.connected, true, 'what the first room says is not heard any more');

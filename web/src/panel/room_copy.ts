@@ -4,15 +4,21 @@ import type { WeftClient } from '../../../proto/js/index.js';
 
 const MOST_RACES = 40; // names that other viewers take first, before no copy is made
 
-/** Makes a copy of the room that the viewer is in, by the first name that no other room has. @returns the name */
-export async function fork_room(client: WeftClient): Promise<string> {
+/** A copy of a room, with the token by which its maker operates it, if that takes one. */
+export interface RoomCopy {
+  name: string;
+  token?: string;
+}
+
+/** Makes a copy of the room that the viewer is in, by the first name that no other room has. */
+export async function fork_room(client: WeftClient): Promise<RoomCopy> {
   const { rooms } = await client.listRooms();
   const taken = new Set(rooms.map(({ name }) => name));
   for (const name of copy_names(client.options.name ?? client.welcome?.name ?? '')) {
     if (taken.has(name)) continue;
     try {
-      await client.fork(name);
-      return name;
+      const { token } = await client.fork(name);
+      return { name, token };
     } catch (error) {
       // Another viewer has just taken it.
       const again = error instanceof Error && 'code' in error && error.code === 'room_exists';

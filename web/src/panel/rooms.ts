@@ -1,5 +1,6 @@
 import { CommandError, type WeftClient } from '../../../proto/js/index.js';
 import { address_in, FIRST_ROOM, own_room, socket_of } from '../wire/own_room.js';
+import { own_token } from '../wire/own_token.js';
 import { element } from './element.js';
 import type { RoomDialog } from './room_dialog.js';
 import { room_tools } from './room_tools.js';
@@ -38,17 +39,18 @@ export class RoomPanel {
     this.copies = true;
     try {
       const { fork_room } = await import('./room_copy.js');
-      this.go(await fork_room(this.client));
+      const { name, token } = await fork_room(this.client);
+      this.go(name, token);
     } catch (error) {
       if (error instanceof CommandError) this.tell(refusal_text(error));
     }
     this.copies = false;
   }
 
-  /** Goes to a room; the browser's Back leads here again. */
-  go(room: string): void {
+  /** Goes to a room; the browser's Back leads here again. @param token another one than here */
+  go(room: string, token?: string): void {
     if (room === own_room()) return;
-    window.history.pushState({ from: own_room() }, '', address_in(room));
+    window.history.pushState({ from: own_room() }, '', address_in(room, token));
     this.follow_address();
   }
 
@@ -79,7 +81,7 @@ export class RoomPanel {
   private follow_address(): void {
     const address = socket_of(own_room());
     this.show();
-    if (address !== this.address) this.client.enter(address);
+    if (address !== this.address) this.client.enter(address, own_token());
     this.address = address;
   }
 

@@ -6,10 +6,11 @@ export function own_room(): string {
   return fragment().get('room') || FIRST_ROOM;
 }
 
-/** The page's address in a room; the token stays in it. */
-export function address_in(room: string): string {
+/** The page's address in a room; the token stays in it unless there is another one. */
+export function address_in(room: string, token?: string): string {
   const parts = fragment();
   parts.delete('room');
+  if (token) parts.set('token', token);
   if (room !== FIRST_ROOM) parts.set('room', room);
   const url = new URL(window.location.href);
   url.hash = parts.toString();
