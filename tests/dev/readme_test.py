@@ -143,7 +143,7 @@ class Readme(unittest.TestCase):
                 self.assertTrue(place.exists() or file == "build/weft", file)
                 text = place.read_text(encoding="utf-8") if place.is_file() else ""
             elif name:
-                self.assertIn(name, text)
+                self.assertTrue(name in text, f"the file before it has no test of the name: {name}")
                 found += 1
         self.assertGreater(found, 40)
 
