@@ -218,7 +218,7 @@ std::vector<std::string> sample_replies() {
       encode_reply(33, DoneReply{"save", 300}),
       encode_reply(34, DoneReply{"restore", 300}),
       encode_reply(29, CreateRoomReply{room("class-7", 0, false)}),
-      encode_reply(30, ForkReply{481, room("mine", 481, true)}),
+      encode_reply(30, ForkReply{481, room("mine", 481, true), {}}),
       encode_reply(31, ListRoomsReply{{{"mine", "flag", 1225, 1, 503, false, 1}}, 64}),
       encode_reply(32, CloseRoomReply{"mine"}),
       encode_reply(26, ViewReply{30, Codec::f32}),

@@ -25,7 +25,7 @@ test('a fan is seen by all, blows at the cloth, and is moved, aimed and set by h
         return fan && wanted(fan) && fan;
       }, `the server has the fan: ${wanted}`);
     await camera_at_rest(page);
-    await page.getByRole('button', { name: 'Fan', exact: true }).click();
+    await page.keyboard.press('w');
     const made = await fan_of();
     const other = await open_page(browser, server.url);
     await until(async () => (await read(other, 'fans')).length === 1, 'others see it');
