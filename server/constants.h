@@ -83,11 +83,6 @@ inline constexpr double kShortTick = 2e-3;
 /// tick decides. Smaller: a room that overruns delays others for longer.
 inline constexpr double kCostMemory = 0.2;
 
-/// By how much the threads of heavy rooms are nicer than others [1]: they get a tenth of the time
-/// of a thread that never rests. Larger: heavy rooms stand beside other work. Smaller: they delay
-/// the light ones.
-inline constexpr int kPatience = 10;
-
 /// For how long a thread that serves light rooms or the network runs before others have their turn
 /// [ns]; the shorter, the sooner it is served when it wakes. Linux allows 1e5 to 1e8.
 inline constexpr unsigned long long kPromptSlice = 100'000;

@@ -2,7 +2,6 @@
 
 #include "server/thread_priority.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <sched.h>
 #include <sys/resource.h>
@@ -13,6 +12,8 @@
 
 namespace weft::server {
 namespace {
+
+constexpr int kNicest = 19;
 
 /// The kernel's `sched_attr`, in its first version: the C library has none, and the header of Linux
 /// cannot stand beside that of the library.
@@ -35,8 +36,11 @@ void be_prompt() {
   ::syscall(SYS_sched_setattr, 0, &wanted, 0);  // the same as before if the system knows no slices
 }
 
-void be_patient(int by) {
-  setpriority(PRIO_PROCESS, 0, std::min(getpriority(PRIO_PROCESS, 0) + by, 19));
+/// A thread that is merely nicer keeps a processor for tens of milliseconds after one wakes that is
+/// not: Linux lets it finish its slice.
+void be_patient() {
+  const sched_param none{};
+  if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, 0, kNicest);
 }
 
 }  // namespace weft::server

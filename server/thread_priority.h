@@ -8,8 +8,8 @@ namespace weft::server {
 /// 6.12, whose scheduler of then interrupts for all that slept.
 void be_prompt();
 
-/// Makes the calling thread one that is served after others.
-/// @param by  how much nicer it becomes [1]
-void be_patient(int by);
+/// Makes the calling thread one that gets what others leave: any that wakes interrupts it. While
+/// other threads or programs keep all processors busy it hardly goes on.
+void be_patient();
 
 }  // namespace weft::server

@@ -25,7 +25,7 @@ Scheduler::Scheduler(int threads, Clock clock) : threads_(threads), clock_(std::
       work(prompt);
     });
     workers_.emplace_back([this] {
-      be_patient(kPatience);
+      be_patient();
       work(patient);
     });
   }

@@ -1,6 +1,6 @@
 #include "server/thread_priority.h"
 
-#include <algorithm>
+#include <sched.h>
 #include <sys/resource.h>
 #include <thread>
 
@@ -8,27 +8,20 @@
 
 using namespace weft::server;
 
-namespace {
-
-int own_niceness() {
-  return getpriority(PRIO_PROCESS, 0);
-}
-
-}  // namespace
-
-TEST_CASE("a patient thread is nicer by what was asked, a prompt one is as nice as before, alone") {
-  const int usual = own_niceness();
-  int patient = 0, prompt = 0;
+TEST_CASE("a patient thread gets what others leave, a prompt one is as nice as before, alone") {
+  const int policy = sched_getscheduler(0), niceness = getpriority(PRIO_PROCESS, 0);
+  int patient = 0, prompt = 0, prompt_niceness = 0;
   std::thread([&] {
-    be_patient(3);
-    patient = own_niceness();
+    be_patient();
+    patient = sched_getscheduler(0);
   }).join();
   std::thread([&] {
-    be_patient(2);
     be_prompt();
-    prompt = own_niceness();
+    prompt = sched_getscheduler(0);
+    prompt_niceness = getpriority(PRIO_PROCESS, 0);
   }).join();
-  CHECK(patient == std::min(usual + 3, 19));
-  CHECK(prompt == std::min(usual + 2, 19));
-  CHECK(own_niceness() == usual);
+  CHECK(patient == SCHED_IDLE);
+  CHECK(prompt == policy);
+  CHECK(prompt_niceness == niceness);
+  CHECK(sched_getscheduler(0) == policy);
 }
