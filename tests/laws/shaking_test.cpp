@@ -8,23 +8,21 @@
 
 // A cloth that was shaken violently, crushed or torn by a pin comes back to its rest: without the
 // dashpots along the springs it would stay stretched and hot for ever, though every number is
-// finite. The finer cloths are in shaking_long_test.cpp.
+// finite. Stiffer and finer cloths are in shaking_long_test.cpp.
 
 using namespace weft;
 
 TEST_CASE(
     "33 by 33: with damping 5/s each solver is within 1 % of its rest 5 s after a disturbance") {
-  const double stiffness = GENERATE(196.0, 1962.0);
   const test::ShakenSolver solver =
       GENERATE(from_range(std::begin(test::kShakenSolvers), std::end(test::kShakenSolvers)));
-  test::check_recovery(33, stiffness, solver);
+  test::check_recovery(33, 196, solver);
 }
 
 TEST_CASE("33 by 33: without damping no solver gains energy beyond the work of the disturbance") {
-  const double stiffness = GENERATE(196.0, 1962.0);
   const test::ShakenSolver solver =
       GENERATE(from_range(std::begin(test::kShakenSolvers), std::end(test::kShakenSolvers)));
-  test::check_bounded_energy(33, stiffness, solver);
+  test::check_bounded_energy(33, 196, solver);
 }
 
 TEST_CASE("a mesh comes back from noise of 5 m/s each time") {
@@ -34,21 +32,6 @@ TEST_CASE("a mesh comes back from noise of 5 m/s each time") {
   const test::MeshRecoveries thrown =
       test::ShakenMesh{cut, stiffness}.recoveries(test::Disturbance::noise, 4, 5);
   CHECK(thrown.back == thrown.all);
-}
-
-TEST_CASE("of 20 meshes 19 come back from noise of 20 m/s, and 18 from a ball of 1 mm") {
-  const double stiffness = GENERATE(196.0, 1962.0);
-  test::MeshRecoveries thrown, crushed;
-  for (const test::Cut cut : test::kCuts) {
-    const test::ShakenMesh mesh{cut, stiffness};
-    thrown += mesh.recoveries(test::Disturbance::noise, 5);
-    crushed += mesh.recoveries(test::Disturbance::crush, 5);
-  }
-  INFO(stiffness << " N/m: " << thrown.back << " and " << crushed.back);
-  CHECK(thrown.all == 20);
-  CHECK(thrown.back >= 19);
-  CHECK(crushed.all == 20);
-  CHECK(crushed.back >= 18);
 }
 
 TEST_CASE("a shaken mesh never has more energy than it was given") {
