@@ -17,8 +17,15 @@ proto::Error no_other_rooms() {
   return proto::make_error(proto::ErrorCode::not_supported, "this server has one room only");
 }
 
-proto::Error beyond_link(const char* what, const char* hint) {
-  return proto::make_error(proto::ErrorCode::not_allowed, what, hint);
+/// Refuses what a viewer wants with another room than the one that it operates.
+/// @param own  that one
+proto::Error beyond_link(const char* what, const std::string& name, const std::string& own,
+                         const char* hint) {
+  proto::Error error = proto::make_error(proto::ErrorCode::not_allowed, what, hint);
+  error.field = "name";
+  error.value = proto::quoted_value(name);
+  error.limit = proto::Limit{{}, {}, {}, {own}};
+  return error;
 }
 
 }  // namespace
@@ -32,8 +39,8 @@ bool Room::operates_here_alone(ViewerId viewer) const {
 Room::Outcome Room::apply(ViewerId viewer, const proto::CreateRoom& command) {
   if (!options_.others) return no_other_rooms();
   if (operates_here_alone(viewer))
-    return beyond_link("this link lets its viewer operate one room, and open none",
-                       "fork makes a copy of this room");
+    return beyond_link("this link lets its viewer operate one room, and open none", command.name,
+                       options_.name, "fork makes a copy of this room");
   if (command.scene) {
     if (auto error = check_scene_name(*command.scene, options_.scene_names))
       return *std::move(error);
@@ -72,7 +79,7 @@ BuiltScene Room::fork() const {
   return copy;
 }
 
-/// Who may operate its copy alone gets a token for that.
+/// A viewer that may operate no other room gets a token for its copy.
 Room::Outcome Room::apply(ViewerId viewer, const proto::Fork& command) {
   if (!options_.others) return no_other_rooms();
   auto name = options_.others->reserve(command.name);
@@ -95,7 +102,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::CloseRoom& command) {
   if (!options_.others) return no_other_rooms();
   if (operates_here_alone(viewer) && command.name != options_.name)
     return beyond_link("this link lets its viewer operate one room, and close no other",
-                       "an operator of the server can close it");
+                       command.name, options_.name, "an operator of the server can close it");
   if (auto error = options_.others->close(command.name)) return *std::move(error);
   return proto::Reply(proto::CloseRoomReply{command.name});
 }

@@ -104,7 +104,8 @@ class WithTokens(SocketTest):
         self.assertEqual(own.welcome["role"], "operator")
         self.assertEqual((await own.ask("reset"))["op"], "result")
         for op, name in (("create_room", "more"), ("close_room", "other")):
-            self.assertEqual((await own.ask(op, name=name))["code"], "not_allowed", op)
+            error = await own.ask(op, name=name)
+            self.assertEqual((error["code"], error["field"], error["value"]), ("not_allowed", "name", name))
         self.assertEqual((await own.ask("fork", name="again"))["op"], "result")
         for elsewhere, room in ((link, "mine"), (token, "default")):
             guest = await self.enter(elsewhere, room=room)

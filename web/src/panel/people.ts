@@ -2,7 +2,7 @@ import type { WeftClient } from '../../../proto/js/index.js';
 import type { State, Viewer } from '../../../proto/js/messages.js';
 import type { Company } from '../wire/company.js';
 import { tell_refusal } from '../wire/connection.js';
-import { link_with } from '../wire/own_token.js';
+import { link_with } from '../wire/own_address.js';
 import { element } from './element.js';
 import type { PeopleList } from './people_list.js';
 

@@ -2,7 +2,7 @@ import type { MeshAnnouncement } from '../../../proto/js/messages.js';
 import { back_of, colors_of } from '../view/looks.js';
 import { smooth_normals } from '../view/normals.js';
 import { glance_at, glance_on, tell_refusal } from '../wire/connection.js';
-import { FIRST_ROOM, own_room } from '../wire/own_room.js';
+import { FIRST_ROOM, own_room } from '../wire/own_address.js';
 import { crossings_text, guarantee_text } from './guarantee.js';
 import { title_of } from './scene_title.js';
 

@@ -1,6 +1,5 @@
 import { CommandError, type WeftClient } from '../../../proto/js/index.js';
-import { address_in, FIRST_ROOM, own_room, socket_of } from '../wire/own_room.js';
-import { own_token } from '../wire/own_token.js';
+import { address_in, FIRST_ROOM, own_room, own_token, socket_of } from '../wire/own_address.js';
 import { element } from './element.js';
 import type { RoomDialog } from './room_dialog.js';
 import { room_tools } from './room_tools.js';

@@ -1,6 +1,5 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
-import { own_room, socket_of } from './own_room.js';
-import { own_token } from './own_token.js';
+import { own_room, own_token, socket_of } from './own_address.js';
 import { WorkerFrames } from './worker_frames.js';
 
 const SHOWN_ERROR = 4e-4; // how far off a vertex may be on a slow link; 1e-4 else [m]
