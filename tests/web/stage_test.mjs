@@ -59,6 +59,7 @@ test('a room of one tick a second does not change the size of the canvas at each
     const tick = await read(page, 'tick');
     await until(async () => (await read(page, 'tick')) >= tick + 8);
     const sizes = await page.evaluate(() => window.sizes);
-    assert.ok(sizes <= 4, `${sizes} sizes in eight ticks`);
+    // A rest cut short is two of them; the waits before the first three are 0.4, 1.6 and 6.4 s.
+    assert.ok(sizes <= 6, `${sizes} sizes in eight ticks`);
   }),
 );

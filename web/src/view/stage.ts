@@ -1,4 +1,4 @@
-import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
+import { NeutralToneMapping, PCFShadowMap, Scene, Vector2, WebGLRenderer } from 'three';
 import type { Box3, PerspectiveCamera, WebGLRenderTarget } from 'three';
 import { Backdrop } from './backdrop.js';
 import { Exposure } from './exposure.js';
@@ -86,9 +86,11 @@ export class Stage {
     this.light_.fit(box);
   }
 
+  /** Each of the renderer's two calls makes the canvas anew, so that which changes nothing is left out. */
   resize(width: number, height: number): void {
-    this.renderer.setPixelRatio(this.quality.pixel_ratio);
-    this.renderer.setSize(width, height, false);
+    const { renderer, quality } = this;
+    if (renderer.getPixelRatio() !== quality.pixel_ratio) renderer.setPixelRatio(quality.pixel_ratio);
+    if (!renderer.getSize(new Vector2()).equals(new Vector2(width, height))) renderer.setSize(width, height, false);
   }
 
   /**
