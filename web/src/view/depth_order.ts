@@ -5,13 +5,15 @@ const STEPS = 4096; // of depth, between the nearest and the farthest triangle
 /** Puts triangles in order from far to near, so that cloth shows through cloth. */
 export class DepthOrder {
   private steps: Uint16Array;
-  private depths: Float32Array;
+  private depths: Float32Array; // of the vertices; six triangles share one
+  private sums: Float32Array; // of the depths of a triangle's three
   private counts = new Uint32Array(STEPS + 1);
 
   /** @param triangles in any order */
   constructor(private triangles: Uint32Array) {
     this.steps = new Uint16Array(triangles.length / 3);
-    this.depths = new Float32Array(triangles.length / 3);
+    this.sums = new Float32Array(triangles.length / 3);
+    this.depths = new Float32Array(triangles.reduce((most, vertex) => Math.max(most, vertex + 1), 0));
   }
 
   /**
@@ -36,27 +38,24 @@ export class DepthOrder {
 
   /** Steps of depth, 0 for the farthest; returns the mean of the depths. */
   private measure(camera: Camera, positions: Float32Array): number {
-    const { triangles, steps, depths } = this;
+    const { triangles, steps, depths, sums } = this;
     const view = camera.matrixWorldInverse.elements;
     const [x, y, z] = [view[2], view[6], view[10]]; // towards the eye
+    for (let v = 0, at = 0; v < depths.length; v++, at += 3) {
+      depths[v] = positions[at] * x + positions[at + 1] * y + positions[at + 2] * z;
+    }
     let far = Infinity;
     let near = -Infinity;
-    let sum = 0;
-    for (let t = 0; t < depths.length; t++) {
-      const a = triangles[t * 3] * 3;
-      const b = triangles[t * 3 + 1] * 3;
-      const c = triangles[t * 3 + 2] * 3;
-      const depth =
-        (positions[a] + positions[b] + positions[c]) * x +
-        (positions[a + 1] + positions[b + 1] + positions[c + 1]) * y +
-        (positions[a + 2] + positions[b + 2] + positions[c + 2]) * z;
-      depths[t] = depth;
-      sum += depth / 3;
-      if (depth < far) far = depth;
-      if (depth > near) near = depth;
+    let total = 0;
+    for (let t = 0, at = 0; t < sums.length; t++, at += 3) {
+      const sum = depths[triangles[at]] + depths[triangles[at + 1]] + depths[triangles[at + 2]];
+      sums[t] = sum;
+      total += sum;
+      if (sum < far) far = sum;
+      if (sum > near) near = sum;
     }
     const scale = (STEPS - 1) / (near - far || 1);
-    for (let t = 0; t < depths.length; t++) steps[t] = (depths[t] - far) * scale;
-    return sum / (depths.length || 1);
+    for (let t = 0; t < sums.length; t++) steps[t] = (sums[t] - far) * scale;
+    return total / (3 * sums.length || 1);
   }
 }

@@ -44,9 +44,12 @@ export class Hem {
 
   /** Copies values of the cloths' vertices to those of the sections. */
   copy(values: Float32Array, components: number): void {
-    for (let k = 0; k < this.vertices; k++) {
-      const from = this.borders[Math.floor(k / CORNERS) * 3] * components;
-      values.copyWithin((this.first + k) * components, from, from + components);
+    let to = this.first * components;
+    for (let k = 0; k < this.borders.length; k += 3) {
+      const from = this.borders[k] * components;
+      for (let corner = 0; corner < CORNERS; corner++) {
+        for (let part = 0; part < components; part++, to++) values[to] = values[from + part];
+      }
     }
   }
 

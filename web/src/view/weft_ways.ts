@@ -38,13 +38,21 @@ export class WeftWays {
       const a = triangles[t] * 3;
       const b = triangles[t + 1] * 3;
       const c = triangles[t + 2] * 3;
-      for (let axis = 0; axis < 3; axis++) {
-        const from = positions[a + axis];
-        const way = shares[k] * (positions[b + axis] - from) + shares[k + 1] * (positions[c + axis] - from);
-        ways[a + axis] += way;
-        ways[b + axis] += way;
-        ways[c + axis] += way;
-      }
+      const to_b = shares[k];
+      const to_c = shares[k + 1];
+      const of_a = -to_b - to_c;
+      const x = of_a * positions[a] + to_b * positions[b] + to_c * positions[c];
+      const y = of_a * positions[a + 1] + to_b * positions[b + 1] + to_c * positions[c + 1];
+      const z = of_a * positions[a + 2] + to_b * positions[b + 2] + to_c * positions[c + 2];
+      ways[a] += x;
+      ways[a + 1] += y;
+      ways[a + 2] += z;
+      ways[b] += x;
+      ways[b + 1] += y;
+      ways[b + 2] += z;
+      ways[c] += x;
+      ways[c + 1] += y;
+      ways[c + 2] += z;
     }
     fill(ways);
     this.attribute.needsUpdate = true;
