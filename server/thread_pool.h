@@ -16,7 +16,8 @@ namespace weft::server {
 class ThreadPool : public Executor {
  public:
   /// @param threads  in total, including the caller's; at least 1
-  explicit ThreadPool(int threads);
+  /// @param begin    called first by each of the others, as `be_patient`
+  explicit ThreadPool(int threads, void (*begin)() = nullptr);
   ~ThreadPool() override;
 
   /// Call from one thread at a time.

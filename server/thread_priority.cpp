@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kNicest = 19;
 
+thread_local bool patient = false;
+
 /// The kernel's `sched_attr`, in its first version: the C library has none, and the header of Linux
 /// cannot stand beside that of the library.
 struct SchedulingAttributes {
@@ -41,6 +43,11 @@ void be_prompt() {
 void be_patient() {
   const sched_param none{};
   if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, 0, kNicest);
+  patient = true;
+}
+
+bool is_patient() {
+  return patient;
 }
 
 }  // namespace weft::server

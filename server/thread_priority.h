@@ -12,4 +12,7 @@ void be_prompt();
 /// other threads or programs keep all processors busy it hardly goes on.
 void be_patient();
 
+/// Whether the calling thread has become a patient one.
+bool is_patient();
+
 }  // namespace weft::server

@@ -8,6 +8,7 @@
 
 #include "proto/room_name.h"
 #include "server/constants.h"
+#include "server/thread_priority.h"
 
 namespace weft::server {
 namespace {
@@ -58,7 +59,8 @@ Rooms::Rooms(const RoomsOptions& options, RoomOptions usual, SceneSource scenes,
              OutputMaker outputs, Clock clock, Metrics& whole)
     : options_(options), usual_(std::move(usual)), scenes_(std::move(scenes)),
       outputs_(std::move(outputs)), clock_(std::move(clock)), whole_(whole), pool_(options.threads),
-      shared_pool_(pool_, [this] { return scheduler_.running() <= 1; }),
+      patient_pool_(options.threads, be_patient),
+      shared_pool_(pool_, patient_pool_, [this] { return scheduler_.running() <= 1; }),
       scheduler_(options.threads, clock_), builders_(kSceneBuilders) {
   usual_.others = this;
 }
