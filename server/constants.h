@@ -83,6 +83,15 @@ inline constexpr double kShortTick = 2e-3;
 /// tick decides. Smaller: a room that overruns delays others for longer.
 inline constexpr double kCostMemory = 0.2;
 
+/// How long before light rooms are due heavy ones give way to them [s]. Larger: processors stand
+/// idle. Smaller: ticks of light rooms begin late, as a turn looks only at its stop points.
+inline constexpr double kWayAhead = 0.5e-3;
+
+/// For how long a heavy room gives way at most, and goes on then at least [s]: what it gets where
+/// light ones leave nothing. Their ticks are later by the second at most.
+inline constexpr double kLongestWay = 20e-3;
+inline constexpr double kLeastRun = 1e-3;
+
 /// For how long a thread that serves light rooms or the network runs before others have their turn
 /// [ns]; the shorter, the sooner it is served when it wakes. Linux allows 1e5 to 1e8.
 inline constexpr unsigned long long kPromptSlice = 100'000;

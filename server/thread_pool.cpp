@@ -30,12 +30,8 @@ constexpr int end_of(std::uint64_t ticket) {
 
 }  // namespace
 
-ThreadPool::ThreadPool(int threads, void (*begin)()) {
-  const auto work = [this, begin] {
-    if (begin) begin();
-    serve();
-  };
-  for (int i = 1; i < threads; ++i) threads_.emplace_back(work);
+ThreadPool::ThreadPool(int threads) {
+  for (int i = 1; i < threads; ++i) threads_.emplace_back([this] { serve(); });
 }
 
 ThreadPool::~ThreadPool() {

@@ -16,8 +16,7 @@ namespace weft::server {
 class ThreadPool : public Executor {
  public:
   /// @param threads  in total, including the caller's; at least 1
-  /// @param begin    called first by each of the others, as `be_patient`
-  explicit ThreadPool(int threads, void (*begin)() = nullptr);
+  explicit ThreadPool(int threads);
   ~ThreadPool() override;
 
   /// Call from one thread at a time.

@@ -13,10 +13,6 @@
 namespace weft::server {
 namespace {
 
-constexpr int kNicest = 19;
-
-thread_local bool patient = false;
-
 /// The kernel's `sched_attr`, in its first version: the C library has none, and the header of Linux
 /// cannot stand beside that of the library.
 struct SchedulingAttributes {
@@ -36,18 +32,6 @@ void be_prompt() {
   wanted.nice = getpriority(PRIO_PROCESS, 0);
   wanted.runtime = kPromptSlice;
   ::syscall(SYS_sched_setattr, 0, &wanted, 0);  // the same as before if the system knows no slices
-}
-
-/// A thread that is merely nicer keeps a processor for tens of milliseconds after one wakes that is
-/// not: Linux lets it finish its slice.
-void be_patient() {
-  const sched_param none{};
-  if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, 0, kNicest);
-  patient = true;
-}
-
-bool is_patient() {
-  return patient;
 }
 
 }  // namespace weft::server

@@ -8,11 +8,4 @@ namespace weft::server {
 /// 6.12, whose scheduler of then interrupts for all that slept.
 void be_prompt();
 
-/// Makes the calling thread one that gets what others leave: any that wakes interrupts it. While
-/// other threads or programs keep all processors busy it hardly goes on.
-void be_patient();
-
-/// Whether the calling thread has become a patient one.
-bool is_patient();
-
 }  // namespace weft::server

@@ -52,9 +52,17 @@ class WorkLimit {
   /// CPU time of the current work so far [s]; 0 if there is none. Callable from any thread.
   double spent() const;
 
-  /// Raises the signal if the bound is exceeded. Callable from any thread.
+  /// Raises the signal, as something is to be attended to. Callable from any thread.
+  void call() {
+    called_.store(true, std::memory_order_relaxed);
+    signal_.raise();
+  }
+  /// Whether it was called since the last look. A signal that is raised for another reason tells
+  /// the reasons apart by it.
+  bool take_call() { return called_.exchange(false); }
+  /// Calls if the bound is exceeded. Callable from any thread.
   void watch() {
-    if (is_over()) signal_.raise();
+    if (is_over()) call();
   }
 
  private:
@@ -69,6 +77,7 @@ class WorkLimit {
   std::atomic<double> begun_ = 0;
   std::atomic<double> share_ = 1;  ///< of the bound, for the current work
   std::atomic<bool> working_ = false;
+  std::atomic<bool> called_ = false;
 };
 
 /// A thread that watches limits.

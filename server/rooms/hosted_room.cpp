@@ -22,7 +22,7 @@ void HostedRoom::begin(RoomOptions options, const SceneSource& scenes,
   options.limit = &limit_;
   options.cpu_clock = &thread_cpu_seconds;
   const auto wake = [this] {
-    limit_.signal().raise();
+    limit_.call();
     services_.scheduler.wake(*this);
   };
   options.beside = [this, wake](std::function<void()> job) {
@@ -38,7 +38,21 @@ void HostedRoom::begin(RoomOptions options, const SceneSource& scenes,
   room_->on_finished = [this](proto::ViewerId viewer) { mailbox_.finished(viewer); };
   mailbox_.on_arrival = wake;
   loop_.emplace(*room_, mailbox_, services_.clock);
+  give_way_at_stop_points();
   post();
+}
+
+/// On a patient thread the signal is always raised, so that every stop point asks for the way.
+void HostedRoom::give_way_at_stop_points() {
+  StopSignal& signal = limit_.signal();
+  signal.attend = [this, &signal, attend = std::move(signal.attend)] {
+    const bool patient = Scheduler::on_patient_thread();
+    if (patient) services_.scheduler.give_way();
+    signal.lower();
+    const bool ends = limit_.take_call() && attend();
+    if (patient) signal.raise();
+    return ends;
+  };
 }
 
 proto::RoomInfo HostedRoom::info() const {
@@ -59,6 +73,7 @@ void HostedRoom::cancel_build() {
 Turn HostedRoom::turn() {
   if (mailbox_.stopped()) return {};
   const double before = thread_cpu_seconds();
+  if (Scheduler::on_patient_thread()) limit_.signal().raise();
   Turn turn;
   turn.next = loop_->turn();
   turn.ticked = loop_->ticked();

@@ -67,6 +67,7 @@ class HostedRoom : public Turns, public std::enable_shared_from_this<HostedRoom>
   void end() override { cancel_build(); }
 
  private:
+  void give_way_at_stop_points();
   void post();
 
   const std::string name_;

@@ -8,7 +8,6 @@
 
 #include "proto/room_name.h"
 #include "server/constants.h"
-#include "server/thread_priority.h"
 
 namespace weft::server {
 namespace {
@@ -59,8 +58,8 @@ Rooms::Rooms(const RoomsOptions& options, RoomOptions usual, SceneSource scenes,
              OutputMaker outputs, Clock clock, Metrics& whole)
     : options_(options), usual_(std::move(usual)), scenes_(std::move(scenes)),
       outputs_(std::move(outputs)), clock_(std::move(clock)), whole_(whole), pool_(options.threads),
-      patient_pool_(options.threads, be_patient),
-      shared_pool_(pool_, patient_pool_, [this] { return scheduler_.running() <= 1; }),
+      shared_pool_(pool_,
+                   [this] { return !Scheduler::on_patient_thread() && scheduler_.running() <= 1; }),
       scheduler_(options.threads, clock_), builders_(kSceneBuilders) {
   usual_.others = this;
 }

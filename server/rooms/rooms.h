@@ -81,7 +81,7 @@ class Rooms : public OtherRooms {
   OutputMaker outputs_;
   Clock clock_;
   Metrics& whole_;
-  ThreadPool pool_, patient_pool_;
+  ThreadPool pool_;
   SharedPool shared_pool_;
   LimitWatch watch_;
   mutable std::mutex mutex_;  // of the next four

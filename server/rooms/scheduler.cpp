@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/constants.h"
 #include "server/thread_priority.h"
 #include "server/work_limit.h"
 
@@ -16,16 +15,20 @@ double demand_of(double tick_cost, double interval) {
   return interval > 0 ? tick_cost / interval : 1;
 }
 
+thread_local bool on_patient = false;
+thread_local double free_until = 0;  // for which this thread need not give way [s]
+
 }  // namespace
 
-Scheduler::Scheduler(int threads, Clock clock) : threads_(threads), clock_(std::move(clock)) {
+Scheduler::Scheduler(int threads, Clock clock, double longest_way)
+    : threads_(threads), clock_(std::move(clock)), longest_way_(longest_way) {
   for (int k = 0; k < threads; ++k) {
     workers_.emplace_back([this] {
       be_prompt();
       work(prompt);
     });
     workers_.emplace_back([this] {
-      be_patient();
+      on_patient = true;
       work(patient);
     });
   }
@@ -59,12 +62,14 @@ void Scheduler::wake(Turns& turns) {
   if (turns.running_) return;  // seen at its end
   turns.due_ = std::min(turns.due_, clock_());
   call(lane_of(turns));
+  look_ahead();
 }
 
 void Scheduler::stop() {
   const std::lock_guard lock(mutex_);
   stopped_ = true;
   for (Waiting& lane : waiting_) lane.arrived.notify_all();
+  way_.notify_all();
 }
 
 double Scheduler::overdue(const Turns& turns) const {
@@ -114,6 +119,50 @@ void Scheduler::call(Lane lane) {
   if (waiting_[lane].threads > 0) waiting_[lane].arrived.notify_one();
 }
 
+bool Scheduler::on_patient_thread() {
+  return on_patient;
+}
+
+void Scheduler::give_way() {
+  const double now = clock_();
+  if (now < crowded_.load(std::memory_order_relaxed) || now < free_until) return;
+  std::unique_lock lock(mutex_);
+  --going_;
+  look_ahead();
+  const double last = now + longest_way_;
+  const auto crowded = [&] { return !stopped_ && clock_() >= crowded_from(going_ + 1); };
+  while (crowded() && clock_() < last) way_.wait_until(lock, time_point_of(last));
+  if (crowded()) free_until = clock_() + kLeastRun;
+  ++going_;
+  look_ahead();
+}
+
+/// From when light rooms will need so many threads that one of the heavy ones has to give way [s].
+/// @param going  turns of heavy rooms that do not
+double Scheduler::crowded_from(int going) {
+  int left = threads_ - going;  // threads, for light rooms
+  dues_.clear();
+  for (const std::shared_ptr<Turns>& each : all_) {
+    if (lane_of(*each) != prompt) continue;
+    if (each->running_)
+      --left;
+    else
+      dues_.push_back(each->due_);
+  }
+  if (left < 0) return -kNever;
+  if (left >= static_cast<int>(dues_.size())) return kNever;
+  const auto last = dues_.begin() + left;  // that has none any more
+  std::nth_element(dues_.begin(), last, dues_.end());
+  return *last - kWayAhead;
+}
+
+/// Call after anything has changed of what is due or runs.
+void Scheduler::look_ahead() {
+  const double from = going_ > 0 ? crowded_from(going_) : kNever;
+  crowded_.store(from, std::memory_order_relaxed);
+  way_.notify_all();
+}
+
 /// Light ones by when they are due, heavy ones by what they have had.
 std::shared_ptr<Turns> Scheduler::pick(Lane lane, double now) const {
   const auto key = [](const Turns& turns) { return turns.heavy_ ? turns.served_ : turns.due_; };
@@ -143,6 +192,8 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   const bool ends = turns->removed_;
   if (waiting_[lane].deadline == kNever && earliest(lane) < kNever) call(lane);
   ++running_;
+  if (lane == patient) ++going_;
+  look_ahead();
   lock.unlock();
   const double before = thread_cpu_seconds();
   Turn turn;
@@ -153,12 +204,14 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   const double cpu = thread_cpu_seconds() - before;
   lock.lock();
   --running_;
+  if (lane == patient) --going_;
   turns->running_ = false;
   if (ends)
     std::erase(all_, turns);
   else
     book(*turns, turn, cpu);
   judge();
+  look_ahead();
   // It may also have moved during this turn, when a thread of its new lane found it running.
   if (lane_of(*turns) != lane) call(lane_of(*turns));
 }

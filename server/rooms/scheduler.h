@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "server/clock.h"
+#include "server/constants.h"
 
 namespace weft::server {
 
@@ -54,13 +55,16 @@ class Turns {
 ///
 /// A room is light if its ticks take at most an equal share of the threads, or next to nothing;
 /// light rooms are served in the order in which they are due. As long as there are any, heavy ones
-/// run on threads of their own, which the system serves after the others, and among each other by
-/// the CPU time that they have had. So a room that overruns slows itself alone: the others lose
-/// neither a thread to it, nor more than the system takes to switch.
+/// run on threads of their own, among each other by the CPU time that they have had, and give way
+/// in the midst of their turns, shortly before light ones are due that will need all threads. So a
+/// room that overruns slows itself alone. It does not depend on the system, which interrupts a
+/// thread for another one milliseconds late, nor on priorities, by which a thread would stop for
+/// seconds where other programs keep all processors busy, with whatever it has locked.
 class Scheduler {
  public:
-  /// @param threads  for light rooms; as many wait for heavy ones
-  Scheduler(int threads, Clock clock);
+  /// @param threads      for light rooms; as many wait for heavy ones
+  /// @param longest_way  for which a heavy room gives way at most [s]
+  Scheduler(int threads, Clock clock, double longest_way = kLongestWay);
   ~Scheduler();
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
@@ -73,6 +77,13 @@ class Scheduler {
   void wake(Turns& turns);
   /// No turn begins any more.
   void stop();
+
+  /// Whether the calling thread is one that serves heavy rooms after light ones.
+  static bool on_patient_thread();
+  /// Waits on such a thread until light rooms leave a processor for it, but lets it go on for a
+  /// moment now and then however many they are. Cheap if it need not wait. The turn that runs on
+  /// the calling thread must not hold what others may need.
+  void give_way();
 
   /// Turns under way. Callable from any thread.
   int running() const { return running_.load(std::memory_order_relaxed); }
@@ -98,13 +109,20 @@ class Scheduler {
   std::shared_ptr<Turns> pick(Lane lane, double now) const;
   double earliest(Lane lane) const;
   void call(Lane lane);
+  double crowded_from(int going);
+  void look_ahead();
 
   const int threads_;
   Clock clock_;
+  const double longest_way_;
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<Turns>> all_;
   std::array<Waiting, 2> waiting_;
   bool stopped_ = false;
+  int going_ = 0;                         // turns of heavy rooms that do not give way
+  std::atomic<double> crowded_ = kNever;  // from when one of them has to [s]
+  std::condition_variable way_;
+  std::vector<double> dues_;  // of light rooms, for a moment [s]
   std::atomic<int> running_ = 0;
   std::vector<std::jthread> workers_;
 };

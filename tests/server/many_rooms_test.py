@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import json
+import os
 
 import websockets
 
@@ -183,6 +184,14 @@ class EmptyRooms(SocketTest):
 
 
 class Ends(SocketTest):
+    async def test_no_thread_waits_behind_other_programs_lest_it_stop_with_what_it_has_locked(self):
+        task = f"/proc/{self.server.process.pid}/task"
+        threads = [int(thread) for thread in os.listdir(task)]
+        self.assertGreater(len(threads), 4)
+        for thread in threads:
+            self.assertEqual(os.sched_getscheduler(thread), os.sched_getscheduler(0))
+            self.assertEqual(os.getpriority(os.PRIO_PROCESS, thread), os.getpriority(os.PRIO_PROCESS, 0))
+
     async def test_sigterm_ends_a_server_of_many_rooms_and_says_so_in_each(self):
         server = Server("--scene", "flag", "--room-idle", "0")
         viewer = await Viewer.open(server)

@@ -1,6 +1,7 @@
 #include "server/rooms/scheduler.h"
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -189,6 +190,53 @@ TEST_CASE("while turns of heavy rooms do not end, light ones have theirs") {
   until([&] { return light->turns > before + 50; });
   CHECK(inside == kThreads);
   free = true;
+}
+
+/// A room that overruns until a light one holds the only thread, and then asks for the way.
+struct Crossroads {
+  explicit Crossroads(double longest_way) : scheduler(1, process_seconds, longest_way) {
+    scheduler.add(heavy);
+    scheduler.add(light);
+  }
+
+  std::atomic<bool> light_holds = false, let_go = false, asked = false;
+  std::atomic<int> passed = 0, passed_before = 0;  // before the light one has ended
+  std::shared_ptr<FakeTurns> light = room([this](FakeTurns&) {
+    if (is_patient && !let_go) {
+      light_holds = true;
+      until([this] { return let_go.load(); });
+      light_holds = false;
+    }
+    return light_tick();
+  });
+  std::atomic<bool> is_patient = false;
+  std::shared_ptr<FakeTurns> heavy = room([this](FakeTurns&) {
+    is_patient = Scheduler::on_patient_thread();
+    if (light_holds) {
+      asked = true;
+      scheduler.give_way();
+      if (light_holds) ++passed_before;
+      ++passed;
+    }
+    return costly_tick(0.02);
+  });
+  Scheduler scheduler;
+};
+
+TEST_CASE(
+    "a heavy room gives way until the turn of the light one that needs its thread has ended") {
+  Crossroads here(1e6);
+  until([&] { return here.asked.load(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // in which it would go on
+  here.let_go = true;
+  until([&] { return here.passed > 0; });
+  CHECK(here.passed_before == 0);
+}
+
+TEST_CASE("a heavy room goes on now and then though a light one always needs its thread") {
+  Crossroads here(1e-3);
+  until([&] { return here.passed_before > 3; });
+  here.let_go = true;
 }
 
 TEST_CASE("heavy rooms share their threads by CPU time, not by turns") {
