@@ -2,7 +2,8 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { open_page, read, until } from './support/browser.mjs';
-import { bounded, browser, server } from './support/default_page.mjs';
+import { browser, server } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { require_package } from './support/packages.mjs';
 
 // That everybody can use the page: axe on all of it, and room for the cloth and for fingers.

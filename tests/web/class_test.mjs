@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import test from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { launch_browser, open_page, read, until } from './support/browser.mjs';
-import { point_at_cloth } from './support/default_page.mjs';
+import { point_at_cloth } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
 // A teacher and a class, each in a browser of its own. WEFT_CLASS says how many pupils there are.
@@ -15,7 +15,15 @@ const LEADER = 'operate-0123456789abcdef';
 const PUPIL = 'look-0123456789abcdef';
 const WALL_RATE = 200_000; // most that the wall is sent [bytes/s]
 const MEASURED = 5; // [s]
-const SMALL = { width: 320, height: 300 };
+
+/** The display of a pupil's page. @param interval between pictures, at least [ms] */
+function slow_display(interval) {
+  const next_picture = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => next_picture(draw), interval);
+}
+/** One machine draws here what a whole class would: the more pupils, the fewer pictures of each. */
+const DISPLAY = { content: `(${slow_display})(${100 * PUPILS})` };
+const PUPIL_PAGE = { width: 320, height: 300, before: DISPLAY };
 
 const press = (page, name) => page.getByRole('button', { name, exact: true }).click();
 const each = (pages, act) => Promise.all(pages.map(act));
@@ -27,7 +35,7 @@ const in_room = (page, name) =>
 async function enter_all(browser, url) {
   const pupils = [];
   for (let k = 1; k <= PUPILS; k++)
-    pupils.push(await open_page(browser, `${url}#token=${PUPIL}`, { ...SMALL, name: `Pupil ${k}` }));
+    pupils.push(await open_page(browser, `${url}#token=${PUPIL}`, { ...PUPIL_PAGE, name: `Pupil ${k}` }));
   return pupils;
 }
 

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { next_pictures, open_page, read, until } from './support/browser.mjs';
-import { CALM, bounded, browser, drag_cloth, with_page, with_server } from './support/default_page.mjs';
+import { browser, with_page, with_server } from './support/default_page.mjs';
+import { CALM, bounded, drag_cloth } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
 // Pages that are hidden, asleep with the cloth, or cut off.

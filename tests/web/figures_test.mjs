@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { done, open_page, read, until } from './support/browser.mjs';
-import { bounded, browser, server, show_controls, with_page } from './support/default_page.mjs';
+import { browser, server, with_page } from './support/default_page.mjs';
+import { bounded, show_controls } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // What the page tells of time, strain and energy.

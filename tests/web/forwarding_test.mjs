@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { open_page, read, until } from './support/browser.mjs';
-import { CALM, bounded, browser, drag_cloth, server } from './support/default_page.mjs';
+import { browser, server } from './support/default_page.mjs';
+import { CALM, bounded, drag_cloth } from './support/default_scene.mjs';
 import { PASSES_UPGRADES, forward_to, free_port, start_proxy } from './support/forward.mjs';
 import { start_server } from './support/server.mjs';
 

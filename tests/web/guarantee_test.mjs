@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { open_page, until } from './support/browser.mjs';
-import { bounded, browser, with_server } from './support/default_page.mjs';
+import { browser, with_server } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // What the page says of the promise that nothing passes through, in lines that stay.

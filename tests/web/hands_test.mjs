@@ -1,22 +1,19 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, done, next_pictures, open_page, pixel_of, read, until } from './support/browser.mjs';
+import { browser, server, with_page, with_server } from './support/default_page.mjs';
 import {
   CALM,
   COLUMNS,
   bounded,
-  browser,
   drag_cloth,
   pass,
   point_at_cloth,
   position,
   pulling,
-  server,
   show_controls,
   shows_last_tick,
-  with_page,
-  with_server,
-} from './support/default_page.mjs';
+} from './support/default_scene.mjs';
 
 // Hands by the mouse, on the cloth and beside it.
 

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, drag_cloth, pass, position, pulling, with_page } from './support/default_page.mjs';
+import { with_page } from './support/default_page.mjs';
+import { bounded, drag_cloth, pass, position, pulling } from './support/default_scene.mjs';
 
 // The cloth by the keyboard alone, and the first visit.
 

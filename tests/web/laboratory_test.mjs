@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { done, next_pictures, read, until } from './support/browser.mjs';
-import { bounded, with_server } from './support/default_page.mjs';
+import { with_server } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 import { start_server } from './support/server.mjs';
 

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, drag_cloth, point_at_cloth, pulling, shows_last_tick, with_page, with_server } from './support/default_page.mjs';
+import { with_page, with_server } from './support/default_page.mjs';
+import { bounded, drag_cloth, point_at_cloth, pulling, shows_last_tick } from './support/default_scene.mjs';
 
 // What is drawn around hands: the ring where one takes the cloth, and the force of one that holds.
 

@@ -1,18 +1,15 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, done, next_pictures, open_page, pixel_of, read, until } from './support/browser.mjs';
+import { browser, server, with_page, with_server } from './support/default_page.mjs';
 import {
   COLUMNS,
   bounded,
-  browser,
   particle_pixel,
   position,
-  server,
   show_controls,
   shows_last_tick,
-  with_page,
-  with_server,
-} from './support/default_page.mjs';
+} from './support/default_scene.mjs';
 
 // Fans and objects that hands move.
 

@@ -1,14 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, open_page, read, until } from './support/browser.mjs';
-import {
-  bounded,
-  browser,
-  server,
-  show_controls,
-  with_page,
-  with_server,
-} from './support/default_page.mjs';
+import { browser, server, with_page, with_server } from './support/default_page.mjs';
+import { bounded, show_controls } from './support/default_scene.mjs';
 
 // The controls around the view, and the list of scenes.
 

@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test, { after, before } from 'node:test';
 import { launch_browser, open_page, read, until } from './support/browser.mjs';
-import { bounded, CALM, point_at_cloth } from './support/default_page.mjs';
+import { bounded, CALM, point_at_cloth } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
 // Several people with one cloth: who may hold it, what each points at, and by whose camera they see.

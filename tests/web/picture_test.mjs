@@ -2,7 +2,8 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
 import { camera_at_rest, next_pictures, pixel_of, read, until } from './support/browser.mjs';
-import { bounded, shows_last_tick, with_page, with_server } from './support/default_page.mjs';
+import { with_page, with_server } from './support/default_page.mjs';
+import { bounded, shows_last_tick } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 import { brightness_at, compare, drawn_cloth, projected_cloth } from './support/silhouette.mjs';
 

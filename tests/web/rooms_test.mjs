@@ -4,7 +4,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test from 'node:test';
 import { camera_at_rest, done, open_page, read, until } from './support/browser.mjs';
-import { bounded, browser, CALM, shows_last_tick, with_server } from './support/default_page.mjs';
+import { browser, with_server } from './support/default_page.mjs';
+import { bounded, CALM, shows_last_tick } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
 // Rooms on the page: a copy in one click and back, the list of rooms, and the wall of their pictures.

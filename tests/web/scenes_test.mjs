@@ -4,7 +4,8 @@ import { readdir, stat } from 'node:fs/promises';
 import { get } from 'node:http';
 import test from 'node:test';
 import { read, until } from './support/browser.mjs';
-import { bounded, server, with_page } from './support/default_page.mjs';
+import { server, with_page } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // The browser of scenes: groups, search, keys and pictures.

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, read, until } from './support/browser.mjs';
-import { bounded, with_page, with_server } from './support/default_page.mjs';
+import { with_page, with_server } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { mean_color } from './support/silhouette.mjs';
 
 // What becomes of the picture when the graphics fail, and how often its canvas is made anew.

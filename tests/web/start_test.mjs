@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { bounded, browser, server } from './support/default_page.mjs';
+import { browser, server } from './support/default_page.mjs';
+import { bounded } from './support/default_scene.mjs';
 import { slow_start } from './support/starts.mjs';
 
 // What the page does first.

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { camera_at_rest, done, pixel_of, project, read, until } from './support/browser.mjs';
+import { with_page, with_server } from './support/default_page.mjs';
 import {
   COLUMNS,
   bounded,
@@ -8,9 +9,7 @@ import {
   position,
   pulling,
   shows_last_tick,
-  with_page,
-  with_server,
-} from './support/default_page.mjs';
+} from './support/default_scene.mjs';
 import { end_long_presses, fingers_on, hold_long_presses, long_presses } from './support/touch.mjs';
 
 // Hands by touch: each finger on the cloth is one, and fingers beside it help or move the camera.

@@ -1,14 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { done, open_page, read, until } from './support/browser.mjs';
-import {
-  bounded,
-  browser,
-  drag_cloth,
-  server,
-  show_controls,
-  with_page,
-} from './support/default_page.mjs';
+import { browser, server, with_page } from './support/default_page.mjs';
+import { bounded, drag_cloth, show_controls } from './support/default_scene.mjs';
 
 // A viewer's first visit, name and window.
 

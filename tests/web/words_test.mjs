@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { done, open_page, read, until } from './support/browser.mjs';
-import { bounded, browser, drag_cloth, server, with_page } from './support/default_page.mjs';
+import { browser, server, with_page } from './support/default_page.mjs';
+import { bounded, drag_cloth } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // What the page says of what others do, and of what happens to the own hand.

@@ -31,7 +31,7 @@ export function launch_browser() {
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[], simple?: boolean, visited?: boolean, before?: () => void}} [options]
+ *   view?: number[], simple?: boolean, visited?: boolean, before?: (() => void) | {content: string}}} [options]
  *     view: target, direction and radius of the first view; simple: in simple light, which software
  *     draws several times as fast, as all is that is not judged by its looks; visited: not for the
  *     first time;
