@@ -43,6 +43,7 @@ void Scheduler::add(std::shared_ptr<Turns> turns) {
   turns->due_ = clock_();
   all_.push_back(std::move(turns));
   judge();
+  look_ahead();
   call(prompt);
 }
 
@@ -54,6 +55,7 @@ void Scheduler::remove(const Turns& turns) {
     each->due_ = clock_();
     call(lane_of(*each));
   }
+  look_ahead();
 }
 
 void Scheduler::wake(Turns& turns) {
@@ -143,10 +145,9 @@ double Scheduler::crowded_from(int going) {
   int left = threads_ - going;  // threads, for light rooms
   dues_.clear();
   for (const std::shared_ptr<Turns>& each : all_) {
-    if (lane_of(*each) != prompt) continue;
     if (each->running_)
-      --left;
-    else
+      left -= each->gives_way_ ? 0 : 1;
+    else if (lane_of(*each) == prompt && !each->heavy_)
       dues_.push_back(each->due_);
   }
   if (left < 0) return -kNever;
@@ -188,6 +189,7 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
                     std::unique_lock<std::mutex>& lock) {
   turns->running_ = true;
   turns->woken_ = false;
+  turns->gives_way_ = lane == patient;
   turns->begun_ = clock_();
   const bool ends = turns->removed_;
   if (waiting_[lane].deadline == kNever && earliest(lane) < kNever) call(lane);

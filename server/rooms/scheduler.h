@@ -47,8 +47,9 @@ class Turns {
   double tick_cost_ = 0;  ///< of CPU, mean of the last ticks [s]
   double demand_ = 0;     ///< threads that its ticks would keep busy [1]
   bool running_ = false, woken_ = false, removed_ = false;
-  bool heavy_ = false;    ///< wants more than its share
-  bool patient_ = false;  ///< is served after light ones
+  bool heavy_ = false;      ///< wants more than its share
+  bool patient_ = false;    ///< is served after light ones
+  bool gives_way_ = false;  ///< the turn that runs does
 };
 
 /// Gives rooms their turns on a few threads, each room on one at a time.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -237,6 +238,30 @@ TEST_CASE("a heavy room goes on now and then though a light one always needs its
   Crossroads here(1e-3);
   until([&] { return here.passed_before > 3; });
   here.let_go = true;
+}
+
+TEST_CASE("a heavy room that is alone again within its turn gives way to nothing") {
+  std::atomic<bool> asks = false, go = false, passed = false;
+  std::optional<Scheduler> scheduler;
+  const auto light = room([](FakeTurns&) { return light_tick(); });
+  const auto heavy = room([&](FakeTurns&) {
+    if (Scheduler::on_patient_thread() && !passed) {
+      asks = true;
+      until([&] { return go.load(); });
+      scheduler->give_way();
+      passed = true;
+    }
+    return costly_tick(0.02);
+  });
+  scheduler.emplace(1, process_seconds, 1e6);
+  scheduler->add(heavy);
+  scheduler->add(light);
+  until([&] { return asks.load(); });
+  scheduler->remove(*light);
+  until([&] { return light.use_count() == 1; });
+  go = true;
+  until([&] { return passed.load(); });
+  CHECK(light->ends == 1);
 }
 
 TEST_CASE("heavy rooms share their threads by CPU time, not by turns") {
