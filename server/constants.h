@@ -87,9 +87,11 @@ inline constexpr double kCostMemory = 0.2;
 /// idle. Smaller: ticks of light rooms begin late, as a turn looks only at its stop points.
 inline constexpr double kWayAhead = 0.5e-3;
 
-/// For how long a heavy room gives way at most, and goes on then at least [s]: what it gets where
-/// light ones leave nothing. Their ticks are later by the second at most.
+/// For how long a heavy room gives way in a row [s]. Larger: it stands where light ones leave
+/// nothing. Smaller: it delays them more often.
 inline constexpr double kLongestWay = 20e-3;
+
+/// For how long it then goes on, whatever is due [s]: by so much light ones are late at most.
 inline constexpr double kLeastRun = 1e-3;
 
 /// For how long a thread that serves light rooms or the network runs before others have their turn

@@ -1,4 +1,4 @@
-// How soon, and how much, the system lets a thread run.
+// How soon the system lets a thread run.
 
 #include "server/thread_priority.h"
 

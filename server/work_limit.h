@@ -54,11 +54,11 @@ class WorkLimit {
 
   /// Raises the signal, as something is to be attended to. Callable from any thread.
   void call() {
-    called_.store(true, std::memory_order_relaxed);
+    called_ = true;  // before the signal, so that a thread that sees that finds this
     signal_.raise();
   }
-  /// Whether it was called since the last look. A signal that is raised for another reason tells
-  /// the reasons apart by it.
+  /// Whether it was called since the last look. By it the owner tells a call from a signal that it
+  /// has raised itself.
   bool take_call() { return called_.exchange(false); }
   /// Calls if the bound is exceeded. Callable from any thread.
   void watch() {

@@ -13,19 +13,19 @@ namespace weft::server {
 /// depends on that.
 class SharedPool : public Executor {
  public:
-  /// @param pool   called from one thread at a time
-  /// @param alone  whether the caller's room may use it now; callable from any thread
-  SharedPool(Executor& pool, std::function<bool()> alone) : pool_(pool), alone_(std::move(alone)) {}
+  /// @param pool  called from one thread at a time
+  /// @param open  whether the caller's room may use it now; callable from any thread
+  SharedPool(Executor& pool, std::function<bool()> open) : pool_(pool), open_(std::move(open)) {}
 
   void run(int chunks, void (*work)(void* context, int chunk), void* context) override {
     std::unique_lock lock(free_, std::defer_lock);
-    if (chunks > 1 && alone_() && lock.try_lock()) return pool_.run(chunks, work, context);
+    if (chunks > 1 && open_() && lock.try_lock()) return pool_.run(chunks, work, context);
     for (int chunk = 0; chunk < chunks; ++chunk) work(context, chunk);
   }
 
  private:
   Executor& pool_;
-  std::function<bool()> alone_;
+  std::function<bool()> open_;
   std::mutex free_;
 };
 
