@@ -4,7 +4,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 // Where the camera stands by itself, without a browser.
 
-const { axes_of, part_outside, pose_around, pose_of_view, reach_of_corners } = await import_page_module('view/framing');
+const { axes_of, part_covered, part_outside, pose_around, pose_of_view, reach_of_corners } = await import_page_module('view/framing');
 const { OrbitCamera } = await import_page_module('view/camera');
 const { best_side, Director, view_of_address } = await import_page_module('view/director');
 
@@ -186,27 +186,42 @@ test('who joins while the cloth is away from the scene’s view sees the cloth, 
   assert.ok(part_outside(points, orbit.heading, window()) > 0.9, 'a view of a part is kept');
 });
 
-test('no cloth of a first view is behind a panel in a corner, and what is behind none is as large as before', () => {
+test('no cloth of a first view is behind a panel in a corner, and is smaller only where no room is beside it', () => {
   const orbit = new OrbitCamera();
   orbit.resize(1280, 800);
   const free = () => orbit.window({ above: 0.01, below: 0.08 });
-  for (const [width, bottom, clear] of [[0.4, 0.1, true], [1.2, 0.1, false], [1.2, 0.12, false]]) {
+  const cases = [[0.4, 0.1, 'as before'], [1.02, 0.1, 'moved'], [1.2, 0.1, 'smaller'], [1.2, 0.12, 'smaller']];
+  for (const [width, bottom, seen] of cases) {
     const corners = [{ left: 0, right: 0.1, bottom: 0.15 }, { left: 0.75, right: 1, bottom }];
     const window = () => ({ ...free(), corners });
     const { points, triangles } = sheet([0, 1, 0], [width, 0, 0], [0, 1, 0]);
     for (const view of [null, { target: [0, 1, 0], direction: [0, 0, 1], radius: 0.55 }]) {
-      const begin = (seen) => {
-        const director = new Director(orbit, seen);
+      const begin = (free_part) => {
+        const director = new Director(orbit, free_part);
         director.begin({ cloth: points, start: points, triangles, boxes: [], ground: null }, view, true);
         return orbit.heading;
       };
       const before = begin(free);
       const pose = begin(window);
       assert.equal(reach_of_corners(points, pose, window()), 0, `${width} m wide, a panel of ${bottom}`);
-      assert.equal(reach_of_corners(points, before, window()) === 0, clear);
-      assert.equal(pose.distance === before.distance, clear);
+      assert.equal(reach_of_corners(points, before, window()) === 0, seen === 'as before');
+      assert.equal(part_outside(points, pose, free()), 0);
+      assert.equal(pose.distance === before.distance, seen !== 'smaller');
+      assert.equal(pose.target.equals(before.target), seen === 'as before');
     }
   }
+});
+
+test('the part of a picture that cloth covers is its area there, and counts what is behind', () => {
+  const orbit = new OrbitCamera();
+  orbit.resize(1280, 800);
+  const window = orbit.window({ above: 0, below: 0 });
+  const pose = pose_of_view({ target: [0, 1, 0], direction: [0, 0, 1], radius: 0.5 }, window);
+  const height = 2 * window.slope * pose.distance; // of the picture where the cloth is [m]
+  const { points, triangles } = sheet([0, 1, 0], [height / 2, 0, 0], [0, height / 4, 0]);
+  const covered = (indices) => part_covered(points, indices, pose, window);
+  assert.ok(Math.abs(covered(triangles) - 1 / 8 / window.aspect) < 1e-6, `${covered(triangles)}`);
+  assert.ok(Math.abs(covered([...triangles, ...triangles]) - 1 / 4 / window.aspect) < 1e-6);
 });
 
 test('an address may ask for a view; what is none is left', () => {

@@ -1,7 +1,7 @@
 import { Box3, Vector3 } from 'three';
 import type { View } from '../../../proto/js/messages.js';
 import type { OrbitCamera } from './camera.js';
-import { axes_of, part_outside, pose_around, pose_of_view, reach_of_corners } from './framing.js';
+import { axes_of, part_covered, part_outside, pose_around, pose_of_view, reach_of_corners } from './framing.js';
 import type { Pose, Window } from './framing.js';
 
 const MARGIN = 1.06; // of the picture around what is framed
@@ -10,7 +10,13 @@ const MOST_GONE = 0.25; // part of the cloth that has left a first view; else it
 const HOME_OUTSIDE = 0.02; // part outside of the first view at which the camera returns to it
 const LEAST_FOLLOWED = 0.7; // of the first view's distance, however small the cloth gets
 const MOST_APPROACH = 0.72; // of a view's distance, to a cloth that leaves room
-const MOST_RETREAT = 1.16; // of a first view's distance, to have nothing behind a panel in a corner
+const RETREAT = 1.16; // of a first view's distance, to have nothing behind a panel in a corner
+const MOST_RETREAT = 1.5; // the same where much of the picture is cloth
+const LARGE = 0.3; // part of the picture that is cloth after that, at least
+const RETREAT_STEP = 0.04;
+const MOST_SLIDE = 0.1; // of the picture's width, sideways to the same end
+const SLIDE_STEP = 0.01;
+const ENOUGH = 2000; // points of cloth to try that with
 const LOOK_INTERVAL = 0.2; // between two looks at whether the cloth is in the picture [s]
 const NEAR_OBJECT = 0.15; // of the cloth's diagonal: so much of the objects around is framed too
 const NEAR_GROUND = 0.35; // of the cloth's diagonal: so near the ground is framed too
@@ -53,10 +59,15 @@ export class Director {
     let window = this.window();
     let first = first_look(subject, view, window);
     const lowest = reach_of_corners(cloth, first.home, window);
-    if (lowest > window.above) {
+    const beside = lowest > window.above ? beside_corners(cloth, first.home, window) : null;
+    if (beside) {
+      first.home = beside;
+    } else if (lowest > window.above) {
       const below_corners = { ...window, above: lowest };
       const clear = first_look(subject, view, below_corners);
-      if (clear.home.distance <= MOST_RETREAT * first.home.distance) [first, window] = [clear, below_corners];
+      const large = Math.sqrt(part_covered(cloth, subject.triangles, first.home, window) / LARGE);
+      const most = Math.min(MOST_RETREAT, Math.max(RETREAT, large));
+      if (clear.home.distance <= most * first.home.distance) [first, window] = [clear, below_corners];
     }
     this.home = first.home;
     this.away = first.away;
@@ -93,6 +104,32 @@ function first_look(subject: Subject, view: View | null, window: Window): { home
   const whole = view ? pose_of_view(view, window) : framed(subject, window);
   const away = part_outside(cloth, whole, window) - part_outside(start, whole, window) > MOST_GONE;
   return { home: view && !away ? approached(whole, cloth, window) : whole, away };
+}
+
+/** The view a little farther or moved sideways, by as little as puts no cloth behind a panel in a corner, if any does. */
+function beside_corners(cloth: ArrayLike<number>, home: Pose, window: Window): Pose | null {
+  const points = some_of(cloth);
+  const { right } = axes_of(home);
+  const width = 2 * window.slope * window.aspect * home.distance;
+  const outside = part_outside(points, home, window);
+  const is_clear = (pose: Pose) =>
+    reach_of_corners(points, pose, window) <= window.above && part_outside(points, pose, window) <= outside;
+  for (let farther = 1; farther <= RETREAT; farther += RETREAT_STEP) {
+    for (let slide = 0; slide <= MOST_SLIDE; slide += SLIDE_STEP) {
+      for (const way of [-1, 1]) {
+        const target = home.target.clone().addScaledVector(right, way * slide * width);
+        const pose = { ...home, target, distance: home.distance * farther };
+        if (is_clear(pose)) return pose;
+      }
+    }
+  }
+  return null;
+}
+
+/** Points of a cloth, all or evenly some. */
+function some_of(cloth: ArrayLike<number>): ArrayLike<number> {
+  const step = Math.ceil(cloth.length / 3 / ENOUGH);
+  return step > 1 ? Array.from(cloth).filter((_, i) => Math.floor(i / 3) % step === 0) : cloth;
 }
 
 /** Where a cloth is seen that has left its first view, from the same side. */

@@ -137,6 +137,31 @@ export function part_outside(points: ArrayLike<number>, pose: Pose, window: Wind
   return (outside * 3) / Math.max(3, points.length);
 }
 
+/** Area of triangles in the picture, per that of the picture; what lies behind others counts too. */
+export function part_covered(
+  points: ArrayLike<number>,
+  triangles: ArrayLike<number>,
+  pose: Pose,
+  { slope, aspect }: Window,
+): number {
+  const { right, up, back } = axes_of(pose);
+  const places = new Float64Array((points.length / 3) * 2);
+  const point = new Vector3();
+  for (let i = 0; i < points.length; i += 3) {
+    point.set(points[i], points[i + 1], points[i + 2]).sub(pose.target);
+    const reach = slope * Math.max(pose.distance - point.dot(back), 0.01 * pose.distance);
+    places.set([point.dot(right) / reach, point.dot(up) / reach], (i / 3) * 2);
+  }
+  let doubled = 0;
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [triangles[t] * 2, triangles[t + 1] * 2, triangles[t + 2] * 2];
+    const [bx, by] = [places[b] - places[a], places[b + 1] - places[a + 1]];
+    const [cx, cy] = [places[c] - places[a], places[c + 1] - places[a + 1]];
+    doubled += Math.abs(bx * cy - by * cx);
+  }
+  return doubled / (8 * aspect);
+}
+
 /** How far down panels in corners reach that some of the points are behind; 0 if there are none. */
 export function reach_of_corners(points: ArrayLike<number>, pose: Pose, window: Window): number {
   const { slope, aspect, corners = [] } = window;
