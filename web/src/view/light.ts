@@ -25,7 +25,9 @@ const SKY_STEP = 44;
 const KEY_STEP = 48; // on the floor, where what hangs high throws shadows far apart
 const VARIETY = 0.6; // by which that differs from exposure to exposure, so that what is left of each differs
 const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
-const HEMISPHERE = { alone: 1.1, with_environment: 0.12 };
+// From above and below: at first without anything else from there, then beside reflections. What comes
+// from below is what a floor of middle brightness throws back of the key light.
+const HEMISPHERE = { simple: ['#ffffff', '#b9b2a8', 1.1], whole: ['#333333', '#ddd5c9', 0.6] } as const;
 const CONTACT = 0.85; // part of the light from above that its shadows take
 export const REFLECTED = 0.5; // part of the reflections' light that is used
 
@@ -39,7 +41,7 @@ export class Light {
   private key = new DirectionalLight('#fff3e4', 2.1);
   private sky = new DirectionalLight('#f2f5ff', 0.75);
   private back = new DirectionalLight('#e3ebff', 4.2);
-  private hemisphere = new HemisphereLight('#ffffff', '#b9b2a8', HEMISPHERE.alone);
+  private hemisphere = new HemisphereLight(...HEMISPHERE.simple);
   private center = new Vector3();
   private radius = 1; // of what is lit [m]
 
@@ -58,7 +60,10 @@ export class Light {
   /** Changes between the first, simple light and the whole. */
   set whole(whole: boolean) {
     this.key.castShadow = this.sky.castShadow = whole;
-    this.hemisphere.intensity = whole ? HEMISPHERE.with_environment : HEMISPHERE.alone;
+    const [above, below, intensity] = HEMISPHERE[whole ? 'whole' : 'simple'];
+    this.hemisphere.color.set(above);
+    this.hemisphere.groundColor.set(below);
+    this.hemisphere.intensity = intensity;
   }
 
   /** Draws the shadows of contact, or leaves them out where they would take too long. */
