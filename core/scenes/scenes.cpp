@@ -23,6 +23,11 @@ void pin_along_top(WorldDef& def, int count, double radius) {
     def.pins.push_back({MaterialPoint{static_cast<double>(k) / (count - 1), 0}, radius, {}});
 }
 
+/// Scenes of the same fabric are told apart by colour. @param color  "#rrggbb"
+void dye(ClothDef& cloth, const std::string& color) {
+  cloth.look = LookDef{LookOf::automatic, color, {}};
+}
+
 /// For scenes that come to rest once the air is still: cloth that has moved by at most half a
 /// millimetre in three seconds sleeps until something acts on it.
 void let_sleep(WorldDef& def) {
@@ -54,6 +59,7 @@ void build_default(WorldDef& def, const std::string&) {
 
 void build_curtain(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(41, 33, 1.6, 2.0, 2.1, 0);
+  dye(def.cloths[0], "#5f7a94");
   pin_along_top(def, 9, 0.02);
   def.colliders = {ground()};
   def.environment.wind = Vec3d(0.2, 0, 0.9);
@@ -65,6 +71,7 @@ void build_curtain(WorldDef& def, const std::string&) {
 void build_flag(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(25, 37, 1.2, 0.8, 2.3, 0);
   def.cloths[0].origin = Vec3d(0.03, 2.3, 0);
+  dye(def.cloths[0], "#b3202c");
   def.cloths[0].fabric.areal_density = 0.1;
   def.pins = {{Corner::top_left, 0.05, {}},
               {MaterialPoint{0, 0.5}, 0.05, {}},
@@ -80,6 +87,7 @@ void build_drape_sphere(WorldDef& def, const std::string&) {
   def.cloths[0].width = def.cloths[0].height = 1.3;
   def.cloths[0].origin = Vec3d(-0.65, 1.15, -0.65);
   def.cloths[0].v = Vec3d::UnitZ();
+  dye(def.cloths[0], "#7d5a86");
   def.colliders = {ground(), {"sphere", SphereDef{Vec3d(0, 0.7, 0), 0.32}}};
   def.environment.damping = 0.5;
   let_sleep(def);
@@ -87,6 +95,7 @@ void build_drape_sphere(WorldDef& def, const std::string&) {
 
 void build_wall(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(25, 25, 1.0, 1.0, 1.6, 0.15);
+  dye(def.cloths[0], "#6f8a4f");
   pin_along_top(def, 7, 0.02);
   def.colliders = {
       ground(),
@@ -176,6 +185,7 @@ void build_drop_on_bunny(WorldDef& def, const std::string& mesh_directory) {
 void build_fan(WorldDef& def, const std::string&) {
   def.cloths[0] = hanging_cloth(37, 31, 1.2, 1.5, 1.9, 0);
   def.cloths[0].fabric = make_fabric("silk");
+  dye(def.cloths[0], "#8c3f63");
   pin_along_top(def, 7, 0.02);
   def.colliders = {ground()};
   FanDef fan;  // at the right, so that the view from the left shows its direction
@@ -213,6 +223,7 @@ void build_turntable(WorldDef& def, const std::string&) {
 void build_lift_sphere(WorldDef& def, const std::string&) {
   def.cloths[0] = lying_cloth(41, 1.2, 0.43);
   def.cloths[0].fabric = make_fabric("silk");
+  dye(def.cloths[0], "#b98a2f");
   ColliderDef ball{"ball", SphereDef{Vec3d(0, 0.2, 0), 0.2}};
   ball.motion.interpolation = Interpolation::smooth;
   ball.motion.loop = true;
