@@ -34,11 +34,11 @@ Real beyond(const ObjectRowSource<Real>& source, Real reach) {
 /// @param particles  of the cloth's feature
 /// @param span       kEdgeSpan or kTriangleSpan
 /// @param rise       of the mesh about its feature
-template <class Real>
+template <class Real, std::size_t Count>
 std::optional<ContactLook<Real>> look_at(const ObjectRowSource<Real>& source,
                                          const RowScratch<Real>& scratch,
                                          const ContactCandidate<Real>& pair,
-                                         std::span<const Index> particles, double span,
+                                         const std::array<Index, Count>& particles, double span,
                                          const Rise<Real>& rise, std::size_t collider) {
   const auto most = [&](const std::vector<Real>& values) {
     Real largest = values[static_cast<std::size_t>(particles[0])];
@@ -87,7 +87,7 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
     const Edge& e = source.cloths.patches.edges[static_cast<std::size_t>(pair.cloth)];
     const auto ridge = static_cast<std::size_t>(pair.feature);
     const std::optional<ContactLook<Real>> look =
-        look_at<Real>(source, scratch, pair, e, kEdgeSpan, mesh.edge_rises[ridge], collider);
+        look_at(source, scratch, pair, e, kEdgeSpan, mesh.edge_rises[ridge], collider);
     if (!look) continue;
     const MeshEdge& other = mesh.edges[ridge];
     ++tests;
@@ -131,7 +131,7 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
     const Triangle& t = source.cloths.patches.triangles[static_cast<std::size_t>(pair.cloth)];
     const auto v = static_cast<std::size_t>(pair.feature);
     const std::optional<ContactLook<Real>> look =
-        look_at<Real>(source, scratch, pair, t, kTriangleSpan, mesh.vertex_rises[v], collider);
+        look_at(source, scratch, pair, t, kTriangleSpan, mesh.vertex_rises[v], collider);
     if (!look) continue;
     ++tests;
     const PairSeparation<double> s = separate_pair<double>(
