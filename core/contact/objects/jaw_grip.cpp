@@ -1,45 +1,53 @@
 // Jaws of grippers: what is in front of them, and the friction that their squeeze allows.
 
+#include <algorithm>
 #include <cassert>
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/row_response.h"
+#include "core/contact/objects/row_values.h"
 
 namespace weft {
 namespace {
 
-/// Finds the rows that a jaw squeezes, and sets their grip to 1. @return how many there are
+/// Finds the rows that a jaw squeezes, and sets the grip of each to the mass of its point [kg].
+/// Particles alone carry the squeeze, where there are any: each stands for its share of the area,
+/// while edges and triangles are more where jaws end, and would turn the cloth between them.
 /// @param k  number of the jaw's collider
+/// @return the sum of these masses [kg]
 template <class Real>
 Real find_squeezed(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& rows,
                    ColliderState& jaw) {
   assert(!jaw.press.isZero(0));
   jaw.facing = 0;
-  Real touching = 0;
+  Real of_particles = 0, of_others = 0;
   for (MovingRow<Real>& moving : rows.moving) {
     if (moving.collider != k) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
     moving.grip = 0;
     if (!row.responds || !(row.normal.dot(jaw.press.template cast<Real>()) > Real(kFacing)))
       continue;
-    Vec3<Real> point = Vec3<Real>::Zero();
-    for (std::size_t p = 0; p < static_cast<std::size_t>(row.count); ++p)
-      point += x[static_cast<std::size_t>(row.particle[p])] * row.weight[p];
-    const Real gap = row.normal.dot(point) - row.offset;
+    const Real gap = row.normal.dot(weighted(row, x)) - row.offset;
     if (gap < row.thickness * Real(kBeforeJaw))
       jaw.facing = std::max(jaw.facing, static_cast<double>(row.thickness));
     if (!(gap < row.thickness * (1 + Real(kSqueezed)))) continue;
-    moving.grip = 1;
-    touching += 1;
+    assert(moving.mobility > 0 && "a row that responds can be moved");
+    moving.grip = 1 / moving.mobility;
+    (row.count == 1 ? of_particles : of_others) += moving.grip;
   }
-  return touching;
+  if (!(of_particles > 0)) return of_others;
+  for (MovingRow<Real>& moving : rows.moving) {
+    if (moving.collider == k && rows.all[moving.row].count > 1) moving.grip = 0;
+  }
+  return of_particles;
 }
 
 }  // namespace
 
 /// Two jaws that squeeze cloth press it from both sides; the impulses of that cancel in the cloth
-/// and are not solved for, but reported as forces. What they allow in friction is shared evenly by
-/// the rows that touch: of each jaw friction times squeeze in all, and so twice that of both.
+/// and are not solved for, but reported as forces. What they allow in friction is shared by the
+/// rows that touch, by mass and so by area: of each jaw friction times squeeze in all, and so twice
+/// that of both.
 template <class Real>
 void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   assert(solve.motion.colliders && dt > 0);
@@ -47,16 +55,16 @@ void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   for (std::size_t k = 0; k < solve.motion.colliders->size(); ++k) {
     ColliderState& jaw = (*solve.motion.colliders)[k];
     if (jaw.press.isZero(0)) continue;
-    const Real touching = find_squeezed(k, solve.state.x, rows, jaw);
-    const Real each = static_cast<Real>(jaw.squeeze) * dt / std::max(touching, Real(1));
+    const Real mass = find_squeezed(k, solve.state.x, rows, jaw);
+    const Real speed = mass > 0 ? static_cast<Real>(jaw.squeeze) * dt / mass : Real(0);
     for (MovingRow<Real>& moving : rows.moving) {
       if (moving.collider != k || moving.grip == 0) continue;
       const ContactRow<Real>& row = rows.all[moving.row];
-      const Vec3d impulse = (row.normal * each).template cast<double>();
+      const Real squeeze = speed * moving.grip;  // [N s]
+      const Vec3d impulse = (row.normal * squeeze).template cast<double>();
       jaw.squeezed += impulse;
       if (solve.log.wanted()) solve.log.add_impulse(rows.all, moving.row, impulse);
-      moving.grip =
-          each * moving.mobility * static_cast<Real>(settings_of(solve.cloths, row).friction);
+      moving.grip = speed * static_cast<Real>(settings_of(solve.cloths, row).friction);
     }
   }
 }
