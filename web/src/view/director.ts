@@ -16,7 +16,6 @@ const LARGE = 0.3; // part of the picture that is cloth after that, at least
 const RETREAT_STEP = 0.04;
 const MOST_SLIDE = 0.1; // of the picture's width, sideways to the same end
 const SLIDE_STEP = 0.01;
-const ENOUGH = 2000; // points of cloth to try that with
 const LOOK_INTERVAL = 0.2; // between two looks at whether the cloth is in the picture [s]
 const NEAR_OBJECT = 0.15; // of the cloth's diagonal: so much of the objects around is framed too
 const NEAR_GROUND = 0.35; // of the cloth's diagonal: so near the ground is framed too
@@ -56,20 +55,9 @@ export class Director {
   /** Shows a scene as one sees it first, from its own view if it has one, and follows it from there. */
   begin(subject: Subject, view: View | null, at_once: boolean): void {
     const { cloth } = subject;
-    let window = this.window();
-    let first = first_look(subject, view, window);
-    const lowest = reach_of_corners(cloth, first.home, window);
-    const beside = lowest > window.above ? beside_corners(cloth, first.home, window) : null;
-    if (beside) {
-      first.home = beside;
-    } else if (lowest > window.above) {
-      const below_corners = { ...window, above: lowest };
-      const clear = first_look(subject, view, below_corners);
-      const large = Math.sqrt(part_covered(cloth, subject.triangles, first.home, window) / LARGE);
-      const most = Math.min(MOST_RETREAT, Math.max(RETREAT, large));
-      if (clear.home.distance <= most * first.home.distance) [first, window] = [clear, below_corners];
-    }
-    this.home = first.home;
+    const window = this.window();
+    const first = first_look(subject, view, window);
+    this.home = beside_corners(subject, first.home, window);
     this.away = first.away;
     const outside = part_outside(cloth, this.home, window);
     this.tolerated = this.away ? MOST_OUTSIDE : Math.max(MOST_OUTSIDE, 1.5 * outside);
@@ -107,29 +95,22 @@ function first_look(subject: Subject, view: View | null, window: Window): { home
 }
 
 /** The view a little farther or moved sideways, by as little as puts no cloth behind a panel in a corner, if any does. */
-function beside_corners(cloth: ArrayLike<number>, home: Pose, window: Window): Pose | null {
-  const points = some_of(cloth);
+function beside_corners({ cloth, triangles }: Subject, home: Pose, window: Window): Pose {
   const { right } = axes_of(home);
   const width = 2 * window.slope * window.aspect * home.distance;
-  const outside = part_outside(points, home, window);
-  const is_clear = (pose: Pose) =>
-    reach_of_corners(points, pose, window) <= window.above && part_outside(points, pose, window) <= outside;
-  for (let farther = 1; farther <= RETREAT; farther += RETREAT_STEP) {
+  const outside = part_outside(cloth, home, window);
+  const large = Math.sqrt(part_covered(cloth, triangles, home, window) / LARGE);
+  const farthest = Math.max(RETREAT, Math.min(MOST_RETREAT, large));
+  for (let farther = 1; farther <= farthest; farther += RETREAT_STEP) {
     for (let slide = 0; slide <= MOST_SLIDE; slide += SLIDE_STEP) {
-      for (const way of [-1, 1]) {
-        const target = home.target.clone().addScaledVector(right, way * slide * width);
+      for (const way of [-slide, slide]) {
+        const target = home.target.clone().addScaledVector(right, way * width);
         const pose = { ...home, target, distance: home.distance * farther };
-        if (is_clear(pose)) return pose;
+        if (reach_of_corners(cloth, pose, window) <= window.above && part_outside(cloth, pose, window) <= outside) return pose;
       }
     }
   }
-  return null;
-}
-
-/** Points of a cloth, all or evenly some. */
-function some_of(cloth: ArrayLike<number>): ArrayLike<number> {
-  const step = Math.ceil(cloth.length / 3 / ENOUGH);
-  return step > 1 ? Array.from(cloth).filter((_, i) => Math.floor(i / 3) % step === 0) : cloth;
+  return home;
 }
 
 /** Where a cloth is seen that has left its first view, from the same side. */

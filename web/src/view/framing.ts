@@ -121,60 +121,52 @@ export function pose_of_view(view: View, { slope, aspect, above, below }: Window
   return { target, distance, ...side };
 }
 
-/** Part of the points that are outside of the free picture, 0 to 1. */
-export function part_outside(points: ArrayLike<number>, pose: Pose, window: Window): number {
-  const { slope, aspect, above, below } = window;
-  const { right, up, back } = axes_of(pose);
-  const point = new Vector3();
-  let outside = 0;
-  for (let i = 0; i < points.length; i += 3) {
-    point.set(points[i], points[i + 1], points[i + 2]).sub(pose.target);
-    const reach = slope * (pose.distance - point.dot(back));
-    const [across, along] = [point.dot(right) / reach / aspect, point.dot(up) / reach];
-    const inside = reach > 0 && Math.abs(across) <= 1 && along >= 2 * below - 1 && along <= 1 - 2 * above;
-    if (!inside) outside += 1;
-  }
-  return (outside * 3) / Math.max(3, points.length);
-}
-
-/** Area of triangles in the picture, per that of the picture; what lies behind others counts too. */
-export function part_covered(
-  points: ArrayLike<number>,
-  triangles: ArrayLike<number>,
-  pose: Pose,
-  { slope, aspect }: Window,
-): number {
+/** Where points are seen, x and y of each from -1 to 1 in the picture; not a number behind the eye. */
+function seen(points: ArrayLike<number>, pose: Pose, { slope, aspect }: Window): Float64Array {
   const { right, up, back } = axes_of(pose);
   const places = new Float64Array((points.length / 3) * 2);
   const point = new Vector3();
-  for (let i = 0; i < points.length; i += 3) {
+  for (let i = 0, k = 0; i < points.length; i += 3) {
     point.set(points[i], points[i + 1], points[i + 2]).sub(pose.target);
-    const reach = slope * Math.max(pose.distance - point.dot(back), 0.01 * pose.distance);
-    places.set([point.dot(right) / reach, point.dot(up) / reach], (i / 3) * 2);
+    const depth = pose.distance - point.dot(back);
+    const reach = depth > 0 ? slope * depth : NaN;
+    places[k++] = point.dot(right) / reach / aspect;
+    places[k++] = point.dot(up) / reach;
   }
+  return places;
+}
+
+/** Part of the points that are outside of the free picture, 0 to 1. */
+export function part_outside(points: ArrayLike<number>, pose: Pose, window: Window): number {
+  const places = seen(points, pose, window);
+  let outside = 0;
+  for (let k = 0; k < places.length; k += 2) {
+    const y = places[k + 1];
+    if (!(Math.abs(places[k]) <= 1 && y >= 2 * window.below - 1 && y <= 1 - 2 * window.above)) outside += 2;
+  }
+  return outside / Math.max(2, places.length);
+}
+
+/** Area of triangles in the picture, per that of the picture; what lies behind others counts too. */
+export function part_covered(points: ArrayLike<number>, triangles: ArrayLike<number>, pose: Pose, window: Window): number {
+  const places = seen(points, pose, window);
   let doubled = 0;
   for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [triangles[t] * 2, triangles[t + 1] * 2, triangles[t + 2] * 2];
-    const [bx, by] = [places[b] - places[a], places[b + 1] - places[a + 1]];
-    const [cx, cy] = [places[c] - places[a], places[c + 1] - places[a + 1]];
-    doubled += Math.abs(bx * cy - by * cx);
+    const [a, b, c] = [0, 1, 2].map((k) => triangles[t + k] * 2);
+    const across = (places[b] - places[a]) * (places[c + 1] - places[a + 1]);
+    doubled += Math.abs(across - (places[b + 1] - places[a + 1]) * (places[c] - places[a]));
   }
-  return doubled / (8 * aspect);
+  return doubled / 8;
 }
 
 /** How far down panels in corners reach that some of the points are behind; 0 if there are none. */
 export function reach_of_corners(points: ArrayLike<number>, pose: Pose, window: Window): number {
-  const { slope, aspect, corners = [] } = window;
-  const { right, up, back } = axes_of(pose);
-  const point = new Vector3();
+  const places = seen(points, pose, window);
   let lowest = 0;
-  for (let i = 0; i < points.length; i += 3) {
-    point.set(points[i], points[i + 1], points[i + 2]).sub(pose.target);
-    const reach = 2 * slope * (pose.distance - point.dot(back));
-    const [x, y] = [0.5 + point.dot(right) / reach / aspect, 0.5 - point.dot(up) / reach];
-    for (const corner of corners) {
-      const behind = x > corner.left && x < corner.right && y < corner.bottom;
-      if (behind) lowest = Math.max(lowest, corner.bottom);
+  for (let k = 0; k < places.length; k += 2) {
+    const [x, y] = [(1 + places[k]) / 2, (1 - places[k + 1]) / 2];
+    for (const { left, right, bottom } of window.corners ?? []) {
+      if (x > left && x < right && y < bottom) lowest = Math.max(lowest, bottom);
     }
   }
   return lowest;
