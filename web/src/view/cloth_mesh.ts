@@ -17,7 +17,8 @@ import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
 import { WeftWays } from './weft_ways.js';
 
-const MOST_TRIANGLES = 40_000; // drawn by subdivision; larger meshes are fine enough by themselves
+/** Drawn by subdivision; larger meshes are fine enough by themselves. In simple light fewer, for slow machines. */
+const MOST_TRIANGLES = { whole: 40_000, simple: 8_000 };
 const MOST_LEVELS = 2;
 /** How far the drawn surface may leave the simulated one, of the distance that contact keeps. */
 const REACH = 0.45;
@@ -55,13 +56,14 @@ export class ClothMesh {
   private reach: Float32Array;
   private edges: Float32Array;
 
-  constructor(private cloths: Cloth[], private data: MeshData) {
+  /** @param simple whether it is to be drawn quickly rather than smoothly */
+  constructor(private cloths: Cloth[], private data: MeshData, simple = false) {
     this.triangles = data.triangles;
     const { coarse } = this;
     const cells = cells_of(data.triangles, data.uv);
     this.shaded = both_diagonals(data.triangles, cells);
     const corners = corners_of(data.triangles, data.uv);
-    const levels = levels_of(data.triangles.length / 3);
+    const levels = levels_of(data.triangles.length / 3, MOST_TRIANGLES[simple ? 'simple' : 'whole']);
     this.fine = new Subdivision(coarse, data.triangles, cells, corners, levels);
     const hems = this.hems();
     const vertices = hems.reduce((first, hem) => first + hem.vertices, this.fine.vertices);
@@ -241,9 +243,9 @@ function cut_of(cloth: Cloth, data: MeshData, extent: [number, number]): Cut {
   return { size: extent, round: { center: scaled(round.center), radii: scaled(round.radii) } };
 }
 
-/** How often a mesh of so many triangles is subdivided. */
-function levels_of(triangles: number): number {
+/** How often a mesh of so many triangles is subdivided, to at most so many. */
+function levels_of(triangles: number, most: number): number {
   let levels = 0;
-  while (levels < MOST_LEVELS && triangles * 4 ** (levels + 1) <= MOST_TRIANGLES) levels += 1;
+  while (levels < MOST_LEVELS && triangles * 4 ** (levels + 1) <= most) levels += 1;
   return levels;
 }

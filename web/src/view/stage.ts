@@ -43,7 +43,7 @@ export class Stage {
   /** @param simple whether its first, simple light is to stay */
   constructor(
     private canvas: HTMLCanvasElement,
-    private simple: boolean,
+    readonly simple: boolean,
     private heard: Heard,
   ) {
     soften_shadows();

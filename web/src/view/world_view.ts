@@ -29,7 +29,7 @@ export class WorldView {
   ) {
     this.playback = new Playback(announcement.vertices);
     this.playback.positions.set(data.restPositions);
-    this.cloth = new ClothMesh(announcement.cloths, data);
+    this.cloth = new ClothMesh(announcement.cloths, data, stage.simple);
     const thickness = Math.max(0, ...announcement.cloths.map((cloth) => cloth.thickness));
     this.objects = new Objects(announcement.colliders, data, thickness);
     stage.scene.add(this.cloth.group, this.objects.group);
