@@ -15,15 +15,11 @@ const LEADER = 'operate-0123456789abcdef';
 const PUPIL = 'look-0123456789abcdef';
 const WALL_RATE = 200_000; // most that the wall is sent [bytes/s]
 const MEASURED = 5; // [s]
+/** Of time, as the more copies there are, the less of each a machine can do. */
+const SPEED = 2 ** Math.min(0, Math.ceil(Math.log2(4 / PUPILS)));
 
-/** The display of a pupil's page. @param interval between pictures, at least [ms] */
-function slow_display(interval) {
-  const next_picture = window.requestAnimationFrame.bind(window);
-  window.requestAnimationFrame = (draw) => setTimeout(() => next_picture(draw), interval);
-}
 /** One machine draws here what a whole class would: the more pupils, the fewer pictures of each. */
-const DISPLAY = { content: `(${slow_display})(${100 * PUPILS})` };
-const PUPIL_PAGE = { width: 320, height: 300, before: DISPLAY };
+const PUPIL_PAGE = { width: 320, height: 300, interval: 100 * PUPILS };
 
 const press = (page, name) => page.getByRole('button', { name, exact: true }).click();
 const each = (pages, act) => Promise.all(pages.map(act));
@@ -138,6 +134,7 @@ test(`a class of ${PUPILS} is led, tries for itself, is watched on the wall, and
   const server = await start_server(['--tokens', tokens, '--max-seconds', '2300']);
   try {
     const script = await server.script('script', { token: LEADER });
+    await script.speed(SPEED);
     const teacher = await open_page(browser, `${server.url}#token=${LEADER}`, { width: 900, height: 640 });
     const pupils = await enter_all(browser, server.url);
     await hands_are_given_and_taken(teacher, pupils, script);

@@ -26,20 +26,26 @@ export function launch_browser() {
   });
 }
 
+/** Runs in a page before its own scripts. @param interval between pictures, at least [ms] */
+function draw_seldom(interval) {
+  const next_picture = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => next_picture(draw), interval);
+}
+
 /**
  * Opens the page and waits until it shows the cloth. What it complains of is kept in `complaints`.
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{width?: number, height?: number, touch?: boolean, name?: string, dark?: boolean,
- *   view?: number[], simple?: boolean, visited?: boolean, before?: (() => void) | {content: string}}} [options]
+ *   view?: number[], simple?: boolean, interval?: number, visited?: boolean, before?: () => void}} [options]
  *     view: target, direction and radius of the first view; simple: in simple light, which software
- *     draws several times as fast, as all is that is not judged by its looks; visited: not for the
- *     first time;
+ *     draws several times as fast, as all is that is not judged by its looks; interval: between
+ *     pictures, at least [ms]; visited: not for the first time;
  *     before: runs in the page before its own scripts
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
-  const { view, simple = true, visited = false, before } = options;
+  const { view, simple = true, interval = 0, visited = false, before } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
@@ -49,6 +55,7 @@ export async function open_page(browser, url, options = {}) {
   context.setDefaultTimeout(LONGEST_WAIT);
   if (visited) await context.addInitScript(() => localStorage.setItem('weft-taken', 'yes'));
   if (before) await context.addInitScript(before);
+  if (interval > 0) await context.addInitScript(draw_seldom, interval);
   await make_pages_late(context);
   const page = await context.newPage();
   const complaints = [];
