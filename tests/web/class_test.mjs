@@ -16,10 +16,10 @@ const PUPIL = 'look-0123456789abcdef';
 const WALL_RATE = 200_000; // most that the wall is sent [bytes/s]
 const MEASURED = 5; // [s]
 /** Of time, as the more copies there are, the less of each a machine can do. */
-const SPEED = 2 ** Math.min(0, Math.ceil(Math.log2(4 / PUPILS)));
+const SPEED = 2 ** Math.min(0, Math.floor(Math.log2(4 / PUPILS)));
 
 /** One machine draws here what a whole class would: the more pupils, the fewer pictures of each. */
-const PUPIL_PAGE = { width: 320, height: 300, interval: 100 * PUPILS };
+const PUPIL_PAGE = { width: 320, height: 300, interval: 150 * PUPILS };
 
 const press = (page, name) => page.getByRole('button', { name, exact: true }).click();
 const each = (pages, act) => Promise.all(pages.map(act));
