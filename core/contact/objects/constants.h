@@ -117,6 +117,10 @@ inline constexpr double kFacing = 0.9;
 /// What is nearer than the thickness and this fraction of it is squeezed [1].
 inline constexpr double kSqueezed = 0.02;
 
+/// So many contacts of particles with a jaw hold the cloth alone [1]. Larger: more of the squeeze
+/// lies where jaws end. Smaller: cloth of large cells turns between them.
+inline constexpr int kHoldAlone = 12;
+
 /// What is nearer to a jaw than this many thicknesses is in front of it [1].
 inline constexpr double kBeforeJaw = 1.6;
 

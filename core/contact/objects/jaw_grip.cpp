@@ -10,17 +10,19 @@
 namespace weft {
 namespace {
 
-/// Finds the rows that a jaw squeezes, and sets the grip of each to the mass of its point [kg].
-/// Particles alone carry the squeeze, where there are any: each stands for its share of the area,
-/// while edges and triangles are more where jaws end, and would turn the cloth between them.
+/// Finds the rows that a jaw squeezes, and sets the grip of each to its weight in the shares.
+/// Particles alone carry the squeeze, where there are some, by their mass and so by area: edges and
+/// triangles are more where jaws end, and would turn the cloth between them. A few particles would
+/// not hold it against turning; there all rows have equal shares.
 /// @param k  number of the jaw's collider
-/// @return the sum of these masses [kg]
+/// @return the sum of these weights
 template <class Real>
 Real find_squeezed(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& rows,
                    ColliderState& jaw) {
   assert(!jaw.press.isZero(0));
   jaw.facing = 0;
-  Real of_particles = 0, of_others = 0;
+  Real mass = 0;
+  int particles = 0, rows_squeezed = 0;
   for (MovingRow<Real>& moving : rows.moving) {
     if (moving.collider != k) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
@@ -32,22 +34,25 @@ Real find_squeezed(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& ro
       jaw.facing = std::max(jaw.facing, static_cast<double>(row.thickness));
     if (!(gap < row.thickness * (1 + Real(kSqueezed)))) continue;
     assert(moving.mobility > 0 && "a row that responds can be moved");
-    moving.grip = 1 / moving.mobility;
-    (row.count == 1 ? of_particles : of_others) += moving.grip;
+    moving.grip = 1;
+    ++rows_squeezed;
+    if (row.count > 1) continue;
+    ++particles;
+    mass += 1 / moving.mobility;
   }
-  if (!(of_particles > 0)) return of_others;
+  if (particles < kHoldAlone) return static_cast<Real>(rows_squeezed);
   for (MovingRow<Real>& moving : rows.moving) {
-    if (moving.collider == k && rows.all[moving.row].count > 1) moving.grip = 0;
+    if (moving.collider != k || moving.grip == 0) continue;
+    moving.grip = rows.all[moving.row].count == 1 ? 1 / moving.mobility : Real(0);
   }
-  return of_particles;
+  return mass;
 }
 
 }  // namespace
 
 /// Two jaws that squeeze cloth press it from both sides; the impulses of that cancel in the cloth
 /// and are not solved for, but reported as forces. What they allow in friction is shared by the
-/// rows that touch, by mass and so by area: of each jaw friction times squeeze in all, and so twice
-/// that of both.
+/// rows that touch: of each jaw friction times squeeze in all, and so twice that of both.
 template <class Real>
 void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   assert(solve.motion.colliders && dt > 0);
@@ -55,16 +60,17 @@ void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   for (std::size_t k = 0; k < solve.motion.colliders->size(); ++k) {
     ColliderState& jaw = (*solve.motion.colliders)[k];
     if (jaw.press.isZero(0)) continue;
-    const Real mass = find_squeezed(k, solve.state.x, rows, jaw);
-    const Real speed = mass > 0 ? static_cast<Real>(jaw.squeeze) * dt / mass : Real(0);
+    const Real weights = find_squeezed(k, solve.state.x, rows, jaw);
+    const Real share = weights > 0 ? static_cast<Real>(jaw.squeeze) * dt / weights : Real(0);
     for (MovingRow<Real>& moving : rows.moving) {
       if (moving.collider != k || moving.grip == 0) continue;
       const ContactRow<Real>& row = rows.all[moving.row];
-      const Real squeeze = speed * moving.grip;  // [N s]
+      const Real squeeze = share * moving.grip;  // [N s]
       const Vec3d impulse = (row.normal * squeeze).template cast<double>();
       jaw.squeezed += impulse;
       if (solve.log.wanted()) solve.log.add_impulse(rows.all, moving.row, impulse);
-      moving.grip = speed * static_cast<Real>(settings_of(solve.cloths, row).friction);
+      moving.grip =
+          squeeze * moving.mobility * static_cast<Real>(settings_of(solve.cloths, row).friction);
     }
   }
 }
