@@ -35,7 +35,7 @@ const { metafile } = await build({
   bundle: true,
   splitting: true, // what is imported when it is needed is no part of the first load
   minify: true,
-  pure: ["console.warn"], // what three tells those who program with it is left out
+  pure: ["console.warn"], // hints of three for its programmers are left out
   sourcemap: true,
   format: "esm",
   target: "es2022",
