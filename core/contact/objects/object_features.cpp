@@ -30,8 +30,8 @@ Real beyond(const ObjectRowSource<Real>& source, Real reach) {
 }
 
 /// What a pair of features of the cloth and a mesh needs; nothing if they cannot meet while the
-/// rows hold. Compiled for edges and for triangles, as each pair comes here: for spans of any length
-/// it is called rather than inlined.
+/// rows hold. Compiled for edges and for triangles, as each pair comes here: with spans of any
+/// length it would be called, not inlined.
 /// @param particles  of the cloth's feature
 /// @param span       kEdgeSpan or kTriangleSpan
 /// @param rise       of the mesh about its feature
