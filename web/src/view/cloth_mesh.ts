@@ -1,11 +1,12 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh } from 'three';
 import type { Camera, MeshPhysicalMaterial } from 'three';
-import type { Cloth, Look, MeshData } from '../../../proto/js/messages.js';
+import type { Cloth, Look, MeshData, Vec3 } from '../../../proto/js/messages.js';
 import { corners_of } from './border.js';
 import { both_diagonals, cells_of } from './cells.js';
 import { DepthOrder } from './depth_order.js';
 import { fabric_material } from './fabric.js';
 import type { Cut } from './fabric.js';
+import { FreeSpace } from './free_space.js';
 import { Hem } from './hem.js';
 import { colors_of, finish_of } from './looks.js';
 import { even_normals, smooth_normals } from './normals.js';
@@ -20,7 +21,7 @@ import { WeftWays } from './weft_ways.js';
 /** Drawn by subdivision; larger meshes are fine enough by themselves. In simple light fewer, for slow machines. */
 const MOST_TRIANGLES = { whole: 40_000, simple: 8_000 };
 const MOST_LEVELS = 2;
-/** How far the drawn surface may leave the simulated one, of the distance that contact keeps. */
+/** How far the drawn surface may leave the simulated one, of the distance that contact keeps or of what is free. */
 const REACH = 0.45;
 
 /** A cloth's part of the common buffers. */
@@ -55,9 +56,18 @@ export class ClothMesh {
   private largest_reach: Float32Array;
   private reach: Float32Array;
   private edges: Float32Array;
+  private space: FreeSpace;
 
-  /** @param simple whether it is to be drawn quickly rather than smoothly */
-  constructor(private cloths: Cloth[], private data: MeshData, simple = false) {
+  /**
+   * @param simple whether it is to be drawn quickly rather than smoothly
+   * @param room   tells how far a place is from any object at least [m]
+   */
+  constructor(
+    private cloths: Cloth[],
+    private data: MeshData,
+    simple = false,
+    private room: (place: Vec3) => number = () => Infinity,
+  ) {
     this.triangles = data.triangles;
     const { coarse } = this;
     const cells = cells_of(data.triangles, data.uv);
@@ -69,6 +79,7 @@ export class ClothMesh {
     const vertices = hems.reduce((first, hem) => first + hem.vertices, this.fine.vertices);
     const vector = () => new BufferAttribute(new Float32Array(vertices * 3), 3);
     this.positions = vector().setUsage(DynamicDrawUsage);
+    this.space = new FreeSpace(this.positions.array as Float32Array, data.restPositions, data.triangles);
     this.normals = vector().setUsage(DynamicDrawUsage);
     this.largest_reach = new Float32Array(coarse);
     this.reach = new Float32Array(this.fine.vertices);
@@ -150,18 +161,35 @@ export class ClothMesh {
     const of_particles = normals.subarray(0, particles.length);
     smooth_normals(positions, this.shaded, of_particles);
     if (this.fine.levels > 0) this.limit(even_normals(this.shaded, of_particles));
-    this.fine.refine(positions, normals, this.reach);
+    this.space.begin();
+    this.fine.refine(positions, normals, this.reach, this.free_reach.bind(this));
     for (const { hem } of this.pieces) hem.place(positions, normals, this.edges);
     this.place_weft();
     this.place_stripes();
     this.positions.needsUpdate = this.normals.needsUpdate = true;
   }
 
-  /** Chooses how far the surface may leave the simulated one. @param agreement of the normals around particles */
+  /**
+   * Chooses how far the surface may leave the simulated one, by what contact keeps free.
+   * @param agreement of the normals around particles
+   */
   private limit(agreement: Float32Array): void {
     for (const [k, most] of this.largest_reach.entries()) {
       this.reach[k] = most * roundness(agreement[k]);
     }
+  }
+
+  /**
+   * How far it may leave the simulated one at an edge, by what is free there at this moment [m].
+   * @param way that its middle would go; objects do not count if it leads along or away from them
+   */
+  private free_reach(from: number, to: number, way: ArrayLike<number>): number {
+    const positions = this.positions.array as Float32Array;
+    const middle = [0, 1, 2].map((axis) => (positions[from * 3 + axis] + positions[to * 3 + axis]) / 2);
+    const here = this.room(middle as Vec3);
+    const there = this.room(middle.map((place, axis) => place + way[axis]) as Vec3);
+    const room = there > (1 - REACH) * here ? Infinity : here;
+    return REACH * Math.min(room, this.space.around(from, to));
   }
 
   /** Puts cloths that one sees through, and the triangles of each, in order, far ones first. */

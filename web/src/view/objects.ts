@@ -24,6 +24,8 @@ export class Objects {
   private caster = new Raycaster();
   private nodes: Node[] = [];
   private ground_place = -1;
+  private ground_now: number | null = null;
+  private point = new Vector3();
 
   /**
    * @param inset by which meshes are drawn thinner [m]. Contact keeps particles and edges outside,
@@ -34,12 +36,13 @@ export class Objects {
       if (collider.kind === 'plane') {
         // A floor is drawn only for level ground.
         if (collider.normal[1] > 0.99) {
-          this.ground = collider.point[1];
+          this.ground = this.ground_now = collider.point[1];
           this.ground_place = place;
         }
         continue;
       }
       const geometry = geometry_of(collider, place, data, inset);
+      geometry.computeBoundingBox();
       const mesh = new Mesh(geometry, this.look.material_of(collider));
       const edges = this.look.edges_of(collider, geometry);
       if (edges) mesh.add(edges);
@@ -50,7 +53,7 @@ export class Objects {
       mesh.position.sub(pivot);
       const holder = new Group().add(mesh);
       holder.position.copy(pivot);
-      this.nodes.push({ place, pivot, holder });
+      this.nodes.push({ place, pivot, holder, mesh, radius: collider.kind === 'sphere' ? collider.radius : null });
       this.group.add(holder);
     }
     this.group.updateMatrixWorld(true);
@@ -69,6 +72,7 @@ export class Objects {
       }
     }
     this.group.updateMatrixWorld(true);
+    this.ground_now = this.ground_at(poses);
   }
 
   /** Poses of the drawn objects. */
@@ -95,6 +99,17 @@ export class Objects {
   /** Around each object [m]. */
   boxes(): Box3[] {
     return this.group.children.map((child) => new Box3().setFromObject(child));
+  }
+
+  /** How far at least the nearest object is from a place; 0 within the box around a capsule or mesh [m]. */
+  room([x, y, z]: Vec3): number {
+    let nearest = this.ground_now === null ? Infinity : y - this.ground_now;
+    for (const { mesh, radius } of this.nodes) {
+      mesh.worldToLocal(this.point.set(x, y, z));
+      const box = mesh.geometry.boundingBox!;
+      nearest = Math.min(nearest, radius === null ? box.distanceToPoint(this.point) : this.point.length() - radius);
+    }
+    return Math.max(0, nearest);
   }
 
   /** Distance to the first object along a ray [m]; Infinity if it meets none. */
@@ -142,6 +157,8 @@ interface Node {
   place: number;
   pivot: Vector3;
   holder: Group;
+  mesh: Mesh;
+  radius: number | null; // of a sphere [m]
 }
 
 function geometry_of(

@@ -14,6 +14,7 @@ interface Level {
 }
 
 const FIRST_SHARE = 0.8; // of the reach, for the first level; a second one takes the rest
+const FLAT = 1e-6; // of the bend of a diagonal (`part_of_other`)
 // Of how far the normals around a vertex agree (`even_normals`), 0 to 1.
 const ROUND = 0.9;
 const SHARP = 0.72;
@@ -32,8 +33,9 @@ export function roundness(agreement: number): number {
  * cubic that is perpendicular to the normals at its ends (curved PN triangles, Vlachos et al. 2001),
  * and halved; in the middle of a cell the curves of both diagonals are averaged, and borders are
  * cubics through four of their vertices (the four-point scheme, Dubuc 1986). New vertices stay
- * within `reach` of the coarse triangles, less than half of the distance that contact keeps, so that
- * surfaces that do not touch are not drawn through each other; at sharp folds less (`roundness`).
+ * within `reach` of the coarse triangles, so that surfaces that do not touch are not drawn through
+ * each other: less than half of the distance that contact keeps, at sharp folds less (`roundness`), and
+ * where that is too little for a smooth outline, less than half of what is free at that moment.
  */
 export class Subdivision {
   /** Of the finest level; triangle t of the coarse mesh is 4^levels of these, beginning there. */
@@ -86,25 +88,52 @@ export class Subdivision {
    * Fills in positions and normals of the new vertices.
    * @param positions three values per vertex [m]; those of the coarse mesh are given
    * @param normals   likewise, of unit length
-   * @param reach     of each vertex: how far the surface may leave the coarse triangles [m]; that of new
-   *                  vertices is filled in, and is the less of that of their edge's ends
+   * @param reach     of each vertex of the coarse mesh: how far the surface may leave its triangles [m];
+   *                  that of an edge is the less of its ends'. Is overwritten.
+   * @param more      another reach for an edge of the coarse mesh [m], asked where its curve would go
+   *                  farther, with the way that the middle would go; the larger of both holds
    */
-  refine(positions: Float32Array, normals: Float32Array, reach: Float32Array): void {
+  refine(
+    positions: Float32Array,
+    normals: Float32Array,
+    reach: Float32Array,
+    more: More = () => 0,
+  ): void {
     for (const [k, level] of this.divisions.entries()) {
       const share = k > 0 ? (1 - FIRST_SHARE) / (this.levels - 1)
         : this.levels > 1 ? FIRST_SHARE : 1;
-      halve_edges(level, positions, normals, reach, share);
-      round_borders(level, positions, reach, share);
+      const limit = { reach, share, more: k > 0 ? () => 0 : more };
+      halve_edges(level, positions, normals, limit);
+      round_borders(level, positions, limit);
+      if (k === 0) reach.fill(Infinity, 0, level.first); // of finer edges, by the other end alone
     }
   }
+}
+
+type More = (from: number, to: number, way: ArrayLike<number>) => number;
+
+/** How far the new vertices of a level may be moved: as `refine` has it, by a share of the reach. */
+interface Limit {
+  reach: Float32Array;
+  share: number;
+  more: More;
+}
+
+/** The part of the way `offset` that the vertex which halves an edge may be moved along. */
+function part_allowed(limit: Limit, from: number, to: number, vertex: number): number {
+  const { reach, share, more } = limit;
+  const length = Math.sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
+  let most = Math.min(reach[from], reach[to]);
+  if (length > share * most) most = Math.max(most, more(from, to, offset));
+  reach[vertex] = most;
+  return length > share * most ? (share * most) / length : 1;
 }
 
 function halve_edges(
   { edges, others, first }: Level,
   positions: Float32Array,
   normals: Float32Array,
-  reach: Float32Array,
-  share: number,
+  limit: Limit,
 ): void {
   let to = first * 3;
   for (let e = 0; e < edges.length; e += 2, to += 3) {
@@ -113,27 +142,19 @@ function halve_edges(
     halve(positions, normals, a, b, middle);
     if (others[e] !== a) {
       halve(positions, normals, others[e], others[e + 1], other_middle);
-      for (let k = 0; k < 6; k++) middle[k] = (middle[k] + other_middle[k]) / 2;
+      const part = part_of_other(middle, other_middle);
+      for (let k = 0; k < 6; k++) middle[k] += part * (other_middle[k] - middle[k]);
     }
     const mx = (positions[a * 3] + positions[b * 3]) / 2;
     const my = (positions[a * 3 + 1] + positions[b * 3 + 1]) / 2;
     const mz = (positions[a * 3 + 2] + positions[b * 3 + 2]) / 2;
-    let ox = middle[0] - mx;
-    let oy = middle[1] - my;
-    let oz = middle[2] - mz;
-    const least = Math.min(reach[a], reach[b]);
-    reach[first + e / 2] = least;
-    const most = least * share;
-    const length = ox * ox + oy * oy + oz * oz;
-    if (length > most * most) {
-      const shorter = most / Math.sqrt(length);
-      ox *= shorter;
-      oy *= shorter;
-      oz *= shorter;
-    }
-    positions[to] = mx + ox;
-    positions[to + 1] = my + oy;
-    positions[to + 2] = mz + oz;
+    offset[0] = middle[0] - mx;
+    offset[1] = middle[1] - my;
+    offset[2] = middle[2] - mz;
+    const part = part_allowed(limit, a, b, first + e / 2);
+    positions[to] = mx + part * offset[0];
+    positions[to + 1] = my + part * offset[1];
+    positions[to + 2] = mz + part * offset[2];
     const nx = middle[3];
     const ny = middle[4];
     const nz = middle[5];
@@ -145,27 +166,33 @@ function halve_edges(
   }
 }
 
+/**
+ * The weight of the other diagonal's curve: half where both bend alike, nearly all where a fold runs
+ * along it. Each bends by what the sum of its ends' normals lacks of twice their length.
+ */
+function part_of_other(own: Float64Array, other: Float64Array): number {
+  const bend = (curve: Float64Array) => FLAT + 4 - curve[3] ** 2 - curve[4] ** 2 - curve[5] ** 2;
+  const [one, two] = [bend(own), bend(other)];
+  return one / (one + two);
+}
+
 /** Moves the new vertices of borders onto smooth curves, in the plane of the cloth too. */
 function round_borders(
   { edges, borders, first }: Level,
   positions: Float32Array,
-  reach: Float32Array,
-  share: number,
+  limit: Limit,
 ): void {
   for (let k = 0; k < borders.length; k += 3) {
     const from = edges[borders[k] * 2];
     const to = edges[borders[k] * 2 + 1];
-    let length = 0;
     for (let axis = 0; axis < 3; axis++) {
       const a = positions[from * 3 + axis];
       const b = positions[to * 3 + axis];
       const before = borders[k + 1] === from ? 2 * a - b : positions[borders[k + 1] * 3 + axis];
       const after = borders[k + 2] === to ? 2 * b - a : positions[borders[k + 2] * 3 + axis];
       offset[axis] = (a + b - before - after) / 16;
-      length += offset[axis] * offset[axis];
     }
-    const most = reach[first + borders[k]] * share;
-    const part = length > most * most ? most / Math.sqrt(length) : 1;
+    const part = part_allowed(limit, from, to, first + borders[k]);
     const at = (first + borders[k]) * 3;
     for (let axis = 0; axis < 3; axis++) {
       const half = (positions[from * 3 + axis] + positions[to * 3 + axis]) / 2;

@@ -29,9 +29,9 @@ export class WorldView {
   ) {
     this.playback = new Playback(announcement.vertices);
     this.playback.positions.set(data.restPositions);
-    this.cloth = new ClothMesh(announcement.cloths, data, stage.simple);
     const thickness = Math.max(0, ...announcement.cloths.map((cloth) => cloth.thickness));
     this.objects = new Objects(announcement.colliders, data, thickness);
+    this.cloth = new ClothMesh(announcement.cloths, data, stage.simple, this.objects.room.bind(this.objects));
     stage.scene.add(this.cloth.group, this.objects.group);
     stage.set_floor(this.objects.ground);
     stage.light(this.bounds());
@@ -65,8 +65,8 @@ export class WorldView {
   show(now: number, live: boolean): boolean {
     const changed = this.playback.sample(now, live);
     if (changed) {
-      this.cloth.update(this.playback.positions);
       this.objects.place(this.playback.poses);
+      this.cloth.update(this.playback.positions);
       const ground = this.objects.ground_at(this.playback.poses);
       if (ground !== null) this.stage.raise_floor(ground);
     }
