@@ -74,13 +74,20 @@ function with_slim_shaders(text) {
   return text.replace(/`([^`]*)`/g, (_, shader) => `\`${without_branches(without_comments(shader))}\``);
 }
 
-/** Line breaks stay, because they end directives. */
+/** Line breaks stay, because they end directives, and so do spaces within these. */
 function without_comments(shader) {
   return shader
     .replace(/\/\*[\s\S]*?\*\//g, "")
     .replace(/\/\/.*$/gm, "")
     .replace(/[ \t]+/g, " ")
-    .replace(/\s*\n\s*/g, "\n");
+    .replace(/\s*\n\s*/g, "\n")
+    .replace(/^[^#].*$/gm, without_spaces);
+}
+
+/** Two signs in a row keep their spaces. */
+function without_spaces(line) {
+  return line.replace(/ ?([=*/,;?:]) ?/g, "$1").replace(/\( | \)/g, (two) => two.trim())
+    .replace(/(?<=[\w).\]]) ([+-]) (?=[\w(.])/g, "$1");
 }
 
 /** Leaves out what the preprocessor would, as nothing in `UNDEFINED` is defined or above 0. */
