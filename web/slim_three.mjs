@@ -1,5 +1,5 @@
 // A plugin of esbuild that makes three.js smaller: it bundles three's own sources without what the
-// page never uses, and their shaders without comments and indents.
+// page never uses, and shaders, the page's own too, without comments and indents.
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
@@ -62,8 +62,17 @@ export const slim_three = {
       const has_shader = /\.glsl\.js$|[/\\]lines[/\\]LineMaterial\.js$/.test(path);
       return { contents: has_shader ? with_slim_shaders(text) : without_saving(text) };
     });
+    build.onLoad({ filter: /[/\\]src[/\\]view[/\\].*\.ts$/ }, async ({ path }) => {
+      const text = await readFile(path, "utf8");
+      return { contents: with_slim_own(text), loader: "ts" };
+    });
   },
 };
+
+/** Shaders of the page's own are its templates with statements on several lines. */
+export function with_slim_own(text) {
+  return text.replace(/`[^`]*`/g, (part) => (part.includes(";\n") ? without_comments(part) : part));
+}
 
 /** No scene is written to a file. */
 function without_saving(text) {

@@ -7,6 +7,7 @@ import { import_page_module } from './support/page_module.mjs';
 // The drawn surface of folds: smooth where there is room for it, and never through another layer.
 
 const { ClothMesh } = await import_page_module('view/cloth_mesh');
+const { FreeSpace } = await import_page_module('view/free_space');
 const { Objects } = await import_page_module('view/objects');
 
 const [CELL, THICKNESS, SIDE] = [0.03, 0.004, 15];
@@ -157,6 +158,24 @@ test('a fold bulges no farther towards an object than by half of what is free, a
   }
   assert.deepEqual(bulging(([x]) => x + 1), free, 'from a wall behind');
   assert.deepEqual(bulging(() => 1e-6), free, 'along a wall');
+});
+
+test('a picture of crumpled cloth looks at no more than a hundred triangles for each there is', () => {
+  const { positions: rest, triangles } = folded(0, (way) => [way, 0]);
+  const positions = rest.map((value) => value / 4); // all of it is within reach of each edge
+  const space = new FreeSpace(positions, rest, triangles);
+  const answers = () => {
+    space.begin();
+    let answered = 0;
+    for (let t = 0; t < 3 * triangles.length; t += 3) {
+      const corner = t % triangles.length;
+      if (space.around(triangles[corner], triangles[corner + 1]) > 0) answered += 1;
+    }
+    return answered;
+  };
+  const [first, second] = [answers(), answers()];
+  assert.ok(first > 50 && first <= 100, `${first}`);
+  assert.equal(second, first, 'the next picture has as many');
 });
 
 test('the room around objects is the distance to balls, boxes and ground, and never more than to others', () => {

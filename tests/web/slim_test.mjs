@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { readdir, readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { slim_three, UNDEFINED } from '../../web/slim_three.mjs';
+import { slim_three, UNDEFINED, with_slim_own } from '../../web/slim_three.mjs';
 import { require_package } from './support/packages.mjs';
 
 // What the page's build leaves out of three.
@@ -76,4 +76,20 @@ test('the page uses nothing of three that is left out', async () => {
       assert.equal(left_out.exec(text)?.[0] ?? null, null, name);
     }
   }
+});
+
+test('of the page’s own shaders white space and comments are left out, and nothing else', async () => {
+  const view = new URL('../../web/src/view/', import.meta.url);
+  const essence = (text) => text.replace(/\/\*[\s\S]*?\*\/|\/\/.*$/gm, '').replace(/\s+/g, '');
+  const quoted = (text) => text.match(/'[^'\n]*'/g);
+  let [before, after] = [0, 0];
+  for (const name of await readdir(view)) {
+    const text = await readFile(new URL(name, view), 'utf8');
+    const slim = with_slim_own(text);
+    assert.equal(essence(slim), essence(text), name);
+    before += text.length;
+    after += slim.length;
+    if (slim !== text && !name.startsWith('floor')) assert.deepEqual(quoted(slim), quoted(text), name);
+  }
+  assert.ok(before - after > 1000, `${before - after}`);
 });

@@ -1,21 +1,25 @@
 const LEAST_CELLS = 16;
 const OF_A_KIND = 3; // the longest edge of a mesh that is searched, in mean edges
 const STRETCH = 1.5; // the longest edge that is looked for, in lengths at rest
+const FAR = 0.6; // no distance beyond this is of interest, in mean edges
+const NEAR = 0.1; // of `FAR`: what is nearer might as well touch
+const LOOKS = 100; // at triangles in a moment, for each there is: crumpled cloth must not cost a picture
 
 /**
- * Tells how far the nearest other layer of cloth is from an edge, if it is within a mean edge's length.
- * Triangles are sorted by their centers into the cells of a grid, kept as a hash; this happens
- * when the first edge of a moment asks.
+ * Tells how far the nearest other layer of cloth is from an edge, if it is near. Triangles are sorted by
+ * their centers into the cells of a grid, kept as a hash; this happens when the first edge of a moment
+ * asks.
  */
 export class FreeSpace {
-  /** Mean length of the edges at rest [m]. */
-  readonly edge: number;
   private readonly even: boolean;
+  private readonly far: number; // [m]
   private readonly cell: number; // side [m]
   private readonly mask: number;
   private readonly first: Int32Array; // triangle of each cell
   private readonly next: Int32Array; // triangle in the same cell
   private readonly centers: Float32Array; // of triangles [m]
+  private readonly radii: Float32Array; // of them, to the farthest corner [m]
+  private looks = 0; // left in this moment
   private sorted = false;
 
   /**
@@ -31,56 +35,63 @@ export class FreeSpace {
       sum += length;
       longest = Math.max(longest, length);
     }
-    this.edge = sum / (triangles.length || 1);
-    this.even = longest <= OF_A_KIND * this.edge;
-    this.cell = this.edge + (2 / 3) * longest * STRETCH; // a center is that far from its corners
+    const mean = sum / (triangles.length || 1);
+    this.even = longest <= OF_A_KIND * mean;
+    this.far = FAR * mean;
+    this.cell = this.far + (2 / 3) * longest * STRETCH; // a center is that far from its corners
     const cells = 2 ** Math.ceil(Math.log2(Math.max(LEAST_CELLS, triangles.length / 3)));
     this.mask = cells - 1;
     this.first = new Int32Array(cells);
     this.next = new Int32Array(triangles.length / 3);
     this.centers = new Float32Array(triangles.length);
+    this.radii = new Float32Array(triangles.length / 3);
   }
 
   /** Begins a moment: the positions have changed. */
   begin(): void {
     this.sorted = false;
+    this.looks = LOOKS * this.next.length;
   }
 
   /**
    * Distance from the middle of an edge to the nearest triangle that it is no side of [m].
-   * @returns at most a mean edge; 0 where the mesh is too uneven to be searched
+   * @returns at most `FAR`; 0 if the mesh is too uneven to be searched, or this moment has had its looks
    */
   around(from: number, to: number): number {
     if (!this.even) return 0;
     if (!this.sorted) this.sort();
-    const { positions, triangles, first, next, centers, cell } = this;
+    const { positions, triangles, first, next, centers, radii, cell } = this;
     const px = (positions[from * 3] + positions[to * 3]) / 2;
     const py = (positions[from * 3 + 1] + positions[to * 3 + 1]) / 2;
     const pz = (positions[from * 3 + 2] + positions[to * 3 + 2]) / 2;
     const [x, y, z] = [Math.floor(px / cell), Math.floor(py / cell), Math.floor(pz / cell)];
-    let nearest = this.edge ** 2;
+    let nearest = this.far;
     for (let k = 0; k < 27; k++) {
       const place = this.hash(x - 1 + (k % 3), y - 1 + (Math.trunc(k / 3) % 3), z - 1 + Math.trunc(k / 9));
       for (let t = first[place]; t >= 0; t = next[t]) {
+        if (--this.looks < 0) return 0;
+        const [dx, dy, dz] = [centers[t * 3] - px, centers[t * 3 + 1] - py, centers[t * 3 + 2] - pz];
+        if (dx * dx + dy * dy + dz * dz > (nearest + radii[t]) ** 2) continue;
         const [a, b, c] = [triangles[t * 3], triangles[t * 3 + 1], triangles[t * 3 + 2]];
         if ((a === from || b === from || c === from) && (a === to || b === to || c === to)) continue;
-        const [dx, dy, dz] = [centers[t * 3] - px, centers[t * 3 + 1] - py, centers[t * 3 + 2] - pz];
-        if (dx * dx + dy * dy + dz * dz > cell * cell) continue;
-        nearest = Math.min(nearest, squared_distance(px, py, pz, positions, a * 3, b * 3, c * 3));
+        nearest = Math.min(nearest, distance(px, py, pz, positions, a * 3, b * 3, c * 3));
+        if (nearest < NEAR * this.far) return 0;
       }
     }
-    return Math.sqrt(nearest);
+    return nearest;
   }
 
   private sort(): void {
-    const { triangles, positions, first, next, centers, cell } = this;
+    const { triangles, positions, first, next, centers, radii, cell } = this;
     first.fill(-1);
     for (let t = 0; t < next.length; t++) {
+      const [a, b, c] = [triangles[t * 3] * 3, triangles[t * 3 + 1] * 3, triangles[t * 3 + 2] * 3];
+      let radius = 0;
       for (let axis = 0; axis < 3; axis++) {
-        let sum = 0;
-        for (let k = 0; k < 3; k++) sum += positions[triangles[t * 3 + k] * 3 + axis];
-        centers[t * 3 + axis] = sum / 3;
+        centers[t * 3 + axis] = (positions[a + axis] + positions[b + axis] + positions[c + axis]) / 3;
       }
+      for (const corner of [a, b, c]) radius = Math.max(radius, squared(centers, t * 3, positions, corner));
+      radii[t] = Math.sqrt(radius);
       const place = this.hash(
         Math.floor(centers[t * 3] / cell),
         Math.floor(centers[t * 3 + 1] / cell),
@@ -97,12 +108,17 @@ export class FreeSpace {
   }
 }
 
+/** Squared distance of two points, which begin there in their arrays [m²]. */
+function squared(a: Float32Array, at: number, b: Float32Array, there: number): number {
+  return (a[at] - b[there]) ** 2 + (a[at + 1] - b[there + 1]) ** 2 + (a[at + 2] - b[there + 2]) ** 2;
+}
+
 /**
- * Squared distance from a point to a triangle [m²],: to its plane if the point is above it, and
+ * Distance from a point to a triangle [m]: to its plane if the point is above it, and
  * to the nearest of its sides elsewhere.
  * @param a, b, c where its corners begin in `positions`
  */
-function squared_distance(
+function distance(
   px: number, py: number, pz: number, positions: Float32Array, a: number, b: number, c: number,
 ): number {
   const [sx, sy, sz] = [px - positions[a], py - positions[a + 1], pz - positions[a + 2]];
@@ -124,8 +140,8 @@ function squared_distance(
     const on_w = Math.min(1, Math.max(0, (vs - uv - us + uu) / (uu - 2 * uv + vv || 1)));
     const square = (r: number, s: number) =>
       (sx - r * ux - s * vx) ** 2 + (sy - r * uy - s * vy) ** 2 + (sz - r * uz - s * vz) ** 2;
-    return Math.min(square(on_u, 0), square(0, on_v), square(1 - on_w, on_w));
+    return Math.sqrt(Math.min(square(on_u, 0), square(0, on_v), square(1 - on_w, on_w)));
   }
   const [dx, dy, dz] = [sx - p * ux - q * vx, sy - p * uy - q * vy, sz - p * uz - q * vz];
-  return dx * dx + dy * dy + dz * dz;
+  return Math.sqrt(dx * dx + dy * dy + dz * dz);
 }

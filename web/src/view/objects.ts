@@ -5,6 +5,7 @@ import {
   CapsuleGeometry,
   Group,
   LineSegments,
+  Matrix4,
   Mesh,
   Raycaster,
   SphereGeometry,
@@ -53,10 +54,11 @@ export class Objects {
       mesh.position.sub(pivot);
       const holder = new Group().add(mesh);
       holder.position.copy(pivot);
-      this.nodes.push({ place, pivot, holder, mesh, radius: collider.kind === 'sphere' ? collider.radius : null });
+      const radius = collider.kind === 'sphere' ? collider.radius : null;
+      this.nodes.push({ place, pivot, holder, mesh, radius, to_own: new Matrix4() });
       this.group.add(holder);
     }
-    this.group.updateMatrixWorld(true);
+    this.update_matrices();
   }
 
   /** Moves objects to their poses; objects without one stand as defined. */
@@ -71,8 +73,13 @@ export class Objects {
         holder.quaternion.identity();
       }
     }
-    this.group.updateMatrixWorld(true);
+    this.update_matrices();
     this.ground_now = this.ground_at(poses);
+  }
+
+  private update_matrices(): void {
+    this.group.updateMatrixWorld(true);
+    for (const { mesh, to_own } of this.nodes) to_own.copy(mesh.matrixWorld).invert();
   }
 
   /** Poses of the drawn objects. */
@@ -104,8 +111,8 @@ export class Objects {
   /** How far at least the nearest object is from a place; 0 within the box around a capsule or mesh [m]. */
   room([x, y, z]: Vec3): number {
     let nearest = this.ground_now === null ? Infinity : y - this.ground_now;
-    for (const { mesh, radius } of this.nodes) {
-      mesh.worldToLocal(this.point.set(x, y, z));
+    for (const { mesh, radius, to_own } of this.nodes) {
+      this.point.set(x, y, z).applyMatrix4(to_own);
       const box = mesh.geometry.boundingBox!;
       nearest = Math.min(nearest, radius === null ? box.distanceToPoint(this.point) : this.point.length() - radius);
     }
@@ -159,6 +166,7 @@ interface Node {
   holder: Group;
   mesh: Mesh;
   radius: number | null; // of a sphere [m]
+  to_own: Matrix4; // from the world into the mesh's own frame
 }
 
 function geometry_of(
