@@ -15,6 +15,8 @@ const LEADER = 'operate-0123456789abcdef';
 const PUPIL = 'look-0123456789abcdef';
 const WALL_RATE = 200_000; // most that the wall is sent [bytes/s]
 const MEASURED = 5; // [s]
+const PATIENCE = 30_000 * PUPILS; // until a wall of their rooms has opened, while all of them draw [ms]
+
 /** Of time, as the more copies there are, the less of each a machine can do. */
 const SPEED = 2 ** Math.min(0, Math.floor(Math.log2(4 / PUPILS)));
 
@@ -101,7 +103,8 @@ async function watch_wall(teacher, pupils, script) {
   await teacher.getByRole('button', { name: 'Wall of pictures' }).click();
   const wall = teacher.getByRole('dialog', { name: 'All rooms' });
   const cells = wall.getByRole('button', { name: /Cloth passes through nothing/ });
-  await until(async () => (await cells.count()) === PUPILS + 1, 'each room is there with its truth');
+  const all_there = async () => (await cells.count()) === PUPILS + 1;
+  await until(all_there, 'each room is there with its truth', PATIENCE);
   for (const page of pupils.slice(0, 4)) {
     await point_at_cloth(page);
     await page.mouse.down();

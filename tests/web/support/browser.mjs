@@ -84,9 +84,10 @@ export async function open_page(browser, url, options = {}) {
  * @template Value
  * @param {() => Promise<Value> | Value} condition
  * @param {string} [what] for the failure
+ * @param {number} [longest] wait [ms]
  */
-export async function until(condition, what = condition.toString()) {
-  const end = Date.now() + LONGEST_WAIT;
+export async function until(condition, what = condition.toString(), longest = LONGEST_WAIT) {
+  const end = Date.now() + longest;
   for (;;) {
     const value = await condition();
     if (value) return value;
