@@ -1,3 +1,5 @@
+import { Triangle, Vector3 } from 'three';
+
 const LEAST_CELLS = 16;
 const OF_A_KIND = 3; // the longest edge of a mesh that is searched, in mean edges
 const STRETCH = 1.5; // the longest edge that is looked for, in lengths at rest
@@ -21,6 +23,9 @@ export class FreeSpace {
   private readonly radii: Float32Array; // of them, to the farthest corner [m]
   private looks = 0; // left in this moment
   private sorted = false;
+  private middle = new Vector3();
+  private triangle = new Triangle();
+  private point = new Vector3();
 
   /**
    * @param positions three values per vertex [m]; they change from moment to moment
@@ -60,21 +65,21 @@ export class FreeSpace {
   around(from: number, to: number): number {
     if (!this.even) return 0;
     if (!this.sorted) this.sort();
-    const { positions, triangles, first, next, centers, radii, cell } = this;
-    const px = (positions[from * 3] + positions[to * 3]) / 2;
-    const py = (positions[from * 3 + 1] + positions[to * 3 + 1]) / 2;
-    const pz = (positions[from * 3 + 2] + positions[to * 3 + 2]) / 2;
-    const [x, y, z] = [Math.floor(px / cell), Math.floor(py / cell), Math.floor(pz / cell)];
+    const { positions, triangles, first, next, centers, radii, cell, middle } = this;
+    middle.fromArray(positions, from * 3).add(this.point.fromArray(positions, to * 3)).divideScalar(2);
+    const [x, y, z] = [middle.x, middle.y, middle.z].map((place) => Math.floor(place / cell));
     let nearest = this.far;
     for (let k = 0; k < 27; k++) {
       const place = this.hash(x - 1 + (k % 3), y - 1 + (Math.trunc(k / 3) % 3), z - 1 + Math.trunc(k / 9));
       for (let t = first[place]; t >= 0; t = next[t]) {
         if (--this.looks < 0) return 0;
-        const [dx, dy, dz] = [centers[t * 3] - px, centers[t * 3 + 1] - py, centers[t * 3 + 2] - pz];
-        if (dx * dx + dy * dy + dz * dz > (nearest + radii[t]) ** 2) continue;
+        this.point.fromArray(centers, t * 3);
+        if (this.point.distanceToSquared(middle) > (nearest + radii[t]) ** 2) continue;
         const [a, b, c] = [triangles[t * 3], triangles[t * 3 + 1], triangles[t * 3 + 2]];
         if ((a === from || b === from || c === from) && (a === to || b === to || c === to)) continue;
-        nearest = Math.min(nearest, distance(px, py, pz, positions, a * 3, b * 3, c * 3));
+        this.load(t).closestPointToPoint(middle, this.point);
+        const found = this.point.distanceTo(middle);
+        if (found < nearest) nearest = found; // not if it has no area and no distance
         if (nearest < NEAR * this.far) return 0;
       }
     }
@@ -82,16 +87,13 @@ export class FreeSpace {
   }
 
   private sort(): void {
-    const { triangles, positions, first, next, centers, radii, cell } = this;
+    const { first, next, centers, radii, cell } = this;
     first.fill(-1);
     for (let t = 0; t < next.length; t++) {
-      const [a, b, c] = [triangles[t * 3] * 3, triangles[t * 3 + 1] * 3, triangles[t * 3 + 2] * 3];
-      let radius = 0;
-      for (let axis = 0; axis < 3; axis++) {
-        centers[t * 3 + axis] = (positions[a + axis] + positions[b + axis] + positions[c + axis]) / 3;
-      }
-      for (const corner of [a, b, c]) radius = Math.max(radius, squared(centers, t * 3, positions, corner));
-      radii[t] = Math.sqrt(radius);
+      const { a, b, c } = this.load(t);
+      const center = this.triangle.getMidpoint(this.point);
+      center.toArray(centers, t * 3);
+      radii[t] = Math.max(center.distanceTo(a), center.distanceTo(b), center.distanceTo(c));
       const place = this.hash(
         Math.floor(centers[t * 3] / cell),
         Math.floor(centers[t * 3 + 1] / cell),
@@ -103,45 +105,15 @@ export class FreeSpace {
     this.sorted = true;
   }
 
+  private load(t: number): Triangle {
+    const { positions, triangles, triangle } = this;
+    triangle.a.fromArray(positions, triangles[t * 3] * 3);
+    triangle.b.fromArray(positions, triangles[t * 3 + 1] * 3);
+    triangle.c.fromArray(positions, triangles[t * 3 + 2] * 3);
+    return triangle;
+  }
+
   private hash(x: number, y: number, z: number): number {
     return (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) & this.mask;
   }
-}
-
-/** Squared distance of two points, which begin there in their arrays [m²]. */
-function squared(a: Float32Array, at: number, b: Float32Array, there: number): number {
-  return (a[at] - b[there]) ** 2 + (a[at + 1] - b[there + 1]) ** 2 + (a[at + 2] - b[there + 2]) ** 2;
-}
-
-/**
- * Distance from a point to a triangle [m]: to its plane if the point is above it, and
- * to the nearest of its sides elsewhere.
- * @param a, b, c where its corners begin in `positions`
- */
-function distance(
-  px: number, py: number, pz: number, positions: Float32Array, a: number, b: number, c: number,
-): number {
-  const [sx, sy, sz] = [px - positions[a], py - positions[a + 1], pz - positions[a + 2]];
-  const ux = positions[b] - positions[a];
-  const uy = positions[b + 1] - positions[a + 1];
-  const uz = positions[b + 2] - positions[a + 2];
-  const vx = positions[c] - positions[a];
-  const vy = positions[c + 1] - positions[a + 1];
-  const vz = positions[c + 2] - positions[a + 2];
-  const [uu, uv, vv] = [ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz];
-  const [us, vs] = [ux * sx + uy * sy + uz * sz, vx * sx + vy * sy + vz * sz];
-  const area = uu * vv - uv * uv;
-  const p = (vv * us - uv * vs) / area;
-  const q = (uu * vs - uv * us) / area;
-  if (!(p >= 0 && q >= 0 && p + q <= 1)) {
-    // Beside it, or it has no area: the nearest of its sides.
-    const on_u = Math.min(1, Math.max(0, us / (uu || 1)));
-    const on_v = Math.min(1, Math.max(0, vs / (vv || 1)));
-    const on_w = Math.min(1, Math.max(0, (vs - uv - us + uu) / (uu - 2 * uv + vv || 1)));
-    const square = (r: number, s: number) =>
-      (sx - r * ux - s * vx) ** 2 + (sy - r * uy - s * vy) ** 2 + (sz - r * uz - s * vz) ** 2;
-    return Math.sqrt(Math.min(square(on_u, 0), square(0, on_v), square(1 - on_w, on_w)));
-  }
-  const [dx, dy, dz] = [sx - p * ux - q * vx, sy - p * uy - q * vy, sz - p * uz - q * vz];
-  return Math.sqrt(dx * dx + dy * dy + dz * dz);
 }
