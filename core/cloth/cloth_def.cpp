@@ -57,6 +57,11 @@ void validate(const ClothDef& def) {
   if (!def.direct_springs) return;
   visit_fields_of_direct_springs(*def.direct_springs, [](const FieldInfo& info, double value) {
     check_field("cloth.direct_springs.", info, value);
+  const bool threads = !def.direct_springs && (!def.mesh || has_membrane_triangles(def));
+  if (def.fabric.locking_strain > 0 && !threads)
+    throw DefinitionError("fabric.locking_strain", number_text(def.fabric.locking_strain),
+                          "0 with springs that are not the fabric's threads",
+                          "take membrane_model triangles, or no direct_springs");
   });
 }
 

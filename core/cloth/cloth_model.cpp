@@ -10,6 +10,7 @@
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
 #include "core/cloth/stability_bound.h"
+#include "core/cloth/thread_locks.h"
 #include "core/error.h"
 #include "core/geometry/aabb.h"
 
@@ -41,6 +42,9 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   for (MembraneTriangle<Real>& triangle : cloth.membrane) {
     for (Index& corner : triangle.x) corner += shift;
   }
+  for (ThreadLock<Real>& lock : cloth.locks) {
+    for (Index& corner : lock.x) corner += shift;
+  }
   for (Hinge<Real>& hinge : cloth.hinges) {
     for (Index& corner : hinge.x) corner += shift;
   }
@@ -56,6 +60,7 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   part.hinges = append(model.hinges, cloth.hinges);
   part.membrane = append(model.membrane, cloth.membrane);
   model.parts.push_back(std::move(part));
+  part.locks = append(model.locks, cloth.locks);
 }
 
 template <class Real>
@@ -75,6 +80,7 @@ ClothModel<Real> build_cloth(const ClothDef& def) {
   for (const Vec3<Real>& x : model.rest_positions) box.add(x);
   bound_damped_area(model, model.parts.front());
   model.parts.front().rest_diagonal = (box.upper - box.lower).norm();
+  add_thread_locks(model);
   return model;
 }
 

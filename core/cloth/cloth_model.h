@@ -124,6 +124,15 @@ struct HeldStrip {
   friend bool operator==(const HeldStrip&, const HeldStrip&) = default;
 };
 
+/// A thread of a triangle or along an edge of a grid, w = g1 (x1 - x0) + g2 (x2 - x0), that is
+/// stiffer when its strain |w| - 1 exceeds the fabric's `locking_strain` (thread_locks.h).
+template <class Real>
+struct ThreadLock {
+  Triangle x = {0, 0, 0};
+  Real g1 = 0, g2 = 0;  ///< [1/m]
+  Real stiffness = 0;   ///< (factor - 1) Y times its area [N m]
+};
+
 /// A range of consecutive indices.
 struct IndexRange {
   Index first = 0, count = 0;
@@ -135,6 +144,7 @@ struct IndexRange {
 /// bounds of damping rates [1/s]; see stability_bound.h.
 struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
+  double locking_omega2 = 0;         ///< of all threads that may lock
   double membrane_shear_omega2 = 0;  ///< of it what goes with the square of the stretch; see
                                      ///< membrane.h
   double membrane_damping_rate = 0, bending_damping_rate = 0;
@@ -148,6 +158,7 @@ struct ClothPart {
   FabricDef fabric;
   IndexRange particles, triangles, edges, springs, hinges;
   IndexRange membrane;  ///< triangles of constant strain, in place of springs
+  IndexRange locks;     ///< of a fabric that locks
   MembraneTensor<Real> membrane_tensor;
   int rows = 0, columns = 0;    ///< of a whole grid, with particle (r, c) at particles.first +
                                 ///< r * columns + c; else 0
@@ -187,6 +198,7 @@ struct ClothModel {
   std::vector<Hinge<Real>> hinges;               ///< empty for a part with quadratic bending
   std::vector<MembraneTriangle<Real>> membrane;  ///< of a mesh, ordered by their first particle
 
+  std::vector<ThreadLock<Real>> locks;
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };
 

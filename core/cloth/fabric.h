@@ -23,6 +23,9 @@ inline constexpr double kPoissonOfGrid = -1;
 /// rate, one tau each for stretch, shear and bending. A wave or mode of angular frequency omega
 /// then decays by omega^2 tau / 2 a second, whatever the mesh. `damping_ratio` is what stability
 /// needs besides, of the mesh's highest mode; stretch and shear have the larger of both.
+///
+/// Locking (biphasic stretch): beyond the strain `locking_strain` a thread is `locking_factor`
+/// times as stiff, so the energy per area grows by (factor - 1) Y (e - e_L)^2 / 2. Of verlet alone.
 struct FabricDef {
   double areal_density = 0.2;       ///< sigma [kg/m^2]
   double stretch_warp = 400;        ///< Y_w [N/m], along the columns' direction u
@@ -32,6 +35,8 @@ struct FabricDef {
                                     ///< strain; of a mesh, below the root of Y_w / Y_f
   double bending_warp = 1e-5;       ///< B_w [N m], curvature along u
   double bending_weft = 1e-5;       ///< B_f [N m], curvature along v
+  double locking_strain = 0;        ///< e_L [1]; 0: it does not lock
+  double locking_factor = 10;       ///< [1]; substeps grow as its root
   double damping_ratio = 0.05;      ///< dashpot of the membrane, as a ratio of the highest mode
   double stretch_damping = 0;       ///< tau of stretch [s]
   double shear_damping = 0;         ///< tau of shear [s]
@@ -60,6 +65,11 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
         f.bending_warp);
   visit(FieldInfo{"bending_weft", kBendingRange, "N m", "bending rigidity along v"},
         f.bending_weft);
+  visit(FieldInfo{"locking_strain", 0, 10, "",
+                  "strain of a thread from which it is stiffer; 0: none"},
+        f.locking_strain);
+  visit(FieldInfo{"locking_factor", 1, 1000, "", "how many times as stiff it then is"},
+        f.locking_factor);
   visit(FieldInfo{"damping_ratio", kDampingRatioRange, "", "damping of the highest membrane mode"},
         f.damping_ratio);
   visit(FieldInfo{"stretch_damping", kBendingDampingRange, "s", "relaxation time of stretch"},

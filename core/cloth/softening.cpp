@@ -17,6 +17,7 @@ void soften(double softness, ClothModel<Real>& model) {
     spring.stiffness *= stiffness;
     spring.damping *= damping;
   }
+  for (ThreadLock<Real>& lock : model.locks) lock.stiffness *= stiffness;
   for (ClothPart<Real>& part : model.parts) {
     MembraneTensor<Real>& tensor = part.membrane_tensor;
     for (Real* number : {&tensor.warp, &tensor.weft, &tensor.coupling, &tensor.shear})
@@ -25,6 +26,7 @@ void soften(double softness, ClothModel<Real>& model) {
     tensor.shear_time /= damping;
     part.bounds.membrane_omega2 *= softness;
     part.bounds.membrane_shear_omega2 *= softness;
+    part.bounds.locking_omega2 *= softness;
     part.bounds.membrane_damping_rate *= root;
     if (!part.grid_springs) continue;
     GridSprings<Real>& springs = *part.grid_springs;

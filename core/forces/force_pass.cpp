@@ -12,6 +12,7 @@
 #include "core/forces/membrane.h"
 #include "core/forces/spring.h"
 #include "core/forces/stencil_force.h"
+#include "core/forces/thread_lock.h"
 #include "core/geometry/hinge_angle.h"
 
 namespace weft {
@@ -62,6 +63,16 @@ void add_membrane_forces(const ClothModel<Real>& model, const ClothPart<Real>& p
     const std::array<Vec3<Real>, 3> forces = membrane_forces(t, stress);
     for (std::size_t k = 0; k < 3; ++k) at(force, t.x[k]) += forces[k];
   }
+}
+
+template <class Real>
+void add_locking_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                        const Vec3Array<Real>& x, Vec3Array<Real>& force) {
+  assert(force.size() == x.size());
+  assert(part.locks.end() <= static_cast<Index>(model.locks.size()));
+  const auto strain = static_cast<Real>(part.fabric.locking_strain);
+  for (Index n = part.locks.first; n < part.locks.end(); ++n)
+    add_lock_force(at(model.locks, n), strain, x, force);
 }
 
 template <class Real>
@@ -144,6 +155,9 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
     const auto principal = static_cast<double>(principal_strain(strain));
     if (!(principal <= energy.largest_strain)) energy.largest_strain = principal;
   }
+  const auto locking = static_cast<Real>(part.fabric.locking_strain);
+  for (Index n = part.locks.first; n < part.locks.end(); ++n)
+    energy.stretch += lock_energy(at(model.locks, n), locking, x);
   for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
     const Hinge<Real>& h = at(model.hinges, n);
     const HingeAngle<Real> angle = hinge_angle<Real>(at(x, h.x[0]), at(x, h.x[1]), at(x, h.x[2]),
@@ -165,6 +179,8 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
   template void add_membrane_forces(const ClothModel<Real>&, const ClothPart<Real>&,         \
                                     const Vec3Array<Real>&, const Vec3Array<Real>&,          \
                                     Vec3Array<Real>&);                                       \
+  template void add_locking_forces(const ClothModel<Real>&, const ClothPart<Real>&,          \
+                                   const Vec3Array<Real>&, Vec3Array<Real>&);                \
   template void add_hinge_forces(const ClothModel<Real>&, const ClothPart<Real>&,            \
                                  const Vec3Array<Real>&, const Vec3Array<Real>&,             \
                                  Vec3Array<Real>&);                                          \

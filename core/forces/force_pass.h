@@ -29,6 +29,11 @@ void add_membrane_forces(const ClothModel<Real>& model, const ClothPart<Real>& p
                          const Vec3Array<Real>& x, const Vec3Array<Real>& v,
                          Vec3Array<Real>& force);
 
+/// Adds the forces of threads that are locked [N]; formula in thread_lock.h.
+template <class Real>
+void add_locking_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                        const Vec3Array<Real>& x, Vec3Array<Real>& force);
+
 /// Adds the elastic and damping forces of all hinges to `force` [N]; formula in hinge.h.
 template <class Real>
 void add_hinge_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,

@@ -92,7 +92,7 @@ void GridPass<Real>::lay_out_coefficients(const ClothPart<Real>& part) {
 template <class Real>
 void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_ = {};
-  if (!part.grid_springs || part.hinges.count > 0) return;
+  if (!part.grid_springs || part.hinges.count > 0 || part.locks.count > 0) return;
   lay_out(part);
   lay_out_coefficients(part);
   view_.springs = *part.grid_springs;

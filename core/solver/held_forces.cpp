@@ -83,6 +83,7 @@ void HeldForces<Real>::list(const ClothModel<Real>& model) {
   near_.parts.resize(model.parts.size());
   near_.springs.clear();
   near_.membrane.clear();
+  near_.locks.clear();
   near_.hinges.clear();
   near_.triangles.clear();
   bending_.clear();
@@ -110,6 +111,8 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
       model.springs, part.springs, [this](const auto& s) { return holds(s.i) || holds(s.j); },
       near_.springs);
   near.membrane = take(
+  near.locks = take(
+      model.locks, part.locks, [this](const auto& t) { return touches(&t.x[0], 3); }, near_.locks);
       model.membrane, part.membrane, [this](const auto& t) { return touches(&t.x[0], 3); },
       near_.membrane);
   near.hinges = take(
@@ -133,6 +136,7 @@ template <class Real>
 void HeldForces<Real>::act(std::size_t part, const Surroundings<Real>& around,
                            const Vec3Array<Real>& x, const Vec3Array<Real>& v, double seconds) {
   assert(!stale_ && "begin_tick comes first");
+  add_locking_forces(near_, near, x, force_);
   assert(seconds >= 0 && x.size() == force_.size() && v.size() == force_.size());
   const ClothPart<Real>& near = near_.parts[part];
   add_spring_forces(near_, near, x, v, force_);

@@ -45,9 +45,12 @@ template <class Real>
 void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& velocity) {
   const ClothPart<Real>& part = tick.part(p);
   evaluate_membrane(tick, p, velocity);
-  if (part.hinges.count == 0 && part.bending_time == 0) return;
-  const StageTimer timer(tick.profile, Stage::bending,
-                         size_of(part.hinges) + part.curvatures.stiffness.size());
+  if (part.locks.count > 0) {
+    const StageTimer timer(tick.profile, Stage::stretch, size_of(part.locks));
+    add_locking_forces(tick.model, part, tick.state.x, tick.work.internal);
+  }
+  if (part.hinges.count == 0) return;
+  const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
   add_bending_damping_forces(part, tick.state.x, velocity, tick.work.internal);
 }

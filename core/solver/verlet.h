@@ -100,8 +100,8 @@ struct VerletWorkspace {
   bool kicks_at_once(const ClothModel<Real>& model, std::size_t part) const {
     assert(part < grids.size() && part < meshes.size());
     const ClothPart<Real>& cloth = model.parts[part];
-    const bool damped = cloth.bending_time > 0;
-    return grids[part].fits() || (meshes[part].fits() && cloth.hinges.count == 0 && !damped);
+    const bool more = cloth.hinges.count > 0 || cloth.locks.count > 0;
+    return grids[part].fits() || (meshes[part].fits() && !more);
   }
 
   /// Size of the arrays [B].

@@ -58,7 +58,7 @@ std::vector<MeshDamping> damping_of_meshes(const World<Real>& world) {
     }
     if (solver == SolverKind::verlet) {
       const FrequencyBounds& b = part.bounds;
-      const double omega2 = b.membrane_omega2 + b.bending_omega2;
+      const double omega2 = b.membrane_omega2 + b.locking_omega2 + b.bending_omega2;
       const int fewest = world.def().solver.min_substeps;
       const auto substeps = [&](double rate) {
         return static_cast<int>(substeps_for({omega2, rate}, world.tick_seconds(), fewest));

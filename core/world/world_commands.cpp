@@ -184,12 +184,14 @@ void World<Real>::set_softness(double softness) {
   assert(model.springs.size() == model_.springs.size());
   assert(model.parts.size() == model_.parts.size());
   model_.springs = std::move(model.springs);
+  model_.locks = std::move(model.locks);
   for (std::size_t p = 0; p < model_.parts.size(); ++p) {
     model_.parts[p].grid_springs = model.parts[p].grid_springs;
     model_.parts[p].membrane_tensor = model.parts[p].membrane_tensor;
     FrequencyBounds& bounds = model_.parts[p].bounds;  // of bending they stay
     bounds.membrane_omega2 = model.parts[p].bounds.membrane_omega2;
     bounds.membrane_shear_omega2 = model.parts[p].bounds.membrane_shear_omega2;
+    bounds.locking_omega2 = model.parts[p].bounds.locking_omega2;
     bounds.membrane_damping_rate = model.parts[p].bounds.membrane_damping_rate;
   }
   wake_all();

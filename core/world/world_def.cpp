@@ -81,7 +81,12 @@ bool needs_damped_hinges(const WorldDef& def, const ClothDef& cloth) {
 
 std::vector<ClothDef> cloths_to_build(const WorldDef& def) {
   std::vector<ClothDef> cloths = def.cloths;
-  for (ClothDef& cloth : cloths) {
+  for (std::size_t k = 0; k < cloths.size(); ++k) {
+    ClothDef& cloth = cloths[k];
+    if (cloth.fabric.locking_strain > 0 && solver_of(def) != SolverKind::verlet)
+      throw DefinitionError(cloth_field(k, "fabric.locking_strain"),
+                            number_text(cloth.fabric.locking_strain), "0 with this solver",
+                            "only verlet has threads that lock");
     if (relaxes_rigidly(def) && cloth.membrane_model == MembraneModel::automatic)
       cloth.membrane_model = MembraneModel::springs;
     if (needs_damped_hinges(def, cloth) && cloth.bending_model == BendingModel::automatic)

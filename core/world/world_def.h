@@ -118,7 +118,8 @@ ContactModel contact_of(const WorldDef& def);
 std::string look_name(const ClothDef& cloth);
 
 /// The cloths with a membrane that the solver has: rigid relaxation (compliance 0) needs springs,
-/// also along the edges of a mesh.
+/// also along the edges of a mesh. Throws DefinitionError if a fabric locks and the solver is not
+/// verlet.
 std::vector<ClothDef> cloths_to_build(const WorldDef& def);
 
 /// Name of a cloth for messages; its number if it has none.

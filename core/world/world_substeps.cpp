@@ -69,7 +69,7 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
   if (kind == SolverKind::verlet) {  // in verlet the membrane acts by forces too
     const double stretched =
         stretched_membrane_omega2(part.bounds, longest_thread(model_, part, state_.x));
-    bound.omega2 += part.bounds.membrane_omega2 + stretched;
+    bound.omega2 += part.bounds.membrane_omega2 + part.bounds.locking_omega2 + stretched;
     bound.damping_rate += part.bounds.membrane_damping_rate +
                           static_cast<double>(part.membrane_tensor.shear_time) * stretched;
   }

@@ -219,6 +219,8 @@ void make_legal(const Dice& dice, Json& scene) {
   }
   if (scene.contains("pins")) {
     for (Json& pin : scene["pins"]) keep_pin(scene, pin);
+    keep_threads(has_locks(scene), scene["cloths"][k]);
+  }
   }
   if (scene.contains("winds")) keep_times(scene["winds"]);
   keep_contact(scene);
