@@ -50,6 +50,9 @@ void validate(const ClothDef& def) {
                           "none, which is -1, without triangles",
                           "only triangles of a mesh have a Poisson's ratio of their own; springs "
                           "couple the threads as they resist shear");
+  if (def.rest_shape == RestShape::uv && (!def.mesh || def.mesh->uv.empty()))
+    throw DefinitionError("cloth.rest_shape", "uv", "placed without uv of a mesh",
+                          "give the mesh uv in metres");
   if (has_membrane_triangles(def)) refuse_indefinite_membrane(def.fabric);
   if (def.mesh && def.direct_springs)
     throw DefinitionError("cloth.direct_springs", "given", "none on a mesh",

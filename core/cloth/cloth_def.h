@@ -34,6 +34,12 @@ enum class MembraneModel {
   triangles,  ///< of constant strain: the fabric's tensor on any mesh
 };
 
+/// The shape that a mesh has without strain.
+enum class RestShape {
+  placed,  ///< as its vertices lie in space
+  uv,      ///< flat, as its (u, v) in metres say: it starts strained where its vertices lie
+};
+
 /// Outline of a grid within its rectangle.
 enum class Outline {
   rectangle,  ///< the whole rectangle
@@ -48,12 +54,13 @@ struct DirectSprings {
   double dashpot = 0;     ///< along every spring [N s/m]
 };
 
-/// A cloth of any shape, at rest as defined: every vertex a particle.
+/// A cloth of any shape: every vertex a particle.
 struct ClothMesh {
   TriangleMesh
       mesh;  ///< in world coordinates [m]; every vertex used, at most two triangles an edge
-  std::vector<std::array<double, 2>> uv;  ///< per vertex, u along the warp, any scale; empty:
-                                          ///< projected along the axis that the mesh faces
+  std::vector<std::array<double, 2>> uv;  ///< per vertex, u along the warp, any scale unless they
+                                          ///< are the rest shape [m]; empty: projected along the
+                                          ///< axis that the mesh faces
   MeshPlacement placement = {};           ///< origin of `mesh`; not applied again
 };
 
@@ -75,6 +82,7 @@ struct ClothDef {
   double skip_stiffness = 0;             ///< the seed's bending springs, besides the hinges [N/m]
   BendingModel bending_model = BendingModel::automatic;
   MembraneModel membrane_model = MembraneModel::automatic;
+  RestShape rest_shape = RestShape::placed;
   MassLumping mass_lumping = MassLumping::area;
   std::optional<DirectSprings> direct_springs;
   FabricDef fabric;
@@ -106,6 +114,8 @@ void visit_fields_of_any_cloth(Def& c, Visitor&& visit) {
   visit(choice("membrane_model", "automatic|springs|triangles",
                "how the cloth resists stretch; triangles on a mesh only"),
         c.membrane_model);
+  visit(choice("rest_shape", "placed|uv", "shape of a mesh without strain; uv: in metres, flat"),
+        c.rest_shape);
   visit(choice("mass_lumping", "area|equal", "how the particles share the mass"), c.mass_lumping);
   visit(FieldInfo{"rest_angle", -3, 3, "rad", "rest angle of every hinge"}, c.rest_angle);
 }

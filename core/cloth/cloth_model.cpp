@@ -50,6 +50,7 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   }
   ClothPart<Real>& part = cloth.parts.front();
   append(model.rest_positions, cloth.rest_positions);
+  append(model.start_positions, cloth.start_positions);
   append(model.material, cloth.material);
   append(model.triangle_area, cloth.triangle_area);
   append(model.spring_kinds, cloth.spring_kinds);
@@ -76,6 +77,7 @@ template <class Real>
 ClothModel<Real> build_cloth(const ClothDef& def) {
   validate(def);
   ClothModel<Real> model = build_by_kind<Real>(def);
+  if (model.start_positions.empty()) model.start_positions = model.rest_positions;
   Aabb<Real> box;
   for (const Vec3<Real>& x : model.rest_positions) box.add(x);
   bound_damped_area(model, model.parts.front());

@@ -187,7 +187,8 @@ std::size_t membrane_elements(const ClothPart<Real>& part) {
 template <class Real>
 struct ClothModel {
   std::vector<ClothPart<Real>> parts;         ///< in the order of their particles; at least one
-  Vec3Array<Real> rest_positions;             ///< initial positions [m]
+  Vec3Array<Real> rest_positions;             ///< of a shape without strain [m]
+  Vec3Array<Real> start_positions;            ///< where it begins, mostly the same [m]
   std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric of its part [m]
   std::vector<Real> mass;                     ///< [kg], positive
   std::vector<Triangle> triangles;            ///< of a grid with alternating diagonals

@@ -26,12 +26,12 @@ struct ClothState {
   }
 };
 
-/// At rest at the model's rest positions, with nothing pinned.
+/// Not moving, where the model begins, with nothing pinned.
 template <class Real>
 ClothState<Real> initial_state(const ClothModel<Real>& model) {
-  assert(model.rest_positions.size() == model.mass.size());
+  assert(model.start_positions.size() == model.mass.size());
   ClothState<Real> state;
-  state.x = model.rest_positions;
+  state.x = model.start_positions;
   state.v.assign(model.mass.size(), Vec3<Real>::Zero());
   state.inverse_mass.reserve(model.mass.size());
   for (const Real mass : model.mass) {

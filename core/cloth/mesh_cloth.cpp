@@ -68,11 +68,23 @@ void refuse_crowded_edges(const TriangleMesh& mesh) {
   }
 }
 
-double doubled_area(const Uv& uv, const Triangle& t) {
+void refuse_other_uv(const ClothMesh& cloth) {
+  const std::size_t vertices = cloth.mesh.positions.size();
+  if (cloth.uv.empty() || cloth.uv.size() == vertices) return;
+  throw DefinitionError("cloth.mesh.uv", std::to_string(cloth.uv.size()) + " pairs",
+                        std::to_string(vertices) + ", one a vertex, or none");
+}
+
+/// Area in (u, v), negative where it is turned over.
+double signed_area(const Uv& uv, const Triangle& t) {
   const auto& a = uv[static_cast<std::size_t>(t[0])];
   const auto& b = uv[static_cast<std::size_t>(t[1])];
   const auto& c = uv[static_cast<std::size_t>(t[2])];
-  return std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+  return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+}
+
+double doubled_area(const Uv& uv, const Triangle& t) {
+  return 2 * std::abs(signed_area(uv, t));
 }
 
 /// Projects along the axis that most of the surface faces, with v downwards if possible.
@@ -295,15 +307,13 @@ std::vector<Index> breadth_first_order(std::size_t vertices,
 }
 
 template <class Real>
-ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
+ClothModel<Real> build_placed(const ClothDef& def) {
   assert(def.mesh);
   const TriangleMesh& mesh = def.mesh->mesh;
   validate(mesh, "cloth.mesh.");
   refuse_unused_and_coincident<Real>(mesh);
   refuse_crowded_edges(mesh);
-  if (!def.mesh->uv.empty() && def.mesh->uv.size() != mesh.positions.size())
-    throw DefinitionError("cloth.mesh.uv", std::to_string(def.mesh->uv.size()) + " pairs",
-                          std::to_string(mesh.positions.size()) + ", one a vertex, or none");
+  refuse_other_uv(*def.mesh);
   ClothModel<Real> model;
   model.parts.emplace_back();
   ClothPart<Real>& part = model.parts.front();
@@ -336,5 +346,50 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
 
 template ClothModel<float> build_mesh_cloth<float>(const ClothDef&);
 template ClothModel<double> build_mesh_cloth<double>(const ClothDef&);
+
+/// The same mesh, laid flat as its (u, v) say. Throws DefinitionError if a triangle has no area
+/// there or is turned over.
+ClothDef laid_out(const ClothDef& def) {
+  ClothDef flat = def;
+  const ClothMesh& cloth = *def.mesh;
+  double whole = 0;
+  for (const Triangle& t : cloth.mesh.triangles) whole += signed_area(cloth.uv, t);
+  const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
+  for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t) {
+    const double area = signed_area(cloth.uv, cloth.mesh.triangles[t]);
+    if (mean != 0 && area / mean > kLeastUvArea) continue;
+    throw DefinitionError("cloth.rest_shape", "uv",
+                          "placed where a triangle has no area in uv, or is turned over",
+                          "triangle " + std::to_string(t) + " is; unfold the uv");
+  }
+  for (std::size_t i = 0; i < cloth.uv.size(); ++i)
+    flat.mesh->mesh.positions[i] = Vec3d(cloth.uv[i][0], cloth.uv[i][1], 0);
+  return flat;
+}
+
+}  // namespace
+
+template <class Real>
+ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
+  assert(def.mesh);
+  if (def.rest_shape == RestShape::placed) return build_placed<Real>(def);
+  const TriangleMesh& mesh = def.mesh->mesh;
+  validate(mesh, "cloth.mesh.");
+  refuse_unused_and_coincident<Real>(mesh);
+  refuse_other_uv(*def.mesh);
+  ClothModel<Real> model;
+  try {
+    model = build_placed<Real>(laid_out(def));
+  } catch (const DefinitionError& error) {
+    const std::string places = "cloth.mesh.positions";
+    if (!error.field.starts_with(places)) throw;
+    throw DefinitionError("cloth.mesh.uv" + error.field.substr(places.size()), error.value,
+                          error.limit, error.hint);
+  }
+  for (const Index i : breadth_first_order(mesh.positions.size(), mesh.triangles))
+    model.start_positions.push_back(
+        mesh.positions[static_cast<std::size_t>(i)].template cast<Real>());
+  return model;
+}
 
 }  // namespace weft

@@ -95,6 +95,22 @@ void keep_membrane(const Dice& dice, bool rigid, Json& cloth) {
     cloth["fabric"]["shear"] = share * std::sqrt(warp * weft);
 }
 
+/// Whether verlet steps the scene, which alone has threads that lock.
+bool has_locks(const Json& scene) {
+  const Json solver = scene.value("solver", Json::object());
+  const std::string kind = solver.value("kind", "automatic");
+  return kind == "verlet" || (kind == "automatic" && scene.value("model", "") != "seed");
+}
+
+/// Keeps to rest shapes and threads that the cloth can have.
+void keep_threads(bool locks, Json& cloth) {
+  const bool mesh = cloth.value("form", "") == "mesh";
+  if (!mesh) cloth.erase("rest_shape");
+  const bool springs = mesh ? cloth.value("membrane_model", "automatic") == "springs"
+                            : cloth.contains("direct_springs");
+  if ((!locks || springs) && cloth.contains("fabric")) cloth["fabric"].erase("locking_strain");
+}
+
 void keep_cloth(const Dice& dice, bool rigid, Json& cloth) {
   if (cloth.value("form", "") != "mesh") keep_cells(dice, cloth);
   keep_membrane(dice, rigid, cloth);
