@@ -14,7 +14,7 @@ const PUPILS = Number(process.env.WEFT_CLASS ?? 4);
 const LEADER = 'operate-0123456789abcdef';
 const PUPIL = 'look-0123456789abcdef';
 const WALL_RATE = 200_000; // most that the wall is sent [bytes/s]
-const MEASURED = 5; // [s]
+const MEASURED = Math.max(5, PUPILS); // [s]
 const PATIENCE = 30_000 * PUPILS; // until a wall of their rooms has opened, while all of them draw [ms]
 
 /** Of time, as the more copies there are, the less of each a machine can do. */
@@ -83,10 +83,11 @@ async function all_follow(teacher, pupils) {
 
 /** Counts what the sockets of the wall are sent, and what the list of rooms costs. */
 function count_wall(teacher) {
-  const wall = { sockets: 0, bytes: 0, texts: 0, frames: 0 };
+  // Where pages starve for the processor a connection may be lost and made anew; rooms are counted.
+  const wall = { rooms: new Set(), bytes: 0, texts: 0, frames: 0 };
   teacher.on('websocket', (socket) => {
     if (!socket.url().includes('glance=1')) return;
-    wall.sockets += 1;
+    wall.rooms.add(new URL(socket.url()).pathname);
     socket.on('framereceived', ({ payload }) => {
       wall.bytes += Buffer.byteLength(payload);
       if (typeof payload === 'string') wall.texts += Buffer.byteLength(payload);
@@ -120,7 +121,7 @@ async function watch_wall(teacher, pupils, script) {
     `a wall of ${PUPILS + 1} rooms is sent ${(rate / 1000).toFixed(1)} kB/s: ${((counted.texts - before.texts) / seconds / 1000).toFixed(1)} of state, ` +
       `${(list / 1000).toFixed(1)} of the list, ${counted.frames - before.frames} frames in ${seconds.toFixed(1)} s; ${(before.bytes / 1000).toFixed(0)} kB to open`,
   );
-  assert.equal(counted.sockets, PUPILS + 1);
+  assert.equal(counted.rooms.size, PUPILS + 1);
   assert.ok(counted.frames > before.frames, 'pictures come');
   assert.ok(rate < WALL_RATE, `${rate} bytes/s`);
   const { rooms } = await script.listRooms();
