@@ -57,14 +57,14 @@ void validate(const ClothDef& def) {
   if (def.mesh && def.direct_springs)
     throw DefinitionError("cloth.direct_springs", "given", "none on a mesh",
                           "only a grid has rows and columns");
-  if (!def.direct_springs) return;
-  visit_fields_of_direct_springs(*def.direct_springs, [](const FieldInfo& info, double value) {
-    check_field("cloth.direct_springs.", info, value);
   const bool threads = !def.direct_springs && (!def.mesh || has_membrane_triangles(def));
   if (def.fabric.locking_strain > 0 && !threads)
     throw DefinitionError("fabric.locking_strain", number_text(def.fabric.locking_strain),
                           "0 with springs that are not the fabric's threads",
                           "take membrane_model triangles, or no direct_springs");
+  if (!def.direct_springs) return;
+  visit_fields_of_direct_springs(*def.direct_springs, [](const FieldInfo& info, double value) {
+    check_field("cloth.direct_springs.", info, value);
   });
 }
 

@@ -60,8 +60,8 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   part.springs = append(model.springs, cloth.springs);
   part.hinges = append(model.hinges, cloth.hinges);
   part.membrane = append(model.membrane, cloth.membrane);
-  model.parts.push_back(std::move(part));
   part.locks = append(model.locks, cloth.locks);
+  model.parts.push_back(std::move(part));
 }
 
 template <class Real>
@@ -80,9 +80,9 @@ ClothModel<Real> build_cloth(const ClothDef& def) {
   if (model.start_positions.empty()) model.start_positions = model.rest_positions;
   Aabb<Real> box;
   for (const Vec3<Real>& x : model.rest_positions) box.add(x);
+  add_thread_locks(model);
   bound_damped_area(model, model.parts.front());
   model.parts.front().rest_diagonal = (box.upper - box.lower).norm();
-  add_thread_locks(model);
   return model;
 }
 

@@ -167,12 +167,12 @@ struct ClothPart {
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;       ///< of a grid; it then has no hinges
   std::vector<BendingLink> bending_links;         ///< of a mesh that is flat at rest
-  Real bending_time = 0;                          ///< tau of the quadratic form's dashpots [s]
-  TriangleCurvatures<Real> curvatures;            ///< of such a mesh, if it has these
-  bool bends_by_links = false;                    ///< such a mesh, though it may have none
-  std::vector<HeldStrip> held_strips;             ///< that the links are made for
-  std::size_t bending_stencils = 0;  ///< or links of the quadratic form; see bending_stencil.h
-  GridCells cells;                   ///< of a grid, whole or cut
+  Real bending_time = 0;  ///< tau of the quadratic form's dashpots (bending_dashpots.h) [s]
+  TriangleCurvatures<Real> curvatures;  ///< of such a mesh, if it has these
+  bool bends_by_links = false;          ///< such a mesh, though it may have none
+  std::vector<HeldStrip> held_strips;   ///< that the links are made for
+  std::size_t bending_stencils = 0;     ///< or links of the quadratic form; see bending_stencil.h
+  GridCells cells;                      ///< of a grid, whole or cut
   FrequencyBounds bounds;
 };
 
@@ -198,8 +198,8 @@ struct ClothModel {
   std::vector<SpringKind> spring_kinds;
   std::vector<Hinge<Real>> hinges;               ///< empty for a part with quadratic bending
   std::vector<MembraneTriangle<Real>> membrane;  ///< of a mesh, ordered by their first particle
-
   std::vector<ThreadLock<Real>> locks;
+
   Index particle_count() const { return static_cast<Index>(mass.size()); }
 };
 

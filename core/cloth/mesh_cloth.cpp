@@ -306,6 +306,9 @@ std::vector<Index> breadth_first_order(std::size_t vertices,
   return order;
 }
 
+namespace {
+
+/// A cloth at rest as its mesh lies.
 template <class Real>
 ClothModel<Real> build_placed(const ClothDef& def) {
   assert(def.mesh);
@@ -343,9 +346,6 @@ ClothModel<Real> build_placed(const ClothDef& def) {
   choose_bending(def, model);
   return model;
 }
-
-template ClothModel<float> build_mesh_cloth<float>(const ClothDef&);
-template ClothModel<double> build_mesh_cloth<double>(const ClothDef&);
 
 /// The same mesh, laid flat as its (u, v) say. Throws DefinitionError if a triangle has no area
 /// there or is turned over.
@@ -391,5 +391,8 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
         mesh.positions[static_cast<std::size_t>(i)].template cast<Real>());
   return model;
 }
+
+template ClothModel<float> build_mesh_cloth<float>(const ClothDef&);
+template ClothModel<double> build_mesh_cloth<double>(const ClothDef&);
 
 }  // namespace weft

@@ -114,8 +114,7 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
         });
   }
   part.bounds.bending_omega2 = largest(rows, model);
-  part.bounds.bending_damping_rate =
-      static_cast<double>(part.bending_time) * part.bounds.bending_omega2;
+  part.bounds.bending_damping_rate = 0;  // its dashpots act between ticks
 }
 
 template void bound_quadratic_bending(const ClothModel<float>&, ClothPart<float>&);

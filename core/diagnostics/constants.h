@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 // The numbers of the measurements.
 
 namespace weft {
@@ -50,5 +52,14 @@ inline constexpr double kLeastOrder = 0.5;
 /// the start [1]. Larger: errors are told that are partly chance. Smaller: figures end while they
 /// still hold.
 inline constexpr double kNoiseFraction = 1.0 / 3, kNoiseGrowth = 10;
+
+// The decay test.
+
+/// Least amplitude that counts, as a fraction of the first [1]. Larger: fewer swings to average
+/// over. Smaller: what rounding leaves counts.
+inline constexpr double kSmallestSwing = 0.02;
+
+/// Turning points that tell a decay [1]. Larger: it is told later. Smaller: told by few.
+inline constexpr std::size_t kFewestTurns = 4;
 
 }  // namespace weft

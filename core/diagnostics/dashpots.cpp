@@ -5,7 +5,6 @@
 #include <array>
 #include <cassert>
 
-#include "core/forces/bending_damping.h"
 #include "core/forces/constants.h"
 #include "core/forces/membrane.h"
 #include "core/geometry/hinge_angle.h"
@@ -91,7 +90,6 @@ double dashpot_loss(const ClothModel<Real>& model, const Vec3Array<Real>& x,
   if (which == Dashpots::hinges) return sum;
   for (const Spring<Real>& s : model.springs) sum += spring_loss(s, x, v, displacement);
   for (const ClothPart<Real>& part : model.parts) {
-    sum += bending_loss(part, x, v, displacement);
     for (Index n = part.membrane.first; n < part.membrane.end(); ++n)
       sum += triangle_loss(part.membrane_tensor, model.membrane[static_cast<std::size_t>(n)], x, v,
                            displacement);

@@ -15,11 +15,6 @@ namespace weft {
 /// the dashpot, which divides by it; the elastic force divides by its root alone.
 inline constexpr double kSmallestSquaredLength = 1e-14;
 
-/// The same for a bending stencil's squared value in its dashpot, which is about the curvature
-/// squared [1/m^2], or that times the square of the cell's area [m^2]. Larger: slight bends are not
-/// damped. Smaller: too small for float.
-inline constexpr double kSmallestSquaredBend = 1e-30;
-
 /// The same for a triangle's threads, whose length is 1 at rest [1]: added to its square. Larger: a
 /// nearly collapsed triangle pulls more weakly. Smaller: too small for float beside the dashpot.
 inline constexpr double kSmallestSquaredStretch = 1e-12;

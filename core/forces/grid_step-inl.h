@@ -38,39 +38,6 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
   }
 }
 
-/// The same of one kind of bending stencil: its stiffness, larger by its dashpot's share while it
-/// bends further. See bending_damping.h.
-/// @param at  offsets of its particles from the site in the row, with weights 1 -1 -1 1
-template <class Real>
-HWY_INLINE void compute_bends(const GridView<Real>& g, std::ptrdiff_t r, GridCoefficient stiffness,
-                              const std::ptrdiff_t (&at)[4], Real* factor) {
-  using D = GridTag<Real>;
-  const D d;
-  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  const auto time = hn::Set(d, g.bending_time), smallest = hn::Set(d, Real(kSmallestSquaredBend));
-  const Real* const x = g.motion + r * g.pitch();
-  const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
-  const Real* const k = g.row[r].coefficients + stiffness * g.line;
-  for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const auto value = [&](const Real* from) HWY_ATTR {
-      return (load(d, from + at[0] + c, g.line) - load(d, from + at[1] + c, g.line)) -
-             (load(d, from + at[2] + c, g.line) - load(d, from + at[3] + c, g.line));
-    };
-    const auto bend = value(x), rate = value(v);
-    const auto growth = hn::Div(fused_dot(d, bend, rate), fused_dot(d, bend, bend, smallest));
-    const auto own = hn::LoadU(d, k + c);
-    hn::StoreU(fused(d, hn::Mul(own, time), growth, own), d, factor + c);
-  }
-}
-
-/// Where the factors of a kind of bending stencil are: without dashpots they are its stiffness.
-template <class Real>
-HWY_INLINE const Real* bends_of(const GridView<Real>& g, std::ptrdiff_t r,
-                                GridCoefficient stiffness, int line) {
-  if (g.bending_time > 0) return g.scratch + (kBendLine + line) * g.scratch_line();
-  return g.row[r].coefficients + stiffness * g.line;
-}
-
 /// Lines of scratch for the forces on a row. A force on the next column, or the one after it, is
 /// stored at its source and read with an offset: aligned stores are cheap, and reads before a
 /// line's start hit the cleared tail of the previous line. Forces on the row below are kept for
@@ -82,7 +49,7 @@ struct ForceLines {
   Real* carry;                            ///< on the row below, per component
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
-  const Real *twist, *bend_u, *bend_v;    ///< factors of the bending stencils
+  const Real *twist, *bend_u, *bend_v;    ///< stiffness of the bending stencils
   std::ptrdiff_t step;                    ///< from component to component
 
   HWY_INLINE ForceLines(const GridView<Real>& g, std::ptrdiff_t r) : step(g.scratch_line()) {
@@ -95,9 +62,10 @@ struct ForceLines {
     bent = at + 3 * step;
     corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
     corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
-    twist = bends_of(g, r, kTwist, 0);
-    bend_u = bends_of(g, r, kBendU, 1);
-    bend_v = bends_of(g, r, kBendV, 2);
+    const Real* const row = g.row[r].coefficients;
+    twist = row + kTwist * g.line;
+    bend_u = row + kBendU * g.line;
+    bend_v = row + kBendV * g.line;
   }
 };
 
@@ -110,11 +78,6 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
   compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
-  if (!(g.bending_time > 0)) return;
-  Real* const bends = g.scratch + kBendLine * g.scratch_line();
-  compute_bends(g, r, kTwist, {below + 1, below, 1, 0}, bends);
-  compute_bends(g, r, kBendU, {2, 1, 1, 0}, bends + to.step);
-  compute_bends(g, r, kBendV, {2 * below, below, below, 0}, bends + 2 * to.step);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed

@@ -44,7 +44,6 @@ struct GridView {
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
   GridSprings<Real> springs;
-  Real bending_time = 0;    ///< of the dashpots of bending [s]; 0: none
   Real* scratch = nullptr;  ///< kGridScratchLines lines
 
   std::ptrdiff_t pitch() const { return kMotionLines * line; }
@@ -54,8 +53,8 @@ struct GridView {
 };
 
 /// Lines of scratch: factors of springs, forces for other columns, forces carried to the row below
-/// (see grid_step-inl.h), powers per column, factors of damped bending stencils.
-inline constexpr int kPowerLine = 19, kBendLine = 20, kGridScratchLines = 23;
+/// (see grid_step-inl.h), powers per column.
+inline constexpr int kPowerLine = 19, kGridScratchLines = 20;
 
 /// Sum of a pass's values per column, in column order, so that the width of a vector does not
 /// matter.

@@ -307,7 +307,11 @@ std::vector<SceneEntry> own_scenes() {
       {{"cantilever-test",
         "The bending test, a strip that hangs 6 cm over an edge: read its bending length from the "
         "droop."},
-       build_cantilever_test}};
+       build_cantilever_test},
+      {{"decay-test",
+        "A strip of 4 cm is bent by a hand and let go in empty space: read the damping of its "
+        "fabric from how the swing dies."},
+       build_decay_test}};
 }
 
 const std::vector<SceneEntry>& entries() {

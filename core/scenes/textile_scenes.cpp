@@ -137,4 +137,28 @@ void build_cantilever_test(WorldDef& def, const std::string&) {
   def.environment.damping = 10;
 }
 
+void build_decay_test(WorldDef& def, const std::string&) {
+  constexpr double kCell = 0.0025;
+  constexpr int kClamped = 4, kFree = 16;  // cells
+  ClothDef& cloth = def.cloths[0];
+  cloth.columns = kClamped + kFree + 1;
+  cloth.rows = 17;
+  cloth.width = kCell * (kClamped + kFree);
+  cloth.height = kCell * (cloth.rows - 1);
+  cloth.origin = Vec3d(-kCell * kClamped, kHeight, -cloth.height / 2);
+  cloth.v = Vec3d::UnitZ();
+  cloth.fabric = make_fabric("cotton");
+  def.pins = {{EdgeStrip{Side::left, kCell * kClamped}, 0, {}}};
+  def.test = TextileTest::decay;
+  def.contact.seed.self = SelfContact::none;
+  // Neither weight nor air takes part: what is lost is lost in the fabric.
+  def.environment.gravity = Vec3d::Zero();
+  HandDef hand;
+  hand.u = 1;
+  hand.radius = 0.02;
+  constexpr double kLift = 0.005, kLifted = 0.3, kLetGo = 0.6;  // [m], [s]
+  hand.path = {{0, Vec3d::Zero()}, {kLifted, Vec3d(0, kLift, 0)}, {kLetGo, Vec3d(0, kLift, 0)}};
+  def.hands = {hand};
+}
+
 }  // namespace weft

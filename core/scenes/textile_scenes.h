@@ -21,5 +21,6 @@ WorldDef drape_test_on_rings(const FabricDef& fabric, int rings);
 
 /// The bending test of ASTM D1388: a strip of 25 mm overhangs an edge by 60 mm.
 void build_cantilever_test(WorldDef& def, const std::string& mesh_directory);
+void build_decay_test(WorldDef& def, const std::string& mesh_directory);
 
 }  // namespace weft

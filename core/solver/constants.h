@@ -32,6 +32,17 @@ inline constexpr double kCalmRenewal = 0.9;
 /// could let a particle come nearer than contact allows. Smaller: steps without contact end sooner.
 inline constexpr double kCalmClearance = 0.999;
 
+// Dashpots of bending.
+
+/// Most that the turning of the normal adds to the gradient of a curvature, over what bending gives
+/// it [1]; where it is more, cloth is crumpled. Larger: more stages everywhere. Smaller: cloth that
+/// is stretched unevenly is not damped.
+inline constexpr double kMostTurning = 0.15;
+
+/// Stages of a pass between ticks, at most; a fabric that needs more is refused [1]. Larger: ticks
+/// of a fine mesh may take long. Smaller: less damping of fine meshes.
+inline constexpr int kMostDashpotStages = 1000;
+
 // The moduli of XPBD.
 
 /// Strain with which they are computed [1]. Larger: strains are no longer small. Smaller: what is

@@ -87,13 +87,11 @@ void HeldForces<Real>::list(const ClothModel<Real>& model) {
   near_.hinges.clear();
   near_.triangles.clear();
   bending_.clear();
-  damping_.clear();
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     ClothPart<Real>& part = near_.parts[p];
     part.particles = model.parts[p].particles;
     part.fabric = model.parts[p].fabric;
     part.membrane_tensor = model.parts[p].membrane_tensor;
-    part.bending_time = model.parts[p].bending_time;
     list_part(model, model.parts[p]);
   }
   stale_ = false;
@@ -111,10 +109,10 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
       model.springs, part.springs, [this](const auto& s) { return holds(s.i) || holds(s.j); },
       near_.springs);
   near.membrane = take(
-  near.locks = take(
-      model.locks, part.locks, [this](const auto& t) { return touches(&t.x[0], 3); }, near_.locks);
       model.membrane, part.membrane, [this](const auto& t) { return touches(&t.x[0], 3); },
       near_.membrane);
+  near.locks = take(
+      model.locks, part.locks, [this](const auto& t) { return touches(&t.x[0], 3); }, near_.locks);
   near.hinges = take(
       model.hinges, part.hinges, [this](const auto& h) { return touches(&h.x[0], 4); },
       near_.hinges);
@@ -128,25 +126,20 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
   };
   visit_bending_stencils(part, adder(bending_));
   bending_.first_of_part.push_back(bending_.stiffness.size());
-  visit_damped_stencils(part, adder(damping_));
-  damping_.first_of_part.push_back(damping_.stiffness.size());
 }
 
 template <class Real>
 void HeldForces<Real>::act(std::size_t part, const Surroundings<Real>& around,
                            const Vec3Array<Real>& x, const Vec3Array<Real>& v, double seconds) {
   assert(!stale_ && "begin_tick comes first");
-  add_locking_forces(near_, near, x, force_);
   assert(seconds >= 0 && x.size() == force_.size() && v.size() == force_.size());
   const ClothPart<Real>& near = near_.parts[part];
   add_spring_forces(near_, near, x, v, force_);
   add_membrane_forces(near_, near, x, v, force_);
+  add_locking_forces(near_, near, x, force_);
   add_hinge_forces(near_, near, x, v, force_);
   bending_.visit(part, [&](double k, const StencilView& stencil) {
     add_stencil_force(k, stencil, x, force_);
-  });
-  damping_.visit(part, [&](double k, const StencilView& stencil) {
-    add_stencil_damping(k, near.bending_time, stencil, x, v, force_);
   });
   if (around.air) add_air_forces(near_, near, around.wind, around.air_density, x, v, force_);
   for (const Index i : held_) {

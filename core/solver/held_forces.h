@@ -39,6 +39,12 @@ class HeldForces {
   /// The last pulls of hands act, and slings for some time [s].
   void pull(const Grabs<Real>& grabs, double seconds);
 
+  /// A fixed particle gets an impulse [N s].
+  void push(Index particle, const Vec3d& impulse) {
+    assert(holds(particle));
+    impulse_[static_cast<std::size_t>(place_[static_cast<std::size_t>(particle)])] += impulse;
+  }
+
   /// Keeps what has acted, for steps that may be taken back.
   void keep() { kept_ = impulse_; }
   void take_back() { impulse_ = kept_; }
@@ -75,7 +81,7 @@ class HeldForces {
   std::vector<Index> place_;         ///< of each particle among them; kNone: it is free
   std::vector<Vec3d> impulse_, kept_;
   ClothModel<Real> near_;  ///< springs, membrane, hinges and triangles with a fixed particle
-  Stencils bending_, damping_;
+  Stencils bending_;
   Vec3Array<Real> force_;  ///< scratch; only those of fixed particles are read
 };
 

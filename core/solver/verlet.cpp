@@ -6,7 +6,6 @@
 #include <array>
 #include <cassert>
 
-#include "core/forces/bending_damping.h"
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
@@ -52,7 +51,6 @@ void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
   if (part.hinges.count == 0) return;
   const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
-  add_bending_damping_forces(part, tick.state.x, velocity, tick.work.internal);
 }
 
 /// Forces of sling impulses and air. Grids store them as their external forces; the arrays of the

@@ -63,8 +63,9 @@ void check_cost(const TickCost& cost, const std::string& field, const std::strin
   const bool tick = a_tick > kMostTickUpdates;
   const std::string per = tick ? "a tick" : "a simulated second";
   const std::string estimate = whole(cost.particles) + " particles x " + whole(cost.substeps) +
-                               " substeps x " + whole(cost.sweeps) + " sweeps = " + whole(a_tick) +
-                               " updates a tick";
+                               " substeps x " + whole(cost.sweeps) + " sweeps" +
+                               (cost.damping > 0 ? " + damping of bending" : "") + " = " +
+                               whole(a_tick) + " updates a tick";
   throw CostError(
       field, value,
       "what costs at most " + whole(tick ? kMostTickUpdates : kMostUpdatesPerSecond) +

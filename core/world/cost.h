@@ -21,9 +21,10 @@ struct TickCost {
   double particles = 0;
   double substeps = 0;
   double sweeps = 1;     ///< over all springs in a substep, or an equivalent number
+  double damping = 0;    ///< updates of each particle by solved dashpots of bending, a tick
   double tick_rate = 0;  ///< [1/s]
 
-  double updates() const { return particles * substeps * sweeps; }
+  double updates() const { return particles * (substeps * sweeps + damping); }
 };
 
 /// Throws CostError if a scene has too many particles or triangles, before anything is built.

@@ -55,9 +55,7 @@ bool is_folded(const ClothModel<Real>& model, const Vec3Array<Real>& x) {
 
 template <class Real>
 double drape_of(const World<Real>& world) {
-  for (const NamedNumber& number :
-       measurements(world.def().test, world.model(), world.state(), world.mean_velocities(),
-                    world.environment().gravity.norm()))
+  for (const NamedNumber& number : world.measurements())
     if (number.name == "drape_coefficient_percent") return number.value;
   return std::numeric_limits<double>::quiet_NaN();
 }

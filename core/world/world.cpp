@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/forces/air/air.h"
 #include "core/geometry/ray_cast.h"
+#include "core/solver/constants.h"
 #include "core/stop_signal.h"
 #include "core/world/constants.h"
 
@@ -63,9 +64,9 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   for (const ClothDef& cloth : def_.cloths) scene_fabrics_.push_back(cloth.fabric);
   if (def_.start) validate(*def_.start, model_.mass.size());
   state_ = state_at(def_.start, model_);
-  refuse_too_stiff();
   build_contact();
   prepare_solver();
+  refuse_too_stiff();
   std::vector<Aabb<Real>> boxes;
   triangle_boxes(model_.rest_positions, model_.triangles, boxes);
   pick_tree_.build(boxes);
@@ -89,9 +90,13 @@ void World<Real>::build_contact() {
   if (has_guard(def_)) guard_.emplace(model_, runtime_.executor);
 }
 
-/// Throws DefinitionError if a tick would take too many substeps.
+/// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
 template <class Real>
 void World<Real>::refuse_too_stiff() const {
+  if (bending_dashpots_.stages(model_, tick_seconds()) > kMostDashpotStages)
+    throw DefinitionError("fabric.bending_damping", "too long for this mesh and tick",
+                          "at most " + std::to_string(kMostDashpotStages) + " stages a tick",
+                          "lower it or the resolution, or raise tick_rate");
   if (choose_substeps(solver_of(def_)) <= kMostSubsteps) return;
   throw DefinitionError("fabric", "too stiff for this mesh and tick",
                         "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
@@ -123,6 +128,7 @@ void World<Real>::reset() {
   }
   renew_clamps();
   tick_ = 0;
+  swing_.begin_anew();
   if (!def_.winds.empty()) environment_.wind = def_.environment.wind;
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;
@@ -201,11 +207,30 @@ void World<Real>::end_tick() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
   if (supports_.wanted) take_reactions();
+  watch_swing();
+}
+
+/// Follows the strip of a decay test while nothing holds it.
+template <class Real>
+void World<Real>::watch_swing() {
+  if (def_.test != TextileTest::decay) return;
+  const std::optional<double> deflected = deflection(model_, state_);
+  if (!deflected || !grabs_.list.empty())
+    swing_.begin_anew();
+  else
+    swing_.look(report_.time, *deflected);
+}
+
+template <class Real>
+std::vector<NamedNumber> World<Real>::measurements() const {
+  return weft::measurements(def_.test, model_, state_, mean_velocities(),
+                            environment_.gravity.norm(), swing_);
 }
 
 template <class Real>
 void World<Real>::prepare_solver() {
   const SolverKind kind = solver_of(def_);
+  bending_dashpots_.prepare(model_);
   if (kind == SolverKind::relaxation)
     relaxation_.prepare(model_);
   else  // verlet steps some ticks for implicit
@@ -285,7 +310,21 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
     result.work += guard_->work();
     guard_->end_tick();
   }
+  damp_bending(kind, result);
   return result;
+}
+
+/// Lets the dashpots of bending act.
+template <class Real>
+void World<Real>::damp_bending(SolverKind kind, AdvanceResult& result) {
+  if (bending_dashpots_.empty() || result.blow_up) return;
+  const double before = kinetic_energy(model_, state_);
+  bending_dashpots_.act(model_, tick_seconds(), state_,
+                        supports_.wanted ? &supports_.held : nullptr, report_.profile);
+  const double lost = before - kinetic_energy(model_, state_);
+  if (kind == SolverKind::implicit) implicit_.take_over(state_.v);
+  result.after.kinetic -= lost;
+  if (energy_) energy_->meter.add({.damping = lost});
 }
 
 template <class Real>

@@ -14,6 +14,7 @@
 #include "core/executor.h"
 #include "core/geometry/bvh.h"
 #include "core/profile.h"
+#include "core/solver/bending_dashpots.h"
 #include "core/solver/implicit/implicit.h"
 #include "core/solver/relaxation.h"
 #include "core/solver/verlet.h"
@@ -242,6 +243,8 @@ class World {
   void accept_state();
   const Pins& pins() const { return pins_; }
   const Grabs<Real>& grabs() const { return grabs_; }
+  /// Results of the scene's textile test now; see diagnostics/measurements.h.
+  std::vector<NamedNumber> measurements() const;
   /// Index of the scene's hand that holds by this grab, if there is one.
   std::optional<std::size_t> scene_hand(GrabId id) const;
   const ColliderStates& colliders() const { return colliders_; }
@@ -302,9 +305,11 @@ class World {
   void plan_targets();
   void finish_targets();
   void end_tick();
+  void watch_swing();
   bool leaves_to_verlet(const AdvanceResult& result, int substeps);
   void advance_or_recover(int substeps);
   AdvanceResult advance(SolverKind kind, int substeps);
+  void damp_bending(SolverKind kind, AdvanceResult& result);
   Collision<Real> collision();
   std::optional<Divergence> examine(const AdvanceResult& result, SolverKind kind,
                                     int substeps) const;
@@ -340,6 +345,7 @@ class World {
   VerletWorkspace<Real> verlet_;
   RelaxationWorkspace<Real> relaxation_;
   ImplicitWorkspace<Real> implicit_;
+  BendingDashpots<Real> bending_dashpots_;
   bool touching_ = false;  ///< with the implicit solver: something touched when the last tick ended
   EnergyAccount account_;
   Sleep<Real> sleep_;
@@ -369,6 +375,7 @@ class World {
     std::optional<Reactions> told;  ///< of the last tick, or the coming one
   };
   Supports supports_;
+  Swing swing_;                               ///< of the strip, if the scene is a decay test
   std::optional<EnergyLedger<Real>> energy_;  ///< if it is measured
 };
 

@@ -72,11 +72,6 @@ bool relaxes_rigidly(const WorldDef& def) {
   return solver_of(def) == SolverKind::relaxation && def.relaxation.compliance == 0;
 }
 
-/// Only verlet has dashpots of the quadratic form.
-bool needs_damped_hinges(const WorldDef& def, const ClothDef& cloth) {
-  return solver_of(def) != SolverKind::verlet && cloth.fabric.bending_damping > 0;
-}
-
 }  // namespace
 
 std::vector<ClothDef> cloths_to_build(const WorldDef& def) {
@@ -89,8 +84,6 @@ std::vector<ClothDef> cloths_to_build(const WorldDef& def) {
                             "only verlet has threads that lock");
     if (relaxes_rigidly(def) && cloth.membrane_model == MembraneModel::automatic)
       cloth.membrane_model = MembraneModel::springs;
-    if (needs_damped_hinges(def, cloth) && cloth.bending_model == BendingModel::automatic)
-      cloth.bending_model = BendingModel::hinges;
   }
   return cloths;
 }
@@ -183,11 +176,6 @@ void validate(const WorldDef& def) {
       throw DefinitionError(cloth_field(k, "cloth.membrane_model"), "triangles",
                             "automatic or springs with rigid relaxation",
                             "give relaxation.compliance, e.g. 1, or take another solver");
-    if (needs_damped_hinges(def, def.cloths[k]) &&
-        def.cloths[k].bending_model == BendingModel::quadratic)
-      throw DefinitionError(cloth_field(k, "cloth.bending_model"), "quadratic",
-                            "automatic or hinges with bending damping",
-                            "only verlet damps the quadratic form");
   }
   const SelfContact self = def.contact.seed.self;
   const auto refuse_self = [&](const char* allowed, const char* hint) {

@@ -81,7 +81,8 @@ void visit_fields_of_world(Def& def, Visitor&& visit) {
   below("")(choice("model", "weft|seed", "solver and contact, unless they are chosen by name"),
             def.model);
   below("")(FieldInfo{"tick_rate", 1, 1000, "1/s", "ticks per simulated second"}, def.tick_rate);
-  below("")(choice("test", "none|drape|cantilever", "textile test of the first cloth"), def.test);
+  below("")(choice("test", "none|drape|cantilever|decay", "textile test of the first cloth"),
+            def.test);
   visit_fields_of_environment(def.environment, below("environment."));
   visit_fields_of_solver(def.solver, below("solver."));
   below("contact.")(choice("model", "automatic|weft|seed", "automatic: by the model"),

@@ -78,9 +78,7 @@ Run run_test(const WorldDef& specimen, int start, double seconds) {
     if (report.divergence) throw std::runtime_error(describe(*report.divergence));
   }
   Run run;
-  for (const NamedNumber& number :
-       measurements(specimen.test, world.model(), world.state(), world.mean_velocities(),
-                    world.environment().gravity.norm())) {
+  for (const NamedNumber& number : world.measurements()) {
     if (number.name == "drape_coefficient_percent") run.coefficient = number.value;
     if (number.name == "folds") run.folds = number.value;
     if (number.name == "largest_speed_m_s") run.speed = number.value;

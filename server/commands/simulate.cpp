@@ -213,10 +213,7 @@ Json summary(const SimulateOptions& options, const World<Real>& world, const Mea
   const StrainStatistics strain = strain_statistics(world.model(), world.state().x, scratch);
   const Energies& energy = world.report().energies;
   Json measured = Json::object();
-  for (const NamedNumber& number :
-       measurements(world.def().test, world.model(), world.state(), world.mean_velocities(),
-                    world.environment().gravity.norm()))
-    measured[number.name] = number.value;
+  for (const NamedNumber& number : world.measurements()) measured[number.name] = number.value;
   Json stages = Json::object();
   for (std::size_t i = 0; i < kStageCount; ++i) {
     stages[kStageNames[i]] = {{"milliseconds", m.stages.stages[i].seconds * 1000},

@@ -191,10 +191,7 @@ std::vector<proto::TreeInfo> trees_of(ServedWorld& world) {
 
 proto::Measurements measurements_of(const ServedWorld& world) {
   proto::Measurements result;
-  for (const NamedNumber& m :
-       measurements(world.def().test, world.model(), world.state(), world.mean_velocities(),
-                    world.environment().gravity.norm()))
-    result.values.emplace_back(m.name, m.value);
+  for (const NamedNumber& m : world.measurements()) result.values.emplace_back(m.name, m.value);
   return result;
 }
 

@@ -115,8 +115,7 @@ void keep_cloth(const Dice& dice, bool rigid, Json& cloth) {
   if (cloth.value("form", "") != "mesh") keep_cells(dice, cloth);
   keep_membrane(dice, rigid, cloth);
   const Json fabric = cloth.value("fabric", Json::object());
-  const bool bends_flat = !cloth.contains("rest_angle") && !fabric.contains("preset") &&
-                          !fabric.contains("bending_damping");
+  const bool bends_flat = !cloth.contains("rest_angle") && !fabric.contains("preset");
   if (cloth.value("bending_model", "") == "quadratic" && !bends_flat) cloth.erase("bending_model");
   if (cloth.value("outline", "") == "ellipse") {
     cloth.erase("skip_stiffness");
@@ -218,8 +217,10 @@ void keep_contact(Json& scene) {
 }  // namespace
 
 void make_legal(const Dice& dice, Json& scene) {
-  for (std::size_t k = 0; k < scene["cloths"].size(); ++k)
+  for (std::size_t k = 0; k < scene["cloths"].size(); ++k) {
     keep_cloth(dice.of("cloths").of(k), relaxes_rigidly(scene), scene["cloths"][k]);
+    keep_threads(has_locks(scene), scene["cloths"][k]);
+  }
   if (scene.contains("colliders")) {
     for (Json& collider : scene["colliders"]) {
       if (collider.contains("motion"))
@@ -235,8 +236,6 @@ void make_legal(const Dice& dice, Json& scene) {
   }
   if (scene.contains("pins")) {
     for (Json& pin : scene["pins"]) keep_pin(scene, pin);
-    keep_threads(has_locks(scene), scene["cloths"][k]);
-  }
   }
   if (scene.contains("winds")) keep_times(scene["winds"]);
   keep_contact(scene);

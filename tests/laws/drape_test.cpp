@@ -35,8 +35,7 @@ Drape draped(const std::string& name, double seconds, double rigidity = 1, unsig
     const TickReport& report = world.step();
     if (report.divergence) throw std::runtime_error(describe(*report.divergence));
   }
-  const auto m =
-      measurements(def.test, world.model(), world.state(), world.mean_velocities(), 9.81);
+  const auto m = world.measurements();
   REQUIRE(m.size() >= 4);
   Drape drape{m[0].value, m[1].value, m[2].value, m[3].value};
   if (m.size() == 6) {

@@ -170,6 +170,18 @@ TEST_CASE("air, drag, dashpots and contact together leave verlet a residual belo
   CHECK(std::abs(balance.lost()) < 0.02 * turnover(world, balance));
 }
 
+TEST_CASE("what dashpots of bending take is in the balance: it lacks as little as without") {
+  WorldDef def = swinging();
+  def.solver.min_substeps = 80;
+  const double undamped = std::abs(lost_in(def, 0.25));
+  def.cloths[0].fabric.bending_damping = 1;
+  World<double> world(def);
+  world.measure_energy(true);
+  test::advance(world, 0.25);
+  CHECK(world.energy_balance()->flows.damping > 20 * undamped);
+  CHECK(std::abs(world.energy_balance()->lost()) < 2 * undamped);
+}
+
 TEST_CASE("what implicit loses by its steps is what verlet has more, to 20 %") {
   WorldDef def = swinging(SolverKind::implicit);
   def.implicit.substeps = 2;

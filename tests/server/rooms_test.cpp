@@ -76,7 +76,7 @@ struct TestRooms {
 };
 
 TickCost cost_of(double particles) {
-  return {particles, 1, 1, 60};
+  return {.particles = particles, .substeps = 1, .tick_rate = 60};
 }
 
 TEST_CASE("a name belongs to one room, from its reservation until the room is closed") {

@@ -122,6 +122,15 @@ test('measurements are written in the units of a laboratory', () => {
   assert.equal(test_of({}), null);
 });
 
+test('a swing that dies has the figures that the server measures, and no marks', bounded, async () => {
+  const { specimen, measured } = await specimen_of('decay-test', 240);
+  assert.equal(test_of(measured), 'decay');
+  assert.deepEqual(marks_of('decay', specimen), []);
+  const told = measurement_text('relaxation_time_s', measured.relaxation_time_s);
+  assert.equal(told.text, `${(1000 * measured.relaxation_time_s).toFixed(2)} ms`);
+  for (const name of Object.keys(measured)) assert.ok(measurement_text(name, measured[name]), name);
+});
+
 test('the page shows figures, band and marks of a textile test, and none elsewhere', bounded, () =>
   with_server(['--scene', 'drape-test', '--paused'], async (page, script) => {
     const panel = page.getByRole('region', { name: 'Laboratory' });

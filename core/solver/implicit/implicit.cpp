@@ -244,6 +244,13 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
 }
 
 template <class Real>
+void ImplicitWorkspace<Real>::take_over(const Vec3Array<Real>& velocities) {
+  assert(velocities.size() == end_v.size());
+  for (std::size_t i = 0; i < end_v.size(); ++i) last_v[i] += velocities[i] - end_v[i];
+  end_v = velocities;
+}
+
+template <class Real>
 void ImplicitWorkspace<Real>::forget() {
   std::fill(history.begin(), history.end(), 0);
   last_dt = credit = 0;

@@ -78,6 +78,10 @@ struct ImplicitWorkspace {
 
   void prepare(const ClothModel<Real>& model);
 
+  /// Says that something changed the velocities after a tick, by the same for the whole substep
+  /// before: the history counts on.
+  void take_over(const Vec3Array<Real>& velocities);
+
   /// Makes the coming substep independent of the previous one.
   void forget();
 };

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_modes.h"
 #include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/cantilever.h"
 #include "core/diagnostics/drape.h"
@@ -178,8 +179,7 @@ TEST_CASE("the cantilever test finds the bending length of every preset, to 1 % 
     def.cloths[0].fabric = preset.fabric;
     World<float> world(def);
     test::advance(world, 3);
-    const auto m =
-        measurements(def.test, world.model(), world.state(), world.mean_velocities(), 9.81);
+    const auto m = world.measurements();
     REQUIRE(m.size() == 5);
     INFO(preset.name << ": droop " << m[0].value << " m, " << m[1].value << " degrees");
     CHECK(m[4].value < 0.01);  // what rounding keeps moving in single precision
@@ -190,6 +190,44 @@ TEST_CASE("the cantilever test finds the bending length of every preset, to 1 % 
     CHECK(m[2].value == Approx(expected).epsilon(tolerance));
     CHECK(m[3].value == Approx(preset.fabric.bending_warp).epsilon(3 * tolerance));
   }
+}
+
+TEST_CASE("the decay test finds the relaxation time of bending and the period, to 5 %") {
+  const auto [name, time] =
+      GENERATE(table<std::string, double>({{"cotton", 1e-3}, {"cotton", 5e-3}, {"leather", 1e-3}}));
+  WorldDef def = make_scene("decay-test");
+  def.cloths[0].fabric = make_fabric(name);
+  def.cloths[0].fabric.bending_damping = time;
+  World<float> world(def);
+  test::advance(world, 0.5);
+  CHECK(world.measurements().size() == 1);  // held by the hand
+  test::advance(world, 5.5);
+  const auto m = world.measurements();
+  REQUIRE(m.size() == 5);
+  const double omega = angular_frequency(def.cloths[0].fabric, FabricMode::bending, 0.04);
+  INFO(name << " with " << time << " s: " << m[1].value << " s, " << m[2].value << " s");
+  CHECK(m[1].value == Approx(2 * kPi / omega).epsilon(0.02));
+  CHECK(m[2].value == Approx(2 / (omega * omega * time)).epsilon(0.07));
+  CHECK(m[3].value == Approx(omega * time).epsilon(0.05));
+  CHECK(m[4].value == Approx(time).epsilon(0.05));
+}
+
+TEST_CASE(
+    "a swing begins anew with each hold, and one that does not decay tells its period alone") {
+  Swing swing;
+  const auto look = [&swing](double from, double to, double growth) {
+    for (double t = from; t < to; t += 0.01) swing.look(t, std::exp(growth * t) * std::cos(20 * t));
+  };
+  look(0, 1, -0.5);
+  CHECK(swing.decay().period == Approx(2 * kPi / 20).epsilon(1e-3));
+  CHECK(swing.decay().decay_time == Approx(2).epsilon(0.01));
+  swing.begin_anew();
+  CHECK(swing.amplitude() == 0);
+  CHECK(swing.decay().period == 0);
+  look(1, 2, 0.5);
+  CHECK(swing.decay().period == Approx(2 * kPi / 20).epsilon(1e-3));
+  CHECK(swing.decay().decay_time == 0);
+  CHECK(swing.decay().relaxation_time() == 0);
 }
 
 TEST_CASE("a fabric measured by its bending lengths has B = sigma g c^3 and the rest of its base") {
@@ -216,14 +254,14 @@ TEST_CASE("a fabric measured by its bending lengths has B = sigma g c^3 and the 
 TEST_CASE("a scene that is no test measures nothing, and one that does not fit its test neither") {
   WorldDef def = make_scene("wall");
   World<float> wall(def);
-  CHECK(measurements(def.test, wall.model(), wall.state(), wall.mean_velocities(), 9.81).empty());
+  CHECK(wall.measurements().empty());
   def = make_scene("cantilever-test");
   def.pins.clear();
   World<float> loose(def);
   CHECK(measurements(TextileTest::cantilever, loose.model(), loose.state(), loose.mean_velocities(),
-                     9.81)
+                     9.81, {})
             .empty());
-  CHECK(
-      measurements(TextileTest::drape, loose.model(), loose.state(), loose.mean_velocities(), 9.81)
-          .empty());
+  CHECK(measurements(TextileTest::drape, loose.model(), loose.state(), loose.mean_velocities(),
+                     9.81, {})
+            .empty());
 }

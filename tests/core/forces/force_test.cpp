@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "core/forces/air/air_force.h"
-#include "core/forces/bending_damping.h"
 #include "core/forces/energy_pass.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_pass.h"
@@ -126,7 +125,6 @@ TEST_CASE("elastic and damping forces add up to no force and no moment, to 1e-12
   add_spring_forces(model, x, v, f);
   add_hinge_forces(model, x, v, f);
   add_quadratic_bending_forces(model, x, f);
-  add_bending_damping_forces(model.parts[0], x, v, f);
   double scale = 0;
   for (const Vec3d& value : f) scale += value.norm();
   CHECK(force_sum(f) < 1e-12 * scale);
@@ -149,53 +147,7 @@ TEST_CASE("a cloth moved and turning as a rigid body feels no force, to 1e-9 of 
   add_spring_forces(model, x, v, f);
   add_hinge_forces(model, x, v, f);
   add_quadratic_bending_forces(model, x, f);
-  add_bending_damping_forces(model.parts[0], x, v, f);
   for (const Vec3d& value : f) CHECK(value.norm() < 1e-9);
-}
-
-TEST_CASE("damped bending resists no bent cloth that turns as a rigid body") {
-  ClothDef def = GENERATE(test::flat_cloth(9, 8, 1, 0.8),
-                          test::triangle_sheet(test::Cut::irregular, 1, 0.8, 0.1));
-  def.fabric.bending_damping = 0.1;
-  def.fabric.bending_warp = def.fabric.bending_weft = 1e-2;
-  const ClothModel<double> model = build_cloth<double>(def);
-  REQUIRE(model.parts[0].bending_time == 0.1);
-  Vec3Array<double> x, v, turning(model.mass.size(), Vec3d::Zero()), bending = turning;
-  const Vec3d spin(0.5, -2, 3), drift(1, 2, 3);
-  for (const auto& place : model.material) {
-    x.emplace_back(std::sin(place[0]), std::cos(place[0]), place[1]);
-    v.push_back(drift + spin.cross(x.back()));
-  }
-  add_bending_damping_forces(model.parts[0], x, v, turning);
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = 3.0 * Vec3d(0, x[i][1], 0);
-  add_bending_damping_forces(model.parts[0], x, v, bending);
-  double most = 0, least = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    most = std::max(most, bending[i].norm());
-    least = std::max(least, turning[i].norm());
-  }
-  CHECK(most > 1e-4);
-  CHECK(least < 1e-12 * most);
-}
-
-TEST_CASE("the loss of damped bending is the power that its forces take, times the time") {
-  ClothDef def = GENERATE(test::flat_cloth(5, 6, 1, 0.8),
-                          test::triangle_sheet(test::Cut::irregular, 1, 0.8, 0.2));
-  def.fabric.bending_damping = 0.1;
-  def.fabric.bending_warp = 1e-2;
-  const ClothModel<double> model = build_cloth<double>(def);
-  SeededRandom random(6);
-  const Vec3Array<double> x = test::shaken(model, 0.1, random);
-  const Vec3Array<double> v = test::random_velocities(model, 5, random);
-  Vec3Array<double> force(x.size(), Vec3d::Zero()), moved = v;
-  add_bending_damping_forces(model.parts[0], x, v, force);
-  double work = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    moved[i] *= 1e-3;
-    work += force[i].dot(moved[i]);
-  }
-  CHECK(work < 0);
-  CHECK(bending_loss(model.parts[0], x, v, moved) == Approx(-work));
 }
 
 TEST_CASE("damping takes energy at every velocity") {
@@ -248,7 +200,6 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
   def.fabric.shear = 0.5;
   def.fabric.bending_warp = 2e-3;
   def.fabric.bending_weft = 1e-3;
-  def.fabric.bending_damping = GENERATE(0.0, 0.01);
   const ClothModel<Real> model = build_cloth<Real>(def);
   const Vec3Array<Real> x = test::shaken(model, 0.02, random);
   const Vec3Array<Real> v = test::random_velocities(model, 3, random);
@@ -258,7 +209,6 @@ TEMPLATE_TEST_CASE("forces row by row equal those element by element", "", float
       air_row_wise(x.size(), zero);
   add_spring_forces(model, x, v, elements);
   add_quadratic_bending_forces(model, x, elements);
-  add_bending_damping_forces(model.parts[0], x, v, elements);
   add_air_forces(model, wind, 1.225, x, v, air_elements);
   GridPass<Real> grid;
   grid.prepare(model.parts[0]);

@@ -89,7 +89,6 @@ TEST_CASE("every instruction set moves a grid to the same bits") {
   def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
   def.fabric.shear = 0.5;
   def.fabric.bending_warp = 2e-3;
-  def.fabric.bending_damping = GENERATE(0.0, 0.01);
   check_all_targets<float>(def);
   check_all_targets<double>(def);
 }
@@ -102,7 +101,6 @@ TEMPLATE_TEST_CASE("bands of a grid move it to the same bits, whichever comes fi
   def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
   def.fabric.shear = 0.5;
   def.fabric.bending_warp = 2e-3;
-  def.fabric.bending_damping = GENERATE(0.0, 0.01);
   Backwards backwards;
   test::TwoThreads two_threads;
   const Moved<TestType> alone = moved<TestType>(def);

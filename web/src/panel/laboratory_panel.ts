@@ -14,6 +14,11 @@ const ROWS: Record<string, [string, number, string, number]> = {
   chord_angle_degrees: ['Angle of the chord', 1, '°', 1],
   bending_length_m: ['Bending length', 100, 'cm', 2],
   bending_rigidity_n_m: ['Bending rigidity', 1e6, 'µN m', 2],
+  amplitude_m: ['Amplitude', 1000, 'mm', 2],
+  swing_period_s: ['Period', 1, 's', 3],
+  decay_time_s: ['Falls to 1/e in', 1, 's', 2],
+  loss_factor: ['Loss factor', 1, '', 3],
+  relaxation_time_s: ['Relaxation time of bending', 1000, 'ms', 2],
   largest_speed_m_s: ['Still moving at', 1000, 'mm/s', 1],
 };
 
@@ -27,6 +32,7 @@ export function measurement_text(name: string, value: number): { label: string; 
 /** Which test has these measurements; null if the scene is none. */
 export function test_of(measurements: Measurements): TextileTest | null {
   if ('drape_coefficient_percent' in measurements) return 'drape';
+  if ('amplitude_m' in measurements) return 'decay';
   return 'chord_angle_degrees' in measurements ? 'cantilever' : null;
 }
 
@@ -96,6 +102,7 @@ export class LaboratoryPanel {
       return [row];
     });
     element('laboratory-figures').replaceChildren(...rows);
+    element('laboratory-note').hidden = test_of(measured) === 'decay'; // which has no lines
     this.write_band(measured);
   }
 

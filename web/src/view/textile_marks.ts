@@ -5,7 +5,7 @@ import type { Point } from './ruler.js';
 // A bundle of its own, of which only scenes that are tests have need: it imports nothing of the rest.
 
 /** Which textile test a scene is. */
-export type TextileTest = 'drape' | 'cantilever';
+export type TextileTest = 'drape' | 'cantilever' | 'decay';
 
 const DISC_RADIUS = 0.09; // of the drape test's support, by its standard [m]
 const SPECIMEN_RADIUS = 0.15; // of a flat specimen [m]
@@ -124,6 +124,7 @@ function cantilever_marks(specimen: Specimen): number[] {
 
 /** All marks of a test, as pairs of points. */
 export function marks_of(test: TextileTest, specimen: Specimen): number[] {
+  if (test === 'decay') return []; // what is measured is a time
   return test === 'drape' ? drape_marks(specimen) : cantilever_marks(specimen);
 }
 
