@@ -145,7 +145,8 @@ void build_decay_test(WorldDef& def, const std::string&) {
   cloth.rows = 17;
   cloth.width = kCell * (kClamped + kFree);
   cloth.height = kCell * (cloth.rows - 1);
-  cloth.origin = Vec3d(-kCell * kClamped, kHeight, -cloth.height / 2);
+  // At height 0, where floats resolve the least displacement of a limp strip in a substep.
+  cloth.origin = Vec3d(-kCell * kClamped, 0, -cloth.height / 2);
   cloth.v = Vec3d::UnitZ();
   cloth.fabric = make_fabric("cotton");
   def.pins = {{EdgeStrip{Side::left, kCell * kClamped}, 0, {}}};
