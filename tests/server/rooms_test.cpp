@@ -133,7 +133,8 @@ TEST_CASE("all rooms together keep to one bound of particles and one of updates"
   CHECK(t.open("b").error().code == proto::ErrorCode::too_costly);
   CHECK_FALSE(t.rooms.close("a"));
   CHECK_FALSE(t.rooms.admit("default", cost_of(own + 1)));
-  CHECK(t.rooms.admit("default", {1000, kMostUpdatesOfRooms / 1000, 1, 60}));
+  CHECK(t.rooms.admit(
+      "default", {.particles = 1000, .substeps = kMostUpdatesOfRooms / 1000, .tick_rate = 60}));
 }
 
 TEST_CASE("a room that could not be opened, or is closed, costs the others nothing") {
