@@ -151,7 +151,6 @@ void build_decay_test(WorldDef& def, const std::string&) {
   cloth.fabric = make_fabric("cotton");
   def.pins = {{EdgeStrip{Side::left, kCell * kClamped}, 0, {}}};
   def.test = TextileTest::decay;
-  def.contact.seed.self = SelfContact::none;
   // Neither weight nor air takes part: what is lost is lost in the fabric.
   def.environment.gravity = Vec3d::Zero();
   HandDef hand;

@@ -61,7 +61,7 @@ class Series(unittest.TestCase):
         scene = json.loads(program("scenes", "--json", "hammock").stdout)
         scene["environment"].update(drag=0, wind=[0, 0, 0], gust_speed=0)
         scene["contact"]["self"] = "none"
-        scene["cloths"][0]["fabric"].update(damping_ratio=0)
+        scene["cloths"][0]["fabric"].update(damping_ratio=0, bending_damping=0)
         scene["colliders"] = []
         scene["hands"] = [{"u": 0.5, "v": 0.5, "radius": 0.1, "stiffness": 60, "max_force": 50,
                            "path": [{"time": 0, "offset": [0, 0, 0]}, {"time": 10, "offset": [0, 5, 0.5]}]}]

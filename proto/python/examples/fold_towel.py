@@ -49,7 +49,7 @@ def main(address: str) -> None:
         print("gripping:", *(jaws["gripping"] for jaws in cloth.query("grippers")))
         print(f"flat it is {length(cloth):.3f} m long")
         # Half a circle about the crease, turning as a wrist does, to just above the other hem.
-        steps, middle = 24, SIDE / 2 - 0.0125
+        steps, middle = 24, SIDE / 2 - 0.03
         for k in range(steps):
             now, then = (math.pi * n / steps for n in (k, k + 1))
             across = middle * (math.cos(then) - math.cos(now))
