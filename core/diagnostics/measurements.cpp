@@ -53,7 +53,6 @@ std::vector<NamedNumber> drape(const ClothModel<Real>& model, const ClothState<R
 /// A strip that is clamped at its first columns and hangs or swings by the others.
 struct Strip {
   Vec3d clamp, tip;   ///< ends of what is free
-  Vec3d along;        ///< of its clamped cells
   double length = 0;  ///< of what is free [m]
 };
 
@@ -77,7 +76,7 @@ std::optional<Strip> strip_of(const ClothModel<Real>& model, const ClothState<Re
   const Vec3d last = column(pinned - 1);
   const double beyond = pinned > 1 ? 0.5 - 1 / part.cells.stiffening_of_column(pinned - 1) : 0;
   const Vec3d along = last - column(std::max(pinned - 2, 0));
-  return Strip{last + beyond * along, column(part.columns - 1), along,
+  return Strip{last + beyond * along, column(part.columns - 1),
                (part.columns - pinned - beyond) * static_cast<double>(part.cell_u)};
 }
 

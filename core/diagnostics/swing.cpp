@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cloth/fabric_modes.h"
 #include "core/diagnostics/constants.h"
 
 namespace weft {
@@ -56,9 +57,7 @@ Swing::Decay Swing::decay() const {
 }
 
 double Swing::Decay::relaxation_time() const {
-  if (decay_time == 0) return 0;
-  const double omega = 2 * kPi / period;
-  return 2 / (omega * omega * decay_time);
+  return decay_time == 0 ? 0 : relaxation_of_decay(2 * kPi / period, decay_time);
 }
 
 double Swing::Decay::loss_factor() const {
