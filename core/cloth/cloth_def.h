@@ -23,7 +23,7 @@ enum class MassLumping {
 enum class BendingModel {
   automatic,    ///< quadratic where accurate enough, else hinges; see quadratic_bending_fits
   hinges,       ///< dihedral angles with rest angle and damping (Bridson 2003)
-  quadratic,    ///< constant Hessian on the grid; needs zero rest angles and no bending damping
+  quadratic,    ///< constant Hessian, on grids and flat meshes; needs zero rest angles
   sine_hinges,  ///< hinges with moments by sin(theta/2), as printed in Bridson 2003 (the seed's)
 };
 

@@ -41,8 +41,8 @@ std::vector<NamedNumber> measurements(TextileTest test, const ClothModel<Real>& 
                                       const ClothState<Real>& state, const Vec3Array<Real>& v,
                                       double gravity, const Swing& swing);
 
-/// How far the free end of a strip is from where its clamped columns point, along the normal of the
-/// cloth at rest [m]; nothing if the first part is no such strip.
+/// How far the free end of a strip is from its clamp along the normal of the cloth at rest [m];
+/// nothing if the first part is no such strip.
 template <class Real>
 std::optional<double> deflection(const ClothModel<Real>& model, const ClothState<Real>& state);
 
