@@ -150,11 +150,11 @@ TEST_CASE("jaws close on a cloth, stop at its two thicknesses, lift it, and it d
   CHECK(pinched(world).empty());
 }
 
-TEST_CASE("narrow jaws hold 0.9 of what friction allows for 10 s, at any number of particles") {
+TEST_CASE("narrow jaws hold 0.9 of what friction allows for 20 s, at any number of particles") {
   World<float> world(hung_between_narrow_jaws(GENERATE(15, 31)));
   grip_by_load(world, 0.9);
-  test::advance(world, 6);           // until the cloth, let go at once, swings no more
-  CHECK(creep(world, 10) < 1.5e-4);  // 0.5 and more where rows, not areas, carried the squeeze
+  test::advance(world, 6);  // until the cloth, let go at once, swings no more
+  CHECK(creep(world, 20) < 1e-4);
 }
 
 TEST_CASE("a cloth that weighs more than the friction of narrow jaws slips off them") {

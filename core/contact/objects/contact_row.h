@@ -76,8 +76,9 @@ struct MovingRow {
   double own_offset = 0;             ///< [m]
   Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
   Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
-  /// Friction that the squeeze of a jaw still allows in this step [m/s].
+  /// Friction that the squeeze of a jaw and what presses besides allow in this step [m/s].
   Real grip = 0;
+  Vec3<Real> rubbed = Vec3<Real>::Zero();  ///< the part of it that acts [m/s]
 };
 
 /// What a row has besides whose point hits its object in this step and shall bounce.

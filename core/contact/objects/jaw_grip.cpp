@@ -27,6 +27,7 @@ Real find_squeezed(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& ro
     if (moving.collider != k) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
     moving.grip = 0;
+    moving.rubbed.setZero();
     if (!row.responds || !(row.normal.dot(jaw.press.template cast<Real>()) > Real(kFacing)))
       continue;
     const Real gap = row.normal.dot(weighted(row, x)) - row.offset;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 #include "core/contact/constants.h"
 #include "core/contact/guard/cloth_guard.h"
@@ -69,29 +70,118 @@ void note_impact(ObjectSolve<Real>& solve, std::size_t r) {
   bounces.impacts.push_back({r, -restitution * speed, 0});
 }
 
+/// Friction on a row that a jaw squeezes: what of the step's friction acts may change with each
+/// sweep, up and down, and is at most what is allowed in all. So no sweep uses up what a later one
+/// needs.
+/// @param slip     velocity along the plane [m/s]
+/// @param allowed  what is allowed besides from now on [m/s]
+/// @return the change of the velocity [m/s]
+template <class Real>
+Vec3<Real> rub_in_jaw(const Vec3<Real>& slip, Real allowed, MovingRow<Real>& moving) {
+  assert(moving.grip > 0 && allowed >= 0);
+  moving.grip += allowed;
+  Vec3<Real> rubbed = moving.rubbed - slip;
+  if (const Real size = rubbed.norm(); size > moving.grip) rubbed *= moving.grip / size;
+  const Vec3<Real> change = rubbed - moving.rubbed;
+  moving.rubbed = rubbed;
+  return change;
+}
+
 /// Pushes a row's point. Friction: the tangential velocity is stopped if that takes at most
 /// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
 /// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
 /// @param v,vn  velocity of the point over the object, and along the normal [m/s]
-/// @param push  change of the latter [m/s]
+/// @param push     change of the latter [m/s]
+/// @param pressed  how much of that is pressure that rubs [m/s]
+/// @return the change of its velocity [m/s]
 template <class Real>
-void respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v, Real vn, Real push) {
+Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v, Real vn, Real push,
+                   Real pressed) {
   const ContactRow<Real>& row = solve.rows.all[r];
-  assert(row.responds && push >= 0);
+  assert(row.responds && push >= pressed && pressed >= 0);
   MovingRow<Real>* const moving = solve.rows.moving_of(row);
   Vec3<Real> change = row.normal * push;
   const Real friction = static_cast<Real>(settings_of(solve.cloths, row).friction);
   if (friction > 0) {
     ++solve.friction_evaluations;
     const Vec3<Real> slip = v - row.normal * vn;
-    const Real speed = slip.norm(), most = friction * push + (moving ? moving->grip : Real(0));
-    change -= speed > most ? (slip * (most / speed)).eval() : slip;
-    if (moving) moving->grip -= std::clamp(speed - friction * push, Real(0), moving->grip);
+    const Real allowed = friction * pressed;
+    if (moving && moving->grip > 0) {
+      change += rub_in_jaw(slip, allowed, *moving);
+    } else {
+      const Real speed = slip.norm();
+      change -= speed > allowed ? (slip * (allowed / speed)).eval() : slip;
+    }
   }
   share_out(row, change, solve.state.v);
   solve.response.pushed.push_back(r);
   if (moving) take_reaction(*moving, weighted(row, solve.state.x), change, solve.motion);
   if (solve.log.wanted()) solve.log.add(solve.rows.all, r, change);
+  return change;
+}
+
+/// What one look at a row has changed.
+template <class Real>
+struct RowChange {
+  Real push = 0;                           ///< of the normal velocity [m/s]
+  Vec3<Real> change = Vec3<Real>::Zero();  ///< of the velocity of its point [m/s]
+};
+
+/// Lets a row respond if it lacks normal velocity, or is squeezed and may rub.
+/// @param rubs  whether what pushes it adds to its friction
+template <class Real>
+RowChange<Real> solve_row(ObjectSolve<Real>& solve, std::size_t r, bool rubs = true) {
+  const ContactRow<Real>& row = solve.rows.all[r];
+  const Vec3<Real> v = velocity_over(solve.rows, row, solve.state.v);
+  const Real vn = row.normal.dot(v);
+  Real push = row.least_speed - vn;
+  if (!(push > 0)) {
+    const MovingRow<Real>* moving = solve.rows.moving_of(row);
+    if (!moving || moving->grip == 0) return {};
+    push = 0;
+  } else if (row.impact != kNone) {
+    solve.bounces.impacts[static_cast<std::size_t>(row.impact)].taken +=
+        vn * vn - row.least_speed * row.least_speed;
+  }
+  return {push, respond(solve, r, v, vn, push, rubs ? push : Real(0))};
+}
+
+std::span<const Index> particles_of(const auto& row) {
+  return std::span(row.particle).first(static_cast<std::size_t>(row.count));
+}
+
+/// Sweeps on where jaws hold cloth, over the rows whose particles the last sweep has changed. The
+/// cloth between two jaws and round their rims is stopped from both sides; what the usual sweeps
+/// leave of that would shake it all the time, and shaken cloth creeps out. What they push from both
+/// sides is part of the squeeze, whose friction is shared, and adds none.
+template <class Real>
+void settle_between_jaws(ObjectSolve<Real>& solve) {
+  std::vector<int>& changed = solve.response.changed;
+  changed.assign(solve.state.v.size(), kNone);
+  const auto note = [&changed](const ContactRow<Real>& row, int sweep) {
+    for (const Index i : particles_of(row)) changed[static_cast<std::size_t>(i)] = sweep;
+  };
+  const auto is_of_jaw = [&solve](std::size_t collider) {
+    return !(*solve.motion.colliders)[collider].press.isZero(0);
+  };
+  for (const MovingRow<Real>& moving : solve.rows.moving)
+    if (is_of_jaw(moving.collider)) note(solve.rows.all[moving.row], 0);
+  bool any = true;
+  for (int sweep = 1; any && sweep <= kJawSweeps; ++sweep) {
+    stop_point();
+    any = false;
+    const auto is_new = [&](Index i) { return changed[static_cast<std::size_t>(i)] + 1 >= sweep; };
+    for (const std::size_t r : solve.response.busy) {
+      const ContactRow<Real>& row = solve.rows.all[r];
+      const auto particles = particles_of(row);
+      if (std::none_of(particles.begin(), particles.end(), is_new)) continue;
+      const bool rubs = !is_of_jaw(static_cast<std::size_t>(row.collider));
+      if (!(solve_row(solve, r, rubs).change.squaredNorm() > Real(kJawResidual * kJawResidual)))
+        continue;
+      note(row, sweep);
+      any = true;
+    }
+  }
 }
 
 }  // namespace
@@ -174,20 +264,7 @@ Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
   }
   for (const std::size_t r : solve.response.busy) {
     if (again && rows.lone.has(r)) continue;
-    const ContactRow<Real>& row = rows.all[r];
-    const Vec3<Real> v = velocity_over(rows, row, solve.state.v);
-    const Real vn = row.normal.dot(v);
-    Real push = row.least_speed - vn;
-    if (!(push > 0)) {
-      const MovingRow<Real>* moving = rows.moving_of(row);
-      if (!moving || moving->grip == 0) continue;
-      push = 0;
-    } else if (row.impact != kNone) {
-      solve.bounces.impacts[static_cast<std::size_t>(row.impact)].taken +=
-          vn * vn - row.least_speed * row.least_speed;
-    }
-    largest = std::max(largest, push);
-    respond(solve, r, v, vn, push);
+    largest = std::max(largest, solve_row(solve, r).push);
   }
   return largest;
 }
@@ -203,6 +280,7 @@ void solve_rows(ObjectSolve<Real>& solve, Real dt, ClothGuard<Real>* guard) {
     left = std::max(left, sweep_rows(solve, again));
     if (guard && sweep == 0) among_cloths = guard->sweep(solve.state);
   }
+  if (solve.motion.any_jaw) settle_between_jaws(solve);
   if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
   const Real enough = solve.cloths.thickness * Real(kResidual) / dt;
   for (int sweep = 0; guard && sweep < kMoreSweeps && (sweep == 0 || left > enough); ++sweep) {
@@ -223,7 +301,7 @@ void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
     const Real vn = row.normal.dot(v);
     const Real fastest = std::sqrt(vn * vn + restitution * restitution * impact.taken);
     const Real push = std::min(impact.speed, fastest) - vn;
-    if (push > 0) respond(solve, impact.row, v, vn, push);
+    if (push > 0) respond(solve, impact.row, v, vn, push, push);
   }
   if (guard) guard->sweep(solve.state);
   sweep_rows(solve);

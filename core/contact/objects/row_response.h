@@ -28,6 +28,7 @@ struct RowResponse {
   bool lone_apart = false;          ///< lone rows are processed apart, all at once
   LoneResponse<Real> lone;          ///< theirs, before others respond
   Vec3Array<Real> x_unpushed;       ///< positions before the push-out [m]
+  std::vector<int> changed;         ///< the last sweep between jaws that moved each particle
 };
 
 /// Restitution, after all that touches has been stopped. An object gives back a part of what it has
