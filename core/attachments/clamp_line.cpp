@@ -3,6 +3,7 @@
 #include "core/attachments/clamp_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -14,8 +15,9 @@ namespace weft {
 namespace {
 
 /// Factors of one part while they are put together.
-struct LineFactors {
+struct BendingFactors {
   std::vector<double> rows, columns;
+  std::vector<std::array<double, 2>> sites;
 };
 
 /// @param lines  that the part has in this direction
@@ -78,25 +80,43 @@ bool set_strips(const std::vector<ClampLine>& clamps, std::size_t number, ClothP
 }  // namespace
 
 template <class Real>
-std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model) {
-  std::vector<LineFactors> factors(model.parts.size());
-  for (const ClampLine& clamp : clamps) {
-    assert(clamp.part < model.parts.size());
-    if (model.parts[clamp.part].cells.rows == 0) continue;
-    const auto reaches_beyond = [&](const ClampLine& other) { return clamp.is_within(other); };
-    if (std::any_of(clamps.begin(), clamps.end(), reaches_beyond)) continue;
-    const GridCells& cells = model.parts[clamp.part].cells;
-    LineFactors& of = factors[clamp.part];
-    clamp.is_row() ? put(clamp, cells.rows, of.rows) : put(clamp, cells.columns, of.columns);
+double cell_of(const ClothPart<Real>& part, std::size_t axis) {
+  assert(axis < 2);
+  if (part.grid_springs)
+    return static_cast<double>(axis == 0 ? part.grid_springs->rest_warp
+                                         : part.grid_springs->rest_weft);
+  return static_cast<double>(axis == 0 ? part.cell_u : part.cell_v);
+}
+
+template <class Real>
+std::vector<std::size_t> set_clamps(const Clamps& clamps, ClothModel<Real>& model) {
+  std::vector<BendingFactors> factors(model.parts.size());
+  for (const ClampLine& line : clamps.lines) {
+    assert(line.part < model.parts.size());
+    if (model.parts[line.part].cells.rows == 0) continue;
+    const auto reaches_beyond = [&](const ClampLine& other) { return line.is_within(other); };
+    if (std::any_of(clamps.lines.begin(), clamps.lines.end(), reaches_beyond)) continue;
+    const GridCells& cells = model.parts[line.part].cells;
+    BendingFactors& of = factors[line.part];
+    line.is_row() ? put(line, cells.rows, of.rows) : put(line, cells.columns, of.columns);
+  }
+  for (const ClampDisc& disc : clamps.discs) {
+    assert(disc.part < model.parts.size());
+    std::vector<std::array<double, 2>>& sites = factors[disc.part].sites;
+    sites.resize(model.parts[disc.part].cells.particles.size(), {1, 1});
+    put_disc(disc, model, sites);
   }
   std::vector<std::size_t> changed;
   for (std::size_t p = 0; p < factors.size(); ++p) {
     GridCells& cells = model.parts[p].cells;
-    if (set_strips(clamps, p, model.parts[p])) changed.push_back(p);
-    if (cells.row_stiffening == factors[p].rows && cells.column_stiffening == factors[p].columns)
+    BendingFactors& of = factors[p];
+    if (set_strips(clamps.lines, p, model.parts[p])) changed.push_back(p);
+    if (cells.row_stiffening == of.rows && cells.column_stiffening == of.columns &&
+        cells.site_stiffening == of.sites)
       continue;
-    cells.row_stiffening = std::move(factors[p].rows);
-    cells.column_stiffening = std::move(factors[p].columns);
+    cells.row_stiffening = std::move(of.rows);
+    cells.column_stiffening = std::move(of.columns);
+    cells.site_stiffening = std::move(of.sites);
     changed.push_back(p);
   }
   return changed;
@@ -138,10 +158,11 @@ void renew_bending_bounds(std::size_t number, ClothModel<Real>& model) {
   part.hinges.count == 0 ? bound_quadratic_bending(model, part) : bound_hinges(model, part);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                    \
-  template std::vector<std::size_t> set_clamps(const std::vector<ClampLine>&, ClothModel<Real>&); \
-  template void stiffen_hinges(std::size_t, ClothModel<Real>&);                                   \
-  template void renew_links(std::size_t, ClothModel<Real>&);                                      \
+#define WEFT_INSTANTIATE(Real)                                                    \
+  template double cell_of(const ClothPart<Real>&, std::size_t);                   \
+  template std::vector<std::size_t> set_clamps(const Clamps&, ClothModel<Real>&); \
+  template void stiffen_hinges(std::size_t, ClothModel<Real>&);                   \
+  template void renew_links(std::size_t, ClothModel<Real>&);                      \
   template void renew_bending_bounds(std::size_t, ClothModel<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

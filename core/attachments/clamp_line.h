@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/attachments/clamp_disc.h"
 #include "core/cloth/cloth_model.h"
 
 // Where the border of a pinned strip clamps the cloth.
@@ -23,9 +24,9 @@ struct HeldLines {
 /// straight up to the clamp, e cells beyond that line, and bends from there to the middle of the
 /// first free cell only: over 1/2 - e of a cell in place of a whole one. So it is 1 / (1/2 - e)
 /// times as stiff, and the elastica is of second order in the cell for any e. Where this would pass
-/// kMostStiffening the strip holds one line more, which then lies beyond the clamp (e < 0). A
-/// strip of any width clamps, so it holds two lines at least; one of width 0 holds the outermost
-/// line, about which the cloth turns freely.
+/// kMostStiffening the strip holds one line more, which then lies beyond the clamp (e < 0). A strip
+/// of any width clamps, so it holds two lines at least; one of width 0 holds the outermost line,
+/// about which the cloth turns freely.
 /// @param width  of the strip, in cells, at least 0
 /// @param slack  by which rounding may miss a line, in cells
 /// @param all    lines that there are, at least 2; what holds all of them clamps nothing
@@ -47,13 +48,23 @@ struct ClampLine {
 /// A clamp across a mesh, as that sees it.
 HeldStrip held_strip(const ClampLine& clamp);
 
+/// What clamps the cloths of a model.
+struct Clamps {
+  std::vector<ClampLine> lines;
+  std::vector<ClampDisc> discs;
+};
+
+/// Distance of the lines along an axis of a grid, 0 u, 1 v [m]; 0 if the part is not a grid.
+template <class Real>
+double cell_of(const ClothPart<Real>& part, std::size_t axis);
+
 /// Gives the grids of a model the factors of these clamps, and its meshes their strips, and those
 /// of no others.
 /// @returns the parts where these changed; what follows from them is then to be made anew:
 ///          `stiffen_hinges`, `renew_links`, `renew_bending_bounds`, and whatever else was prepared
 ///          from the model
 template <class Real>
-std::vector<std::size_t> set_clamps(const std::vector<ClampLine>& clamps, ClothModel<Real>& model);
+std::vector<std::size_t> set_clamps(const Clamps& clamps, ClothModel<Real>& model);
 
 /// Multiplies a part's hinges along the clamped lines by the factors.
 /// @param model  with the hinges of this part as woven

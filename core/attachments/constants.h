@@ -45,6 +45,14 @@ inline constexpr double kStripSlack = 1e-5;
 /// more substeps. Smaller: held lines lie farther beyond the border.
 inline constexpr double kMostStiffening = 8;
 
+/// A place that far beyond a border, in cells, is not held [1]: then the next particle inwards is
+/// at most 1/2 - 1 / kMostStiffening of a cell within it.
+inline constexpr double kMostBeyond = 0.5 + 1 / kMostStiffening;
+
+/// Least radius of a disc that clamps at its circle, in cells [1]. Larger: smaller discs hold by
+/// the cell. Smaller: few lines make the circle, and what should turn about a point is clamped.
+inline constexpr double kLeastClampedDisc = 3;
+
 /// Factors are multiples of one part in this many [1]. Larger: sums of the weights of single
 /// precision, 40 at most, no longer cancel, and a clamp pulls with a force that grows with the
 /// distance from the origin. Smaller: clamps lie off their places.

@@ -33,15 +33,6 @@ MaterialBounds bounds_of(const ClothModel<Real>& model, const IndexRange& range)
   return bounds;
 }
 
-/// Distance of the lines across an axis of a grid [m]; 0 if the part is not a grid.
-template <class Real>
-double cell_of(const ClothPart<Real>& part, std::size_t axis) {
-  if (part.grid_springs)
-    return static_cast<double>(axis == 0 ? part.grid_springs->rest_warp
-                                         : part.grid_springs->rest_weft);
-  return static_cast<double>(axis == 0 ? part.cell_u : part.cell_v);
-}
-
 template <class Real>
 const ClothPart<Real>& named_part(const ClothModel<Real>& model, const std::string& name) {
   std::string names;
@@ -170,7 +161,9 @@ PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def) {
   } else {
     held.centre = nearest_particle(model, part, std::get<MaterialPoint>(def.place));
   }
-  held.particles = particles_in_disc(model, held.centre, def.radius);
+  held.disc = clamp_of_disc(model, held.centre, def.radius);
+  held.particles = held.disc ? particles_of_disc(*held.disc, model)
+                             : particles_in_disc(model, held.centre, def.radius);
   assert(std::binary_search(held.particles.begin(), held.particles.end(), held.centre));
   return held;
 }

@@ -44,6 +44,7 @@ struct PinnedParticles {
   Index centre = 0;
   std::vector<Index> particles;    ///< ascending; at least the centre
   std::optional<ClampLine> clamp;  ///< of a strip with a width that clamps
+  std::optional<ClampDisc> disc;   ///< that clamps
 };
 
 /// Finds the particles of a pin. Throws DefinitionError on "pin.cloth", "pin.particle",

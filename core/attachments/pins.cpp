@@ -22,10 +22,11 @@ bool Pins::any_moving() const {
   return std::any_of(list.begin(), list.end(), [](const Pin& pin) { return pin.path.has_value(); });
 }
 
-std::vector<ClampLine> clamps_of(const Pins& pins) {
-  std::vector<ClampLine> clamps;
+Clamps clamps_of(const Pins& pins) {
+  Clamps clamps;
   for (const Pin& pin : pins.list) {
-    if (pin.clamp) clamps.push_back(*pin.clamp);
+    if (pin.clamp) clamps.lines.push_back(*pin.clamp);
+    if (pin.disc) clamps.discs.push_back(*pin.disc);
   }
   return clamps;
 }
@@ -51,8 +52,8 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
   if (pins.list.size() >= kMostPins)
     throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
                           "at most " + std::to_string(kMostPins) + " pins", "release some first");
-  Pin pin{pins.next_id++, def,       held.centre, std::move(held.particles), {},
-          Vec3d::Zero(),  held.clamp};
+  Pin pin{pins.next_id++, def,        held.centre, std::move(held.particles), {},
+          Vec3d::Zero(),  held.clamp, held.disc};
   for (const Index i : pin.particles) {
     const auto p = static_cast<std::size_t>(i);
     ++pins.pin_count[p];

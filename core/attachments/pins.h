@@ -50,6 +50,7 @@ struct Pin {
   std::optional<PinPath> path;     ///< while it moves; otherwise its particles are fixed
   Vec3d drive = Vec3d::Zero();     ///< mean force on the cloth in its last moving tick [N]
   std::optional<ClampLine> clamp;  ///< of a strip, also while it moves
+  std::optional<ClampDisc> disc;   ///< that clamps, likewise
 };
 
 /// All pins of a cloth. Overlapping pins are counted: a particle is free when its last pin is
@@ -64,7 +65,7 @@ struct Pins {
 };
 
 /// The clamps of all pins.
-std::vector<ClampLine> clamps_of(const Pins& pins);
+Clamps clamps_of(const Pins& pins);
 
 /// Whether a resting pin holds a particle.
 bool is_fixed(const Pins& pins, Index particle);

@@ -27,14 +27,14 @@ inline double share_down(const GridCells& g, int r, int c) {
 inline double share_bend_u(const GridCells& g, int r, int c) {
   const double half = 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r - 1, c)) +
                              (g.has_cell(r, c - 1) && g.has_cell(r, c)));
-  return half > 0 ? half * g.stiffening_of_column(c) : 0;
+  return half > 0 ? half * g.stiffening_along_u(r, c) : 0;
 }
 
 /// Share of the second difference along v centred at (r, c), with the factor of a clamp there.
 inline double share_bend_v(const GridCells& g, int r, int c) {
   const double half = 0.5 * ((g.has_cell(r - 1, c - 1) && g.has_cell(r, c - 1)) +
                              (g.has_cell(r - 1, c) && g.has_cell(r, c)));
-  return half > 0 ? half * g.stiffening_of_row(r) : 0;
+  return half > 0 ? half * g.stiffening_along_v(r, c) : 0;
 }
 
 /// Row `k` of the matrix of second differences 1 -2 1 along a line of particles.

@@ -94,12 +94,27 @@ struct GridCells {
   /// Factors of the bending about each row and column, where a clamp shortens what bends there
   /// (attachments/clamp_line.h); empty: all 1.
   std::vector<double> row_stiffening, column_stiffening;
+  /// Factors of the bending along u and along v about each site, where the circle of a pinned disc
+  /// clamps (attachments/clamp_disc.h); empty: all 1.
+  std::vector<std::array<double, 2>> site_stiffening;
 
   double stiffening_of_row(int r) const {
     return row_stiffening.empty() ? 1 : row_stiffening[static_cast<std::size_t>(r)];
   }
   double stiffening_of_column(int c) const {
     return column_stiffening.empty() ? 1 : column_stiffening[static_cast<std::size_t>(c)];
+  }
+  /// Factors of the second differences along u and along v that are centred at a site.
+  double stiffening_along_u(int r, int c) const {
+    return stiffening_of_column(c) * stiffening_at(r, c, 0);
+  }
+  double stiffening_along_v(int r, int c) const {
+    return stiffening_of_row(r) * stiffening_at(r, c, 1);
+  }
+  double stiffening_at(int r, int c, std::size_t axis) const {
+    return site_stiffening.empty()
+               ? 1
+               : site_stiffening[static_cast<std::size_t>(r * columns + c)][axis];
   }
   bool has_cell(int r, int c) const {
     return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&

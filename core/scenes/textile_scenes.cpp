@@ -36,10 +36,7 @@ void set_grid_specimen(WorldDef& def, int side) {
   cloth.outline = Outline::ellipse;
   cloth.origin = Vec3d(-kDrapeSpecimenRadius, kHeight, -kDrapeSpecimenRadius);
   cloth.v = Vec3d::UnitZ();
-  // The outermost particles of a pinned disc lie on average half a cell inside its radius, and the
-  // fabric is clamped half a cell behind them: only strips clamp at their border.
-  const double cell = cloth.width / (cloth.columns - 1);
-  set_drape_test(def, kDrapeSupportRadius + cell);
+  set_drape_test(def, kDrapeSupportRadius);
 }
 
 /// Joins a ring of particles to the next one outside, each edge to the nearest particle across.
@@ -92,7 +89,7 @@ void build_drape_test(WorldDef& def, const std::string&) {
 }
 
 WorldDef drape_test_on_grid(const FabricDef& fabric, int side) {
-  assert(side >= 9 && side <= 401);
+  assert(side >= 11 && side <= 401);
   WorldDef def;
   set_grid_specimen(def, side);
   def.cloths[0].fabric = fabric;

@@ -14,7 +14,7 @@ void build_drape_test(WorldDef& def, const std::string& mesh_directory);
 
 /// The drape test of a fabric on a grid or a mesh of other fineness than the scene's. The disc is
 /// as large whatever the fineness: the pins end where the fabric is clamped at its edge.
-/// @param side   particles across the specimen, 9 to 401
+/// @param side   particles across the specimen, 11 to 401
 /// @param rings  of particles between disc and hem, 2 to 100
 WorldDef drape_test_on_grid(const FabricDef& fabric, int side);
 WorldDef drape_test_on_rings(const FabricDef& fabric, int rings);

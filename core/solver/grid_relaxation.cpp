@@ -26,6 +26,7 @@ template <class Real>
 void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   view_ = {};
   if (!part.grid_springs || part.hinges.count > 0) return;
+  if (!part.cells.site_stiffening.empty()) return;  // its rows have one factor each
   first_ = static_cast<std::size_t>(part.particles.first);
   springs_ = *part.grid_springs;
   view_.rows = part.rows;

@@ -71,6 +71,7 @@ PinExtent disc(const ClothModel<Real>& model, const Pin& pin) {
     extent.held_area +=
         static_cast<double>(model.mass[static_cast<std::size_t>(i)]) / part.fabric.areal_density;
   }
+  extent.clamps = pin.disc.has_value();
   return extent;
 }
 
@@ -97,12 +98,12 @@ std::string number(double value) {
 
 std::string describe(const PinExtent& pin) {
   const std::string name = "pins[" + std::to_string(pin.pin) + "]: ";
+  const std::string clamped = pin.clamps ? ", and clamps it where it was asked to" : "";
   if (pin.asked_area == 0)
     return name + "a strip of " + number(pin.asked) + " m holds the fabric up to " +
-           number(pin.held) + " m from its side" +
-           (pin.clamps ? ", and clamps it where it was asked to" : "");
+           number(pin.held) + " m from its side" + clamped;
   return name + "a disc of " + number(pin.asked) + " m holds " + number(pin.held_area) + " m2 of " +
-         number(pin.asked_area) + ", up to " + number(pin.held) + " m from its middle";
+         number(pin.asked_area) + ", up to " + number(pin.held) + " m from its middle" + clamped;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct PinExtent {
   std::size_t pin = 0;                   ///< its place in the scene's list
   double asked = 0, held = 0;            ///< width of a strip, radius of a disc [m]
   double asked_area = 0, held_area = 0;  ///< of a disc [m^2]; 0: a strip
-  bool clamps = false;                   ///< a strip that bends as if clamped at its border
+  bool clamps = false;                   ///< the fabric bends as if clamped at its border
 };
 
 /// The pins of a world at its start whose width, radius or area differs from what was asked for by

@@ -20,7 +20,7 @@ struct Drape {
 };
 
 /// @param rigidity  times that of the preset
-/// @param start     0, or which of several starts that are within a micrometre of it
+/// @param start     0, flat, or which of several whose particles lie up to a millimetre off
 Drape draped(const std::string& name, double seconds, double rigidity = 1, unsigned start = 0) {
   WorldDef def = make_scene("drape-test");
   FabricDef& fabric = def.cloths[0].fabric;
@@ -29,7 +29,10 @@ Drape draped(const std::string& name, double seconds, double rigidity = 1, unsig
   fabric.bending_weft *= rigidity;
   World<float> world(def);
   test::Random random(start);
-  for (Vec3f& x : world.state().x) x += random.vector(start > 0 ? 1e-6 : 0).cast<float>();
+  for (std::size_t i = 0; i < world.state().x.size(); ++i) {
+    const double off = random.vector(start > 0 ? 1e-3 : 0)[1];
+    if (world.state().inverse_mass[i] > 0) world.state().x[i][1] += static_cast<float>(off);
+  }
   world.accept_state();
   for (int tick = 0; tick < 60 * seconds; ++tick) {
     const TickReport& report = world.step();
@@ -49,7 +52,7 @@ Drape draped(const std::string& name, double seconds, double rigidity = 1, unsig
   return drape;
 }
 
-/// Folds fall as they may, and a micrometre decides which: the mean of some starts tells more.
+/// Folds fall as they may, and the start decides which: the mean of some starts tells more.
 Drape mean_drape(const std::string& name, double rigidity) {
   constexpr unsigned kStarts = 7;
   Drape mean;
@@ -64,7 +67,8 @@ Drape mean_drape(const std::string& name, double rigidity) {
 
 }  // namespace
 
-TEST_CASE("every preset drapes within its published band, to 5 points") {
+TEST_CASE(
+    "every preset drapes within its published band, to 5 points, in the mean of seven starts") {
   // Published bands of 30 cm discs on 18 cm [%]: silk 20-40, cotton 60-76, wool 40-70, denim 70-90,
   // leather 47-70.
   const auto [name, low, high] =
@@ -73,13 +77,14 @@ TEST_CASE("every preset drapes within its published band, to 5 points") {
                                                    {"wool", 40, 70},
                                                    {"denim", 70, 90},
                                                    {"leather", 47, 70}}));
-  const Drape drape = draped(name, 3);
-  CHECK(drape.low == low);
-  CHECK(drape.high == high);
-  CHECK(drape.coefficient > low - 5);
-  CHECK(drape.coefficient < high + 5);
-  CHECK(drape.folds >= 3);
-  CHECK(drape.speed < 0.01);
+  const Drape one = draped(name, 3);
+  CHECK(one.low == low);
+  CHECK(one.high == high);
+  CHECK(one.folds >= 3);
+  CHECK(one.speed < 0.01);
+  const Drape mean = mean_drape(name, 1);
+  CHECK(mean.coefficient > low - 5);
+  CHECK(mean.coefficient < high + 5);
 }
 
 TEST_CASE("a stiffer bending droops less and in fewer folds; where it rules, it drapes less") {

@@ -9,6 +9,7 @@ namespace weft {
 template <class Real>
 bool GridSystem<Real>::fits(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   if (part.rows < 2 || part.columns < 2 || part.hinges.count > 0) return false;
+  if (!part.cells.site_stiffening.empty()) return false;  // its rows have one factor each
   for (Index k = part.springs.first; k < part.springs.end(); ++k) {
     const SpringKind kind = model.spring_kinds[static_cast<std::size_t>(k)];
     if (kind == SpringKind::skip || kind == SpringKind::edge) return false;

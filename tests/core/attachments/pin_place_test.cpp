@@ -182,3 +182,54 @@ TEST_CASE("the default scene hangs by six particles, three at each upper corner"
     held.insert(held.end(), pin.particles.begin(), pin.particles.end());
   CHECK(held == std::vector<Index>{0, 30, 60, 17 * 30, 18 * 30, 19 * 30});
 }
+
+TEST_CASE("a disc clamps each line that its circle crosses, at the circle") {
+  constexpr int kSide = 21;
+  constexpr double kCell = 0.02;
+  const double radius = GENERATE(0.0601, 0.0777, 0.095);
+  ClothDef cloth = test::flat_cloth(kSide, kSide, kCell * (kSide - 1), kCell * (kSide - 1));
+  cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-5;
+  ClothModel<double> model = build_cloth<double>(cloth);
+  Pins pins = make_pins(model);
+  ClothState<double> state = initial_state(model);
+  const PinId id = add_pin(model, {MaterialPoint{0.5, 0.5}, radius, ""}, pins, state);
+  CHECK(set_clamps(clamps_of(pins), model) == std::vector<std::size_t>{0});
+  const GridCells& cells = model.parts[0].cells;
+  const std::vector<Index>& held = pins.list[0].particles;
+  const auto is_held = [&](int r, int c) {
+    return std::binary_search(held.begin(), held.end(), Index(r * kSide + c));
+  };
+  int clamped = 0;
+  for (int r = 1; r + 1 < kSide; ++r) {
+    for (int c = 1; c + 1 < kSide; ++c) {
+      const double u = kCell * (c - kSide / 2), v = kCell * (r - kSide / 2);
+      if (std::hypot(u, v) < radius) CHECK(is_held(r, c));
+      CHECK(cells.stiffening_along_u(r, c) == Approx(cells.stiffening_along_v(c, r)));
+      const double factor = cells.stiffening_along_u(r, c);
+      CHECK(factor <= kMostStiffening);
+      const int outwards = u < 0 ? c - 1 : c + 1;
+      if (u == 0 || !is_held(r, c) || is_held(r, outwards) || std::abs(v) > radius) {
+        CHECK(factor == 1);
+        continue;
+      }
+      // From the circle to the middle of the first free cell.
+      const double bends = std::abs(u) + kCell / 2 - std::sqrt(radius * radius - v * v);
+      if (bends > 1.5 * kCell) continue;  // the line only just crosses it
+      CHECK(factor * bends == Approx(kCell).epsilon(1e-3));
+      ++clamped;
+    }
+  }
+  CHECK(clamped >= 10);
+  remove_pin(model, id, pins, state);
+  CHECK(set_clamps(clamps_of(pins), model) == std::vector<std::size_t>{0});
+  CHECK(cells.site_stiffening.empty());
+}
+
+TEST_CASE("a disc of less than three cells holds the particles within it alone") {
+  ClothDef cloth = test::flat_cloth(21, 21, 0.4, 0.4);
+  cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-5;
+  const ClothModel<double> model = build_cloth<double>(cloth);
+  const PinnedParticles held = find_pinned(model, {MaterialPoint{0.5, 0.5}, 0.059, ""});
+  CHECK_FALSE(held.disc);
+  CHECK(held.particles == particles_in_disc(model, held.centre, 0.059));
+}

@@ -70,7 +70,7 @@ TEST_CASE("the bending bound counts the stiff hinges at clamps, and not more tha
   def.bending_model = GENERATE(BendingModel::hinges, BendingModel::quadratic);
   ClothModel<double> model = build_cloth<double>(def);
   const double membrane = model.parts[0].bounds.membrane_omega2;
-  REQUIRE_FALSE(set_clamps({{0, Side::top, 3, 8}, {0, Side::right, 9, 4}}, model).empty());
+  REQUIRE_FALSE(set_clamps({{{0, Side::top, 3, 8}, {0, Side::right, 9, 4}}, {}}, model).empty());
   stiffen_hinges(0, model);
   renew_bending_bounds(0, model);
   const Vec3Array<double> still(model.mass.size(), Vec3d::Zero());

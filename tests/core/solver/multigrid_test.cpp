@@ -34,7 +34,7 @@ struct Shaken {
     cloth.fabric.bending_weft = 5e-3;
     model = build_cloth<double>(cloth);
     if (std::min(rows, columns) > 4)
-      set_clamps({{0, Side::top, 1, 8}, {0, Side::right, columns - 3, 1.5}}, model);
+      set_clamps({{{0, Side::top, 1, 8}, {0, Side::right, columns - 3, 1.5}}, {}}, model);
     x = model.rest_positions;
     v.assign(x.size(), Vec3d::Zero());
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,0 +1,94 @@
+// Finds the particles that a disc holds, and the factors of the bending at its
+// circle.
+
+#include "core/attachments/clamp_disc.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/attachments/clamp_line.h"
+#include "core/attachments/constants.h"
+
+namespace weft {
+namespace {
+
+template <class Real>
+std::array<double, 2> place_of(const ClothModel<Real>& model, Index particle) {
+  const auto& place = model.material[static_cast<std::size_t>(particle)];
+  return {static_cast<double>(place[0]), static_cast<double>(place[1])};
+}
+
+}  // namespace
+
+double ClampDisc::beyond(const std::array<double, 2>& place, std::size_t axis) const {
+  assert(axis < 2 && radius > 0);
+  const double along = place[axis] - middle[axis], across = place[1 - axis] - middle[1 - axis];
+  const double half_chord2 = radius * radius - across * across;
+  if (half_chord2 <= 0) return std::numeric_limits<double>::infinity();
+  return (std::abs(along) - std::sqrt(half_chord2)) / cell[axis];
+}
+
+bool ClampDisc::holds(const std::array<double, 2>& place) const {
+  return std::min(beyond(place, 0), beyond(place, 1)) < kMostBeyond;
+}
+
+template <class Real>
+std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>& model, Index centre, double radius) {
+  const ClothPart<Real>& part = part_of_particle(model, centre);
+  const QuadraticBending<Real>& bending = part.quadratic_bending;
+  if (part.cells.rows == 0 || (bending.along_u == 0 && bending.along_v == 0)) return std::nullopt;
+  const ClampDisc disc{static_cast<std::size_t>(&part - model.parts.data()),
+                       place_of(model, centre),
+                       radius,
+                       {cell_of(part, 0), cell_of(part, 1)}};
+  if (radius < kLeastClampedDisc * std::max(disc.cell[0], disc.cell[1])) return std::nullopt;
+  return disc;
+}
+
+template <class Real>
+std::vector<Index> particles_of_disc(const ClampDisc& disc, const ClothModel<Real>& model) {
+  assert(disc.part < model.parts.size());
+  const IndexRange& range = model.parts[disc.part].particles;
+  std::vector<Index> held;
+  for (Index i = range.first; i < range.end(); ++i)
+    if (disc.holds(place_of(model, i))) held.push_back(i);
+  return held;
+}
+
+template <class Real>
+void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
+              std::vector<std::array<double, 2>>& factors) {
+  const ClothPart<Real>& part = model.parts[disc.part];
+  const GridCells& cells = part.cells;
+  assert(factors.size() == cells.particles.size());
+  for (std::size_t site = 0; site < factors.size(); ++site) {
+    if (cells.particles[site] == kNone) continue;
+    const std::array<double, 2> place =
+        place_of(model, part.particles.first + cells.particles[site]);
+    if (!disc.holds(place)) continue;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double along = place[axis] - disc.middle[axis];
+      std::array<double, 2> next = place;
+      next[axis] += std::copysign(disc.cell[axis], along);
+      const double beyond = disc.beyond(place, axis);
+      // A line that touches the circle, or has one held particle, does not bend
+      // there.
+      if (along == 0 || beyond >= 1 || disc.holds(next)) continue;
+      assert(beyond > kMostBeyond - 1.001);
+      factors[site][axis] = std::round(kStiffeningParts / (0.5 + beyond)) / kStiffeningParts;
+    }
+  }
+}
+
+#define WEFT_INSTANTIATE(Real)                                                              \
+  template std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>&, Index, double);  \
+  template std::vector<Index> particles_of_disc(const ClampDisc&, const ClothModel<Real>&); \
+  template void put_disc(const ClampDisc&, const ClothModel<Real>&,                         \
+                         std::vector<std::array<double, 2>>&);
+WEFT_INSTANTIATE(float)
+WEFT_INSTANTIATE(double)
+#undef WEFT_INSTANTIATE
+
+}  // namespace weft
