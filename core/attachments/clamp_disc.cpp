@@ -1,5 +1,4 @@
-// Finds the particles that a disc holds, and the factors of the bending at its
-// circle.
+// Finds the particles that a disc holds, and the factors of the bending at its circle.
 
 #include "core/attachments/clamp_disc.h"
 
@@ -73,8 +72,7 @@ void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
       std::array<double, 2> next = place;
       next[axis] += std::copysign(disc.cell[axis], along);
       const double beyond = disc.beyond(place, axis);
-      // A line that touches the circle, or has one held particle, does not bend
-      // there.
+      // A line that touches the circle, or has one held particle, does not bend there.
       if (along == 0 || beyond >= 1 || disc.holds(next)) continue;
       assert(beyond > kMostBeyond - 1.001);
       factors[site][axis] = std::round(kStiffeningParts / (0.5 + beyond)) / kStiffeningParts;

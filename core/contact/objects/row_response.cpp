@@ -156,16 +156,19 @@ std::span<const Index> particles_of(const auto& row) {
 /// sides is part of the squeeze, whose friction is shared, and adds none.
 template <class Real>
 void settle_between_jaws(ObjectSolve<Real>& solve) {
+  const auto is_of_jaw = [&solve](std::size_t collider) {
+    return !(*solve.motion.colliders)[collider].press.isZero(0);
+  };
+  const auto is_jaws_row = [&](const MovingRow<Real>& row) { return is_of_jaw(row.collider); };
+  const std::vector<MovingRow<Real>>& moving = solve.rows.moving;
+  if (std::none_of(moving.begin(), moving.end(), is_jaws_row)) return;
   std::vector<int>& changed = solve.response.changed;
   changed.assign(solve.state.v.size(), kNone);
   const auto note = [&changed](const ContactRow<Real>& row, int sweep) {
     for (const Index i : particles_of(row)) changed[static_cast<std::size_t>(i)] = sweep;
   };
-  const auto is_of_jaw = [&solve](std::size_t collider) {
-    return !(*solve.motion.colliders)[collider].press.isZero(0);
-  };
-  for (const MovingRow<Real>& moving : solve.rows.moving)
-    if (is_of_jaw(moving.collider)) note(solve.rows.all[moving.row], 0);
+  for (const MovingRow<Real>& row : moving)
+    if (is_jaws_row(row)) note(solve.rows.all[row.row], 0);
   bool any = true;
   for (int sweep = 1; any && sweep <= kJawSweeps; ++sweep) {
     stop_point();
