@@ -38,7 +38,10 @@ class Bench(unittest.TestCase):
         for row in self.swing["references"] + self.rest["references"]:
             self.assertEqual(row["missing"], "")
             self.assertLess(row["self_error"], 1e-7)
-            self.assertLess(row["growth_of_1um"], 10)
+            # A third of the smallest error that is asked for.
+            self.assertLess(row["noise_of_position"], 1e-3 / 3)
+            self.assertLess(row["noise_of_energy"], 1e-3 / 3)
+            self.assertGreaterEqual(row["positions_to_s"], 0.75)
 
     def test_runge_kutta_and_extrapolated_leapfrog_are_the_same_reference(self):
         case = "--scenes", "swing", "--sizes", "16", "--budget", "100"
@@ -47,8 +50,8 @@ class Bench(unittest.TestCase):
         self.assertIn("Runge-Kutta", kutta["references"][0]["how"])
         self.assertIn("extrapolated", leapfrog["references"][0]["how"])
         for one, other in zip(kutta["accuracy"], leapfrog["accuracy"], strict=True):
-            for key in ENVELOPE:
-                self.assertAlmostEqual(one[key], other[key], delta=1e-7 + 1e-3 * one[key])
+            for key in ENVELOPE:  # within a tenth of the smallest error that is asked for
+                self.assertAlmostEqual(one[key], other[key], delta=1e-4 + 1e-3 * one[key])
 
     def test_each_solver_has_six_different_settings_whatever_bending_asks_for(self):
         for fewest in (1, 3, 5, 8, 29, 124, 516):
@@ -284,7 +287,7 @@ class Bench(unittest.TestCase):
             self.assertEqual(drags[scene.replace("-", "_")], drag, scene)
         data = Path(__file__).parent / "data"
         text = report.report_text(data)
-        for scene in report.SCENES:
+        for scene in tables.unique(cell["scene"] for cell in tables.read(data, "accuracy")):
             self.assertIn(report.conditions(scene), text.split(f"## {report.SCENES[scene]}\n")[1].split("\n## ")[0])
         self.assertIn(f"Conditions: {report.conditions('swing')}", text.split("## What an error costs\n")[1])
 

@@ -10,7 +10,7 @@
 namespace weft::bench {
 
 /// At which instants a run is compared with its reference.
-enum class Compared {
+enum class Instants {
   all_the_way,  ///< at every sample, the worst counts
   at_the_end,   ///< where it has come to rest
 };
@@ -21,7 +21,7 @@ struct BenchScene {
   const char* what;  ///< one sentence
   int ticks;         ///< horizon, at 60 a second
   int sample_every;  ///< ticks
-  Compared compared;
+  Instants instants;
   bool forces_alone;        ///< no contact and no air: an ordinary differential equation
   double run_budget;        ///< CPU seconds that one run may take up to 128 particles a side [s]
   double reference_budget;  ///< CPU seconds that the reference may take [s]

@@ -35,7 +35,7 @@ struct CaseResult {
 /// How much is measured.
 struct Effort {
   bool quick = false;  ///< fewer settings
-  int timed_runs = 5;
+  int timed_runs = 3;
   double timed_seconds = 0.05;  ///< CPU seconds of one timed run where each tick costs the same
   double budget_factor = 1;     ///< of the scenes' budgets
   ReferenceMethod reference = ReferenceMethod::cheapest_that_fits;

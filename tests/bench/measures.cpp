@@ -1,7 +1,9 @@
 #include "tests/bench/measures.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <time.h>
 
 namespace weft::bench {
@@ -24,6 +26,17 @@ double strain(const Spring<double>& s, const Vec3Array<double>& x) {
   return (x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)]).norm() /
              s.rest_length -
          1;
+}
+
+/// The largest sum over all springs of their squared strains [1].
+double largest_strain(const ClothModel<double>& model, const Path& reference) {
+  double most = 0;
+  for (const Snapshot& s : reference.samples) {
+    double all = 0;
+    for (const Spring<double>& spring : model.springs) all += std::pow(strain(spring, s.x), 2);
+    most = std::max(most, all);
+  }
+  return most;
 }
 
 Vec3d momentum(const ClothModel<double>& model, const Vec3Array<double>& v) {
@@ -91,34 +104,47 @@ double position_error(const Path& path, const Path& reference, std::size_t first
   return std::sqrt(worst / longest_way(reference));
 }
 
-ErrorVector compare(const ClothModel<double>& model, const ClothDef& cloth, const Vec3d& gravity,
-                    const Path& path, const Path& reference, std::size_t first, std::size_t last) {
-  ErrorVector error;
-  error.position = position_error(path, reference, first, last);
-  error.penetration = path.deepest;
-  error.mean_shape = mean_shape_error(path, reference);
-  double mass = 0, strain_apart = 0, strained = 0;
+std::vector<ErrorVector> errors(const ClothModel<double>& model, const ClothDef& cloth,
+                                const Vec3d& gravity, const Path& path, const Path& reference) {
+  assert(path.samples.size() == reference.samples.size());
+  double mass = 0;
   for (const double m : model.mass) mass += m;
-  for (const Snapshot& s : reference.samples) {
-    double all = 0;
-    for (const Spring<double>& spring : model.springs) all += std::pow(strain(spring, s.x), 2);
-    strained = std::max(strained, all);
-  }
   const double length = std::max(cloth.width, cloth.height), g = gravity.norm();
-  for (std::size_t k = first; k <= last; ++k) {
+  const double way = longest_way(reference), strained = largest_strain(model, reference);
+  std::vector<ErrorVector> all(path.samples.size());
+  for (std::size_t k = 1; k < all.size(); ++k) {
     const Snapshot &mine = path.samples[k], &right = reference.samples[k];
+    all[k].position = std::sqrt(squared_distance(mine.x, right.x) / way);
     double apart = 0;
     for (const Spring<double>& s : model.springs) {
       const double d = strain(s, mine.x) - strain(s, right.x);
       apart += d * d;
     }
-    strain_apart = std::max(strain_apart, apart);
+    all[k].strain = std::sqrt(apart / strained);
     const double energy = total_energy(model, mine, gravity) - total_energy(model, right, gravity);
-    error.energy = std::max(error.energy, std::abs(energy) / (mass * g * length));
+    all[k].energy = std::abs(energy) / (mass * g * length);
     const Vec3d p = momentum(model, mine.v) - momentum(model, right.v);
-    error.momentum = std::max(error.momentum, p.norm() / (mass * std::sqrt(g * length)));
+    all[k].momentum = p.norm() / (mass * std::sqrt(g * length));
   }
-  error.strain = std::sqrt(strain_apart / strained);
+  return all;
+}
+
+ErrorVector worst_error(const std::vector<ErrorVector>& errors, const Compared& compared,
+                        const Path& path, const Path& reference) {
+  const auto worst = [&](double ErrorVector::*quantity, std::size_t last) {
+    double most = last < compared.first ? std::numeric_limits<double>::quiet_NaN() : 0;
+    for (std::size_t k = compared.first; k <= last; ++k) {
+      if (!(errors[k].*quantity <= most)) most = errors[k].*quantity;
+    }
+    return most;
+  };
+  ErrorVector error;
+  error.position = worst(&ErrorVector::position, compared.positions);
+  error.momentum = worst(&ErrorVector::momentum, compared.positions);
+  error.strain = worst(&ErrorVector::strain, compared.strains);
+  error.energy = worst(&ErrorVector::energy, compared.energies);
+  error.mean_shape = mean_shape_error(path, reference);
+  error.penetration = path.deepest;
   return error;
 }
 

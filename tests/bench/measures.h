@@ -32,10 +32,22 @@ struct ErrorVector {
   double penetration = 0;  ///< deepest [m]; not against the reference
 };
 
-/// Compares samples first to last, by their numbers.
+/// Samples that are compared, by their numbers: each quantity's from `first` to its last. One whose
+/// last is before the first is not compared: it is not a number.
+struct Compared {
+  std::size_t first = 0;
+  std::size_t positions = 0;  ///< and momenta
+  std::size_t strains = 0, energies = 0;
+};
+
+/// A run's distance from its reference at each sample; position, strain, energy and momentum alone.
 /// @param model  of the reference, in double
-ErrorVector compare(const ClothModel<double>& model, const ClothDef& cloth, const Vec3d& gravity,
-                    const Path& path, const Path& reference, std::size_t first, std::size_t last);
+std::vector<ErrorVector> errors(const ClothModel<double>& model, const ClothDef& cloth,
+                                const Vec3d& gravity, const Path& path, const Path& reference);
+
+/// The worst of the samples that are compared, the mean shape and the penetration.
+ErrorVector worst_error(const std::vector<ErrorVector>& errors, const Compared& compared,
+                        const Path& path, const Path& reference);
 
 /// Of the positions' mean over the second half of all samples: what is left to compare where a
 /// perturbation grows.

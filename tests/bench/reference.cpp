@@ -44,17 +44,12 @@ struct Method {
   }
 };
 
-/// The last sample up to which the perturbation has grown less than it may.
-std::size_t last_before_growth(const Path& path, const Path& perturbed, std::size_t first,
-                               double& growth) {
-  std::size_t last = 0;
-  for (std::size_t k = 1; k < path.samples.size(); ++k) {
-    const double grown = rms_distance(path.samples[k], perturbed.samples[k]) / kPerturbation;
-    if (grown >= kMostGrowth) break;
-    last = k;
-    if (k >= first) growth = std::max(growth, grown);
-  }
-  return last;
+/// The last sample until which noise stays below a bound; before `first` if it never does.
+std::size_t last_below(const std::vector<ErrorVector>& noise, double ErrorVector::*quantity,
+                       double bound, std::size_t first) {
+  std::size_t k = first;
+  while (k < noise.size() && noise[k].*quantity < bound) ++k;
+  return k - 1;
 }
 
 Vec3Array<double> random_offset(std::size_t n) {
@@ -83,7 +78,8 @@ void refine(Method& method, Path coarsest, Reference& reference) {
     Path finer = method.extrapolated ? extrapolate(levels, 0) : levels.back().path;
     // An extrapolation is compared with the one that lacks the coarsest level.
     const Path other = method.extrapolated ? extrapolate(levels, 1) : reference.path;
-    reference.self_error = position_error(other, finer, reference.first, reference.last);
+    reference.self_error =
+        position_error(other, finer, reference.compared.first, reference.compared.positions);
     reference.path = std::move(finer);
     if (!method.extrapolated) levels.erase(levels.begin());
     reference.how = method.name(substeps);
@@ -133,13 +129,17 @@ Reference make_reference(const BenchScene& scene, const WorldDef& scene_def,
   Path path = method.run(scene.ticks, method.stable, {});
   const Path perturbed =
       method.run(scene.ticks, method.stable, random_offset(path.samples.front().x.size()));
-  reference.mean_floor = mean_shape_error(perturbed, path);
-  const std::size_t end = path.samples.size() - 1;
-  reference.first = scene.compared == Compared::at_the_end ? end : 1;
-  reference.last = last_before_growth(path, perturbed, reference.first, reference.growth);
-  reference.shortened = reference.last < end;
-  if (reference.last < reference.first)
-    reference.missing = "a perturbation of 1 um has grown more than 10 times at the first sample";
+  const World<double> world(def);
+  const std::vector<ErrorVector> noise =
+      errors(world.model(), def.cloths[0], def.environment.gravity, perturbed, path);
+  Compared& compared = reference.compared;
+  compared.first = scene.instants == Instants::at_the_end ? noise.size() - 1 : 1;
+  compared.positions = last_below(noise, &ErrorVector::position, kMostNoise, compared.first);
+  compared.strains = last_below(noise, &ErrorVector::strain, kMostNoiseOfStrain, compared.first);
+  compared.energies = last_below(noise, &ErrorVector::energy, kMostNoise, compared.first);
+  reference.noise = worst_error(noise, compared, perturbed, path);
+  if (compared.positions < compared.first)
+    reference.missing = "1 um at the start changes positions too much at the first sample";
   else
     refine(method, std::move(path), reference);
   reference.cpu_seconds = method.seconds;

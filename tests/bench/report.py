@@ -14,27 +14,32 @@ import tables  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ("accuracy", "references", "spatial")  # tables whose rows belong to cases
-SCENES = {"swing": "Swing from the horizontal", "static-rest": "Static rest",
+SCENES = {"swing": "Swing from the horizontal", "swing-free": "Swing without drag", "static-rest": "Static rest",
           "cantilever": "Cantilever", "hanging-strip": "Hanging strip", "flag": "Flag in wind",
-          "drape": "Drape on a sphere"}
+          "drape": "Drape on a sphere", "drape-free": "Drape without drag"}
 ABOUT = {
     "swing": "1 m × 1 m, held by one edge, let go when level.",
+    "swing-free": "As above, without drag.",
     "static-rest": "1 m × 1 m between two opposite edges; compared where it has come to rest.",
     "cantilever": "A strip of 12 cm × 3 cm, of which two rows are held at one end, let go when level. Held row by "
                   "row, it bends as if it were clamped half a cell behind the second.",
     "hanging-strip": "1 m × 12 cm, upright, let go when not stretched yet: the way is the stretch "
                      "alone, so a solver with rigid springs is 100 % wrong.",
     "flag": "1 m × 1 m, held by one edge, in a wind of 6 m/s.",
-    "drape": "1 m × 1 m, falls 5 mm on a sphere of 0.3 m radius, with friction."}
+    "drape": "1 m × 1 m, falls 5 mm on a sphere of 0.3 m radius, with friction.",
+    "drape-free": "As above, without drag."}
 # What else decides how large errors are: uniform drag, air, contact. As cases.cpp has them.
-DRAG = {"swing": 5, "static-rest": 10, "cantilever": 5, "hanging-strip": 5, "flag": 0, "drape": 0.5}  # [1/s]
-SURROUNDINGS = {"flag": "no contact", "drape": "no air, contact with the sphere alone"}
+DRAG = {"swing": 0.2, "swing-free": 0, "static-rest": 10, "cantilever": 0.2, "hanging-strip": 0.2, "flag": 0,
+        "drape": 0.5, "drape-free": 0}  # [1/s]
+SURROUNDINGS = {"flag": "no contact", "drape": "no air, contact with the sphere alone",
+                "drape-free": "no air, contact with the sphere alone"}
 OF_SCENES = "0 to 0.5/s"  # the drag of most built-in scenes
 
 
 def conditions(scene):
     """Drag, air and contact of a scene in a few words."""
-    drag = f"a uniform drag of {DRAG[scene]:g}/s" if DRAG[scene] else "no drag but that of the air"
+    drag = f"a uniform drag of {DRAG[scene]:g}/s" if DRAG[scene] else (
+        "no drag but that of the air" if scene == "flag" else "no drag")
     return f"{drag}, {SURROUNDINGS.get(scene, 'no air, no contact')}"
 
 
@@ -43,8 +48,8 @@ def span(references, scene):
     rows = [row for row in references if row["scene"] == scene and not row["missing"]]
     if not rows:
         return "not compared: no reference"
-    first, last = min(r["compared_from_s"] for r in rows), max(r["compared_to_s"] for r in rows)
-    return f"compared at {last:g} s" if first == last else f"compared from {first:.2g} to {last:g} s"
+    first, last = min(r["compared_from_s"] for r in rows), max(r["positions_to_s"] for r in rows)
+    return f"compared at {last:g} s" if first == last else f"compared from {first:.2g} to {last:.3g} s"
 
 
 def about(references, scene):

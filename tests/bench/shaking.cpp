@@ -18,6 +18,7 @@ WorldDef hung(int n, FabricDef fabric, double rigidity) {
   fabric.bending_warp = fabric.bending_weft = rigidity;
   WorldDef def = bench_scenes().front().make(n, fabric);
   def.cloths[0].v = -Vec3d::UnitY();
+  def.environment.damping = 5;
   return def;
 }
 

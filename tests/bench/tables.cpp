@@ -97,8 +97,9 @@ Tables::Accuracy::Accuracy(const std::string& directory)
              "mean_shape",     "penetration_m",  "commit"}),
       references(
           directory + "/references.csv",
-          {"scene", "fabric", "n", "how", "self_error", "growth_of_1um", "mean_shape_floor",
-           "compared_from_s", "compared_to_s", "horizon_s", "cpu_seconds", "missing", "commit"}),
+          {"scene", "fabric", "n", "how", "self_error", "compared_from_s", "positions_to_s",
+           "strains_to_s", "energies_to_s", "horizon_s", "noise_of_position", "noise_of_strain",
+           "noise_of_energy", "noise_of_mean_shape", "cpu_seconds", "missing", "commit"}),
       spatial(directory + "/spatial.csv",
               {"scene", "fabric", "n", "against", "position", "commit"}) {}
 
@@ -127,11 +128,14 @@ void Tables::write_machine(const std::string& load_at_start, double cpu_seconds)
 
 void Tables::add_case(const CaseResult& result) {
   const Reference& r = result.reference;
-  const double sample = result.scene->sample_every / result.def.tick_rate;
-  accuracy().references.row(
-      result.scene->name, result.fabric, result.n, r.how, r.self_error, r.growth, r.mean_floor,
-      static_cast<double>(r.first) * sample, static_cast<double>(r.last) * sample,
-      result.scene->ticks / result.def.tick_rate, r.cpu_seconds, r.missing, commit_);
+  const auto at = [&](std::size_t sample) {
+    return static_cast<double>(sample) * result.scene->sample_every / result.def.tick_rate;
+  };
+  accuracy().references.row(result.scene->name, result.fabric, result.n, r.how, r.self_error,
+                            at(r.compared.first), at(r.compared.positions), at(r.compared.strains),
+                            at(r.compared.energies), result.scene->ticks / result.def.tick_rate,
+                            r.noise.position, r.noise.strain, r.noise.energy, r.noise.mean_shape,
+                            r.cpu_seconds, r.missing, commit_);
   for (const Cell& c : result.cells) {
     const ErrorVector& e = c.error;
     const Setting& s = c.setting;
@@ -144,8 +148,10 @@ void Tables::add_case(const CaseResult& result) {
 
 void Tables::add_spatial(const CaseResult& coarse, const CaseResult& fine) {
   if (!coarse.reference.missing.empty() || !fine.reference.missing.empty()) return;
-  const std::size_t first = std::max(coarse.reference.first, fine.reference.first);
-  const std::size_t last = std::min(coarse.reference.last, fine.reference.last);
+  const std::size_t first =
+      std::max(coarse.reference.compared.first, fine.reference.compared.first);
+  const std::size_t last =
+      std::min(coarse.reference.compared.positions, fine.reference.compared.positions);
   if (last < first) return;
   accuracy().spatial.row(coarse.scene->name, coarse.fabric, coarse.n, fine.n,
                          spatial_error(coarse.def.cloths[0], coarse.reference.path,

@@ -6,7 +6,7 @@ import statistics
 from pathlib import Path
 
 FABRICS = ["soft", "stiff", "cotton"]
-SCENES = ["swing", "static-rest", "cantilever", "hanging-strip", "flag", "drape"]
+SCENES = ["swing", "swing-free", "static-rest", "cantilever", "hanging-strip", "flag", "drape", "drape-free"]
 SIZES = [32, 64, 128, 256]
 BOUNDS = [(0.1, "10 %"), (0.01, "1 %"), (0.001, "0.1 %")]
 SOLVERS = ["verlet", "implicit", "xpbd", "relaxation"]
@@ -63,6 +63,8 @@ def unique(values):
 
 
 def percent(value):
+    if value != value:
+        return "–"
     return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
 
 
@@ -196,17 +198,23 @@ def references(rows, spatial, scene):
             continue
         coarse = spatial_error(rows, spatial, row)
         if row["missing"]:
-            table.append([row["fabric"], f"{row['n']}²", "none: " + row["missing"], "–", "–", "–", "–", coarse])
+            table.append([row["fabric"], f"{row['n']}²", "none: " + row["missing"], *["–"] * 8, coarse])
             continue
-        span = f"{row['compared_from_s']:g} to {row['compared_to_s']:g} s"
-        if row["compared_from_s"] == row["compared_to_s"]:
-            span = f"at {row['compared_to_s']:g} s"
-        if row["compared_to_s"] < row["horizon_s"]:
-            span += f" of {row['horizon_s']:g}: later a perturbation has grown 10 times"
         table.append([row["fabric"], f"{row['n']}²", row["how"], f"{row['self_error']:.1e}",
-                      f"{row['growth_of_1um']:.2g}", percent(row["mean_shape_floor"]), span, coarse])
-    return markdown(["fabric", "N", "reference", "its last refinement changed", "growth of 1 µm",
-                     "1 µm changes the mean shape by", "compared", "spatial error, N against 2N"], table)
+                      *(until(row, quantity) for quantity in ("positions", "strains", "energies")),
+                      *(percent(row[f"noise_of_{what}"]) for what in ("position", "strain", "energy", "mean_shape")),
+                      coarse])
+    return markdown(["fabric", "N", "reference", "its last refinement changed", "positions compared", "strains",
+                     "energy", "1 µm at the start changes positions by", "strains", "energy", "mean shape",
+                     "spatial error, N against 2N"], table)
+
+
+def until(row, quantity):
+    """From when to when a quantity is compared."""
+    first, last = row["compared_from_s"], row[f"{quantity}_to_s"]
+    if last < first:
+        return "–"
+    return f"at {last:.2g} s" if last == first else f"{first:.2g} to {last:.3g} s"
 
 
 def error_vectors(cells, scene):
