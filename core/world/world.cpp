@@ -77,8 +77,8 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
 /// Builds what decides on meeting, rest and runaway energy, for the present model.
 template <class Real>
 void World<Real>::build_contact() {
-  contact_ = make_contact(def_, model_, runtime_);
-  contact_.log_impulses(supports_.wanted, energy_.has_value());
+  contact_.objects = make_contact(def_, model_, runtime_);
+  contact_.objects.log_impulses(supports_.wanted, energy_.has_value());
   sleep_ = make_sleep(def_, model_);
   account_ = EnergyAccount(total_mass(model_));
   thickest_ = 0;
@@ -86,14 +86,14 @@ void World<Real>::build_contact() {
     thickest_ = std::max(thickest_, part.fabric.thickness);
   const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
-    seed_contact_.emplace(def_.contact.seed, model_, def_.colliders);
-  if (has_guard(def_)) guard_.emplace(model_, runtime_.executor);
+    contact_.seed.emplace(def_.contact.seed, model_, def_.colliders);
+  if (has_guard(def_)) contact_.guard.emplace(model_, runtime_.executor);
 }
 
 /// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
 template <class Real>
 void World<Real>::refuse_too_stiff() const {
-  if (bending_dashpots_.stages(model_, tick_seconds()) > kMostDashpotStages)
+  if (solvers_.dashpots.stages(model_, tick_seconds()) > kMostDashpotStages)
     throw DefinitionError("fabric.bending_damping", "too long for this mesh and tick",
                           "at most " + std::to_string(kMostDashpotStages) + " stages a tick",
                           "lower it or the resolution, or raise tick_rate");
@@ -145,7 +145,7 @@ void World<Real>::accept_state() {
   last_good_.x = state_.x;
   last_good_.v = state_.v;
   account_.clear();
-  touching_ = false;
+  solvers_.touching = false;
   forget_motion();
   report_present_state();
 }
@@ -230,14 +230,14 @@ std::vector<NamedNumber> World<Real>::measurements() const {
 template <class Real>
 void World<Real>::prepare_solver() {
   const SolverKind kind = solver_of(def_);
-  bending_dashpots_.prepare(model_);
+  solvers_.dashpots.prepare(model_);
   if (kind == SolverKind::relaxation)
-    relaxation_.prepare(model_);
+    solvers_.relaxation.prepare(model_);
   else  // verlet steps some ticks for implicit
-    verlet_.prepare(model_, def_.solver, runtime_.executor);
-  if (kind == SolverKind::implicit) implicit_.prepare(model_);
-  if (guard_ && kind != SolverKind::relaxation) verlet_.allocate_paths();
-  verlet_.elastic.reset();
+    solvers_.verlet.prepare(model_, def_.solver, runtime_.executor);
+  if (kind == SolverKind::implicit) solvers_.implicit.prepare(model_);
+  if (contact_.guard && kind != SolverKind::relaxation) solvers_.verlet.allocate_paths();
+  solvers_.verlet.elastic.reset();
   supports_.held.forget();
   allocate_external();
 }
@@ -248,7 +248,7 @@ void World<Real>::allocate_external() {
   const bool air = !is_calm(environment_) || !def_.winds.empty();
   if (air) surroundings_.wind.resize(model_.mass.size());
   if (solver_of(def_) != SolverKind::relaxation)
-    verlet_.allocate_external(model_, air, !grabs_.impulses.empty() || (air && energy_));
+    solvers_.verlet.allocate_external(model_, air, !grabs_.impulses.empty() || (air && energy_));
 }
 
 template <class Real>
@@ -257,7 +257,7 @@ std::size_t World<Real>::solver_bytes() const {
   for (const Vec3Array<Real>* array :
        {&state_.x, &state_.v, &last_good_.x, &last_good_.v, &surroundings_.wind})
     numbers += 3 * array->capacity();
-  return numbers * sizeof(Real) + verlet_.bytes();
+  return numbers * sizeof(Real) + solvers_.verlet.bytes();
 }
 
 template <class Real>
@@ -279,9 +279,14 @@ Collision<Real> World<Real>::collision() {
   PinDrive<Real>* pins = pins_.any_moving() ? &pin_drive_ : nullptr;
   WorkMeter<Real>* meter = energy_ ? &energy_->meter : nullptr;
   HeldForces<Real>* held = supports_.wanted && !pins_.list.empty() ? &supports_.held : nullptr;
-  if (seed_contact_) return {nullptr, &*seed_contact_, nullptr, pins, meter, held};
+  if (contact_.seed) return {nullptr, &*contact_.seed, nullptr, pins, meter, held};
   const bool objects = contact_of(def_) == ContactModel::certified && !def_.colliders.empty();
-  return {objects ? &contact_ : nullptr, nullptr, guard_ ? &*guard_ : nullptr, pins, meter, held};
+  return {objects ? &contact_.objects : nullptr,
+          nullptr,
+          contact_.guard ? &*contact_.guard : nullptr,
+          pins,
+          meter,
+          held};
 }
 
 /// One tick of the chosen solver.
@@ -290,25 +295,25 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   assert(kind != SolverKind::automatic && substeps >= 1);
   assert(colliders_.size() == def_.colliders.size());
   const double dt = tick_seconds() / substeps;
-  contact_.begin_tick(tick_seconds(), &colliders_);
-  if (seed_contact_) seed_contact_->begin_tick(tick_seconds(), &colliders_);
+  contact_.objects.begin_tick(tick_seconds(), &colliders_);
+  if (contact_.seed) contact_.seed->begin_tick(tick_seconds(), &colliders_);
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
-  if (guard_) guard_->begin_tick();
+  if (contact_.guard) contact_.guard->begin_tick();
   if (energy_) energy_->meter.begin_tick();
   if (supports_.wanted) supports_.held.begin_tick(model_, pins_);
   AdvanceResult result =
       kind == SolverKind::verlet
           ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
-                           state_, verlet_, report_.profile)
+                           state_, solvers_.verlet, report_.profile)
       : kind == SolverKind::implicit
           ? advance_implicit(model_, surroundings_, def_.implicit, dt, substeps, grabs_,
-                             collision(), state_, implicit_, report_.profile)
+                             collision(), state_, solvers_.implicit, report_.profile)
           : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
-                               collision(), state_, relaxation_, report_.profile);
-  result.work += contact_.work() + pin_drive_.work();
-  if (guard_) {
-    result.work += guard_->work();
-    guard_->end_tick();
+                               collision(), state_, solvers_.relaxation, report_.profile);
+  result.work += contact_.objects.work() + pin_drive_.work();
+  if (contact_.guard) {
+    result.work += contact_.guard->work();
+    contact_.guard->end_tick();
   }
   damp_bending(kind, result);
   return result;
@@ -317,12 +322,12 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
 /// Lets the dashpots of bending act.
 template <class Real>
 void World<Real>::damp_bending(SolverKind kind, AdvanceResult& result) {
-  if (bending_dashpots_.empty() || result.blow_up) return;
+  if (solvers_.dashpots.empty() || result.blow_up) return;
   const double before = kinetic_energy(model_, state_);
-  bending_dashpots_.act(model_, tick_seconds(), state_,
+  solvers_.dashpots.act(model_, tick_seconds(), state_,
                         supports_.wanted ? &supports_.held : nullptr, report_.profile);
   const double lost = before - kinetic_energy(model_, state_);
-  if (kind == SolverKind::implicit) implicit_.take_over(state_.v);
+  if (kind == SolverKind::implicit) solvers_.implicit.take_over(state_.v);
   result.after.kinetic -= lost;
   if (energy_) energy_->meter.add({.damping = lost});
 }

@@ -250,9 +250,9 @@ class World {
   const ColliderStates& colliders() const { return colliders_; }
   const std::vector<Gripper>& grippers() const { return grippers_; }
   const TickReport& report() const { return report_; }
-  const Contact<Real>& contact() const { return contact_; }
+  const Contact<Real>& contact() const { return contact_.objects; }
   /// Contact of cloths with themselves and each other; null without it.
-  const ClothGuard<Real>* guard() const { return guard_ ? &*guard_ : nullptr; }
+  const ClothGuard<Real>* guard() const { return contact_.guard ? &*contact_.guard : nullptr; }
   /// Which cloths sleep, if the scene permits it (SleepDef). Anything that acts on a cloth wakes
   /// it.
   const Sleep<Real>& sleep() const { return sleep_; }
@@ -339,14 +339,22 @@ class World {
   std::vector<SceneHand> scene_hands_;
   double thickest_ = 0;  ///< cloth [m]
   Surroundings<Real> surroundings_;
-  Contact<Real> contact_;
-  std::optional<SeedContact<Real>> seed_contact_;  ///< if chosen
-  std::optional<ClothGuard<Real>> guard_;          ///< if chosen
-  VerletWorkspace<Real> verlet_;
-  RelaxationWorkspace<Real> relaxation_;
-  ImplicitWorkspace<Real> implicit_;
-  BendingDashpots<Real> bending_dashpots_;
-  bool touching_ = false;  ///< with the implicit solver: something touched when the last tick ended
+  /// Contact with objects, and of cloths with themselves and each other, in the chosen model.
+  struct Contacts {
+    Contact<Real> objects;
+    std::optional<SeedContact<Real>> seed;  ///< if chosen; does both
+    std::optional<ClothGuard<Real>> guard;  ///< of cloths, if chosen
+  };
+  Contacts contact_;
+  /// Arrays and memory of the solvers. Any may step a tick that another one gives up.
+  struct Solvers {
+    VerletWorkspace<Real> verlet;
+    RelaxationWorkspace<Real> relaxation;
+    ImplicitWorkspace<Real> implicit;
+    BendingDashpots<Real> dashpots;
+    bool touching = false;  ///< with `implicit`: something touched when the last tick ended
+  };
+  Solvers solvers_;
   EnergyAccount account_;
   Sleep<Real> sleep_;
   /// State at the start of the running tick, for `go_back`.

@@ -256,27 +256,27 @@ std::uint64_t World<Real>::hash_before_tick() const {
 
 template <class Real>
 double World<Real>::deepest_penetration() const {
-  return contact_.deepest_penetration(state_.x);
+  return contact_.objects.deepest_penetration(state_.x);
 }
 
 template <class Real>
 std::vector<std::string> World<Real>::bad_starts() const {
   std::vector<std::string> list;
   const auto name_of = [this](Index k) { return cloth_name(def_, k); };
-  for (const BadStart<Real>& start : contact_.bad_starts()) {
+  for (const BadStart<Real>& start : contact_.objects.bad_starts()) {
     if (colliders_[start.collider].voided) continue;  // it was forced there
     list.push_back(name_of(start.cloth) + " started inside " + object_name(def_, start.collider));
   }
-  if (!guard_ || guard_->open_pairs() == 0) return list;
-  for (const auto& [one, other] : guard_->tangled_cloths())
+  if (!contact_.guard || contact_.guard->open_pairs() == 0) return list;
+  for (const auto& [one, other] : contact_.guard->tangled_cloths())
     list.push_back(name_of(one) + " started through " + (one == other ? "itself" : name_of(other)));
   return list;
 }
 
 template <class Real>
 std::size_t World<Real>::open_pairs() const {
-  std::size_t pairs = guard_ ? guard_->open_pairs() : 0;
-  for (const BadStart<Real>& start : contact_.bad_starts())
+  std::size_t pairs = contact_.guard ? contact_.guard->open_pairs() : 0;
+  for (const BadStart<Real>& start : contact_.objects.bad_starts())
     pairs += colliders_[start.collider].voided ? 0 : start.particles;
   return pairs;
 }

@@ -13,7 +13,7 @@ namespace weft {
 template <class Real>
 void World<Real>::measure_forces(bool wanted) {
   supports_.wanted = wanted;
-  contact_.log_impulses(wanted, energy_.has_value());
+  contact_.objects.log_impulses(wanted, energy_.has_value());
   if (!wanted) supports_.told.reset();
   if (wanted && rests()) supports_.told = coming_reactions();  // no tick will measure them
 }
@@ -30,7 +30,7 @@ void World<Real>::measure_energy(bool wanted) {
     const std::size_t first_jaw = def_.colliders.size() - 2 * def_.grippers.size();
     energy_.emplace(EnergyLedger<Real>{WorkMeter<Real>(model_.mass.size(), first_jaw), {}});
   }
-  contact_.log_impulses(supports_.wanted, wanted);
+  contact_.objects.log_impulses(supports_.wanted, wanted);
   allocate_external();
   begin_balance();
 }
@@ -45,16 +45,16 @@ void World<Real>::take_reactions() {
   Reactions found;
   found.tick = tick_;
   found.colliders.assign(def_.colliders.size(), Vec3d::Zero());
-  if (collision().objects) found.contacts = contact_.contacts(state_.x);
+  if (collision().objects) found.contacts = contact_.objects.contacts(state_.x);
   for (const ContactPoint& contact : found.contacts) {
     assert(static_cast<std::size_t>(contact.collider) < found.colliders.size());
     found.colliders[static_cast<std::size_t>(contact.collider)] -= contact.force();
   }
-  if (seed_contact_) {
+  if (contact_.seed) {
     for (std::size_t k = 0; k < colliders_.size(); ++k) found.colliders[k] = colliders_[k].force;
   }
-  if (guard_) {
-    for (const ContactPoint& contact : contacts_of(*guard_, state_.x))
+  if (contact_.guard) {
+    for (const ContactPoint& contact : contacts_of(*contact_.guard, state_.x))
       found.contacts.push_back(contact);
   }
   if (solver_of(def_) != SolverKind::relaxation)
@@ -86,12 +86,13 @@ World<Real> World<Real>::copy() const {
   World other(*this);
   other.energy_.reset();
   other.debug_trees_.reset();
-  other.verlet_ = {};
-  other.relaxation_ = {};
+  other.solvers_.verlet = {};
+  other.solvers_.relaxation = {};
   other.prepare_solver();
-  other.implicit_ = implicit_;  // it knows the previous substep
+  other.solvers_.implicit = solvers_.implicit;  // it knows the previous substep
   if (solver_of(def_) == SolverKind::implicit)
-    other.implicit_.energy.prepare(other.model_);  // its passes point into arrays of their own
+    other.solvers_.implicit.energy.prepare(
+        other.model_);  // its passes point into arrays of their own
   return other;
 }
 

@@ -90,7 +90,7 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
   // Relaxation keeps lengths, not energy: it has no bound to be judged by.
-  const bool solved = kind != SolverKind::implicit || !implicit_.unsolved;
+  const bool solved = kind != SolverKind::implicit || !solvers_.implicit.unsolved;
   if (finite && solved && (kind == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
   d.cause = !finite   ? DivergenceCause::not_finite
@@ -116,10 +116,10 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
 /// moves between two of its steps may bring stiff cloth more energy than can be explained.
 template <class Real>
 bool World<Real>::leaves_to_verlet(const AdvanceResult& result, int substeps) {
-  if (!implicit_.refuses) return false;
-  if (!implicit_.violent && !implicit_.touching)
-    implicit_.violent = examine(result, SolverKind::implicit, substeps).has_value();
-  return implicit_.violent || implicit_.touching;
+  if (!solvers_.implicit.refuses) return false;
+  if (!solvers_.implicit.violent && !solvers_.implicit.touching)
+    solvers_.implicit.violent = examine(result, SolverKind::implicit, substeps).has_value();
+  return solvers_.implicit.violent || solvers_.implicit.touching;
 }
 
 template <class Real>
@@ -129,11 +129,11 @@ void World<Real>::advance_or_recover(int substeps) {
   int without_loss = 0;
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
-    implicit_.violent = implicit_.touching = false;
+    solvers_.implicit.violent = solvers_.implicit.touching = false;
     // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
-    implicit_.refuses = without_loss <= kMostSubsteps &&
-                        refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
-    if (touching_ && implicit_.refuses) {
+    solvers_.implicit.refuses = without_loss <= kMostSubsteps &&
+                                refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
+    if (solvers_.touching && solvers_.implicit.refuses) {
       kind = SolverKind::verlet;
       substeps = without_loss;
     }
@@ -155,14 +155,14 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.work = result.work;
     report_.largest_strain = result.largest_strain;
     report_.damped_substeps = result.damped_substeps;
-    report_.violent = implicit_.violent;
-    report_.touching = kind != solver_of(def_) && !implicit_.violent;
+    report_.violent = solvers_.implicit.violent;
+    report_.touching = kind != solver_of(def_) && !solvers_.implicit.violent;
     if (!divergence) {
       account_.accept(result, tick_seconds());
       if (energy_) energy_->book(result, report_.brought);
       last_good_.x = state_.x;
       last_good_.v = state_.v;
-      touching_ = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
+      solvers_.touching = solver_of(def_) == SolverKind::implicit && collision().touches(state_);
       return;
     }
     report_.divergence = divergence;
@@ -172,7 +172,7 @@ void World<Real>::advance_or_recover(int substeps) {
     if (last && kind == SolverKind::implicit && without_loss <= kMostSubsteps) {
       // However many substeps it takes: a cloth that is stopped in each tick would never move.
       report_.divergence->remedy = DivergenceRemedy::more_substeps;
-      implicit_.violent = true;
+      solvers_.implicit.violent = true;
       kind = SolverKind::verlet;
       substeps = without_loss;
       attempt = -1;
@@ -244,7 +244,7 @@ void World<Real>::go_back() {
   if (sleep_.wanted()) sleep_ = *checkpoint_.sleep;
   report_ = checkpoint_.report;
   report_.halted = true;
-  touching_ = false;
+  solvers_.touching = false;
   forget_motion();
   sleep_changed();
   last_good_.x = state_.x;
@@ -254,12 +254,12 @@ void World<Real>::go_back() {
 /// Clears the memory of solvers and contact, which no longer applies.
 template <class Real>
 void World<Real>::forget_motion() {
-  verlet_.elastic.reset();
-  std::fill(verlet_.at_rest.begin(), verlet_.at_rest.end(), std::nullopt);
-  implicit_.forget();
-  contact_.reset();
-  contact_.place(colliders_);
-  if (guard_) guard_->reset();
+  solvers_.verlet.elastic.reset();
+  std::fill(solvers_.verlet.at_rest.begin(), solvers_.verlet.at_rest.end(), std::nullopt);
+  solvers_.implicit.forget();
+  contact_.objects.reset();
+  contact_.objects.place(colliders_);
+  if (contact_.guard) contact_.guard->reset();
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                   \

@@ -18,15 +18,15 @@ std::size_t part_of(const ClothModel<Real>& model, Index particle) {
 /// Tells contact that masses changed.
 template <class Real>
 void World<Real>::masses_changed() {
-  contact_.invalidate_rows();
-  if (guard_) guard_->invalidate_rows();
+  contact_.objects.invalidate_rows();
+  if (contact_.guard) contact_.guard->invalidate_rows();
 }
 
 /// Tells contact that other cloths sleep now.
 template <class Real>
 void World<Real>::sleep_changed() {
-  contact_.let_rest(state_);
-  if (guard_) guard_->let_rest(state_.asleep);
+  contact_.objects.let_rest(state_);
+  if (contact_.guard) contact_.guard->let_rest(state_.asleep);
 }
 
 /// Wakes the cloth of a particle, and everything that touches it.
@@ -66,9 +66,9 @@ void World<Real>::rouse_sleepers() {
   }
   // A steady wind leaves cloth that has come to rest in it at rest.
   if (changes_by_itself(environment_)) sleep_.disturb_all();
-  for (const BadStart<Real>& start : contact_.bad_starts())
+  for (const BadStart<Real>& start : contact_.objects.bad_starts())
     sleep_.disturb(static_cast<std::size_t>(start.cloth));
-  if (guard_ && guard_->open_pairs() > 0) sleep_.disturb_all();
+  if (contact_.guard && contact_.guard->open_pairs() > 0) sleep_.disturb_all();
   for (std::size_t k = 0; k < colliders_.size(); ++k) {
     if (colliders_[k].is_active()) sleep_.disturb_near(state_, def_.colliders[k], colliders_[k]);
   }

@@ -15,7 +15,7 @@ template <class Real>
 int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environment) const {
   assert(kind != SolverKind::automatic);
   if (kind == SolverKind::implicit) {
-    const bool meets_any = guard_ || seed_contact_ || !def_.colliders.empty();
+    const bool meets_any = contact_.guard || contact_.seed || !def_.colliders.empty();
     return refinement_ * std::max(def_.implicit.substeps, meets_any ? kFewestInContact : 1);
   }
   const int fewest =
@@ -93,7 +93,7 @@ TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
   cost.particles = static_cast<double>(model_.mass.size());
   cost.substeps = choose_substeps(kind, environment);
   cost.sweeps = sweeps_of(def_, kind);
-  cost.damping = bending_dashpots_.updates(model_, tick_seconds());
+  cost.damping = solvers_.dashpots.updates(model_, tick_seconds());
   cost.tick_rate = def_.tick_rate;
   return cost;
 }
