@@ -43,10 +43,16 @@ inline constexpr Range kFanReachRange{0.01, 100};  ///< [m]
 inline constexpr Range kArealDensityRange{1e-3, 100};  ///< [kg/m^2]
 inline constexpr Range kStretchRange{0, 1e6};          ///< stretch and shear stiffness [N/m]
 inline constexpr Range kBendingRange{0, 10};           ///< rigidity [N m]
-inline constexpr Range kDampingRatioRange{0, 1};       ///< of a spring's highest mode
-inline constexpr Range kBendingDampingRange{0, 10};    ///< per elastic stiffness [s]
+inline constexpr Range kPoissonRange{-1, 100};         ///< of a mesh; -1: as on a grid
+inline constexpr Range kLockingStrainRange{0, 10};     ///< from which a thread is stiffer; 0: none
+inline constexpr Range kLockingFactorRange{1, 1000};   ///< how many times as stiff it then is
+inline constexpr Range kDampingRatioRange{0, 1};       ///< of the membrane's highest mode
+inline constexpr Range kRelaxationTimeRange{0, 10};    ///< of stretch, shear or bending [s]
 inline constexpr Range kThicknessRange{1e-4, 0.1};     ///< contact distance from objects [m]
 inline constexpr Range kFrictionRange{0, 10};          ///< Coulomb coefficient
+inline constexpr Range kRestitutionRange{0, 0.999};    ///< of the impact velocity
+inline constexpr Range kAirNormalRange{0, 100};        ///< drag coefficient across the wind
+inline constexpr Range kAirTangentialRange{0, 100};    ///< skin friction [kg/(m^2 s)]
 inline constexpr Range kSoftnessRange{0.01, 1};        ///< fraction of the springs' stiffness
 
 // Time.

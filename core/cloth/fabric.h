@@ -58,34 +58,37 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
   visit(FieldInfo{"stretch_weft", kStretchRange, "N/m", "stretch stiffness along v"},
         f.stretch_weft);
   visit(FieldInfo{"shear", kStretchRange, "N/m", "shear stiffness"}, f.shear);
-  visit(FieldInfo{"poisson", kPoissonOfGrid, 100, "",
+  visit(FieldInfo{"poisson", kPoissonRange, "",
                   "of a mesh: narrowing along v per strain along u; -1: as on a grid"},
         f.poisson);
   visit(FieldInfo{"bending_warp", kBendingRange, "N m", "bending rigidity along u"},
         f.bending_warp);
   visit(FieldInfo{"bending_weft", kBendingRange, "N m", "bending rigidity along v"},
         f.bending_weft);
-  visit(FieldInfo{"locking_strain", 0, 10, "",
+  visit(FieldInfo{"locking_strain", kLockingStrainRange, "",
                   "strain of a thread from which it is stiffer; 0: none"},
         f.locking_strain);
-  visit(FieldInfo{"locking_factor", 1, 1000, "", "how many times as stiff it then is"},
+  visit(FieldInfo{"locking_factor", kLockingFactorRange, "", "how many times as stiff it then is"},
         f.locking_factor);
   visit(FieldInfo{"damping_ratio", kDampingRatioRange, "", "damping of the highest membrane mode"},
         f.damping_ratio);
-  visit(FieldInfo{"stretch_damping", kBendingDampingRange, "s", "relaxation time of stretch"},
+  visit(FieldInfo{"stretch_damping", kRelaxationTimeRange, "s", "relaxation time of stretch"},
         f.stretch_damping);
-  visit(FieldInfo{"shear_damping", kBendingDampingRange, "s", "relaxation time of shear"},
+  visit(FieldInfo{"shear_damping", kRelaxationTimeRange, "s", "relaxation time of shear"},
         f.shear_damping);
-  visit(FieldInfo{"bending_damping", kBendingDampingRange, "s", "relaxation time of bending"},
+  visit(FieldInfo{"bending_damping", kRelaxationTimeRange, "s", "relaxation time of bending"},
         f.bending_damping);
   visit(FieldInfo{"thickness", kThicknessRange, "m", "contact distance from objects"}, f.thickness);
   visit(FieldInfo{"friction", kFrictionRange, "",
                   "Coulomb friction; between two cloths the mean of both"},
         f.friction);
-  visit(FieldInfo{"restitution", 0, 0.999, "", "fraction of the impact velocity that returns"},
+  visit(FieldInfo{"restitution", kRestitutionRange, "",
+                  "fraction of the impact velocity that returns"},
         f.restitution);
-  visit(FieldInfo{"air_normal", 0, 100, "", "drag coefficient across the wind"}, f.air_normal);
-  visit(FieldInfo{"air_tangential", 0, 100, "kg/(m^2 s)", "skin friction along the wind"},
+  visit(FieldInfo{"air_normal", kAirNormalRange, "", "drag coefficient across the wind"},
+        f.air_normal);
+  visit(FieldInfo{"air_tangential", kAirTangentialRange, "kg/(m^2 s)",
+                  "skin friction along the wind"},
         f.air_tangential);
 }
 

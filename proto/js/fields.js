@@ -26,8 +26,9 @@ export const FIELDS = {
   ],
   fans: ['position', 'direction', 'speed', 'radius', 'spread', 'reach'],
   fabric: [
-    'preset', 'areal_density', 'stretch_warp', 'stretch_weft', 'shear', 'bending_warp', 'bending_weft',
-    'damping_ratio', 'bending_damping', 'thickness', 'friction',
+    'preset', 'areal_density', 'stretch_warp', 'stretch_weft', 'shear', 'poisson', 'bending_warp', 'bending_weft',
+    'locking_strain', 'locking_factor', 'damping_ratio', 'stretch_damping', 'shear_damping', 'bending_damping',
+    'thickness', 'friction', 'restitution', 'air_normal', 'air_tangential',
   ],
   advance: ['n', 'frames', 'observe'],
   query: ['what', 'format', 'viewer', 'tree', 'level'],

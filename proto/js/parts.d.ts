@@ -28,18 +28,34 @@ export interface Fabric {
   stretch_weft?: number;
   /** stiffness [N/m]; 0 to 1 000 000 */
   shear?: number;
+  /** of a mesh: narrowing along v per strain along u; -1: as on a grid; -1 to 100 */
+  poisson?: number;
   /** rigidity along u [N m]; 0 to 10 */
   bending_warp?: number;
   /** rigidity along v [N m]; 0 to 10 */
   bending_weft?: number;
+  /** from which a thread is stiffer; 0: none; 0 to 10 */
+  locking_strain?: number;
+  /** how many times as stiff it then is; 1 to 1000 */
+  locking_factor?: number;
   /** of the highest mode of stretch; 0 to 1 */
   damping_ratio?: number;
-  /** per rigidity [s]; 0 to 10 */
+  /** relaxation time [s]; 0 to 10 */
+  stretch_damping?: number;
+  /** relaxation time [s]; 0 to 10 */
+  shear_damping?: number;
+  /** relaxation time [s]; 0 to 10 */
   bending_damping?: number;
   /** distance from objects in contact [m]; 0.0001 to 0.1 */
   thickness?: number;
   /** Coulomb's coefficient; 0 to 10 */
   friction?: number;
+  /** of the impact velocity; 0 to 0.999 */
+  restitution?: number;
+  /** drag coefficient across the wind; 0 to 100 */
+  air_normal?: number;
+  /** skin friction along the wind [kg/(m² s)]; 0 to 100 */
+  air_tangential?: number;
 }
 
 export interface Camera {

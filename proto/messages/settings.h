@@ -47,8 +47,9 @@ inline constexpr std::array<const char*, 2> kWords<OverBudget> = {"slow", "softe
 /// What a cloth is made of; omitted values stay as they are, or as in the preset.
 struct FabricChange {
   std::optional<std::string> preset;
-  std::optional<double> areal_density, stretch_warp, stretch_weft, shear, bending_warp,
-      bending_weft, damping_ratio, bending_damping, thickness, friction;
+  std::optional<double> areal_density, stretch_warp, stretch_weft, shear, poisson, bending_warp,
+      bending_weft, locking_strain, locking_factor, damping_ratio, stretch_damping, shear_damping,
+      bending_damping, thickness, friction, restitution, air_normal, air_tangential;
   bool operator==(const FabricChange&) const = default;
 
   static constexpr const char* kName = "Fabric";
@@ -63,17 +64,37 @@ struct FabricChange {
     io.optional(Field{"stretch_weft", "stiffness along v", kStretchRange, "N/m"},
                 fabric.stretch_weft);
     io.optional(Field{"shear", "stiffness", kStretchRange, "N/m"}, fabric.shear);
+    io.optional(
+        Field{"poisson", "of a mesh: narrowing along v per strain along u; -1: as on a grid",
+              kPoissonRange},
+        fabric.poisson);
     io.optional(Field{"bending_warp", "rigidity along u", kBendingRange, "N m"},
                 fabric.bending_warp);
     io.optional(Field{"bending_weft", "rigidity along v", kBendingRange, "N m"},
                 fabric.bending_weft);
+    io.optional(
+        Field{"locking_strain", "from which a thread is stiffer; 0: none", kLockingStrainRange},
+        fabric.locking_strain);
+    io.optional(Field{"locking_factor", "how many times as stiff it then is", kLockingFactorRange},
+                fabric.locking_factor);
     io.optional(Field{"damping_ratio", "of the highest mode of stretch", kDampingRatioRange},
                 fabric.damping_ratio);
-    io.optional(Field{"bending_damping", "per rigidity", kBendingDampingRange, "s"},
+    io.optional(Field{"stretch_damping", "relaxation time", kRelaxationTimeRange, "s"},
+                fabric.stretch_damping);
+    io.optional(Field{"shear_damping", "relaxation time", kRelaxationTimeRange, "s"},
+                fabric.shear_damping);
+    io.optional(Field{"bending_damping", "relaxation time", kRelaxationTimeRange, "s"},
                 fabric.bending_damping);
     io.optional(Field{"thickness", "distance from objects in contact", kThicknessRange, "m"},
                 fabric.thickness);
     io.optional(Field{"friction", "Coulomb's coefficient", kFrictionRange}, fabric.friction);
+    io.optional(Field{"restitution", "of the impact velocity", kRestitutionRange},
+                fabric.restitution);
+    io.optional(Field{"air_normal", "drag coefficient across the wind", kAirNormalRange},
+                fabric.air_normal);
+    io.optional(
+        Field{"air_tangential", "skin friction along the wind", kAirTangentialRange, "kg/(m² s)"},
+        fabric.air_tangential);
     io.one_at_least("fabric has nothing to set");
   }
 };

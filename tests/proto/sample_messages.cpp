@@ -102,7 +102,15 @@ State sample_state() {
   s.air.density = 1.225;
   s.air.drag = 0.1;
   s.fabric = "default";
-  s.fabrics = {{{}, 0.2, 400, 400, 40, 1e-5, 1e-5, 0.05, 0, 0.004, 0.4}};
+  FabricChange& fabric = s.fabrics.emplace_back();
+  fabric.areal_density = 0.2;
+  fabric.stretch_warp = fabric.stretch_weft = 400;
+  fabric.shear = 40;
+  fabric.bending_warp = fabric.bending_weft = 1e-5;
+  fabric.damping_ratio = 0.05;
+  fabric.bending_damping = 0;
+  fabric.thickness = 0.004;
+  fabric.friction = 0.4;
   s.solver = "verlet";
   s.substeps = 8;
   s.particles = 600;

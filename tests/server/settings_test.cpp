@@ -61,6 +61,26 @@ TEST_CASE("a fabric set in motion is told to everybody, its substeps follow, and
   CHECK(t.room->world().def().cloths[0].fabric.friction == make_fabric("silk").friction);
 }
 
+TEST_CASE("each number of a fabric is set and told on the wire as a scene has it") {
+  TestRoom t;
+  t.join(1);
+  FabricDef fabric = t.room->world().def().cloths[0].fabric;
+  std::size_t numbers = 0;
+  visit_fields_of_fabric(fabric, [&](const FieldInfo& info, double& value) {
+    INFO(info.name);
+    ++numbers;
+    // A grid's Poisson's ratio follows from its shear.
+    if (std::string(info.name) != "poisson") value = value > 0 ? 1.25 * value : 1e-3;
+    const json wanted = {{"op", "set"}, {"id", 1}, {"fabric", {{info.name, value}}}};
+    REQUIRE(t.say(1, wanted.dump())["op"] == "result");
+    CHECK(t.output.last("state")["fabrics"][0][info.name] == value);
+  });
+  CHECK(t.output.last("state")["fabrics"][0].size() == numbers);
+  const json refused = t.say(1, R"({"op":"set","id":2,"fabric":{"poisson":0.3}})");
+  CHECK(refused["op"] == "error");
+  CHECK(refused["field"] == "fabric.poisson");
+}
+
 TEST_CASE("a room whose fabric was changed is replayed by its log to the same hash") {
   TestRoom t;
   t.join(1);

@@ -23,12 +23,20 @@ class Fabric(TypedDict):
     stretch_warp: NotRequired[float]  # stiffness along u [N/m]; 0 to 1 000 000
     stretch_weft: NotRequired[float]  # stiffness along v [N/m]; 0 to 1 000 000
     shear: NotRequired[float]  # stiffness [N/m]; 0 to 1 000 000
+    poisson: NotRequired[float]  # of a mesh: narrowing along v per strain along u; -1: as on a grid; -1 to 100
     bending_warp: NotRequired[float]  # rigidity along u [N m]; 0 to 10
     bending_weft: NotRequired[float]  # rigidity along v [N m]; 0 to 10
+    locking_strain: NotRequired[float]  # from which a thread is stiffer; 0: none; 0 to 10
+    locking_factor: NotRequired[float]  # how many times as stiff it then is; 1 to 1000
     damping_ratio: NotRequired[float]  # of the highest mode of stretch; 0 to 1
-    bending_damping: NotRequired[float]  # per rigidity [s]; 0 to 10
+    stretch_damping: NotRequired[float]  # relaxation time [s]; 0 to 10
+    shear_damping: NotRequired[float]  # relaxation time [s]; 0 to 10
+    bending_damping: NotRequired[float]  # relaxation time [s]; 0 to 10
     thickness: NotRequired[float]  # distance from objects in contact [m]; 0.0001 to 0.1
     friction: NotRequired[float]  # Coulomb's coefficient; 0 to 10
+    restitution: NotRequired[float]  # of the impact velocity; 0 to 0.999
+    air_normal: NotRequired[float]  # drag coefficient across the wind; 0 to 100
+    air_tangential: NotRequired[float]  # skin friction along the wind [kg/(m² s)]; 0 to 100
 
 
 class Camera(TypedDict):
