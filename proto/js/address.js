@@ -1,6 +1,14 @@
 const SOCKETS = new Map([['http:', 'ws:'], ['https:', 'wss:'], ['ws:', 'ws:'], ['wss:', 'wss:']]);
 
 /**
+ * The token that a link to the page tells in its fragment, `#token=…`.
+ * @param {string} link  that is an address
+ */
+export function tokenOf(link) {
+  return new URLSearchParams(new URL(link).hash.slice(1)).get('token') ?? undefined;
+}
+
+/**
  * The address of a server's socket; `given` may be that of its page.
  * @param {string} given
  * @param {'socket' | 'http'} [mesh]  where the mesh is to come from

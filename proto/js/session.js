@@ -1,4 +1,4 @@
-import { socketAddress } from './address.js';
+import { socketAddress, tokenOf } from './address.js';
 import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
 import { Connection, SECOND_LOOK, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
@@ -14,7 +14,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @typedef {object} Options
  * @property {string} [name]
  * @property {string} [color]            `#rrggbb`
- * @property {string} [token]            of a link, for a server that asks for one
+ * @property {string} [token]            for a server that asks for one; that of a link is read from there
  * @property {'socket' | 'http'} [mesh]  source of the mesh; over HTTP it is cached
  * @property {boolean} [reconnect]       default true
  * @property {import('./frames.js').FrameSource} [frames]  reads frames, in a worker perhaps
@@ -97,6 +97,7 @@ export class Session extends Emitter {
     this.#pace = new Pace(this.timers);
     this.#key = new KeyWish(this.timers);
     this.#url = socketAddress(url, options.mesh);
+    this.options.token ??= tokenOf(url);
     this.#connection = new Connection(this.#url.href, {
       WebSocket: options.WebSocket ?? globalThis.WebSocket,
       timers: this.timers,
@@ -136,9 +137,9 @@ export class Session extends Emitter {
   }
 
   /** Leaves for another room or server, where it connects at once. @param {string} url @param {string} [token] */
-  enter(url, token = this.options.token) {
-    this.options.token = token;
+  enter(url, token) {
     this.#url = socketAddress(url, this.options.mesh);
+    this.options.token = token ?? tokenOf(url) ?? this.options.token;
     this.#connection.move(this.#url.href);
   }
 

@@ -1,8 +1,16 @@
 """Addresses of servers."""
 
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 from .errors import WeftError
+
+
+def token_of(link: str) -> str | None:
+    """The token that a link to the page tells in its fragment, #token=…"""
+    try:
+        return parse_qs(urlsplit(link).fragment).get("token", [None])[0]
+    except ValueError:  # no link at all, which `socket_address` tells
+        return None
 
 
 def socket_address(url: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Generator
 from typing import Any
 
 from . import packages
-from .address import socket_address
+from .address import socket_address, token_of
 from .client import Client
 from .errors import ConnectionLost, ProtocolError
 from .timeouts import CALL_SECONDS
@@ -22,7 +22,7 @@ class Connecting:
 
     def __init__(self, url: str, hello: dict[str, Any], timeout: float, reconnect: bool, call_timeout: float | None,
                  token: str | None = None):
-        self._token = token
+        self._token = token if token is not None else token_of(url)
         self._url, self._hello, self._timeout, self._reconnect = socket_address(url), hello, timeout, reconnect
         self._call_timeout = call_timeout
         self._client: Client | None = None
@@ -89,7 +89,7 @@ def connect(
     """Joins a server: `client = await connect(url)` or `async with connect(url) as client`.
 
     `url` is that of the socket, ws://HOST:PORT/ws, or of the page, http://HOST:PORT/, as the server prints it.
-    `token` is that of a link, for a server that asks for one.
+    `token` is for a server that asks for one; that of a link, http://HOST:PORT/#token=…, is read from there.
     `timeout` [s] bounds joining, `call_timeout` each answer by default; None: no bound.
     """
     return Connecting(url, {"name": name, "color": color}, timeout, reconnect, call_timeout, token)

@@ -567,6 +567,23 @@ test('a client that moves to another room leaves the first, and has its name, to
   assert.equal(client.connected, true, 'what the first room says is not heard any more');
 });
 
+test('a link brings its token, and one that is given goes before it', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const options = { WebSocket: FakeSocket, timers: new FakeTimers() };
+  for (const [given, said] of [[undefined, 'of the link'], ['of its own', 'of its own']]) {
+    const client = new WeftClient('http://host:1/#token=of%20the%20link', { ...options, token: given });
+    client.connect().catch(() => {}); // it is closed before it is welcome
+    const socket = sockets.at(-1);
+    socket.open();
+    assert.equal(socket.url, 'ws://host:1/ws');
+    assert.equal(socket.ops('hello')[0].token, said);
+    client.enter('http://host:1/#token=another');
+    sockets.at(-1).open();
+    assert.equal(sockets.at(-1).ops('hello')[0].token, 'another');
+    client.close();
+  }
+});
+
 test('a client that was closed for good moves to a room that there is', async () => {
   const { client, socket, sockets } = await join({ mesh: 'http' });
   socket.lose(4004, 'the room is closed');

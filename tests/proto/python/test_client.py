@@ -273,6 +273,13 @@ class JoiningTest(unittest.IsolatedAsyncioTestCase):
                 self.assertEqual(first["token"], "0123456789abcdef")
                 self.assertNotIn("token", second)
 
+    async def test_a_link_brings_its_token_and_another_one_that_is_given_goes_before_it(self):
+        for given, said in ((None, "0123456789abcdef"), ("fedcba9876543210", "fedcba9876543210")):
+            async with PlayedServer() as server:
+                link = server.url.replace("ws://", "http://").removesuffix("/ws") + "/#token=0123456789abcdef"
+                async with weft.connect(link, name="Ada", token=given):
+                    self.assertEqual(server.of("hello")[0]["token"], said)
+
     async def test_a_server_without_the_subprotocol_is_refused(self):
         async with PlayedServer(subprotocols=None) as server:
             with self.assertRaises(weft.WeftError):

@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 
-from ..address import socket_address
+from ..address import socket_address, token_of
 from ..client import Client
 from ..connecting import connect
 from ..runner import Runner
@@ -80,7 +80,8 @@ class VectorClothEnv(VectorEnv):
 
     async def _join(self, room: str) -> Client:
         parts = urlsplit(socket_address(self._url))
-        return await connect(parts._replace(path=f"/ws/{room}").geturl(), name="gym")._connect()
+        address = parts._replace(path=f"/ws/{room}").geturl()
+        return await connect(address, name="gym", token=token_of(self._url))._connect()
 
     def _at_once(self, calls: Sequence[Awaitable[Observations]]) -> list[Observations]:
         async def together() -> list[Observations]:
