@@ -87,8 +87,9 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
   ConnectionLimits& l = o.limits;
   serve.add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
   add_number(serve, "--port", o.port, kPorts, "Port (8080); 0 picks a free one");
-  add_switch(serve, "--open", o.open,
-             "Let other machines in (needed for any address but loopback)");
+  add_switch(
+      serve, "--open", o.open,
+      "Let other machines in without tokens (any address but loopback needs this or --tokens)");
   serve.add_option("--scene", o.scene, "Built-in scene, or a file that ends in .json")
       ->capture_default_str();
   serve.add_option("--scenes", o.scenes, "Directory of scenes and meshes that clients may name");
@@ -200,7 +201,7 @@ void add_fabric(CLI::App& app, FabricOptions& o, std::vector<std::string>& setti
 
 void add_drape(CLI::App& app, DrapeOptions& o, std::vector<std::string>& settings) {
   CLI::App& drape = *app.add_subcommand(
-      "drape", "Predict the drape of a fabric from several starts, grids and a mesh");
+      "drape", "Run the drape test of a fabric from several starts, on grids and on a mesh");
   drape.add_option("--fabric", o.fabric, "Name of a preset")->capture_default_str();
   drape.add_option("--set", settings, "Value of the fabric as key=value; may be repeated");
   add_number(drape, "--starts", o.starts, kDrapeStarts, "Runs of each specimen (5)");
