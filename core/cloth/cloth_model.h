@@ -56,6 +56,7 @@ struct GridSprings {
   Real warp = 0, weft = 0, shear = 0;                 ///< stiffness [N/m]
   Real rest_warp = 0, rest_weft = 0, rest_shear = 0;  ///< [m]
   Real warp_time = 0, weft_time = 0, shear_time = 0;  ///< beta = c/k [s]
+  Real misfit = 0;  ///< E, of a twisted cell's chords; see forces/cell_misfit.h [N m]
 };
 
 /// Bending of a grid that is flat at rest, as a quadratic form with a constant Hessian:
@@ -119,6 +120,10 @@ struct GridCells {
   bool has_cell(int r, int c) const {
     return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&
            kept[static_cast<std::size_t>(r * (columns - 1) + c)] != 0;
+  }
+  void drop(int r, int c) {
+    assert(has_cell(r, c));
+    kept[static_cast<std::size_t>(r * (columns - 1) + c)] = 0;
   }
   int cells_around(int r, int c) const {
     return has_cell(r - 1, c - 1) + has_cell(r - 1, c) + has_cell(r, c - 1) + has_cell(r, c);

@@ -67,6 +67,7 @@ void summarise_springs(const ClothDef& def, const SpringTimes& times, ClothPart<
   springs.warp_time = static_cast<Real>(times.warp);
   springs.weft_time = static_cast<Real>(times.weft);
   springs.shear_time = static_cast<Real>(times.shear);
+  springs.misfit = static_cast<Real>(misfit_stiffness(k, cell_u, cell_v));
   part.grid_springs = springs;
 }
 

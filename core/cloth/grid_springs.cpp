@@ -60,6 +60,16 @@ GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell
   return k;
 }
 
+double misfit_stiffness(const GridStiffness& springs, double cell_u, double cell_v) {
+  assert(cell_u > 0 && cell_v > 0);
+  if (!(springs.warp > 0 && springs.weft > 0 && springs.shear > 0)) return 0;
+  const double u2 = cell_u * cell_u, v2 = cell_v * cell_v, d2 = u2 + v2;
+  // The weights of q: 1 for each diagonal, 2 a for the mean of two sides.
+  const double give = 2 / (springs.shear * d2) + 4 * u2 / (springs.warp * d2 * d2) +
+                      4 * v2 / (springs.weft * d2 * d2);
+  return 1 / give;
+}
+
 SpringTimes grid_spring_times(const FabricDef& fabric, double cell_u, double cell_v, double least) {
   assert(cell_u > 0 && cell_v > 0 && least >= 0);
   const double ratio2 = cell_u * cell_u / (cell_v * cell_v);

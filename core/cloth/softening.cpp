@@ -33,6 +33,7 @@ void soften(double softness, ClothModel<Real>& model) {
     springs.warp *= stiffness;
     springs.weft *= stiffness;
     springs.shear *= stiffness;
+    springs.misfit *= stiffness;
     for (Real* time : {&springs.warp_time, &springs.weft_time, &springs.shear_time})
       *time /= damping;
   }

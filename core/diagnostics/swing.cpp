@@ -28,8 +28,15 @@ void Swing::look(double time, double deflection) {
                after = last_[2].deflection - last_[1].deflection;
   if (!(before * after < 0)) return;
   const double bend = after - before, slope = (before + after) / 2;
-  turns_[count_++] = {last_[1].time - slope / bend * (last_[2].time - last_[1].time),
-                      last_[1].deflection - slope * slope / (2 * bend)};
+  const Turn turn = {last_[1].time - slope / bend * (last_[2].time - last_[1].time),
+                     last_[1].deflection - slope * slope / (2 * bend)};
+  // A strip that trembles as it is let go turns without having swung through.
+  if (count_ > 0 && turn.deflection * turns_[count_ - 1].deflection > 0) {
+    if (std::abs(turn.deflection) > std::abs(turns_[count_ - 1].deflection))
+      turns_[count_ - 1] = turn;
+    return;
+  }
+  turns_[count_++] = turn;
 }
 
 double Swing::half_swing(std::size_t k) const {

@@ -8,6 +8,7 @@
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/air/air_force.h"
+#include "core/forces/cell_misfit.h"
 #include "core/forces/hinge.h"
 #include "core/forces/membrane.h"
 #include "core/forces/spring.h"
@@ -47,6 +48,7 @@ void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& par
     at(force, s.i) += f;
     at(force, s.j) -= f;
   }
+  add_misfit_forces(part, x, force);
 }
 
 template <class Real>
@@ -148,6 +150,7 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
     const double strain = std::abs(stretch) / static_cast<double>(s.rest_length);
     if (!(strain <= energy.largest_strain)) energy.largest_strain = strain;
   }
+  energy.stretch += misfit_energy(part, x);
   for (Index n = part.membrane.first; n < part.membrane.end(); ++n) {
     const MembraneTriangle<Real>& t = at(model.membrane, n);
     const MembraneStrain<Real> strain = strain_of(t, x);

@@ -17,7 +17,8 @@ struct ElasticEnergy {
                               ///< principal strain of the membrane triangles
 };
 
-/// Adds the elastic and dashpot forces of all springs to `force` [N]; formula in spring.h.
+/// Adds the elastic and dashpot forces of all springs to `force` [N], with a grid's misfit;
+/// formulas in spring.h and cell_misfit.h.
 /// @param x,v  positions [m] and velocities [m/s] of all particles
 template <class Real>
 void add_spring_forces(const ClothModel<Real>& model, const ClothPart<Real>& part,

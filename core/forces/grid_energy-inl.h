@@ -9,6 +9,7 @@
 
 #include "core/forces/force_pass.h"
 #include "core/forces/grid_layout-inl.h"
+#include "core/forces/grid_misfit-inl.h"
 #include "core/math/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -59,6 +60,7 @@ HWY_INLINE ElasticEnergy elastic_energy(const GridView<Real>& g) {
       at.add_spring(d, hn::LoadU(d, k + kWeft * line), weft, down);
       at.add_spring(d, k_shear, shear, xe - x0);
       at.add_spring(d, k_shear, shear, xd - xr);
+      at.stretch = hn::Sub(at.stretch, doubled_misfit(d, g, x, k + kHasCell * line));
       at.add_stencil(d, hn::LoadU(d, k + kTwist * line), (xe - xd) - along);
       at.add_stencil(d, hn::LoadU(d, k + kBendU * line), (load(d, x + 2, line) - xr) - along);
       at.add_stencil(d, hn::LoadU(d, k + kBendV * line),

@@ -8,6 +8,7 @@
 #endif
 
 #include "core/forces/grid_layout-inl.h"
+#include "core/forces/grid_misfit-inl.h"
 #include "core/forces/spring_law-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,7 +50,8 @@ struct ForceLines {
   Real* carry;                            ///< on the row below, per component
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
-  const Real *twist, *bend_u, *bend_v;    ///< stiffness of the bending stencils
+  Real* twist;                            ///< stiffness of the cells' twist
+  const Real *bend_u, *bend_v;            ///< of the other bending stencils
   std::ptrdiff_t step;                    ///< from component to component
 
   HWY_INLINE ForceLines(const GridView<Real>& g, std::ptrdiff_t r) : step(g.scratch_line()) {
@@ -63,7 +65,7 @@ struct ForceLines {
     corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
     corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
     const Real* const row = g.row[r].coefficients;
-    twist = row + kTwist * g.line;
+    twist = g.scratch + kTwistLine * step;
     bend_u = row + kBendU * g.line;
     bend_v = row + kBendV * g.line;
   }
@@ -78,6 +80,7 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
   compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
+  compute_twist_stiffness(g, r, to.twist);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed

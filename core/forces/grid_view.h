@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/cloth/cloth_model.h"
+#include "core/forces/cell_misfit.h"
 
 // Layout of the arrays that a grid's kernels work on.
 
@@ -44,6 +45,7 @@ struct GridView {
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
   GridSprings<Real> springs;
+  MisfitLaw<Real> misfit;
   Real* scratch = nullptr;  ///< kGridScratchLines lines
 
   std::ptrdiff_t pitch() const { return kMotionLines * line; }
@@ -53,8 +55,8 @@ struct GridView {
 };
 
 /// Lines of scratch: factors of springs, forces for other columns, forces carried to the row below
-/// (see grid_step-inl.h), powers per column.
-inline constexpr int kPowerLine = 19, kGridScratchLines = 20;
+/// (see grid_step-inl.h), powers per column, stiffness of the cells' twist.
+inline constexpr int kPowerLine = 19, kTwistLine = 20, kGridScratchLines = 21;
 
 /// Sum of a pass's values per column, in column order, so that the width of a vector does not
 /// matter.

@@ -119,6 +119,17 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
   near.triangles = take(
       model.triangles, part.triangles, [this](const auto& t) { return touches(&t[0], 3); },
       near_.triangles);
+  near.grid_springs = part.grid_springs;
+  near.cells = part.cells;
+  for (int r = 0; part.grid_springs && r + 1 < near.cells.rows; ++r) {
+    for (int c = 0; c + 1 < near.cells.columns; ++c) {
+      if (!near.cells.has_cell(r, c)) continue;
+      const auto held = [&](int dr, int dc) {
+        return holds(part.particles.first + near.cells.particle(r + dr, c + dc));
+      };
+      if (!held(0, 0) && !held(0, 1) && !held(1, 0) && !held(1, 1)) near.cells.drop(r, c);
+    }
+  }
   const auto adder = [this](Stencils& list) {
     return [this, &list](double k, const Index* corners, const double* weights, int count) {
       if (touches(corners, static_cast<std::size_t>(count))) list.add(k, corners, weights, count);

@@ -25,6 +25,7 @@ void evaluate_membrane(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
     const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     tick.profile[Stage::bending].work += stencils;
     tick.work.meshes[p].compute_forces(tick.state.x, velocity, force);
+    add_misfit_forces(part, tick.state.x, force);
     return;
   }
   std::fill_n(force.begin() + part.particles.first, part.particles.count, Vec3<Real>::Zero());

@@ -13,6 +13,7 @@
 #include "core/solver/constants.h"
 #include "core/stop_signal.h"
 #include "core/world/constants.h"
+#include "core/world/model_of.h"
 
 namespace weft {
 namespace {
@@ -59,8 +60,7 @@ WorldDef validated(WorldDef def) {
 template <class Real>
 World<Real>::World(const WorldDef& def, const Runtime& runtime)
     : def_(validated(def)), environment_(def.environment), runtime_(runtime),
-      model_(build_cloths<Real>(cloths_to_build(def_))), account_(total_mass(model_)),
-      sleep_(make_sleep(def_, model_)) {
+      model_(model_of<Real>(def_)), account_(total_mass(model_)), sleep_(make_sleep(def_, model_)) {
   for (const ClothDef& cloth : def_.cloths) scene_fabrics_.push_back(cloth.fabric);
   if (def_.start) validate(*def_.start, model_.mass.size());
   state_ = state_at(def_.start, model_);

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/geometry/ray_cast.h"
 #include "core/world/constants.h"
+#include "core/world/model_of.h"
 #include "core/world/object_name.h"
 #include "core/world/state_hash.h"
 #include "core/world/world.h"
@@ -178,7 +179,7 @@ void World<Real>::set_environment(const EnvironmentDef& environment) {
 template <class Real>
 void World<Real>::set_softness(double softness) {
   check_field("", {"softness", kSoftnessRange, "", "fraction of the springs' stiffness"}, softness);
-  ClothModel<Real> model = build_cloths<Real>(cloths_to_build(def_));
+  ClothModel<Real> model = model_of<Real>(def_);
   soften(softness, model);
   softness_ = softness;
   assert(model.springs.size() == model_.springs.size());

@@ -4,6 +4,7 @@
 
 #include "core/cloth/softening.h"
 #include "core/error.h"
+#include "core/world/model_of.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -35,7 +36,7 @@ void World<Real>::take_fabric(std::size_t cloth, const FabricDef& fabric) {
   assert(cloth < def_.cloths.size());
   def_.cloths[cloth].fabric = fabric;
   wake_all();  // before `sleep_` is built anew
-  model_ = build_cloths<Real>(cloths_to_build(def_));
+  model_ = model_of<Real>(def_);
   soften(softness_, model_);
   assert(model_.mass.size() == state_.x.size());
   for (std::size_t i = 0; i < model_.mass.size(); ++i) {

@@ -84,7 +84,6 @@ export class Session extends Emitter {
   mesh = null;
   /** Arguments of `view`, repeated after a reconnection. @type {object} */
   wantedView = {};
-
   /**
    * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`, or that of the page
    * @param {Options} [options]

@@ -210,8 +210,13 @@ TEST_CASE(
   t.say(1, R"({"op":"move","pin":2,"position":[0.25,0.8,0.3],"max_force":5})");
   t.say(1, R"({"op":"advance","n":120})");
   CHECK(pins_of(t)["1"]["position"] == stopped["position"]);
-  const json blocked = pins_of(t)["2"];
-  CHECK(blocked["behind"] == true);
+  // Pressed against the ball it gives way and catches up again, tick by tick.
+  bool behind = false;
+  for (int tick = 0; tick < 30 && !behind; ++tick) {
+    t.say(1, R"({"op":"advance","n":1})");
+    behind = pins_of(t)["2"]["behind"].get<bool>();
+  }
+  CHECK(behind);
   t.say(1, R"({"op":"reset"})");
   const json after = pins_of(t);  // their ids are new
   REQUIRE(after.size() == before.size());

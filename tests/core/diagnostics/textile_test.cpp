@@ -192,6 +192,17 @@ TEST_CASE("the cantilever test finds the bending length of every preset, to 1 % 
   }
 }
 
+TEST_CASE("a strip that trembles as it is let go has not swung through") {
+  Swing swing;
+  const auto at = [](double t) {
+    const double tremble = t < 0.2 ? 2e-3 * std::sin(100 * t) : 0;
+    return std::exp(-t / 5) * std::cos(kPi * t) + tremble;
+  };
+  for (int tick = 0; tick < 600; ++tick) swing.look(tick / 60.0, at(tick / 60.0));
+  CHECK(swing.decay().period == Approx(2).epsilon(0.01));
+  CHECK(swing.decay().decay_time == Approx(5).epsilon(0.02));
+}
+
 TEST_CASE("the decay test finds the relaxation time of bending and the period, to 5 %") {
   const auto [name, times] = GENERATE(table<std::string, double>({{"cotton", 1},
                                                                   {"cotton", 4},

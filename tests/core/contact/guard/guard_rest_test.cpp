@@ -33,7 +33,7 @@ TEST_CASE(
   World<float> world(falling_sheet());
   jolt(world, 0.05, GENERATE(1u, 2u, 3u, 4u, 5u, 6u, 7u));
   for (int tick = 0; tick < 300; ++tick) world.step();
-  CHECK(world.guard()->rows().size() > 100);
+  CHECK(world.guard()->rows().size() > 50);
   double fastest = 0;
   for (int tick = 0; tick < 30; ++tick) {
     world.step();

@@ -127,7 +127,7 @@ TEST_CASE("a crumpling sheet leaves the same bits with one and two threads") {
 
 TEST_CASE("a pile that a hand pulls apart leaves the same bits with one and two threads") {
   TwoThreads two_threads;
-  World<float> one(upright_drop(44, 0.25)), two(upright_drop(44, 0.25), {&two_threads, nullptr});
+  World<float> one(upright_drop(60, 0.25)), two(upright_drop(60, 0.25), {&two_threads, nullptr});
   std::size_t rows = 0;
   for (World<float>* world : {&one, &two}) {
     jolt(*world, 0.05, 5);
