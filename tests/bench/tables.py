@@ -9,6 +9,8 @@ FABRICS = ["soft", "stiff", "cotton"]
 SCENES = ["swing", "swing-free", "static-rest", "cantilever", "hanging-strip", "flag", "drape", "drape-free"]
 SIZES = [32, 64, 128, 256]
 BOUNDS = [(0.1, "10 %"), (0.01, "1 %"), (0.001, "0.1 %")]
+# What errors are asked for, each with the smallest error that noise lets be measured.
+BOUNDED = {"position": 0.001, "strain": 0.01, "energy": 0.001}
 SOLVERS = ["verlet", "implicit", "xpbd", "relaxation"]
 NAMES = {"verlet": "verlet", "xpbd": "XPBD", "relaxation": "seed", "implicit": "implicit"}
 WANTED_SETTINGS = 6
@@ -76,7 +78,7 @@ def setting_name(cell, short=False):
     """What ran, by its substeps; what was asked for where it did not run.
     @param short  without the solver's name"""
     if cell["solver"] == "verlet":
-        name = "×" + cell["setting"].removeprefix("x")
+        name = "×" + cell["setting"].removeprefix("x").replace(" without dashpots", ", no dashpots")
     else:
         name = f"{cell['substeps'] or cell['least_substeps']}×{cell['sweeps']}"
     return name if short else f"{NAMES[cell['solver']]} {name}"
@@ -96,37 +98,47 @@ def cheapest(cells, bound, error="position"):
 def why_not(cells):
     """Why a case has no figure: its most common reason."""
     reasons = [cell["reason"] for cell in cells if cell["outcome"] == "not run"]
-    return max(set(reasons), key=reasons.count) if reasons else "no setting reaches it"
+    return max(set(reasons), key=reasons.count)
 
 
 def cost_of_accuracy(cells, scene="swing"):
-    """What 10 %, 1 % and 0.1 % cost at each N."""
+    """What 10 %, 1 % and 0.1 % of each quantity cost at each N; the fabric is named if there are several."""
+    mine = [cell for cell in cells if cell["scene"] == scene]
+    fabrics = [fabric for fabric in FABRICS if fabric in {cell["fabric"] for cell in mine}]
     rows = []
-    for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
-        for fabric in FABRICS:
-            case = of_case(cells, scene, fabric, n)
-            if not case:
-                continue
-            row = [f"{n}²", fabric]
-            for bound, _ in BOUNDS:
-                best = cheapest(case, bound)
-                row.append(f"{seconds(best['cpu_per_second'])} ({setting_name(best)})" if best
-                           else why_not(case))
-            rows.append(row)
-    return markdown(["N", "fabric"] + [f"error {name}" for _, name in BOUNDS], rows)
+    for n in unique(cell["n"] for cell in mine):
+        for fabric in fabrics:
+            case = of_case(mine, scene, fabric, n)
+            for place, (bound, name) in enumerate(BOUNDS if case else ()):
+                begin = [f"{n}²", fabric] if place == 0 else ["", ""]
+                rows.append([*begin[:1 if len(fabrics) == 1 else 2], name,
+                             *(cost_of(case, bound, error) for error in BOUNDED)])
+    head = ["N", "fabric", "error"] if len(fabrics) != 1 else ["N", "error"]
+    return markdown(head + list(BOUNDED), rows)
 
 
-def strains_of_the_cheapest(cells, scene="swing"):
-    """What the strains of the settings named by `cost_of_accuracy` are off by: its bounds are those of position."""
-    off = {}
-    for n in unique(cell["n"] for cell in cells if cell["scene"] == scene):
-        for fabric in FABRICS:
-            for bound, _ in BOUNDS:
-                best = cheapest(of_case(cells, scene, fabric, n), bound)
-                if best:
-                    off.setdefault(best["solver"], []).append(best["strain"])
-    told = [f"{NAMES[solver]} {span_of(off[solver])}" for solver in SOLVERS if solver in off]
-    return f"Strains of these settings are off by: {', '.join(told)}." if told else ""
+def cost_of(case, bound, error):
+    """The cheapest run of a case within a bound, and what it costs."""
+    if bound < BOUNDED[error]:
+        return "–"
+    best = cheapest(case, bound, error)
+    if not best and all(cell[error] != cell[error] for cell in case if cell["outcome"] == "ran"):
+        return "not compared" if any(cell["outcome"] == "ran" for cell in case) else why_not(case)
+    if not best:
+        return "none that was run" if any(cell["outcome"] != "not run" for cell in case) else why_not(case)
+    return f"{seconds(best['cpu_per_second'])} ({setting_name(best)})"
+
+
+def default_errors(cells, scene):
+    """What the default, verlet x1, is off by, over all cases of a scene that were compared."""
+    runs = [cell for cell in cells if (cell["scene"], cell["solver"], cell["setting"]) == (scene, "verlet", "x1")
+            and cell["outcome"] == "ran"]
+    told = []
+    for error in BOUNDED:
+        values = [cell[error] for cell in runs if cell[error] == cell[error]]
+        if values:
+            told.append(f"{span_of(values)} in {error}")
+    return ", ".join(told)
 
 
 def span_of(values):
