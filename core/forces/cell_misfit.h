@@ -23,9 +23,9 @@
 //     U = -E/2 g^2,  g = (w + s w^2 + w^3/8)/(1 + w^4).
 //
 // The denominator bounds it where cloth is torn or crumpled. s is between -1/4, where only the
-// sides give way, g = 2 (sqrt(1 + w) - 1), and 1/4, where only the diagonals do, g = 2 (1 - sqrt(1
-// - w)). No motion in the cloth's plane has a twist, so that moduli, waves and stability bounds
-// stay what they are.
+// sides give way, g = 2 (sqrt(1 + w) - 1), and 1/4, where only the diagonals do, with
+// g = 2 (1 - sqrt(1 - w)). Homogeneous strains have no twist, and U is of its fourth order, so that
+// moduli, waves and stability bounds stay what they are.
 
 namespace weft {
 

@@ -111,7 +111,7 @@ TEST_CASE("without that the springs of a grid cost h^4/(256 B R^2 (1/G + 1/S_w +
   }
 }
 
-TEST_CASE("motions in the plane of a grid have no misfit, and no state has less than no energy") {
+TEST_CASE("homogeneous strains of a grid have no misfit, and no state has less than no energy") {
   const FabricDef silk = make_fabric("silk");
   const ClothModel<double> model = flat_grid(silk, 0.01);
   test::SeededRandom random(5);
