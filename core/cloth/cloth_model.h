@@ -121,10 +121,6 @@ struct GridCells {
     return r >= 0 && c >= 0 && r + 1 < rows && c + 1 < columns &&
            kept[static_cast<std::size_t>(r * (columns - 1) + c)] != 0;
   }
-  void drop(int r, int c) {
-    assert(has_cell(r, c));
-    kept[static_cast<std::size_t>(r * (columns - 1) + c)] = 0;
-  }
   int cells_around(int r, int c) const {
     return has_cell(r - 1, c - 1) + has_cell(r - 1, c) + has_cell(r, c - 1) + has_cell(r, c);
   }

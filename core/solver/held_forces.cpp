@@ -24,6 +24,38 @@ IndexRange take(const std::vector<Element>& from, const IndexRange& range, const
   return {first, static_cast<Index>(to.size()) - first};
 }
 
+/// The cells of a grid that have a particle of some kind, cut out with the rows and columns between
+/// them, so that a substep does not go over all others.
+template <class Wanted>
+GridCells cells_with(const GridCells& all, Wanted&& wanted) {
+  const auto chosen = [&](int r, int c) {
+    return all.has_cell(r, c) &&
+           (wanted(all.particle(r, c)) || wanted(all.particle(r, c + 1)) ||
+            wanted(all.particle(r + 1, c)) || wanted(all.particle(r + 1, c + 1)));
+  };
+  int top = all.rows, bottom = -1, left = all.columns, right = -1;
+  for (int r = 0; r + 1 < all.rows; ++r) {
+    for (int c = 0; c + 1 < all.columns; ++c) {
+      if (!chosen(r, c)) continue;
+      top = std::min(top, r);
+      bottom = std::max(bottom, r);
+      left = std::min(left, c);
+      right = std::max(right, c);
+    }
+  }
+  GridCells cut;
+  if (bottom < 0) return cut;
+  cut.rows = bottom - top + 2;
+  cut.columns = right - left + 2;
+  for (int r = top; r <= bottom + 1; ++r) {
+    for (int c = left; c <= right + 1; ++c) {
+      cut.particles.push_back(all.particle(r, c));
+      if (r <= bottom && c <= right) cut.kept.push_back(chosen(r, c) ? 1 : 0);
+    }
+  }
+  return cut;
+}
+
 }  // namespace
 
 template <class Real>
@@ -120,16 +152,8 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
       model.triangles, part.triangles, [this](const auto& t) { return touches(&t[0], 3); },
       near_.triangles);
   near.grid_springs = part.grid_springs;
-  near.cells = part.cells;
-  for (int r = 0; part.grid_springs && r + 1 < near.cells.rows; ++r) {
-    for (int c = 0; c + 1 < near.cells.columns; ++c) {
-      if (!near.cells.has_cell(r, c)) continue;
-      const auto held = [&](int dr, int dc) {
-        return holds(part.particles.first + near.cells.particle(r + dr, c + dc));
-      };
-      if (!held(0, 0) && !held(0, 1) && !held(1, 0) && !held(1, 1)) near.cells.drop(r, c);
-    }
-  }
+  if (part.grid_springs)
+    near.cells = cells_with(part.cells, [&](Index i) { return holds(part.particles.first + i); });
   const auto adder = [this](Stencils& list) {
     return [this, &list](double k, const Index* corners, const double* weights, int count) {
       if (touches(corners, static_cast<std::size_t>(count))) list.add(k, corners, weights, count);

@@ -89,10 +89,9 @@ World<Real> World<Real>::copy() const {
   other.solvers_.verlet = {};
   other.solvers_.relaxation = {};
   other.prepare_solver();
-  other.solvers_.implicit = solvers_.implicit;  // it knows the previous substep
-  if (solver_of(def_) == SolverKind::implicit)
-    other.solvers_.implicit.energy.prepare(
-        other.model_);  // its passes point into arrays of their own
+  // It knows the previous substep; its passes point into arrays of their own.
+  other.solvers_.implicit = solvers_.implicit;
+  if (solver_of(def_) == SolverKind::implicit) other.solvers_.implicit.energy.prepare(other.model_);
   return other;
 }
 
