@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
@@ -12,61 +14,76 @@
 // 1)/2, q is -w, w = |t|^2/(2 d^2), where t = x_00 - x_01 - x_10 + x_11 is the cell's twist: the
 // squares of a quadrangle's diagonals are less than those of its sides by |t|^2.
 //
-// Springs with this misfit have at least the energy E g^2/2 with g = w + s w^2 + w^3/8 + ...,
+// Springs with this misfit have at least an energy whose slope over w is, as a series,
 //
-//     1/E = sum c^2/K,  s = E^2/2 sum c^3/K^2,  K = k L^2,  c = 1, 1, -2 a_u, -2 a_v:
+//     E p,  p = w + 3 s w^2 + (18 s^2 - 2 m) w^3 + (135 s^3 - 30 s m + 5/2 n) w^4,
+//     1/E = sum c^2/K,  s = sum c r^2 / 2,  m = sum c r^3,  n = sum c r^4,  r = E c/K,
+//     K = k L^2,  c = 1, 1, -2 a_u, -2 a_v:
 //
-// h^4/(256 R^2 B (1/G + ...)) times that of bending in a fold of radius R at 45 degrees, 3 times in
-// a silk fold of its bending length with cells of 7.5 mm. It is taken off again, so that folds cost
-// their bending alone in all directions:
-//
-//     U = -E/2 g^2,  g = (w + s w^2 + w^3/8)/(1 + w^4).
-//
-// The denominator bounds it where cloth is torn or crumpled. s is between -1/4, where only the
-// sides give way, g = 2 (sqrt(1 + w) - 1), and 1/4, where only the diagonals do, with
-// g = 2 (1 - sqrt(1 - w)). Homogeneous strains have no twist, and U is of its fourth order, so that
-// moduli, waves and stability bounds stay what they are.
+// least is where all pull alike, K e = -lambda c (1 + e) with elongations e, so that the slope is
+// lambda, with w = sum c (1 - (1 + lambda c/K)^-2)/2. In a fold of radius R at 45 degrees that is
+// h^4/(256 R^2 B (1/G + ...)) times the energy of bending, 3 times in a silk fold of its bending
+// length with cells of 7.5 mm. It is taken off again, so that folds cost their bending alone in all
+// directions: dU/dw = -E p up to w = 0.6. There the series is off by some thousandths; 255/256 of
+// it is taken, so that springs with U never have less than no energy. Beyond, where cloth is torn
+// or crumpled, p stays what it is there, and would rise. Homogeneous strains have no twist, and U
+// is of its fourth order, so that moduli, waves and stability bounds stay what they are.
 
 namespace weft {
+
+inline constexpr double kMisfitEnd = 0.6;           ///< w from which p stays
+inline constexpr double kMisfitPart = 255.0 / 256;  ///< of E that is taken off
 
 /// Constants of the formulas above.
 template <class Real>
 struct MisfitLaw {
-  Real stiffness = 0;  ///< E [N m]; 0: no springs of the fabric
-  Real per_d2 = 0;     ///< 1/(2 d^2) [1/m^2]
-  Real growth = 0;     ///< s [1]
+  Real stiffness = 0;                      ///< E [N m], the part of it; 0: no springs of the fabric
+  Real per_d2 = 0;                         ///< 1/(2 d^2) [1/m^2]
+  Real second = 0, third = 0, fourth = 0;  ///< coefficients of p
 
   MisfitLaw() = default;
   explicit MisfitLaw(const GridSprings<Real>& springs) {
     if (springs.misfit == 0) return;
-    const Real u2 = springs.rest_warp * springs.rest_warp,
-               v2 = springs.rest_weft * springs.rest_weft,
-               d2 = springs.rest_shear * springs.rest_shear;
-    stiffness = springs.misfit;
-    per_d2 = 1 / (2 * d2);
-    const auto cubed = [](Real weight, Real k) { return weight * weight * weight / (k * k); };
-    growth = stiffness * stiffness / 2 *
-             (2 * cubed(1, springs.shear * d2) - cubed(2 * u2 / d2, springs.warp * u2) -
-              cubed(2 * v2 / d2, springs.weft * v2));
+    const double u2 = square(springs.rest_warp), v2 = square(springs.rest_weft),
+                 d2 = square(springs.rest_shear), whole = springs.misfit;
+    double s = 0, m = 0, n = 0;
+    const auto add = [&](double c, double k) {
+      const double r = whole * c / k;
+      s += c * r * r / 2;
+      m += c * r * r * r;
+      n += c * r * r * r * r;
+    };
+    for (int k = 0; k < 2; ++k) add(1, springs.shear * d2);
+    add(-2 * u2 / d2, springs.warp * u2);
+    add(-2 * v2 / d2, springs.weft * v2);
+    stiffness = static_cast<Real>(kMisfitPart * whole);
+    per_d2 = static_cast<Real>(1 / (2 * d2));
+    second = static_cast<Real>(3 * s);
+    third = static_cast<Real>(18 * s * s - 2 * m);
+    fourth = static_cast<Real>(135 * s * s * s - 30 * s * m + 2.5 * n);
   }
+
+ private:
+  static double square(Real length) { return static_cast<double>(length) * length; }
 };
 
 /// By how much the stiffness of a cell's twist falls, -2 dU/d|t|^2 [N/m].
 /// @param squared  |t|^2 [m^2]
 template <class Real>
 Real misfit_softening(const MisfitLaw<Real>& law, Real squared) {
-  const Real w = law.per_d2 * squared, w3 = w * w * w, per = 1 / (1 + w3 * w);
-  const Real g = (w + law.growth * w * w + w3 / 8) * per;
-  const Real slope = (1 + 2 * law.growth * w + 3 * w * w / 8 - 4 * g * w3) * per;  // dg/dw
-  return 2 * law.stiffness * law.per_d2 * (g * slope);
+  const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd));
+  return 2 * law.stiffness * law.per_d2 *
+         (w * (1 + w * (law.second + w * (law.third + w * law.fourth))));
 }
 
 /// -2 U [J].
 template <class Real>
 Real doubled_misfit_energy(const MisfitLaw<Real>& law, Real squared) {
-  const Real w = law.per_d2 * squared, w3 = w * w * w;
-  const Real g = (w + law.growth * w * w + w3 / 8) / (1 + w3 * w);
-  return law.stiffness * (g * g);
+  const Real whole = law.per_d2 * squared, w = std::min(whole, Real(kMisfitEnd));
+  const Real p = w * (1 + w * (law.second + w * (law.third + w * law.fourth)));
+  const Real rising =
+      1 + w * (law.second / Real(1.5) + w * (law.third / 2 + w * law.fourth / Real(2.5)));
+  return law.stiffness * (w * w * rising + 2 * p * (whole - w));
 }
 
 /// Adds the forces of all cells of a part [N]; none if it has no regular springs.

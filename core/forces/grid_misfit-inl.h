@@ -15,33 +15,28 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// g of the cells from (r, c) on, and dg/dw.
+/// p of the cells from (r, c) on, with their w as far as it counts, and the whole of it.
 template <class D>
 struct Misfits {
-  hn::Vec<D> g, slope;
+  hn::Vec<D> whole, w, p;
 
   /// @param x  positions at (r, c)
   template <class Real>
   HWY_INLINE Misfits(D d, const GridView<Real>& view, const Real* x) {
-    const auto one = hn::Set(d, Real(1)), growth = hn::Set(d, view.misfit.growth);
+    const MisfitLaw<Real>& law = view.misfit;
     const auto twist =
         (load(d, x + view.pitch() + 1, view.line) - load(d, x + view.pitch(), view.line)) -
         (load(d, x + 1, view.line) - load(d, x, view.line));
-    const auto w = hn::Mul(fused_dot(d, twist, twist), hn::Set(d, view.misfit.per_d2));
-    const auto eighth = hn::Mul(hn::Set(d, Real(0.125)), w), w2 = hn::Mul(w, w);
-    const auto per = hn::Div(one, fused(d, w2, w2, one));
-    g = hn::Mul(fused(d, hn::Add(growth, eighth), w2, w), per);
-    // 1 + 2 s w + 3 w^2/8 - 4 g w^3
-    const auto rise =
-        hn::Add(hn::Add(growth, growth), fused(d, eighth, hn::Set(d, Real(2)), eighth));
-    const auto fall = hn::Mul(hn::Mul(hn::Set(d, Real(4)), g), w2);
-    slope = hn::Mul(fused(d, hn::Sub(rise, fall), w, one), per);
+    whole = hn::Mul(fused_dot(d, twist, twist), hn::Set(d, law.per_d2));
+    w = hn::Min(whole, hn::Set(d, Real(kMisfitEnd)));
+    const auto rise = fused(d, w, hn::Set(d, law.fourth), hn::Set(d, law.third));
+    p = fused(d, hn::Mul(w, w), fused(d, w, rise, hn::Set(d, law.second)), w);
   }
 };
 
 /// Stiffness of the twist of a row's cells: that of bending less `misfit_softening`.
 template <class Real>
-HWY_INLINE void compute_twist_stiffness(const GridView<Real>& g, std::ptrdiff_t r, Real* to) {
+HWY_INLINE void soften_twist(const GridView<Real>& g, std::ptrdiff_t r, Real* to) {
   using D = GridTag<Real>;
   const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
@@ -51,7 +46,7 @@ HWY_INLINE void compute_twist_stiffness(const GridView<Real>& g, std::ptrdiff_t 
   const auto most = hn::Set(d, 2 * g.misfit.stiffness * g.misfit.per_d2);
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
     const Misfits<D> at(d, g, x + c);
-    const auto softening = hn::Mul(most, hn::Mul(at.g, at.slope));
+    const auto softening = hn::Mul(most, at.p);
     hn::StoreU(fused_minus(d, softening, hn::LoadU(d, present + c), hn::LoadU(d, bending + c)), d,
                to + c);
   }
@@ -63,8 +58,14 @@ template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> doubled_misfit(D d, const GridView<Real>& g, const Real* x,
                                      const Real* present) {
   const Misfits<D> at(d, g, x);
-  return hn::Mul(hn::Mul(hn::Set(d, g.misfit.stiffness), hn::LoadU(d, present)),
-                 hn::Mul(at.g, at.g));
+  const MisfitLaw<Real>& law = g.misfit;
+  const auto fourth = hn::Set(d, law.fourth / Real(2.5)), third = hn::Set(d, law.third / 2),
+             second = hn::Set(d, law.second / Real(1.5));
+  const auto rising =
+      fused(d, at.w, fused(d, at.w, fused(d, at.w, fourth, third), second), hn::Set(d, Real(1)));
+  const auto level = hn::Mul(hn::Add(at.p, at.p), hn::Sub(at.whole, at.w));
+  return hn::Mul(hn::Mul(hn::Set(d, law.stiffness), hn::LoadU(d, present)),
+                 fused(d, hn::Mul(at.w, at.w), rising, level));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -50,7 +50,8 @@ struct ForceLines {
   Real* carry;                            ///< on the row below, per component
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
-  Real* twist;                            ///< stiffness of the cells' twist
+  const Real* twist;                      ///< stiffness of the cells' twist
+  Real* softened;                         ///< the same where a misfit is taken off, else null
   const Real *bend_u, *bend_v;            ///< of the other bending stencils
   std::ptrdiff_t step;                    ///< from component to component
 
@@ -65,7 +66,8 @@ struct ForceLines {
     corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
     corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
     const Real* const row = g.row[r].coefficients;
-    twist = g.scratch + kTwistLine * step;
+    softened = g.misfit.stiffness != 0 ? g.scratch + kTwistLine * step : nullptr;
+    twist = softened != nullptr ? softened : row + kTwist * g.line;
     bend_u = row + kBendU * g.line;
     bend_v = row + kBendV * g.line;
   }
@@ -80,7 +82,7 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
   compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
-  compute_twist_stiffness(g, r, to.twist);
+  if (to.softened != nullptr) soften_twist(g, r, to.softened);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed
