@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/contact/guard/patch_tree.h"
+#include "core/contact/guard/spread_pass.h"
 
 namespace weft {
 namespace {
@@ -185,33 +186,20 @@ bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const Cell
 template <class Real>
 bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
                                 const CellRange& cells, Index p, Real least) const {
-  const auto& grid = grids_[static_cast<std::size_t>(p)];
   const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
-  const int columns = part.columns - 1;
+  SpreadPass<Real> pass;
+  pass.particles = part.columns;
+  pass.cells = part.columns - 1;
+  pass.x = x.data() + part.particles.first + cells.row * pass.particles + cells.column;
+  pass.falls = falls_[static_cast<std::size_t>(p)].data() + cells.row * pass.cells + cells.column;
+  pass.rows = cells.row_end - cells.row;
+  pass.columns = cells.column_end - cells.column;
   const Real per_u = Real(1) / part.cell_u, per_v = Real(1) / part.cell_v;
-  const auto axes = [&](int k) {
-    return Quad<Real>{
-        {plane.u[k] * per_u, plane.v[k] * per_u, plane.u[k] * per_v, plane.v[k] * per_v}};
-  };
-  const Quad<Real> axis[3] = {axes(0), axes(1), axes(2)};
-  const auto side = [&](const std::array<Index, 2>& s) {
-    return x[static_cast<std::size_t>(s[1])] - x[static_cast<std::size_t>(s[0])];
-  };
-  for (int r = cells.row; r < cells.row_end; ++r) {
-    const auto begin = static_cast<std::size_t>(2 * (r * columns + cells.column));
-    const auto end = static_cast<std::size_t>(2 * (r * columns + cells.column_end));
-    for (std::size_t t = begin; t < end; ++t) {
-      const Quad<Real> u = side(grid[t].along_u), v = side(grid[t].along_v);
-      // The gradient in the plane, by columns.
-      Quad<Real> gradient;
-      for (int k = 0; k < 3; ++k)
-        gradient.lanes += Quad<Real>{{u[k], u[k], v[k], v[k]}}.lanes * axis[k].lanes;
-      const Real a = gradient[0] - least, b = gradient[3] - least;
-      const Real off = (gradient[1] + gradient[2]) / 2;
-      if (!(a > 0 && b > 0 && a * b > off * off)) return false;
-    }
-  }
-  return true;
+  for (int k = 0; k < 3; ++k)
+    pass.axes[static_cast<std::size_t>(k)] = {plane.u[k] * per_u, plane.v[k] * per_u,
+                                              plane.u[k] * per_v, plane.v[k] * per_v};
+  pass.least = least;
+  return weft::is_spread(pass);
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \

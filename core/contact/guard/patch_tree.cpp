@@ -40,7 +40,7 @@ void mark_features(const std::vector<Edge>& edges, const std::vector<Triangle>& 
 template <class Real>
 PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) {
   const auto count = static_cast<Index>(parts_.size());
-  grids_.resize(parts_.size());
+  falls_.resize(parts_.size());
   for (Index p = 0; p < count; ++p) {
     if (parts_[static_cast<std::size_t>(p)].rows > 0) build_grid(model, p);
   }
@@ -68,21 +68,21 @@ PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) 
   give_features(model);
 }
 
-/// Finds the sides of the triangles of each cell, two a cell, cell by cell.
+/// Finds the diagonal of each cell: where it falls, a triangle has the cell's first corner and the
+/// last.
 template <class Real>
 void PatchTree<Real>::build_grid(const ClothModel<Real>& model, Index p) {
   const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
-  auto& grid = grids_[static_cast<std::size_t>(p)];
-  const auto row = [&](Index i) { return (i - part.particles.first) / part.columns; };
-  for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
-    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
-    GridTriangle sides;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [i, j] = std::minmax(corners[k], corners[(k + 1) % 3]);
-      if (row(i) == row(j)) sides.along_u = {i, j};
-      if ((j - i) % part.columns == 0) sides.along_v = {i, j};
-    }
-    grid.push_back(sides);
+  std::vector<Real>& falls = falls_[static_cast<std::size_t>(p)];
+  const int cells = (part.rows - 1) * (part.columns - 1);
+  assert(part.triangles.count == 2 * cells);
+  for (int cell = 0; cell < cells; ++cell) {
+    const Triangle& one =
+        model.triangles[static_cast<std::size_t>(part.triangles.first + 2 * cell)];
+    const Index first =
+        part.particles.first + cell / (part.columns - 1) * part.columns + cell % (part.columns - 1);
+    const auto has = [&](Index i) { return std::find(one.begin(), one.end(), i) != one.end(); };
+    falls.push_back(has(first) && has(first + part.columns + 1) ? Real(1) : Real(0));
   }
 }
 

@@ -106,10 +106,6 @@ class PatchTree {
     Plane plane;                        ///< in which it is, if that was found for this node
     bool marked = false;                ///< it or one below has a changed particle
   };
-  /// In a grid each triangle has one side along the rows and one along the columns.
-  struct GridTriangle {
-    std::array<Index, 2> along_u = {kNone, kNone}, along_v = {kNone, kNone};
-  };
 
   void build_grid(const ClothModel<Real>& model, Index part);
   Index split_grid(const ClothModel<Real>& model, Index part, const CellRange& cells);
@@ -175,7 +171,8 @@ class PatchTree {
   std::vector<Patch> patches_;
   std::vector<Index> node_of_;  ///< each patch's
   std::vector<ClothPart<Real>> parts_;
-  std::vector<std::vector<GridTriangle>> grids_;  ///< of each part, two a cell; none of a mesh
+  std::vector<std::vector<Real>>
+      falls_;  ///< of each part's cells, as SpreadPass wants; not of meshes
   /// Of each grid, the number of changed particles before a row and a column.
   std::vector<std::vector<int>> changed_sums_;
 };

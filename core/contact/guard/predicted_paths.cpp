@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/contact/guard/constants.h"
+#include "core/contact/guard/stray_pass.h"
 #include "core/contact/smallest_gap.h"
 
 namespace weft {
@@ -92,29 +93,39 @@ template <class Real>
 Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const AwakeParticles& awake,
                  GuardedStep<Real>& step, PredictedPaths<Real>& paths) {
   assert(state.x.size() == step.from.size() && state.v.size() == step.from.size());
-  const Real limit = reach * reach, soon = limit * static_cast<Real>(kSoon * kSoon);
-  bool left = false;
-  Real spare2 = limit;
+  const Real limit2 = reach * reach;
+  StrayPass<Real> pass;
+  pass.x = state.x.data()->data();
+  pass.v = state.v.data()->data();
+  pass.dt = dt;
+  pass.from = step.from.data();
+  pass.displacement = step.displacement.data();
+  pass.path = paths.from.data();
+  pass.velocity = paths.velocity.data();
+  pass.since = paths.since.data();
+  pass.elapsed = paths.elapsed;
+  pass.off = paths.off;
+  pass.soon2 = limit2 * static_cast<Real>(kSoon * kSoon);
+  pass.limit2 = limit2;
   paths.strays.clear();
-  const auto look = [&](std::size_t i) {
-    step.displacement[i] = (to_quad(state.x[i]) - step.from[i]) + to_quad(state.v[i]) * dt;
-    const Quad<Real> off = step.from[i] + step.displacement[i] - paths.at(i, paths.elapsed);
-    const Quad<Real> own = off - paths.off;
-    const Real off2 = dot(own, own);
-    spare2 = std::min(spare2, limit - off2);
-    if (!(off2 <= soon)) {
-      paths.strays.push_back(static_cast<Index>(i));
-      left |= !(off2 <= limit);
-    }
-    return off;
-  };
   Quad<Real> sum;
+  Real farthest2 = 0;
+  bool left = false;
+  const auto look = [&](std::size_t first, std::size_t end, bool awake_ones) {
+    const StrayLook<Real> found = look_for_strays(pass, first, end, paths.strays);
+    farthest2 = std::max(farthest2, found.farthest2);
+    left |= found.left;
+    if (awake_ones) sum += found.sum;
+  };
   std::size_t i = 0;
   for (const IndexRange& range : awake.ranges) {
-    for (; i < static_cast<std::size_t>(range.first); ++i) look(i);
-    for (; i < static_cast<std::size_t>(range.end()); ++i) sum += look(i);
+    const auto first = static_cast<std::size_t>(range.first),
+               end = static_cast<std::size_t>(range.end());
+    look(i, first, false);
+    look(first, end, true);
+    i = end;
   }
-  for (; i < step.displacement.size(); ++i) look(i);
+  look(i, step.displacement.size(), false);
   if (!left || !paths.hold()) paths.strays.clear();
   if (paths.hold()) {
     paths.off_before = paths.off_now;
@@ -122,7 +133,7 @@ Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const Awake
     paths.off = sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake.count, 1)));
   }
   // a - b >= (a^2 - b^2) / 2a for 0 <= b <= a.
-  return spare2 / (2 * reach);
+  return (limit2 - farthest2) / (2 * reach);
 }
 
 template <class Real>
