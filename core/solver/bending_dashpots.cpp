@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/solver/constants.h"
@@ -57,9 +58,9 @@ void BendingDashpots<Real>::prepare(const ClothModel<Real>& model) {
     most = std::max(most, list.particles.size());
   }
   const std::size_t particles = parts_.empty() ? 0 : model.mass.size();
-  gradient_.assign(most, Vec3<Real>::Zero());
-  for (Vec3Array<Real>* array : {&start_, &now_, &before_, &change_, &product_})
-    array->assign(particles, Vec3<Real>::Zero());
+  gradient_.assign(most, {});
+  for (QuadArray<Real>* array : {&start_, &now_, &before_, &change_, &product_})
+    array->assign(particles, {});
 }
 
 template <class Real>
@@ -142,17 +143,17 @@ void BendingDashpots<Real>::aim(const Part& part, const Vec3Array<Real>& x) {
     for (std::size_t n = begin; n < end; ++n) {
       value += (at(n) - at(begin)) * part.weights[n];
       weight += std::abs(part.weights[n]);
-      gradient_[n] = normal * (part.weights[n] * root);
+      gradient_[n] = to_quad<Real>(normal * (part.weights[n] * root));
     }
     const Vec3<Real> tangential = value - normal * normal.dot(value);
     const Real turning = 2 * (e.norm() + f.norm()) * tangential.norm();
     if (!(turning <= static_cast<Real>(kMostTurning) * weight * area)) {
       std::fill_n(gradient_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin,
-                  Vec3<Real>::Zero());
+                  Quad<Real>{});
       continue;
     }
     const Vec3<Real> aside = tangential * (area > 0 ? root / area : Real(0));
-    const Vec3<Real> by_e = f.cross(aside), by_f = aside.cross(e);
+    const Quad<Real> by_e = to_quad<Real>(f.cross(aside)), by_f = to_quad<Real>(aside.cross(e));
     gradient_[p[0]] -= by_e;
     gradient_[p[1]] += by_e;
     gradient_[p[2]] -= by_f;
@@ -162,14 +163,16 @@ void BendingDashpots<Real>::aim(const Part& part, const Vec3Array<Real>& x) {
 
 /// Adds K v to `product`.
 template <class Real>
-void BendingDashpots<Real>::multiply(const Part& part, const Vec3Array<Real>& v,
-                                     Vec3Array<Real>& product) const {
+void BendingDashpots<Real>::multiply(const Part& part, const QuadArray<Real>& v,
+                                     QuadArray<Real>& product) const {
   for (std::size_t s = 0; s < part.viscosity.size(); ++s) {
     const std::size_t begin = part.begin[s], end = part.begin[s + 1];
-    const Vec3<Real>& first = v[static_cast<std::size_t>(part.particles[begin])];
-    Real rate = 0;
+    const Quad<Real> first = v[static_cast<std::size_t>(part.particles[begin])];
+    Quad<Real> rates;  // by components
     for (std::size_t n = begin + 1; n < end; ++n)
-      rate += gradient_[n].dot(v[static_cast<std::size_t>(part.particles[n])] - first);
+      rates.lanes +=
+          gradient_[n].lanes * (v[static_cast<std::size_t>(part.particles[n])] - first).lanes;
+    const Real rate = rates[0] + rates[1] + rates[2];
     for (std::size_t n = begin; n < end; ++n)
       product[static_cast<std::size_t>(part.particles[n])] += gradient_[n] * rate;
   }
@@ -184,9 +187,11 @@ void BendingDashpots<Real>::pass(const Part& part, const IndexRange& range, int 
              end = static_cast<std::size_t>(range.end());
   const auto b = [](int j) { return j < 2 ? 1.0 / 3 : (j * j + j - 2.0) / (2.0 * j * (j + 1)); };
   const double w = 4.0 / (stages * stages + stages - 2.0);
-  for (Vec3Array<Real>* array : {&start_, &before_, &product_})
-    std::fill(array->begin() + range.first, array->begin() + range.end(), Vec3<Real>::Zero());
-  multiply(part, state.v, start_);
+  for (QuadArray<Real>* array : {&start_, &before_, &product_})
+    std::fill(array->begin() + range.first, array->begin() + range.end(), Quad<Real>{});
+  to_quads(std::span<const Vec3<Real>>(state.v).subspan(first, end - first),
+           change_.data() + range.first);
+  multiply(part, change_, start_);
   for (std::size_t i = first; i < end; ++i)
     now_[i] = start_[i] * (-seconds * static_cast<Real>(w / 3));
   for (int j = 2; j <= stages; ++j) {
@@ -200,7 +205,7 @@ void BendingDashpots<Real>::pass(const Part& part, const IndexRange& range, int 
     for (std::size_t i = first; i < end; ++i) {
       before_[i] = now_[i] * by_now + before_[i] * by_before + product_[i] * by_product +
                    start_[i] * by_start;
-      product_[i].setZero();
+      product_[i] = {};
     }
     std::swap(now_, before_);
   }
@@ -219,8 +224,9 @@ void BendingDashpots<Real>::act(const ClothModel<Real>& model, double seconds,
     pass(part, cloth.particles, stages, static_cast<Real>(seconds), state);
     for (Index i = cloth.particles.first; i < cloth.particles.end(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      state.v[k] += now_[k] * state.inverse_mass[k];
-      if (held && held->holds(i)) held->push(i, now_[k].template cast<double>());
+      const Vec3<Real> impulse = to_vector(now_[k]);
+      state.v[k] += impulse * state.inverse_mass[k];
+      if (held && held->holds(i)) held->push(i, impulse.template cast<double>());
     }
     profile[Stage::bending].work += static_cast<std::size_t>(stages) * part.viscosity.size();
   }

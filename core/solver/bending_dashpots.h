@@ -6,6 +6,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/math/quad.h"
 #include "core/profile.h"
 #include "core/solver/held_forces.h"
 
@@ -62,18 +63,18 @@ class BendingDashpots {
 
   void list(const ClothModel<Real>& model, const ClothPart<Real>& part, Part& list) const;
   void aim(const Part& part, const Vec3Array<Real>& x);
-  void multiply(const Part& part, const Vec3Array<Real>& v, Vec3Array<Real>& product) const;
+  void multiply(const Part& part, const QuadArray<Real>& v, QuadArray<Real>& product) const;
   void pass(const Part& part, const IndexRange& range, int stages, Real seconds,
             const ClothState<Real>& state);
 
   std::vector<Part> parts_;
-  Vec3Array<Real>
+  QuadArray<Real>
       gradient_;  ///< of b sqrt(tau k) at each particle of each stencil of the present part
   // Of each particle:
-  Vec3Array<Real> start_;         ///< K times the velocities at the start [N]
-  Vec3Array<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]
-  Vec3Array<Real> change_;        ///< of the velocities by them [m/s]
-  Vec3Array<Real> product_;       ///< K times these [N]
+  QuadArray<Real> start_;         ///< K times the velocities at the start [N]
+  QuadArray<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]
+  QuadArray<Real> change_;        ///< velocities, and then how far they change by these [m/s]
+  QuadArray<Real> product_;       ///< K times these [N]
 };
 
 extern template class BendingDashpots<float>;
