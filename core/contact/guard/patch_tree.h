@@ -171,8 +171,7 @@ class PatchTree {
   std::vector<Patch> patches_;
   std::vector<Index> node_of_;  ///< each patch's
   std::vector<ClothPart<Real>> parts_;
-  std::vector<std::vector<Real>>
-      falls_;  ///< of each part's cells, as SpreadPass wants; not of meshes
+  std::vector<std::vector<Real>> falls_;  ///< of each grid's cells, for SpreadPass
   /// Of each grid, the number of changed particles before a row and a column.
   std::vector<std::vector<int>> changed_sums_;
 };
