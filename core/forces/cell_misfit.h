@@ -24,17 +24,22 @@
 // lambda, with w = sum c (1 - (1 + lambda c/K)^-2)/2. In a fold of radius R at 45 degrees that is
 // h^4/(256 R^2 B (1/G + ...)) times the energy of bending, 3 times in a silk fold of its bending
 // length with cells of 7.5 mm. It is taken off again, so that folds cost their bending alone in all
-// directions: dU/dw = -E p up to w = 0.3, a fold whose radius is that of a cell. There the series is
-// off by at most 1/200; 255/256 of it is taken, so that springs with U never have less than no
-// energy. Beyond, where cloth is torn or crumpled, p stays what it is there, and what the springs
-// have more undoes the tuck: with w = 0.6 a sheet that was shaken violently kept one. Homogeneous
-// strains have no twist, and U is of its fourth order, so that moduli, waves and stability bounds
-// stay what they are.
+// directions:
+//
+//     U = -E q^2 integral of p dw,  q = 1 - (w/w_1)^4 up to w_1 = 0.8, and 0 beyond.
+//
+// A fold whose radius is 1.4 cells has w = 1/8. Where cloth is crumpled the springs keep all that
+// they have, which undoes its tucks. The series is off by at most 1/200 at w = 0.3; 255/256 of it
+// is taken, so that springs with U never have less than no energy. Homogeneous strains have no
+// twist, and U is of its fourth order, so that moduli, waves and stability bounds stay what they
+// are.
 
 namespace weft {
 
-inline constexpr double kMisfitEnd = 0.3;           ///< w from which p stays
+inline constexpr double kMisfitEnd = 0.8;           ///< w_1
 inline constexpr double kMisfitPart = 255.0 / 256;  ///< of E that is taken off
+/// 1/w_1^4.
+inline constexpr double kMisfitFall = 1 / (kMisfitEnd * kMisfitEnd * kMisfitEnd * kMisfitEnd);
 
 /// Constants of the formulas above.
 template <class Real>
@@ -65,6 +70,13 @@ struct MisfitLaw {
     fourth = static_cast<Real>(135 * s * s * s - 30 * s * m + 2.5 * n);
   }
 
+  /// p / w.
+  Real rise(Real w) const { return 1 + w * (second + w * (third + w * fourth)); }
+  /// Twice the integral of p, over w^2.
+  Real mean_rise(Real w) const {
+    return 1 + w * (second / Real(1.5) + w * (third / 2 + w * fourth / Real(2.5)));
+  }
+
  private:
   static double square(Real length) { return static_cast<double>(length) * length; }
 };
@@ -73,19 +85,18 @@ struct MisfitLaw {
 /// @param squared  |t|^2 [m^2]
 template <class Real>
 Real misfit_softening(const MisfitLaw<Real>& law, Real squared) {
-  const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd));
-  return 2 * law.stiffness * law.per_d2 *
-         (w * (1 + w * (law.second + w * (law.third + w * law.fourth))));
+  const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd)), w2 = w * w;
+  const Real q = 1 - Real(kMisfitFall) * w2 * w2;
+  const Real p = w * law.rise(w), twice = w2 * law.mean_rise(w);
+  return 2 * law.stiffness * law.per_d2 * q * (p * q - 4 * Real(kMisfitFall) * w2 * w * twice);
 }
 
 /// -2 U [J].
 template <class Real>
 Real doubled_misfit_energy(const MisfitLaw<Real>& law, Real squared) {
-  const Real whole = law.per_d2 * squared, w = std::min(whole, Real(kMisfitEnd));
-  const Real p = w * (1 + w * (law.second + w * (law.third + w * law.fourth)));
-  const Real rising =
-      1 + w * (law.second / Real(1.5) + w * (law.third / 2 + w * law.fourth / Real(2.5)));
-  return law.stiffness * (w * w * rising + 2 * p * (whole - w));
+  const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd)), w2 = w * w;
+  const Real q = 1 - Real(kMisfitFall) * w2 * w2;
+  return law.stiffness * w2 * law.mean_rise(w) * q * q;
 }
 
 /// Adds the forces of all cells of a part [N]; none if it has no regular springs.

@@ -15,24 +15,28 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// p of the cells from (r, c) on, with their w as far as it counts, and the whole of it.
-template <class D>
-struct Misfits {
-  hn::Vec<D> whole, w, p;
+/// w of the cells from (r, c) on, as far as it counts.
+/// @param x  positions at (r, c)
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> misfits(D d, const GridView<Real>& g, const Real* x) {
+  const auto twist = (load(d, x + g.pitch() + 1, g.line) - load(d, x + g.pitch(), g.line)) -
+                     (load(d, x + 1, g.line) - load(d, x, g.line));
+  return hn::Min(hn::Mul(fused_dot(d, twist, twist), hn::Set(d, g.misfit.per_d2)),
+                 hn::Set(d, Real(kMisfitEnd)));
+}
 
-  /// @param x  positions at (r, c)
-  template <class Real>
-  HWY_INLINE Misfits(D d, const GridView<Real>& view, const Real* x) {
-    const MisfitLaw<Real>& law = view.misfit;
-    const auto twist =
-        (load(d, x + view.pitch() + 1, view.line) - load(d, x + view.pitch(), view.line)) -
-        (load(d, x + 1, view.line) - load(d, x, view.line));
-    whole = hn::Mul(fused_dot(d, twist, twist), hn::Set(d, law.per_d2));
-    w = hn::Min(whole, hn::Set(d, Real(kMisfitEnd)));
-    const auto rise = fused(d, w, hn::Set(d, law.fourth), hn::Set(d, law.third));
-    p = fused(d, hn::Mul(w, w), fused(d, w, rise, hn::Set(d, law.second)), w);
-  }
-};
+/// 1 + w (a + w (b + w c)).
+template <class D, class V = hn::Vec<D>, class Real = hn::TFromD<D>>
+HWY_INLINE V cubic(D d, V w, Real a, Real b, Real c) {
+  const V upper = fused(d, w, hn::Set(d, c), hn::Set(d, b));
+  return fused(d, w, fused(d, w, upper, hn::Set(d, a)), hn::Set(d, Real(1)));
+}
+
+/// Twice the integral of p, over w^2.
+template <class D, class V = hn::Vec<D>, class Real = hn::TFromD<D>>
+HWY_INLINE V mean_rise(D d, V w, const MisfitLaw<Real>& law) {
+  return cubic(d, w, law.second / Real(1.5), law.third / 2, law.fourth / Real(2.5));
+}
 
 /// Stiffness of the twist of a row's cells: that of bending less `misfit_softening`.
 template <class Real>
@@ -43,10 +47,16 @@ HWY_INLINE void soften_twist(const GridView<Real>& g, std::ptrdiff_t r, Real* to
   const Real* const x = g.motion + r * g.pitch();
   const Real* const bending = g.row[r].coefficients + kTwist * g.line;
   const Real* const present = g.row[r].coefficients + kHasCell * g.line;
-  const auto most = hn::Set(d, 2 * g.misfit.stiffness * g.misfit.per_d2);
+  const MisfitLaw<Real>& law = g.misfit;
+  const auto most = hn::Set(d, 2 * law.stiffness * law.per_d2);
+  const auto one = hn::Set(d, Real(1)), per = hn::Set(d, Real(kMisfitFall)),
+             four = hn::Set(d, Real(4 * kMisfitFall));
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const Misfits<D> at(d, g, x + c);
-    const auto softening = hn::Mul(most, at.p);
+    const auto w = misfits(d, g, x + c), w2 = hn::Mul(w, w), w3 = hn::Mul(w2, w);
+    const auto q = fused_minus(d, hn::Mul(w2, w2), per, one);
+    const auto p = hn::Mul(w, cubic(d, w, law.second, law.third, law.fourth));
+    const auto steep = hn::Mul(hn::Mul(w3, four), hn::Mul(w2, mean_rise(d, w, law)));
+    const auto softening = hn::Mul(hn::Mul(most, q), fused_minus(d, steep, one, hn::Mul(p, q)));
     hn::StoreU(fused_minus(d, softening, hn::LoadU(d, present + c), hn::LoadU(d, bending + c)), d,
                to + c);
   }
@@ -57,15 +67,12 @@ HWY_INLINE void soften_twist(const GridView<Real>& g, std::ptrdiff_t r, Real* to
 template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> doubled_misfit(D d, const GridView<Real>& g, const Real* x,
                                      const Real* present) {
-  const Misfits<D> at(d, g, x);
   const MisfitLaw<Real>& law = g.misfit;
-  const auto fourth = hn::Set(d, law.fourth / Real(2.5)), third = hn::Set(d, law.third / 2),
-             second = hn::Set(d, law.second / Real(1.5));
-  const auto rising =
-      fused(d, at.w, fused(d, at.w, fused(d, at.w, fourth, third), second), hn::Set(d, Real(1)));
-  const auto level = hn::Mul(hn::Add(at.p, at.p), hn::Sub(at.whole, at.w));
+  const auto w = misfits(d, g, x), w2 = hn::Mul(w, w);
+  const auto q =
+      fused_minus(d, hn::Mul(w2, w2), hn::Set(d, Real(kMisfitFall)), hn::Set(d, Real(1)));
   return hn::Mul(hn::Mul(hn::Set(d, law.stiffness), hn::LoadU(d, present)),
-                 fused(d, hn::Mul(at.w, at.w), rising, level));
+                 hn::Mul(hn::Mul(w2, mean_rise(d, w, law)), hn::Mul(q, q)));
 }
 
 }  // namespace HWY_NAMESPACE
