@@ -10,7 +10,7 @@ import weft
 
 SIDE, TABLE, OVERHANG = 0.4, 0.3, 0.06  # of the towel, height of the table, what hangs over its edge [m]
 EDGE = 0.25  # of the table [m]
-CLEARANCE = 0.03  # of the jaws above the table when they let go [m]
+CLEARANCE = 0.02  # of the jaws above the table when they let go [m]
 JAWS = {"half_extents": [0.006, 0.015, 0.02], "opening": 0.06, "force": 5, "speed": 0.4,
         "orientation": [0, 0, math.sqrt(0.5), math.sqrt(0.5)]}  # they close up and down
 NAMES = {"near": -0.12, "far": 0.12}  # the grippers, and where they are along the hem
