@@ -5,6 +5,7 @@ import { require_package } from './packages.mjs';
 
 const { chromium } = require_package('playwright-core');
 
+const SELDOM = 50; // between pictures that are not judged by their looks, which leaves a core for another test [ms]
 const LONGEST_WAIT = 120_000; // a bound for what has gone wrong, not a demand on speed [ms]
 
 export function launch_browser() {
@@ -45,7 +46,7 @@ function draw_seldom(interval) {
  */
 export async function open_page(browser, url, options = {}) {
   const { width = 560, height = 420, touch = false, name = '', dark = false } = options;
-  const { view, simple = true, interval = 0, visited = false, before } = options;
+  const { view, simple = true, interval = simple ? SELDOM : 0, visited = false, before } = options;
   const context = await browser.newContext({
     viewport: { width, height },
     hasTouch: touch,
