@@ -26,7 +26,7 @@
 // length with cells of 7.5 mm. It is taken off again, so that folds cost their bending alone in all
 // directions:
 //
-//     U = -E q^2 integral of p dw,  q = 1 - (w/w_1)^4 up to w_1 = 0.8, and 0 beyond.
+//     U = -E f^2 integral of p dw,  f = 1 - (w/w_1)^4 up to w_1 = 0.8, and 0 beyond.
 //
 // A fold whose radius is 1.4 cells has w = 1/8. Where cloth is crumpled the springs keep all that
 // they have, which undoes its tucks. The series is off by at most 1/200 at w = 0.3; 255/256 of it
@@ -38,7 +38,7 @@ namespace weft {
 
 inline constexpr double kMisfitEnd = 0.8;           ///< w_1
 inline constexpr double kMisfitPart = 255.0 / 256;  ///< of E that is taken off
-/// 1/w_1^4.
+/// 1/w_1^4, by which f falls.
 inline constexpr double kMisfitFall = 1 / (kMisfitEnd * kMisfitEnd * kMisfitEnd * kMisfitEnd);
 
 /// Constants of the formulas above.
@@ -86,17 +86,18 @@ struct MisfitLaw {
 template <class Real>
 Real misfit_softening(const MisfitLaw<Real>& law, Real squared) {
   const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd)), w2 = w * w;
-  const Real q = 1 - Real(kMisfitFall) * w2 * w2;
+  const Real fade = 1 - Real(kMisfitFall) * w2 * w2;
   const Real p = w * law.rise(w), twice = w2 * law.mean_rise(w);
-  return 2 * law.stiffness * law.per_d2 * q * (p * q - 4 * Real(kMisfitFall) * w2 * w * twice);
+  return 2 * law.stiffness * law.per_d2 * fade *
+         (p * fade - 4 * Real(kMisfitFall) * w2 * w * twice);
 }
 
 /// -2 U [J].
 template <class Real>
 Real doubled_misfit_energy(const MisfitLaw<Real>& law, Real squared) {
   const Real w = std::min(law.per_d2 * squared, Real(kMisfitEnd)), w2 = w * w;
-  const Real q = 1 - Real(kMisfitFall) * w2 * w2;
-  return law.stiffness * w2 * law.mean_rise(w) * q * q;
+  const Real fade = 1 - Real(kMisfitFall) * w2 * w2;
+  return law.stiffness * w2 * law.mean_rise(w) * fade * fade;
 }
 
 /// Adds the forces of all cells of a part [N]; none if it has no regular springs.

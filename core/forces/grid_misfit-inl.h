@@ -53,10 +53,10 @@ HWY_INLINE void soften_twist(const GridView<Real>& g, std::ptrdiff_t r, Real* to
              four = hn::Set(d, Real(4 * kMisfitFall));
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
     const auto w = misfits(d, g, x + c), w2 = hn::Mul(w, w), w3 = hn::Mul(w2, w);
-    const auto q = fused_minus(d, hn::Mul(w2, w2), per, one);
+    const auto fade = fused_minus(d, hn::Mul(w2, w2), per, one);
     const auto p = hn::Mul(w, cubic(d, w, law.second, law.third, law.fourth));
     const auto steep = hn::Mul(hn::Mul(w3, four), hn::Mul(w2, mean_rise(d, w, law)));
-    const auto softening = hn::Mul(hn::Mul(most, q), fused_minus(d, steep, one, hn::Mul(p, q)));
+    const auto softening = hn::Mul(hn::Mul(most, fade), hn::Sub(hn::Mul(p, fade), steep));
     hn::StoreU(fused_minus(d, softening, hn::LoadU(d, present + c), hn::LoadU(d, bending + c)), d,
                to + c);
   }
@@ -69,10 +69,10 @@ HWY_INLINE hn::Vec<D> doubled_misfit(D d, const GridView<Real>& g, const Real* x
                                      const Real* present) {
   const MisfitLaw<Real>& law = g.misfit;
   const auto w = misfits(d, g, x), w2 = hn::Mul(w, w);
-  const auto q =
+  const auto fade =
       fused_minus(d, hn::Mul(w2, w2), hn::Set(d, Real(kMisfitFall)), hn::Set(d, Real(1)));
   return hn::Mul(hn::Mul(hn::Set(d, law.stiffness), hn::LoadU(d, present)),
-                 hn::Mul(hn::Mul(w2, mean_rise(d, w, law)), hn::Mul(q, q)));
+                 hn::Mul(hn::Mul(w2, mean_rise(d, w, law)), hn::Mul(fade, fade)));
 }
 
 }  // namespace HWY_NAMESPACE
