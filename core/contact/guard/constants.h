@@ -20,7 +20,7 @@ inline constexpr double kReachPart = 0.65, kMostReach = 0.28, kLeastReach = 0.1;
 
 /// Paths hold while the mean particle moves by this fraction of an edge [1], but neither longer
 /// than these seconds nor shorter than these substeps. Larger: fewer collections, of more pairs.
-inline constexpr double kHorizonPart = 0.2, kLongestHorizon = 0.25, kFewestSubsteps = 4;
+inline constexpr double kHorizonPart = 0.14, kLongestHorizon = 0.25, kFewestSubsteps = 4;
 
 /// While something crosses it is examined again after this time [s]. Larger: what comes apart is
 /// pulled for longer. Smaller: more collections while a tangle lasts.
@@ -32,7 +32,7 @@ inline constexpr double kSoon = 0.6;
 
 /// All pairs are collected anew if more than 1 / this of all particles have left their paths [1].
 /// Larger: more collections. Smaller: renewals that cost more than a collection.
-inline constexpr std::size_t kManyStrays = 6;
+inline constexpr std::size_t kManyStrays = 24;
 
 // Parts of work: so small that they occupy the threads, and large enough to pay for waking them.
 

@@ -134,13 +134,13 @@ void test_patches(const SearchPass<Real>& pass, Index p, Index q) {
   test_edges(pass, p, q);
 }
 
-/// Lists the patches that visit_all(visit) visits.
+/// Lists the patches that visit_all(visit) visits, but for those that are stretched out together.
 template <class Real, class VisitAll>
 void list_near_patches(PatchSearch<Real>& search, VisitAll&& visit_all) {
   search.near.clear();
   visit_all([&](Index p, Index q) {
     stop_point(search.near.size());
-    search.near.push_back({p, q});
+    if (!search.tree.are_spread(p, q, search.motion)) search.near.push_back({p, q});
   });
 }
 
@@ -159,6 +159,7 @@ PatchSearch<Real> patch_search(const ClothModel<Real>& model) {
 
 template <class Real>
 void forget_found(PatchSearch<Real>& search) {
+  search.tree.forget();
   for (PairSearch<Real>& part : search.parts) {
     part.columns.clear();
     part.found.clear();
@@ -175,10 +176,8 @@ template <class Real>
 void find_near_patches_of(const std::vector<Index>& particles, PatchSearch<Real>& search) {
   search.changed.assign(search.motion.start.size(), 0);
   for (const Index i : particles) search.changed[static_cast<std::size_t>(i)] = 1;
-  search.tree.refit_changed(search.motion, search.changed);
-  for (std::size_t p = 0; p < search.tree.patch_count(); ++p) {
-    if (search.tree.is_marked(static_cast<Index>(p))) search.boxes.forget(static_cast<Index>(p));
-  }
+  search.tree.refit_changed(search.motion, particles, search.changed);
+  for (const Index p : search.tree.marked()) search.boxes.forget(p);
   list_near_patches(search, [&](auto&& visit) { search.tree.for_each_changed_pair(visit); });
 }
 

@@ -42,11 +42,12 @@ struct PatchSearch {
 template <class Real>
 PatchSearch<Real> patch_search(const ClothModel<Real>& model);
 
-/// Forgets what a search that was ended from outside has found.
+/// Forgets what a search that was ended from outside has found, and what earlier ones did.
 template <class Real>
 void forget_found(PatchSearch<Real>& search);
 
-/// Lists all patches that are near each other. The tree must be fitted to `search.motion`.
+/// Lists the patches that are near each other and not stretched out together. The tree must be
+/// fitted to `search.motion`.
 template <class Real>
 void find_near_patches(PatchSearch<Real>& search);
 

@@ -1,9 +1,11 @@
 // Finds rectangles of the fabric that are stretched out so much that they cannot touch themselves,
-// and after some particles changed their motion those that still are.
+// after some particles changed their motion those that still are, and patches that are stretched
+// out together with one beside them.
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/contact/guard/patch_tree.h"
 #include "core/contact/guard/spread_pass.h"
@@ -13,6 +15,12 @@ namespace {
 
 /// Rounding of the cull's test, relative.
 constexpr double kCullSlack = 1e-3;
+
+/// A rectangle that is not stretched out is tried again after at most so many searches. More: the
+/// rectangles that are found stay small for longer. Fewer: more are tried in vain.
+constexpr std::uint8_t kMostWaits = 7;
+
+static_assert(3 * kPatchCells <= kMostSpreadCells, "a patch with those around it");
 
 }  // namespace
 
@@ -71,22 +79,32 @@ Real PatchTree<Real>::least_spread(const Node& node, Real radius) const {
   return 2 * radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
 }
 
-/// Whether the grown rectangle of a node of a grid is stretched out in one plane; if so, the node
-/// keeps the plane.
+/// Whether the grown rectangle of a node of a grid is stretched out in one plane, which is kept.
+/// One that was not waits for as many searches as it failed in, up to some, and is not tried in
+/// these.
 template <class Real>
-bool PatchTree<Real>::find_spread(Node& node, const PredictedMotion<Real>& motion) const {
+bool PatchTree<Real>::find_spread(Index n, const PredictedMotion<Real>& motion) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  if (node.wait > 0) {
+    --node.wait;
+    return false;
+  }
+  Plane& plane = planes_[static_cast<std::size_t>(n)];
   const Real least = least_spread(node, motion.radius);
   const CellRange cells = grown(node);
-  return least < 1 && find_plane(motion, cells, node.part, node.plane) &&
-         is_spread(motion.start, node.plane, cells, node.part, least) &&
-         is_spread(motion.end, node.plane, cells, node.part, least);
+  const bool spread = least < 1 && find_plane(motion, cells, node.part, plane) &&
+                      is_spread(motion.start, plane, cells, node.part, least) &&
+                      is_spread(motion.end, plane, cells, node.part, least);
+  if (!spread && node.misses < kMostWaits) ++node.misses;
+  node.wait = node.misses;
+  return spread;
 }
 
 /// Tries the rectangle of a node, and else those of its children.
 template <class Real>
 void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion) {
   Node& node = nodes_[static_cast<std::size_t>(n)];
-  if (is_grid(node) && find_spread(node, motion)) {
+  if (is_grid(node) && find_spread(n, motion)) {
     give_spread(n, grown(node));
     return;
   }
@@ -94,6 +112,50 @@ void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion) 
   if (node.patch != kNone) return;
   mark_spread(node.left, motion);
   mark_spread(node.right, motion);
+}
+
+/// Finds the cells around a patch that are stretched out in one plane with it.
+template <class Real>
+const typename PatchTree<Real>::SpreadCells& PatchTree<Real>::spread_around(
+    Index p, const PredictedMotion<Real>& motion) {
+  SpreadCells& found = around_[static_cast<std::size_t>(p)];
+  if (std::exchange(found.refit, refits_) == refits_) return found;
+  const Node& node = node_of(p);
+  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+  const Real least = least_spread(node, motion.radius);
+  // Widened, so that it fills a vector.
+  CellRange cells = grown(node);
+  cells.column = std::max(std::min(cells.column, part.columns - 1 - kMostSpreadCells), 0);
+  cells.column_end = std::min(cells.column + kMostSpreadCells, part.columns - 1);
+  Plane plane;
+  found.row = cells.row;
+  found.column = cells.column;
+  found.bits = 0;
+  if (least < 1 && find_plane(motion, grown(node), node.part, plane))
+    found.bits = spread_cells(spread_pass(motion.start, plane, cells, node.part, least)) &
+                 spread_cells(spread_pass(motion.end, plane, cells, node.part, least));
+  return found;
+}
+
+template <class Real>
+bool PatchTree<Real>::are_spread(Index p, Index q, const PredictedMotion<Real>& motion) {
+  const Node &one = node_of(p), &other = node_of(q);
+  if (!is_grid(one) || one.part != other.part) return false;
+  const CellRange cells = {std::min(one.cells.row, other.cells.row),
+                           std::max(one.cells.row_end, other.cells.row_end),
+                           std::min(one.cells.column, other.cells.column),
+                           std::max(one.cells.column_end, other.cells.column_end)};
+  if (!grown(one).holds(cells)) return false;
+  const auto holds = [&](const SpreadCells& around) {
+    const auto width = static_cast<unsigned>(cells.column_end - cells.column);
+    const std::uint64_t row = ((std::uint64_t{1} << width) - 1) << (cells.column - around.column);
+    for (int r = cells.row; r < cells.row_end; ++r) {
+      if ((~around.bits >> (kMostSpreadCells * (r - around.row)) & row) != 0) return false;
+    }
+    return true;
+  };
+  return holds(spread_around(p, motion)) ||
+         (p != q && grown(other).holds(cells) && holds(spread_around(q, motion)));
 }
 
 /// Looks again at rectangles that were stretched out and have a changed particle. The triangles of
@@ -108,7 +170,7 @@ void PatchTree<Real>::renew_spread(Index n, const PredictedMotion<Real>& motion,
     const CellRange cells = grown(node);
     if (!has_changed(node.part, cells)) return;
     if (node.spread.cells() > 0) {
-      if (stays_spread(node, motion, changed)) return;
+      if (stays_spread(n, motion, changed)) return;
       mark_spread(n, motion);
       return;
     }
@@ -121,21 +183,28 @@ void PatchTree<Real>::renew_spread(Index n, const PredictedMotion<Real>& motion,
 /// Whether the triangles of changed particles are stretched out in the plane of the others. Each
 /// has a straight path from the motion's start to its end, as the old ones have.
 template <class Real>
-bool PatchTree<Real>::stays_spread(const Node& node, const PredictedMotion<Real>& motion,
+bool PatchTree<Real>::stays_spread(Index n, const PredictedMotion<Real>& motion,
                                    const std::vector<char>& changed) const {
+  const Node& node = nodes_[static_cast<std::size_t>(n)];
+  const Plane& plane = planes_[static_cast<std::size_t>(n)];
   const Real least = least_spread(node, motion.radius);
   const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
-  const auto has = [&](int r, int c) {
-    return changed[static_cast<std::size_t>(part.particles.first + r * part.columns + c)] != 0;
+  const auto has = [&](int r, int c) {  // of both rows of a cell
+    const auto i = static_cast<std::size_t>(part.particles.first + r * part.columns + c);
+    return (changed[i] | changed[i + static_cast<std::size_t>(part.columns)]) != 0;
   };
+  const auto tests = [&](const CellRange& cells) {
+    return is_spread(motion.start, plane, cells, node.part, least) &&
+           is_spread(motion.end, plane, cells, node.part, least);
+  };
+  const int end = node.spread.column_end;
   for (int r = node.spread.row; r < node.spread.row_end; ++r) {
-    if (!has_changed(node.part, {r, r + 1, node.spread.column, node.spread.column_end})) continue;
-    for (int c = node.spread.column; c < node.spread.column_end; ++c) {
-      if (!has(r, c) && !has(r, c + 1) && !has(r + 1, c) && !has(r + 1, c + 1)) continue;
-      const CellRange cell = {r, r + 1, c, c + 1};
-      if (!is_spread(motion.start, node.plane, cell, node.part, least) ||
-          !is_spread(motion.end, node.plane, cell, node.part, least))
-        return false;
+    if (!has_changed(node.part, {r, r + 1, node.spread.column, end})) continue;
+    for (int c = node.spread.column; c < end; ++c) {
+      if (!has(r, c) && !has(r, c + 1)) continue;
+      const int first = c;
+      while (c < end && (has(r, c) || has(r, c + 1))) ++c;
+      if (!tests({r, r + 1, first, c})) return false;
     }
   }
   return true;
@@ -145,6 +214,7 @@ template <class Real>
 void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
   Node& node = nodes_[static_cast<std::size_t>(n)];
   node.spread = cells;
+  node.misses = node.wait = 0;
   if (node.patch != kNone) return;
   give_spread(node.left, cells);
   give_spread(node.right, cells);
@@ -181,11 +251,9 @@ bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const Cell
   return true;
 }
 
-/// Whether the least eigenvalue of the symmetric part of the gradient in a plane is above `least`
-/// all over a rectangle.
 template <class Real>
-bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
-                                const CellRange& cells, Index p, Real least) const {
+SpreadPass<Real> PatchTree<Real>::spread_pass(const QuadArray<Real>& x, const Plane& plane,
+                                              const CellRange& cells, Index p, Real least) const {
   const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
   SpreadPass<Real> pass;
   pass.particles = part.columns;
@@ -199,7 +267,7 @@ bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
     pass.axes[static_cast<std::size_t>(k)] = {plane.u[k] * per_u, plane.v[k] * per_u,
                                               plane.u[k] * per_v, plane.v[k] * per_v};
   pass.least = least;
-  return weft::is_spread(pass);
+  return pass;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                                     \
@@ -210,14 +278,17 @@ bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
   template void PatchTree<Real>::mark_spread(Index, const PredictedMotion<Real>&);                 \
   template void PatchTree<Real>::renew_spread(Index, const PredictedMotion<Real>&,                 \
                                               const std::vector<char>&);                           \
-  template bool PatchTree<Real>::find_spread(Node&, const PredictedMotion<Real>&) const;           \
-  template bool PatchTree<Real>::stays_spread(const Node&, const PredictedMotion<Real>&,           \
+  template bool PatchTree<Real>::find_spread(Index, const PredictedMotion<Real>&);                 \
+  template bool PatchTree<Real>::are_spread(Index, Index, const PredictedMotion<Real>&);           \
+  template const typename PatchTree<Real>::SpreadCells& PatchTree<Real>::spread_around(            \
+      Index, const PredictedMotion<Real>&);                                                        \
+  template bool PatchTree<Real>::stays_spread(Index, const PredictedMotion<Real>&,                 \
                                               const std::vector<char>&) const;                     \
   template void PatchTree<Real>::give_spread(Index, const CellRange&);                             \
   template bool PatchTree<Real>::find_plane(const PredictedMotion<Real>&, const CellRange&, Index, \
                                             Plane&) const;                                         \
-  template bool PatchTree<Real>::is_spread(const QuadArray<Real>&, const Plane&, const CellRange&, \
-                                           Index, Real) const;
+  template SpreadPass<Real> PatchTree<Real>::spread_pass(const QuadArray<Real>&, const Plane&,     \
+                                                         const CellRange&, Index, Real) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

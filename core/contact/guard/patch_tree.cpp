@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/cloth/neighbours.h"
@@ -65,7 +66,32 @@ PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) 
     return split_mesh(model, first, list, 0, list.size());
   };
   if (count > 0) build(build, 0, count);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    for (const Index below : {nodes_[n].left, nodes_[n].right}) {
+      if (below != kNone) nodes_[static_cast<std::size_t>(below)].above = static_cast<Index>(n);
+    }
+  }
+  planes_.resize(nodes_.size());
+  around_.resize(patches_.size());
   give_features(model);
+  give_patches(model.mass.size());
+}
+
+/// Lists the patches of each particle.
+template <class Real>
+void PatchTree<Real>::give_patches(std::size_t particles) {
+  patches_begin_.assign(particles + 1, 0);
+  for (const Patch& patch : patches_) {
+    for (const Index i : patch.particles) ++patches_begin_[static_cast<std::size_t>(i) + 1];
+  }
+  std::partial_sum(patches_begin_.begin(), patches_begin_.end(), patches_begin_.begin());
+  patches_with_.resize(static_cast<std::size_t>(patches_begin_.back()));
+  std::vector<Index> next = patches_begin_;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    for (const Index i : patches_[p].particles)
+      patches_with_[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] =
+          static_cast<Index>(p);
+  }
 }
 
 /// Finds the diagonal of each cell: where it falls, a triangle has the cell's first corner and the
@@ -216,6 +242,7 @@ void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) c
 template <class Real>
 void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
   assert(motion.start.size() == motion.end.size() && motion.radius >= 0);
+  ++refits_;
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_box(nodes_[n], motion);
   for (Node& node : nodes_) node.spread = {};
   if (!cull || nodes_.empty()) return;
@@ -223,22 +250,54 @@ void PatchTree<Real>::refit(const PredictedMotion<Real>& motion, bool cull) {
 }
 
 template <class Real>
+void PatchTree<Real>::forget() {
+  for (Node& node : nodes_) node.misses = node.wait = 0;
+}
+
+/// Marks the patches of some particles and the nodes above them, and no others.
+template <class Real>
+void PatchTree<Real>::mark(const std::vector<Index>& particles) {
+  const auto mark_up = [&](Index patch, bool marked) {
+    for (Index n = node_of_[static_cast<std::size_t>(patch)]; n != kNone;) {
+      Node& node = nodes_[static_cast<std::size_t>(n)];
+      if (node.marked == marked) return;
+      node.marked = marked;
+      n = node.above;
+    }
+  };
+  for (const Index p : marked_) mark_up(p, false);
+  marked_.clear();
+  for (const Index k : particles) {
+    const auto i = static_cast<std::size_t>(k);
+    for (Index at = patches_begin_[i]; at < patches_begin_[i + 1]; ++at) {
+      const Index p = patches_with_[static_cast<std::size_t>(at)];
+      if (!is_marked(p)) marked_.push_back(p);
+      mark_up(p, true);
+    }
+  }
+}
+
+/// Fits boxes around the marked nodes, from below.
+template <class Real>
+void PatchTree<Real>::fit_marked(Index n, const PredictedMotion<Real>& motion) {
+  Node& node = nodes_[static_cast<std::size_t>(n)];
+  if (!node.marked) return;
+  if (node.patch == kNone) {
+    fit_marked(node.left, motion);
+    fit_marked(node.right, motion);
+  }
+  fit_box(node, motion);
+}
+
+template <class Real>
 void PatchTree<Real>::refit_changed(const PredictedMotion<Real>& motion,
+                                    const std::vector<Index>& particles,
                                     const std::vector<char>& changed) {
   assert(motion.start.size() == changed.size());
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    if (node.patch == kNone) {
-      node.marked = nodes_[static_cast<std::size_t>(node.left)].marked ||
-                    nodes_[static_cast<std::size_t>(node.right)].marked;
-    } else {
-      const auto& particles = patches_[static_cast<std::size_t>(node.patch)].particles;
-      node.marked = std::any_of(particles.begin(), particles.end(),
-                                [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
-    }
-    if (node.marked) fit_box(node, motion);
-  }
+  ++refits_;
+  mark(particles);
   if (nodes_.empty()) return;
+  fit_marked(0, motion);
   sum_changed(changed);
   renew_spread(0, motion, changed);
 }

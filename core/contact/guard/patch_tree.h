@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/contact/guard/spread_pass.h"
 #include "core/geometry/quad_box.h"
 
 // Broad phase of cloth against cloth: a tree of patches, and the cull of those that are spread out.
@@ -37,6 +38,8 @@ struct PatchMarks {
 /// linear in time on linear paths and the least eigenvalue concave, so both ends of the stretch are
 /// enough, in the same plane. When some particles get other paths, the triangles of the others keep
 /// to what was found, and in that plane only the triangles with a changed one are tested again.
+/// Where a rectangle around a patch is not stretched out as a whole, single cells of it are looked
+/// at anew in every search, so that what joins the patch to one beside it may be.
 template <class Real>
 class PatchTree {
  public:
@@ -49,8 +52,17 @@ class PatchTree {
 
   /// The same for a motion that, but for some particles, is the rest of the one before; marks the
   /// patches that have one of these. Boxes and rectangles without them stay as they are.
-  /// @param changed  of each particle one number, not 0 if its motion changed
-  void refit_changed(const PredictedMotion<Real>& motion, const std::vector<char>& changed);
+  /// @param particles  whose motion changed
+  /// @param changed    of each particle one number, not 0 if it is among them
+  void refit_changed(const PredictedMotion<Real>& motion, const std::vector<Index>& particles,
+                     const std::vector<char>& changed);
+
+  /// Forgets which rectangles were not stretched out.
+  void forget();
+
+  /// Whether the rectangle around two patches of a grid that adjoin each other, or the same patch,
+  /// is stretched out so much that they cannot touch. Asked after refitting, for the same motion.
+  bool are_spread(Index p, Index q, const PredictedMotion<Real>& motion);
 
   /// What stands in a patch.
   struct Patch {
@@ -62,9 +74,9 @@ class PatchTree {
   std::size_t patch_count() const { return patches_.size(); }
 
   /// Whether a patch has a changed particle.
-  bool is_marked(Index p) const {
-    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(p)])].marked;
-  }
+  bool is_marked(Index p) const { return node_of(p).marked; }
+  /// The patches that have one, each once.
+  const std::vector<Index>& marked() const { return marked_; }
 
   /// Like `for_each_near_pair`, but only for pairs with a marked patch. What goes on as before is
   /// no matter of the others: two features that were apart on their paths stay so.
@@ -74,7 +86,7 @@ class PatchTree {
   }
 
   /// Calls visit(p, q), p <= q, for all patches whose boxes overlap, and each patch with itself,
-  /// without those that cannot touch; in a fixed order.
+  /// without those in a rectangle that was found stretched out; in a fixed order.
   template <class Visit>
   void for_each_near_pair(Visit&& visit) const {
     if (!nodes_.empty()) visit_inside<false>(0, visit);
@@ -95,16 +107,24 @@ class PatchTree {
   struct Plane {
     Quad<Real> u, v;
   };
+  /// The cells around a patch that are stretched out in its plane.
+  struct SpreadCells {
+    int row = 0, column = 0;  ///< of the first one
+    std::uint64_t bits = 0;   ///< of the cell r rows and c columns farther, bit 8 r + c
+    std::uint64_t refit = ~std::uint64_t{0};  ///< when they were found
+  };
   struct Node {
     QuadBox<Real> box;
+    Index above = kNone;                ///< node, before this one; none for the root
     Index left = kNone, right = kNone;  ///< nodes, behind this one
     Index patch = kNone;                ///< of a leaf
     Index part = kNone;                 ///< cloth; none if there are several below
     Index triangles = 0;                ///< below it
     CellRange cells;                    ///< of a grid
     CellRange spread;                   ///< what is stretched out around it; empty if it is not
-    Plane plane;                        ///< in which it is, if that was found for this node
     bool marked = false;                ///< it or one below has a changed particle
+    std::uint8_t misses = 0;            ///< how often in a row it was not stretched out
+    std::uint8_t wait = 0;              ///< so many searches pass before it is tried again
   };
 
   void build_grid(const ClothModel<Real>& model, Index part);
@@ -114,25 +134,36 @@ class PatchTree {
   Index add_patch(const ClothModel<Real>& model, Index part, const std::vector<Index>& triangles);
   void give_features(const ClothModel<Real>& model);
 
+  const Node& node_of(Index patch) const {
+    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(patch)])];
+  }
+  void give_patches(std::size_t particles);
   void fit_box(Node& node, const PredictedMotion<Real>& motion) const;
+  void mark(const std::vector<Index>& particles);
+  void fit_marked(Index node, const PredictedMotion<Real>& motion);
   void sum_changed(const std::vector<char>& changed);
   bool has_changed(Index part, const CellRange& cells) const;
   bool is_grid(const Node& node) const {
     return node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
   }
   CellRange grown(const Node& node) const;
+  const SpreadCells& spread_around(Index patch, const PredictedMotion<Real>& motion);
   Real least_spread(const Node& node, Real radius) const;
   void mark_spread(Index node, const PredictedMotion<Real>& motion);
   void renew_spread(Index node, const PredictedMotion<Real>& motion,
                     const std::vector<char>& changed);
-  bool find_spread(Node& node, const PredictedMotion<Real>& motion) const;
-  bool stays_spread(const Node& node, const PredictedMotion<Real>& motion,
+  bool find_spread(Index node, const PredictedMotion<Real>& motion);
+  bool stays_spread(Index node, const PredictedMotion<Real>& motion,
                     const std::vector<char>& changed) const;
   void give_spread(Index node, const CellRange& cells);
   bool find_plane(const PredictedMotion<Real>& motion, const CellRange& cells, Index part,
                   Plane& plane) const;
+  SpreadPass<Real> spread_pass(const QuadArray<Real>& x, const Plane& plane, const CellRange& cells,
+                               Index part, Real least) const;
   bool is_spread(const QuadArray<Real>& x, const Plane& plane, const CellRange& cells, Index part,
-                 Real least) const;
+                 Real least) const {
+    return weft::is_spread(spread_pass(x, plane, cells, part, least));
+  }
   bool is_apart(const Node& a, const Node& b) const {
     if (a.part == kNone || a.part != b.part) return false;
     return (a.spread.cells() > 0 && a.spread.holds(b.cells)) ||
@@ -169,7 +200,13 @@ class PatchTree {
 
   std::vector<Node> nodes_;  ///< parents before children; the first is the root
   std::vector<Patch> patches_;
-  std::vector<Index> node_of_;  ///< each patch's
+  std::vector<Plane> planes_;  ///< of each node, in which it is stretched out, if found for it
+  std::uint64_t refits_ = 0;
+  std::vector<SpreadCells> around_;  ///< of each patch
+  std::vector<Index> node_of_;       ///< each patch's
+  /// Of each particle, a range of the patches that have it.
+  std::vector<Index> patches_begin_, patches_with_;
+  std::vector<Index> marked_;  ///< patches
   std::vector<ClothPart<Real>> parts_;
   std::vector<std::vector<Real>> falls_;  ///< of each grid's cells, for SpreadPass
   /// Of each grid, the number of changed particles before a row and a column.

@@ -21,11 +21,11 @@ Quad<Real> steady(const PredictedPaths<Real>& paths, const QuadArray<Real>& x, c
   const Real time = paths.elapsed - dt - paths.since[particle];
   if (!paths.collected || !(time > 0)) return v;
   const Quad<Real> mean = (x[particle] - paths.from[particle]) * (Real(1) / time);
-  Quad<Real> result;
-  for (int k = 0; k < 3; ++k) {
-    if (v[k] * mean[k] > 0) result.lanes[k] = std::abs(v[k]) < std::abs(mean[k]) ? v[k] : mean[k];
-  }
-  return result;
+  typename Quad<Real>::Lanes size = v.lanes, other = mean.lanes, none = {};
+  size = size < Real(0) ? -size : size;
+  other = other < Real(0) ? -other : other;
+  const typename Quad<Real>::Lanes smaller = size < other ? v.lanes : mean.lanes;
+  return {v.lanes * mean.lanes > Real(0) ? smaller : none};
 }
 
 /// Velocity of a new path, which has to hold at least for the coming step [m/s].

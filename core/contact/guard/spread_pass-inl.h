@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -48,9 +49,11 @@ HWY_INLINE hn::Mask<D> exceeds(D d, V least, const InPlane<V>& along_u, const In
   return hn::And(positive, hn::Gt(hn::Mul(a, b), hn::Mul(off, off)));
 }
 
-/// All rows of as many columns as a vector has, from column c on.
-template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE bool columns_are_spread(D d, const SpreadPass<Real>& p, std::ptrdiff_t c) {
+/// Calls visit(r, mask) for all rows of as many columns as a vector has, from column c on, with
+/// the cells whose triangles are both stretched out, until one call says no.
+/// @return whether none did
+template <class D, class Visit, class Real = hn::TFromD<D>>
+HWY_INLINE bool visit_rows(D d, const SpreadPass<Real>& p, std::ptrdiff_t c, Visit&& visit) {
   using V = hn::Vec<D>;
   const auto at = [&](std::ptrdiff_t row, std::ptrdiff_t column) HWY_ATTR {
     Triple<V> x;
@@ -73,7 +76,7 @@ HWY_INLINE bool columns_are_spread(D d, const SpreadPass<Real>& p, std::ptrdiff_
     };
     const auto both = hn::And(exceeds(d, least, first_u, pick(last_v, first_v)),
                               exceeds(d, least, last_u, pick(first_v, last_v)));
-    if (!hn::AllTrue(d, both)) return false;
+    if (!visit(r, both)) return false;
     left = next_left;
     right = next_right;
     first_u = last_u;
@@ -81,23 +84,45 @@ HWY_INLINE bool columns_are_spread(D d, const SpreadPass<Real>& p, std::ptrdiff_
   return true;
 }
 
-template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE bool all_are_spread(D d, const SpreadPass<Real>& p) {
-  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-  // The last vector overlaps the one before it.
-  for (std::ptrdiff_t c = 0; c < p.columns; c += lanes) {
-    if (!columns_are_spread(d, p, std::min(c, p.columns - lanes))) return false;
-  }
-  return true;
+/// Calls visit(d, c) for all columns, as many at a time as a vector has. The last vector overlaps
+/// the one before it.
+/// @return whether no call said no
+template <class Real, class Visit>
+HWY_INLINE bool visit_columns(const SpreadPass<Real>& p, Visit&& visit) {
+  const auto all = [&](auto d) HWY_ATTR {
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+    for (std::ptrdiff_t c = 0; c < p.columns; c += lanes) {
+      if (!visit(d, std::min(c, p.columns - lanes))) return false;
+    }
+    return true;
+  };
+  const hn::CappedTag<Real, 8> eight;
+  const hn::CappedTag<Real, 4> four;
+  if (p.columns >= static_cast<int>(hn::Lanes(eight))) return all(eight);
+  if (p.columns >= static_cast<int>(hn::Lanes(four))) return all(four);
+  return all(hn::CappedTag<Real, 1>());
 }
 
 template <class Real>
 HWY_INLINE bool spread(const SpreadPass<Real>& p) {
-  const hn::CappedTag<Real, 8> eight;
-  const hn::CappedTag<Real, 4> four;
-  if (p.columns >= static_cast<int>(hn::Lanes(eight))) return all_are_spread(eight, p);
-  if (p.columns >= static_cast<int>(hn::Lanes(four))) return all_are_spread(four, p);
-  return all_are_spread(hn::CappedTag<Real, 1>(), p);
+  return visit_columns(p, [&](auto d, std::ptrdiff_t c) HWY_ATTR {
+    return visit_rows(d, p, c,
+                      [&](std::ptrdiff_t, auto mask) HWY_ATTR { return hn::AllTrue(d, mask); });
+  });
+}
+
+template <class Real>
+HWY_INLINE std::uint64_t spread_ones(const SpreadPass<Real>& p) {
+  std::uint64_t found = 0;
+  visit_columns(p, [&](auto d, std::ptrdiff_t c) HWY_ATTR {
+    return visit_rows(d, p, c, [&](std::ptrdiff_t r, auto mask) HWY_ATTR {
+      std::uint8_t byte[8] = {};
+      hn::StoreMaskBits(d, mask, byte);
+      found |= static_cast<std::uint64_t>(byte[0]) << (kMostSpreadCells * r + c);
+      return true;
+    });
+  });
+  return found;
 }
 
 HWY_ATTR bool spread_f32(const SpreadPass<float>& pass) {
@@ -105,6 +130,12 @@ HWY_ATTR bool spread_f32(const SpreadPass<float>& pass) {
 }
 HWY_ATTR bool spread_f64(const SpreadPass<double>& pass) {
   return spread(pass);
+}
+HWY_ATTR std::uint64_t spread_ones_f32(const SpreadPass<float>& pass) {
+  return spread_ones(pass);
+}
+HWY_ATTR std::uint64_t spread_ones_f64(const SpreadPass<double>& pass) {
+  return spread_ones(pass);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -11,12 +11,15 @@
 #include "core/contact/guard/spread_pass-inl.h"
 
 #if HWY_ONCE
+#include <algorithm>
 #include <cassert>
 
 namespace weft {
 
 HWY_EXPORT(spread_f32);
 HWY_EXPORT(spread_f64);
+HWY_EXPORT(spread_ones_f32);
+HWY_EXPORT(spread_ones_f64);
 
 bool is_spread(const SpreadPass<float>& pass) {
   assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
@@ -26,6 +29,18 @@ bool is_spread(const SpreadPass<float>& pass) {
 bool is_spread(const SpreadPass<double>& pass) {
   assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
   return HWY_DYNAMIC_DISPATCH(spread_f64)(pass);
+}
+
+std::uint64_t spread_cells(const SpreadPass<float>& pass) {
+  assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
+  assert(std::max(pass.rows, pass.columns) <= kMostSpreadCells);
+  return HWY_DYNAMIC_DISPATCH(spread_ones_f32)(pass);
+}
+
+std::uint64_t spread_cells(const SpreadPass<double>& pass) {
+  assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
+  assert(std::max(pass.rows, pass.columns) <= kMostSpreadCells);
+  return HWY_DYNAMIC_DISPATCH(spread_ones_f64)(pass);
 }
 
 }  // namespace weft

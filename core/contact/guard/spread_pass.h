@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/math/quad.h"
 
-// Whether a rectangle of a grid is stretched out in a plane, so that it cannot touch itself.
+// Whether a rectangle of a grid, and which of its cells, are stretched out in a plane, so that they
+// cannot touch each other.
 
 namespace weft {
 
@@ -29,5 +31,13 @@ struct SpreadPass {
 /// all over a rectangle.
 bool is_spread(const SpreadPass<float>& pass);
 bool is_spread(const SpreadPass<double>& pass);
+
+/// A rectangle that is asked for its cells has at most this many rows and columns.
+inline constexpr int kMostSpreadCells = 8;
+
+/// In which cells of a rectangle it is above `least`: of cell (r, c) bit
+/// kMostSpreadCells r + c.
+std::uint64_t spread_cells(const SpreadPass<float>& pass);
+std::uint64_t spread_cells(const SpreadPass<double>& pass);
 
 }  // namespace weft

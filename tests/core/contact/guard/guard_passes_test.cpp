@@ -78,6 +78,33 @@ bool spread_one_by_one(const SpreadPass<double>& pass) {
   return true;
 }
 
+/// Part of a grid whose particles are off their places by up to a random distance.
+struct SpreadRectangle {
+  QuadArray<double> x;
+  std::vector<double> falls;
+  SpreadPass<double> pass;
+
+  SpreadRectangle(int rows, int columns, SeededRandom& random) {
+    pass.rows = rows;
+    pass.columns = columns;
+    pass.cells = columns + 2;
+    pass.particles = pass.cells + 1;
+    pass.axes = {{{1, 0, 1, 0}, {0, 1, 0, 1}, {0, 0, 0, 0}}};
+    pass.least = 0.3;
+    const double size = random.uniform(0, 0.6);
+    for (int r = 0; r <= rows; ++r) {
+      for (int c = 0; c < pass.particles; ++c)
+        x.push_back(to_quad<double>(Vec3d(c, r, 0) + random.vector(size)));
+    }
+    for (int cell = 0; cell < rows * pass.cells; ++cell)
+      falls.push_back(random.uniform(0, 1) < 0.5 ? 0 : 1);
+    pass.x = x.data();
+    pass.falls = falls.data();
+  }
+  SpreadRectangle(const SpreadRectangle&) = delete;
+  SpreadRectangle& operator=(const SpreadRectangle&) = delete;
+};
+
 }  // namespace
 
 TEST_CASE("a look at all particles finds the strays that a look at each finds, on any machine") {
@@ -121,29 +148,40 @@ TEST_CASE("a rectangle is stretched out where each of its triangles is, on any m
   SeededRandom random(12);
   int spread = 0, runs = 0;
   for (int run = 0; run < 400; ++run) {
-    SpreadPass<double> pass;
-    pass.rows = static_cast<int>(random.uniform(1, 6));
-    pass.columns = static_cast<int>(random.uniform(1, 20));
-    pass.cells = pass.columns + 2;
-    pass.particles = pass.cells + 1;
-    pass.axes = {{{1, 0, 1, 0}, {0, 1, 0, 1}, {0, 0, 0, 0}}};
-    pass.least = 0.3;
-    const double size = random.uniform(0, 0.6);
-    QuadArray<double> x;
-    for (int r = 0; r <= pass.rows; ++r) {
-      for (int c = 0; c < pass.particles; ++c)
-        x.push_back(to_quad<double>(Vec3d(c, r, 0) + random.vector(size)));
-    }
-    std::vector<double> falls;
-    for (int cell = 0; cell < pass.rows * pass.cells; ++cell)
-      falls.push_back(random.uniform(0, 1) < 0.5 ? 0 : 1);
-    pass.x = x.data();
-    pass.falls = falls.data();
-    const bool expected = spread_one_by_one(pass);
+    const auto rows = static_cast<int>(random.uniform(1, 6)),
+               columns = static_cast<int>(random.uniform(1, 20));
+    const SpreadRectangle all(rows, columns, random);
+    const bool expected = spread_one_by_one(all.pass);
     spread += expected ? 1 : 0;
     ++runs;
-    for_each_target([&] { CHECK(is_spread(pass) == expected); });
+    for_each_target([&] { CHECK(is_spread(all.pass) == expected); });
   }
   CHECK(spread > runs / 5);
   CHECK(spread < runs * 4 / 5);
+}
+
+TEST_CASE("a cell is stretched out by itself as it is in a rectangle of its own, on any machine") {
+  SeededRandom random(13);
+  int spread = 0, cells = 0;
+  for (int run = 0; run < 100; ++run) {
+    const auto rows = static_cast<int>(random.uniform(1, 9)),
+               columns = static_cast<int>(random.uniform(1, 9));
+    const SpreadRectangle all(rows, columns, random);
+    std::uint64_t expected = 0;
+    for (int r = 0; r < all.pass.rows; ++r) {
+      for (int c = 0; c < all.pass.columns; ++c) {
+        SpreadPass<double> one = all.pass;
+        one.x += r * one.particles + c;
+        one.falls += r * one.cells + c;
+        one.rows = one.columns = 1;
+        ++cells;
+        if (!spread_one_by_one(one)) continue;
+        ++spread;
+        expected |= std::uint64_t{1} << (8 * r + c);
+      }
+    }
+    for_each_target([&] { CHECK(spread_cells(all.pass) == expected); });
+  }
+  CHECK(spread > cells / 5);
+  CHECK(spread < cells * 4 / 5 + cells / 10);
 }

@@ -7,6 +7,7 @@
 #include "core/contact/guard/patch_boxes.h"
 #include "tests/support/cloths.h"
 #include "tests/support/seeded_random.h"
+#include "tests/support/sheets_of_triangles.h"
 
 using namespace weft;
 using namespace weft::test;
@@ -66,7 +67,8 @@ void visit_features(const ClothModel<float>& model, const PatchTree<float>::Patc
 
 struct Found {
   Pairs pairs;
-  std::size_t visited = 0;  ///< pairs of patches
+  std::size_t visited = 0;          ///< pairs of patches
+  std::size_t spread_together = 0;  ///< and those that were not, as they are stretched out together
 };
 
 Found find_pairs(const ClothModel<float>& model, PatchTree<float>& tree,
@@ -74,6 +76,10 @@ Found find_pairs(const ClothModel<float>& model, PatchTree<float>& tree,
   Found found;
   tree.refit(motion, cull);
   tree.for_each_near_pair([&](Index p, Index q) {
+    if (cull && tree.are_spread(p, q, motion)) {
+      ++found.spread_together;
+      return;
+    }
     ++found.visited;
     visit_features(model, tree.patch(p), tree.patch(q), p == q,
                    [&](PairKind kind, Index a, Index b, const std::array<Index, 4>& particle) {
@@ -120,6 +126,27 @@ PredictedMotion<float> wrap(const ClothModel<float>& model, double radius, doubl
   return motion;
 }
 
+/// The second cloth, flat, is folded back at a distance from its first row or column, with layers
+/// so near that they touch.
+PredictedMotion<float> folded(const ClothModel<float>& model, double line, bool across,
+                              Random& random) {
+  PredictedMotion<float> motion;
+  const IndexRange& second = model.parts[1].particles;
+  for (Index i = 0; i < model.particle_count(); ++i) {
+    Vec3d x = model.rest_positions[static_cast<std::size_t>(i)].cast<double>();
+    double& along = across ? x[0] : x[2];
+    if (second.contains(i) && along > line + 1e-4) {
+      along = line + 0.03 - (along - line - 0.03);
+      x[1] += 0.004;
+    }
+    motion.start.push_back(to_quad<float>(x.cast<float>()));
+    const Vec3d moved = x + Vec3d(0.01, -0.02, 0) + random.vector(0.001);
+    motion.end.push_back(to_quad<float>(moved.cast<float>()));
+  }
+  motion.radius = 0.005f;
+  return motion;
+}
+
 }  // namespace
 
 TEST_CASE("patches with and without the cull find every pair that a search of all pairs finds") {
@@ -143,6 +170,30 @@ TEST_CASE("patches with and without the cull find every pair that a search of al
   }
 }
 
+TEST_CASE("patches beside a sharp fold are culled without any pair across it") {
+  SeededRandom random(6);
+  std::size_t culled = 0;
+  for (const auto& [rows, columns] :
+       {std::pair{2, 40}, {40, 2}, {6, 12}, {12, 6}, {3, 3}, {7, 10}}) {
+    ClothDef mesh = triangle_sheet(Cut::irregular, 0.15, 0.15, 0.03);
+    mesh.origin = Vec3d(5, 0, 0);
+    const ClothModel<float> model = build_cloths<float>(
+        {mesh, flat_cloth(rows, columns, 0.03 * (columns - 1), 0.03 * (rows - 1))});
+    PatchTree<float> tree(model);
+    for (int across = 0; across < 2; ++across) {
+      for (int line = 0; line + 1 < (across == 0 ? rows : columns); ++line) {
+        INFO(rows << " x " << columns << ", folded behind " << (across == 0 ? "row " : "column ")
+                  << line);
+        const PredictedMotion<float> motion = folded(model, 0.03 * line, across != 0, random);
+        const Found found = find_pairs(model, tree, motion, true);
+        CHECK(found.pairs == all_pairs(model, motion));
+        culled += found.spread_together;
+      }
+    }
+  }
+  CHECK(culled > 1000);
+}
+
 TEST_CASE("after some particles changed their way, old pairs and changed patches give all pairs") {
   SeededRandom random(9);
   std::size_t visited = 0, all = 0;
@@ -157,11 +208,13 @@ TEST_CASE("after some particles changed their way, old pairs and changed patches
         INFO(rows << " x " << columns << ", radius " << radius << ", time " << time);
         // A third of the time goes by, and one region flies off, over its neighbours.
         std::vector<char> changed(model.mass.size(), 0);
+        std::vector<Index> particles;
         const auto middle = static_cast<std::size_t>(random.uniform(0, 1) * (columns * rows - 1));
         for (std::size_t i = 0; i < changed.size(); ++i) {
           motion.start[i] += (motion.end[i] - motion.start[i]) * (1.0f / 3);
           if ((model.rest_positions[i] - model.rest_positions[middle]).norm() > 0.07f) continue;
           changed[i] = 1;
+          particles.push_back(static_cast<Index>(i));
           const Vec3f way = Vec3f(0.05f, 0.01f, 0.02f) * static_cast<float>(time - 1) +
                             random.vector(0.01).cast<float>();
           motion.end[i] = motion.start[i] + to_quad(way);
@@ -170,10 +223,11 @@ TEST_CASE("after some particles changed their way, old pairs and changed patches
           return std::any_of(particle.begin(), particle.end(),
                              [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
         };
-        tree.refit_changed(motion, changed);
+        tree.refit_changed(motion, particles, changed);
         tree.for_each_near_pair([&](Index, Index) { ++all; });
         Pairs found;
         tree.for_each_changed_pair([&](Index p, Index q) {
+          if (tree.are_spread(p, q, motion)) return;
           ++visited;
           visit_features(model, tree.patch(p), tree.patch(q), p == q,
                          [&](PairKind kind, Index a, Index b, const auto& particle) {
@@ -206,6 +260,28 @@ TEST_CASE("a flat or gently waved cloth is culled as one, and no patch of it is 
   tree.refit(wrap(model, 0, 0, 0.003, random), false);
   tree.for_each_near_pair([&](Index, Index) { ++visited; });
   CHECK(visited > 256);
+}
+
+TEST_CASE("a cloth that was rolled up for long is culled as one again soon after it is flat") {
+  SeededRandom random(8);
+  const ClothModel<float> model = build_cloth<float>(flat_cloth(33, 33, 1, 1));
+  PatchTree<float> tree(model);
+  const auto visited = [&](double radius) {
+    std::size_t count = 0;
+    tree.refit(wrap(model, radius, 0, 0.003, random), true);
+    tree.for_each_near_pair([&](Index, Index) { ++count; });
+    return count;
+  };
+  for (int k = 0; k < 100; ++k) REQUIRE(visited(0.05) > 0);
+  for (int k = 0; k < 7; ++k) visited(0);
+  CHECK(visited(0) == 0);
+  // After a single roll one search passes.
+  REQUIRE(visited(0.05) > 0);
+  visited(0);
+  CHECK(visited(0) == 0);
+  for (int k = 0; k < 100; ++k) REQUIRE(visited(0.05) > 0);
+  tree.forget();
+  CHECK(visited(0) == 0);
 }
 
 TEST_CASE("a sheet that is spread out at both ends of its motion but not between is not culled") {
