@@ -20,7 +20,7 @@
 //              2016, table 5 (KES): G 1.5 to 3.4 gf/(cm degree).
 //     ours     chosen by us; not a measurement.
 // Bands of the drape coefficient are those published for such fabrics; we know of none for flag
-// nylon, and other simulators differ: one gets 27.8 %, Weft 25 to 33 %.
+// nylon, and other simulators differ: one gets 27.8 %, Weft 22 to 33 %.
 // Contact thickness and restitution have the defaults of all fabrics, because they belong to the
 // simulation and not to the material. Friction is ours: cloth on a smooth object. So is damping:
 // all of it in bending, as most of real cloth's is, such that waves of 5 cm lose a fifth of their
