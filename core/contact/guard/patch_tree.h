@@ -201,7 +201,7 @@ class PatchTree {
   std::vector<Node> nodes_;  ///< parents before children; the first is the root
   std::vector<Patch> patches_;
   std::vector<Plane> planes_;  ///< of each node, in which it is stretched out, if found for it
-  std::uint64_t refits_ = 0;
+  std::uint64_t refits_ = 0;   ///< how often boxes were fitted
   std::vector<SpreadCells> around_;  ///< of each patch
   std::vector<Index> node_of_;       ///< each patch's
   /// Of each particle, a range of the patches that have it.
