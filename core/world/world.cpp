@@ -34,7 +34,7 @@ Contact<Real> make_contact(const WorldDef& def, const ClothModel<Real>& model,
                       part.particles.first});
   return Contact<Real>(cloths, def.colliders,
                        make_patches(model.rest_positions, model.edges, model.triangles),
-                       runtime.executor);
+                       runtime.executor, runtime.meshes);
 }
 
 template <class Real>

@@ -11,6 +11,7 @@
 #include "core/world/pin_extent.h"
 #include "core/world/spring_hold.h"
 #include "server/constants.h"
+#include "server/room/shared_meshes.h"
 #include "server/translate/translate_mesh.h"
 
 namespace weft::server {
@@ -60,12 +61,15 @@ std::vector<SceneNotice> notices_of(const World<Real>& world,
 }
 
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
+  static SharedMeshes
+      meshes;  // worlds may be built on any thread, and rebuilt as long as they live
   const SerialScope serial;
   check_size(def);
   check_mesh_bytes(def);
   Runtime runtime;
   runtime.executor = executor;
   runtime.clock = &process_seconds;
+  runtime.meshes = &meshes;
   BuiltScene built;
   WorldDef repaired = def;
   const std::vector<std::string> repairs = repair_objects(repaired);

@@ -80,8 +80,8 @@ void measure_clearance(const ContactCloths<Real>& cloths, const ObjectShapes<Rea
       if (known && c.near[i] && (c.has_pairs[i] || !turn)) continue;
       const Real horizon = needed + static_cast<Real>(kClearanceHorizon);
       // One that was clear of everything is still outside, and a bound is cheaper than a distance.
-      const Real bound = c.distance[i] > 0 ? least_clearance(shapes, state.x[i], horizon) : Real(0);
-      c.distance[i] = bound > needed ? bound : clearance_of(shapes, state.x[i], horizon);
+      c.distance[i] = c.distance[i] > 0 ? least_clearance(shapes, state.x[i], horizon)
+                                        : clearance_of(shapes, state.x[i], horizon);
       ++tests[part];
     }
   });

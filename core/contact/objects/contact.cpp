@@ -19,8 +19,8 @@ namespace weft {
 template <class Real>
 Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
                        const std::vector<ColliderDef>& colliders, ClothPatches patches,
-                       Executor* executor)
-    : executor_(executor), shapes_(object_shapes<Real>(colliders)),
+                       Executor* executor, MeshStore* store)
+    : executor_(executor), shapes_(object_shapes<Real>(colliders, store)),
       pairs_(object_pairs<Real>(shapes_.meshes.size(), patches.list.size())) {
   assert(!cloths.empty());
   cloths_.defs = cloths;

@@ -40,9 +40,10 @@ class Contact {
   /// @param cloths        settings of each cloth, in the order of their particles; at least one
   /// @param patches       the features of all cloths
   /// @param executor      runs the collection in parts; may be null
+  /// @param store         has prepared meshes; may be null
   /// Throws DefinitionError if a collider is out of range.
   Contact(const std::vector<ContactDef>& cloths, const std::vector<ColliderDef>& colliders,
-          ClothPatches patches, Executor* executor);
+          ClothPatches patches, Executor* executor, MeshStore* store);
 
   /// Forgets everything about where the cloth is.
   void reset();

@@ -6,6 +6,8 @@
 #define WEFT_FEATURE_DISTANCE_INL_H
 #endif
 
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 #include <hwy/highway.h>
@@ -35,11 +37,12 @@ HWY_INLINE Triple<hn::Vec<D>> spread(D d, const Real* numbers) {
   return {hn::Set(d, numbers[0]), hn::Set(d, numbers[1]), hn::Set(d, numbers[2])};
 }
 
+/// Numbers `number` to number + 2 of some features of a block.
+/// @param at  number 0 of the first of them
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE Triple<hn::Vec<D>> load(D d, const FeatureTable<Real>& table, std::size_t number,
-                                   std::size_t n) {
-  const Real* at = table.mesh + number * table.stride + n;
-  return {hn::LoadU(d, at), hn::LoadU(d, at + table.stride), hn::LoadU(d, at + 2 * table.stride)};
+HWY_INLINE Triple<hn::Vec<D>> load(D d, const Real* at, std::size_t number) {
+  at += number * kFeatureLanes;
+  return {hn::LoadU(d, at), hn::LoadU(d, at + kFeatureLanes), hn::LoadU(d, at + 2 * kFeatureLanes)};
 }
 
 /// Squared distance of point p - a = ap from the segment a to a + way.
@@ -111,102 +114,170 @@ HWY_INLINE V of_segments(D d, const Triple<V>& r, const Triple<V>& u, V uu, V in
   return dot(way, way);
 }
 
-/// Fills the row of the cloth's feature f with measure(n), the squared distances of the mesh's
-/// features from number n on.
-template <class D, class Real = hn::TFromD<D>, class Measure>
-HWY_INLINE void fill_row(D d, const FeatureTable<Real>& table, std::size_t f, Measure&& measure) {
+/// What is found for a feature of the cloth.
+template <class V>
+struct Found {
+  Index hits = 0;          ///< within reach, those of the features before it included
+  std::size_t blocks = 0;  ///< looked at
+  V beyond;                ///< bounds of what is not, squared [m^2]
+};
+
+/// Notes which features of a block are within reach.
+/// @param first    block * lanes
+/// @param measure  measure(lane) are the squared distances of its features from that lane on
+template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>, class Measure>
+HWY_INLINE void search_block(D d, const FeatureTable<Real>& table, V reach2, Index first,
+                             Measure&& measure, Found<V>& found) {
+  const auto far = hn::Set(d, std::numeric_limits<Real>::max());
+  ++found.blocks;
+  for (std::size_t lane = 0; lane < kFeatureLanes; lane += hn::Lanes(d)) {
+    const auto distance2 = measure(lane);
+    const auto within = hn::Le(distance2, reach2);
+    found.beyond = hn::Min(found.beyond, hn::IfThenElse(within, far, distance2));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, within, bits);
+    if (bits[0] == 0) continue;
+    Real squares[kFeatureLanes];
+    hn::StoreU(distance2, d, squares);
+    for (unsigned rest = bits[0]; rest != 0; rest &= rest - 1) {
+      const int k = std::countr_zero(rest);
+      table.hits[found.hits] = first + static_cast<Index>(lane) + k;
+      table.hits2[found.hits++] = squares[k];
+    }
+  }
+}
+
+/// Squared distances of a box from those of some blocks [m^2].
+/// @param box  six numbers
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> from_boxes(D d, const FeatureTable<Real>& table, const Real* box,
+                                 std::size_t n) {
+  auto apart2 = hn::Zero(d);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto lower = hn::LoadU(d, table.boxes + axis * table.stride + n),
+               upper = hn::LoadU(d, table.boxes + (axis + 3) * table.stride + n);
+    const auto above = hn::Sub(lower, hn::Set(d, box[axis + 3])),
+               below = hn::Sub(hn::Set(d, box[axis]), upper);
+    const auto gap = hn::Max(hn::Max(above, below), hn::Zero(d));
+    apart2 = hn::Add(apart2, hn::Mul(gap, gap));
+  }
+  return apart2;
+}
+
+/// Searches the blocks for what is within reach of feature f of the cloth.
+/// @param numbers  of a feature of the mesh
+/// @param measure  measure(at) are squared distances of the features whose number 0 is at `at`
+/// @param found    is added to; `beyond` is set
+template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>, class Measure>
+HWY_INLINE void search(D d, const FeatureTable<Real>& table, std::size_t f, std::size_t numbers,
+                       Measure&& measure, Found<V>& found) {
   const auto far = hn::Set(d, std::numeric_limits<Real>::max());
   const auto reach2 = hn::Set(d, table.reach2[f]);
-  auto nearest = far, beyond = far;
+  found.beyond = far;
   for (std::size_t n = 0; n < table.stride; n += hn::Lanes(d)) {
-    const auto distance2 = measure(n);
-    hn::StoreU(distance2, d, table.distance2 + f * table.stride + n);
-    nearest = hn::Min(nearest, distance2);
-    beyond = hn::Min(beyond, hn::IfThenElse(hn::Le(distance2, reach2), far, distance2));
+    const auto apart2 = from_boxes(d, table, table.cloth_boxes + 6 * f, n);
+    const auto near = hn::Le(apart2, reach2);
+    found.beyond = hn::Min(found.beyond, hn::IfThenElse(near, far, apart2));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, near, bits);
+    for (unsigned rest = bits[0]; rest != 0; rest &= rest - 1) {
+      const auto block = static_cast<std::size_t>(
+          table.blocks[n + static_cast<std::size_t>(std::countr_zero(rest))]);
+      const Real* at = table.mesh + block * numbers * kFeatureLanes;
+      search_block(
+          d, table, reach2, static_cast<Index>(block * kFeatureLanes),
+          [&](std::size_t lane) HWY_ATTR { return measure(at + lane); }, found);
+    }
   }
-  table.nearest2[f] = hn::GetLane(hn::MinOfLanes(d, nearest));
-  table.beyond2[f] = hn::GetLane(hn::MinOfLanes(d, beyond));
+  table.ends[f] = found.hits;
+  table.beyond2[f] = hn::GetLane(hn::MinOfLanes(d, found.beyond));
 }
 
 template <class Real>
-HWY_INLINE void segments(const FeatureTable<Real>& table) {
-  const hn::CappedTag<Real, kFeaturePadding> d;
+HWY_INLINE std::size_t segments(const FeatureTable<Real>& table) {
+  const hn::CappedTag<Real, kFeatureLanes> d;
+  Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
     const auto a = spread(d, table.cloth + 6 * f), u = spread(d, table.cloth + 6 * f + 3);
     const auto uu = dot(u, u), inverse_uu = inverse_or_zero(d, uu);
-    fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return of_segments(d, a - load(d, table, 0, n), u, uu, inverse_uu, load(d, table, 3, n));
-    });
+    const auto measure = [&](const Real* at) HWY_ATTR {
+      return of_segments(d, a - load(d, at, 0), u, uu, inverse_uu, load(d, at, 3));
+    };
+    search(d, table, f, 6, measure, found);
   }
+  return found.blocks;
 }
 
 template <class Real>
-HWY_INLINE void complete_triangles(std::size_t stride, Real* columns) {
-  const hn::CappedTag<Real, kFeaturePadding> d;
-  FeatureTable<Real> table;
-  table.stride = stride;
-  table.mesh = columns;
-  for (std::size_t n = 0; n < stride; n += hn::Lanes(d)) {
-    const auto t = prepare(d, load(d, table, 3, n), load(d, table, 6, n));
-    std::size_t number = 9;
-    for (const auto& column : {t.normal.x, t.normal.y, t.normal.z, t.inverse_ab2, t.inverse_ac2,
-                               t.inverse_bc2, t.normal2, t.inverse_normal2})
-      hn::StoreU(column, d, columns + number++ * stride + n);
+HWY_INLINE void complete_triangles(std::size_t blocks, Real* values) {
+  const hn::CappedTag<Real, kFeatureLanes> d;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t lane = 0; lane < kFeatureLanes; lane += hn::Lanes(d)) {
+      Real* at = values + b * kTriangleNumbers * kFeatureLanes + lane;
+      const auto t = prepare(d, load(d, at, 3), load(d, at, 6));
+      std::size_t number = 9;
+      for (const auto& value : {t.normal.x, t.normal.y, t.normal.z, t.inverse_ab2, t.inverse_ac2,
+                                t.inverse_bc2, t.normal2, t.inverse_normal2})
+        hn::StoreU(value, d, at + number++ * kFeatureLanes);
+    }
   }
 }
 
 /// Triangles that complete_triangles has prepared.
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE PreparedTriangle<hn::Vec<D>> load_triangle(D d, const FeatureTable<Real>& table,
-                                                      std::size_t n) {
-  const auto ab = load(d, table, 3, n), ac = load(d, table, 6, n);
-  const auto column = [&](std::size_t k)
-                          HWY_ATTR { return hn::LoadU(d, table.mesh + k * table.stride + n); };
-  return {ab,         ac,         ac - ab,   load(d, table, 9, n), column(12), column(13),
-          column(14), column(15), column(16)};
+HWY_INLINE PreparedTriangle<hn::Vec<D>> load_triangle(D d, const Real* at) {
+  const auto ab = load(d, at, 3), ac = load(d, at, 6);
+  const auto number = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, at + k * kFeatureLanes); };
+  return {ab,         ac,         ac - ab,    load(d, at, 9), number(12),
+          number(13), number(14), number(15), number(16)};
 }
 
 template <class Real>
-HWY_INLINE void points_from_triangles(const FeatureTable<Real>& table) {
-  const hn::CappedTag<Real, kFeaturePadding> d;
+HWY_INLINE std::size_t points_from_triangles(const FeatureTable<Real>& table) {
+  const hn::CappedTag<Real, kFeatureLanes> d;
+  Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
     const auto p = spread(d, table.cloth + 3 * f);
-    fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return from_triangle(d, p - load(d, table, 0, n), load_triangle(d, table, n));
-    });
+    const auto measure = [&](const Real* at) HWY_ATTR {
+      return from_triangle(d, p - load(d, at, 0), load_triangle(d, at));
+    };
+    search(d, table, f, kTriangleNumbers, measure, found);
   }
+  return found.blocks;
 }
 
 template <class Real>
-HWY_INLINE void triangles_from_points(const FeatureTable<Real>& table) {
-  const hn::CappedTag<Real, kFeaturePadding> d;
+HWY_INLINE std::size_t triangles_from_points(const FeatureTable<Real>& table) {
+  const hn::CappedTag<Real, kFeatureLanes> d;
+  Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
     const Real* numbers = table.cloth + 9 * f;
     const auto a = spread(d, numbers);
     const auto triangle = prepare(d, spread(d, numbers + 3), spread(d, numbers + 6));
-    fill_row(d, table, f, [&](std::size_t n) HWY_ATTR {
-      return from_triangle(d, load(d, table, 0, n) - a, triangle);
-    });
+    const auto measure = [&](const Real* at)
+                             HWY_ATTR { return from_triangle(d, load(d, at, 0) - a, triangle); };
+    search(d, table, f, 3, measure, found);
   }
+  return found.blocks;
 }
 
-#define WEFT_KERNEL(name)                                       \
-  HWY_ATTR void name##_f32(const FeatureTable<float>& table) {  \
-    name(table);                                                \
-  }                                                             \
-  HWY_ATTR void name##_f64(const FeatureTable<double>& table) { \
-    name(table);                                                \
+#define WEFT_KERNEL(name)                                              \
+  HWY_ATTR std::size_t name##_f32(const FeatureTable<float>& table) {  \
+    return name(table);                                                \
+  }                                                                    \
+  HWY_ATTR std::size_t name##_f64(const FeatureTable<double>& table) { \
+    return name(table);                                                \
   }
 WEFT_KERNEL(segments)
 WEFT_KERNEL(points_from_triangles)
 WEFT_KERNEL(triangles_from_points)
 #undef WEFT_KERNEL
 
-HWY_ATTR void complete_triangles_f32(std::size_t stride, float* columns) {
-  complete_triangles(stride, columns);
+HWY_ATTR void complete_triangles_f32(std::size_t blocks, float* values) {
+  complete_triangles(blocks, values);
 }
-HWY_ATTR void complete_triangles_f64(std::size_t stride, double* columns) {
-  complete_triangles(stride, columns);
+HWY_ATTR void complete_triangles_f64(std::size_t blocks, double* values) {
+  complete_triangles(blocks, values);
 }
 
 }  // namespace HWY_NAMESPACE

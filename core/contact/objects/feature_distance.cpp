@@ -11,14 +11,14 @@
 #if HWY_ONCE
 namespace weft {
 
-#define WEFT_EXPORT(name)                                  \
-  HWY_EXPORT(name##_f32);                                  \
-  HWY_EXPORT(name##_f64);                                  \
-  void measure_##name(const FeatureTable<float>& table) {  \
-    HWY_DYNAMIC_DISPATCH(name##_f32)(table);               \
-  }                                                        \
-  void measure_##name(const FeatureTable<double>& table) { \
-    HWY_DYNAMIC_DISPATCH(name##_f64)(table);               \
+#define WEFT_EXPORT(name)                                         \
+  HWY_EXPORT(name##_f32);                                         \
+  HWY_EXPORT(name##_f64);                                         \
+  std::size_t measure_##name(const FeatureTable<float>& table) {  \
+    return HWY_DYNAMIC_DISPATCH(name##_f32)(table);               \
+  }                                                               \
+  std::size_t measure_##name(const FeatureTable<double>& table) { \
+    return HWY_DYNAMIC_DISPATCH(name##_f64)(table);               \
   }
 WEFT_EXPORT(segments)
 WEFT_EXPORT(points_from_triangles)
@@ -28,11 +28,11 @@ WEFT_EXPORT(triangles_from_points)
 HWY_EXPORT(complete_triangles_f32);
 HWY_EXPORT(complete_triangles_f64);
 
-void prepare_triangles(std::size_t stride, float* columns) {
-  HWY_DYNAMIC_DISPATCH(complete_triangles_f32)(stride, columns);
+void prepare_triangles(std::size_t blocks, float* values) {
+  HWY_DYNAMIC_DISPATCH(complete_triangles_f32)(blocks, values);
 }
-void prepare_triangles(std::size_t stride, double* columns) {
-  HWY_DYNAMIC_DISPATCH(complete_triangles_f64)(stride, columns);
+void prepare_triangles(std::size_t blocks, double* values) {
+  HWY_DYNAMIC_DISPATCH(complete_triangles_f64)(blocks, values);
 }
 
 }  // namespace weft

@@ -3,9 +3,10 @@
 #include "core/contact/objects/mesh_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <map>
+#include <initializer_list>
 
 #include "core/contact/objects/apart.h"
 #include "core/math/angle.h"
@@ -83,31 +84,19 @@ double flat_turn(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
   return flat;
 }
 
-/// Sorts features by the triangle that each is with; kNone for those left out.
-OwnedFeatures with_triangles(const std::vector<Index>& triangle_of, std::size_t triangles) {
-  OwnedFeatures owned;
-  owned.first.assign(triangles + 1, 0);
-  for (const Index t : triangle_of) {
-    if (t != kNone) ++owned.first[static_cast<std::size_t>(t) + 1];
-  }
-  for (std::size_t t = 0; t < triangles; ++t) owned.first[t + 1] += owned.first[t];
-  owned.list.resize(static_cast<std::size_t>(owned.first[triangles]));
-  std::vector<Index> next = owned.first;
-  for (std::size_t f = 0; f < triangle_of.size(); ++f) {
-    if (triangle_of[f] == kNone) continue;
-    Index& place = next[static_cast<std::size_t>(triangle_of[f])];
-    owned.list[static_cast<std::size_t>(place++)] = static_cast<Index>(f);
-  }
-  return owned;
-}
+/// The triangle that each sharp edge and vertex of a mesh is with; kNone for others.
+struct SharpFeatures {
+  std::vector<Index> of_edge, of_vertex;
+};
 
 template <class Real>
-void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
+SharpFeatures find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
   const std::vector<double> slopes = slopes_at_vertices(mesh);
   const double flat = shape.closed ? flat_turn(mesh, shape.edges) : 0;
   shape.edge_rises.resize(shape.edges.size());
   shape.vertex_rises.resize(mesh.positions.size());
-  std::vector<Index> of_edge(shape.edges.size(), kNone), of_vertex(mesh.positions.size(), kNone);
+  SharpFeatures sharp{std::vector<Index>(shape.edges.size(), kNone),
+                      std::vector<Index>(mesh.positions.size(), kNone)};
   for (std::size_t e = 0; e < shape.edges.size(); ++e) {
     const MeshEdge& edge = shape.edges[e];
     const bool rim = edge.triangle[1] == kNone;
@@ -122,16 +111,15 @@ void find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& shape) {
     const Rise<double> rise =
         solid ? rise_of(mesh, edge, std::max(slopes[a], slopes[b])) : Rise<double>{INFINITY, 0};
     shape.edge_rises[e] = {static_cast<Real>(rise.slope), static_cast<Real>(rise.curvature)};
-    of_edge[e] = edge.triangle[0];
+    sharp.of_edge[e] = edge.triangle[0];
     for (const std::size_t v : {a, b}) {
       Rise<Real>& of_corner = shape.vertex_rises[v];
       of_corner.slope = static_cast<Real>(solid ? slopes[v] : INFINITY);
       of_corner.curvature = std::max(of_corner.curvature, shape.edge_rises[e].curvature);
-      of_vertex[v] = edge.triangle[0];
+      sharp.of_vertex[v] = edge.triangle[0];
     }
   }
-  shape.sharp_edges = with_triangles(of_edge, mesh.triangles.size());
-  shape.sharp_vertices = with_triangles(of_vertex, mesh.triangles.size());
+  return sharp;
 }
 
 template <class Real>
@@ -142,6 +130,65 @@ void build_tree(MeshShape<Real>& shape) {
     for (const Index i : t) boxes.back().add(shape.positions[static_cast<std::size_t>(i)]);
   }
   shape.triangle_tree.build(boxes);
+}
+
+/// Features in the order of the triangles that they are with; without those that are with none.
+/// @param place  of each triangle
+std::vector<Index> sorted_by_place(const std::vector<Index>& triangle_of,
+                                   const std::vector<std::size_t>& place) {
+  std::vector<Index> sorted;
+  for (std::size_t f = 0; f < triangle_of.size(); ++f) {
+    if (triangle_of[f] != kNone) sorted.push_back(static_cast<Index>(f));
+  }
+  const auto place_of = [&](Index f) {
+    return place[static_cast<std::size_t>(triangle_of[static_cast<std::size_t>(f)])];
+  };
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](Index f, Index g) { return place_of(f) < place_of(g); });
+  return sorted;
+}
+
+/// Puts the features in blocks, in the order in which the tree has the triangles.
+template <class Real>
+void build_blocks(const SharpFeatures& sharp, MeshShape<Real>& shape) {
+  std::vector<Index> order;
+  shape.triangle_tree.for_each_overlap(shape.triangle_tree.bounds(),
+                                       [&](Index t) { order.push_back(t); });
+  assert(order.size() == shape.triangles.size());
+  std::vector<std::size_t> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = k;
+  const auto at = [&](Index v) { return shape.positions[static_cast<std::size_t>(v)]; };
+  const auto triangle = [&](Index t) { return shape.triangles[static_cast<std::size_t>(t)]; };
+  const auto edge = [&](Index e) { return shape.edges[static_cast<std::size_t>(e)]; };
+  const auto box_of = [&](std::initializer_list<Index> vertices) {
+    Aabb<Real> box;
+    for (const Index v : vertices) box.add(at(v));
+    return box;
+  };
+  using Vectors2 = std::array<Vec3<Real>, 2>;
+  using Vectors3 = std::array<Vec3<Real>, 3>;
+  shape.triangle_blocks = in_blocks<Real>(
+      order, kTriangleNumbers,
+      [&](Index t) {
+        const auto [a, b, c] = triangle(t);
+        return Vectors3{at(a), at(b) - at(a), at(c) - at(a)};
+      },
+      [&](Index t) {
+        return box_of({triangle(t)[0], triangle(t)[1], triangle(t)[2]});
+      });
+  prepare_triangles(shape.triangle_blocks.boxes.size(), shape.triangle_blocks.values.data());
+  shape.ridge_blocks = in_blocks<Real>(
+      sorted_by_place(sharp.of_edge, place), 6,
+      [&](Index e) {
+        return Vectors2{at(edge(e).a), at(edge(e).b) - at(edge(e).a)};
+      },
+      [&](Index e) {
+        return box_of({edge(e).a, edge(e).b});
+      });
+  shape.corner_blocks = in_blocks<Real>(
+      sorted_by_place(sharp.of_vertex, place), 3,
+      [&](Index v) { return std::array<Vec3<Real>, 1>{at(v)}; },
+      [&](Index v) { return box_of({v}); });
 }
 
 /// Normal of the feature of triangle t that is nearest: face, corner, or edge.
@@ -192,8 +239,9 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
         shape.rounding,
         rounding_of_triangle(static_cast<Real>(longest), static_cast<Real>(ab.cross(ac).norm())));
   }
-  find_sharp_features(mesh, shape);
+  const SharpFeatures sharp = find_sharp_features(mesh, shape);
   build_tree(shape);
+  build_blocks(sharp, shape);
   return shape;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/contact/objects/feature_blocks.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/distance.h"
 #include "core/geometry/triangle_mesh.h"
@@ -12,12 +13,6 @@
 // A triangle mesh as an object: normals, tree, and which features are sharp.
 
 namespace weft {
-
-/// For each triangle of a mesh some of its edges or vertices, each of which is with one triangle.
-struct OwnedFeatures {
-  std::vector<Index> first;  ///< those of triangle t are list[first[t]] to list[first[t + 1] - 1]
-  std::vector<Index> list;
-};
 
 /// How high a ridge or a corner may rise over points of a cloth that are at most R beside it: the
 /// larger of slope R and curvature R^2 / 2.
@@ -30,8 +25,8 @@ struct Rise {
 };
 
 /// A triangle mesh prepared for contact: positions in Real, normals of every feature, and a
-/// hierarchy of the triangles. Edges and vertices that cannot touch a cloth before their triangles
-/// do (flat or concave ones of a closed mesh) are not sharp.
+/// hierarchy of the triangles. Ridges and corners are the sharp edges and vertices: others, flat or
+/// concave ones of a closed mesh, cannot touch a cloth before their triangles do.
 template <class Real>
 struct MeshShape {
   bool closed = false;
@@ -43,8 +38,8 @@ struct MeshShape {
   Vec3Array<Real> face_normals;
   Vec3Array<Real> vertex_normals;  ///< angle-weighted
   std::vector<MeshEdge> edges;
-  Vec3Array<Real> edge_normals;                      ///< mean of the two faces, unit
-  OwnedFeatures sharp_edges, sharp_vertices;         ///< each with one of its triangles
+  Vec3Array<Real> edge_normals;  ///< mean of the two faces, unit
+  FeatureBlocks<Real> triangle_blocks, ridge_blocks, corner_blocks;
   std::vector<Rise<Real>> edge_rises, vertex_rises;  ///< of sharp ones
   Bvh<Real> triangle_tree;
 };

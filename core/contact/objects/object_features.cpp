@@ -15,13 +15,6 @@
 namespace weft {
 namespace {
 
-/// What is to be done about features of the cloth and a mesh that could meet.
-template <class Real>
-struct ContactLook {
-  Real reach = 0;        ///< none of the cloth's particles goes beyond it [m]
-  bool carried = false;  ///< particles alone keep the cloth off: it is only certified
-};
-
 /// Beyond this distance two features cannot meet while the rows hold [m].
 /// @param reach  of the cloth's feature [m]
 template <class Real>
@@ -29,45 +22,80 @@ Real beyond(const ObjectRowSource<Real>& source, Real reach) {
   return reach + source.clearance.smallest_gap + source.cloths.thickness * Real(kRoomForPush);
 }
 
-/// What a pair of features of the cloth and a mesh needs; nothing if they cannot meet while the
-/// rows hold. Compiled for edges and for triangles, as each pair comes here: with spans of any
-/// length it would be called, not inlined.
-/// @param particles  of the cloth's feature
-/// @param span       kEdgeSpan or kTriangleSpan
-/// @param rise       of the mesh about its feature
+/// What all pairs of one feature of the cloth have in common.
+template <class Real>
+struct ClothFeature {
+  Index number = kNone;
+  Real reach = 0;         ///< none of its particles goes beyond it while the rows hold [m]
+  Real moved = 0;         ///< by a particle or the object since the collection, at most [m]
+  Real far = -1;          ///< pairs that were farther apart then cannot meet [m]
+  bool measured = false;  ///< what follows is known
+  Corners<Real> lying;    ///< as it would lie on the object
+};
+
+/// Looks at a feature of the cloth, whose pairs follow each other in the list.
+/// @param particles  of the feature
 template <class Real, std::size_t Count>
-std::optional<ContactLook<Real>> look_at(const ObjectRowSource<Real>& source,
-                                         const RowScratch<Real>& scratch,
-                                         const ContactCandidate<Real>& pair,
-                                         const std::array<Index, Count>& particles, double span,
-                                         const Rise<Real>& rise, std::size_t collider) {
-  const auto most = [&](const std::vector<Real>& values) {
-    Real largest = values[static_cast<std::size_t>(particles[0])];
-    for (const Index i : particles)
-      largest = std::max(largest, values[static_cast<std::size_t>(i)]);
-    return largest;
-  };
-  const Real reach = most(source.reach);
-  const Real bound =
-      pair.distance - most(scratch.moved) - source.shapes.frames[collider].travel_since_pairs;
-  if (bound > source.cloths.thickness + reach) return {};
-  if (std::any_of(particles.begin(), particles.end(),
-                  [&](Index i) { return is_inside(i, collider, scratch.inside); }))
-    return {};
-  const Corners<Real> corners = corners_of(source, scratch.gap, particles);
+ClothFeature<Real> look_at(Index number, const ObjectRowSource<Real>& source,
+                           const RowScratch<Real>& scratch,
+                           const std::array<Index, Count>& particles, std::size_t collider) {
+  ClothFeature<Real> feature;
+  feature.number = number;
+  bool inside = false;
+  for (const Index i : particles) {
+    const auto p = static_cast<std::size_t>(i);
+    feature.reach = std::max(feature.reach, source.reach[p]);
+    feature.moved = std::max(feature.moved, scratch.moved[p]);
+    inside |= is_inside(i, collider, scratch.inside);
+  }
+  feature.moved += source.shapes.frames[collider].travel_since_pairs;
+  if (!inside) feature.far = source.cloths.thickness + feature.reach + feature.moved;
+  return feature;
+}
+
+/// Measures the feature if that has not been done: most are too far from all that they are paired
+/// with. Compiled for edges and for triangles: with spans of any length it would be called, not
+/// inlined.
+/// @param span  kEdgeSpan or kTriangleSpan
+template <class Real, std::size_t Count>
+void measure(const ObjectRowSource<Real>& source, const RowScratch<Real>& scratch,
+             const std::array<Index, Count>& particles, double span, ClothFeature<Real>& feature) {
+  if (feature.measured) return;
+  feature.measured = true;
   // From a mesh they lie off by the thickness, whatever their gap is now: what carries in one step
   // and not in the next never rests.
-  const Real lying = thickness_at(source.cloths, particles[0]);
-  const bool carried = corners.as_lying(span, lying).clear(rise);
-  if (carried && bound > beyond(source, reach)) return {};
-  return ContactLook<Real>{reach, carried};
+  const Real off = thickness_at(source.cloths, particles[0]);
+  feature.lying = corners_of(source, scratch.gap, particles).as_lying(span, off);
 }
 
 /// Beyond this distance a pair needs no row [m].
 template <class Real>
-Real farthest_row(const ObjectRowSource<Real>& source, const ContactLook<Real>& look,
+Real farthest_row(const ObjectRowSource<Real>& source, const ClothFeature<Real>& feature,
                   bool responds) {
-  return responds ? source.cloths.thickness + look.reach : beyond(source, look.reach);
+  return responds ? source.cloths.thickness + feature.reach : beyond(source, feature.reach);
+}
+
+/// Whether a pair could meet while the rows hold.
+/// @param carried  particles alone keep the cloth off: it is only certified
+template <class Real>
+bool may_meet(const ObjectRowSource<Real>& source, const ClothFeature<Real>& feature,
+              const ContactCandidate<Real>& pair, bool carried) {
+  assert(feature.number == pair.cloth && pair.distance <= feature.far);
+  return !carried || pair.distance - feature.moved <= beyond(source, feature.reach);
+}
+
+std::size_t at_index(Index k) {
+  return static_cast<std::size_t>(k);
+}
+
+/// Whether segments are farther from each other than `far` [m], rounding allowed for.
+/// @param longest  that the second may be [m]
+template <class Real>
+bool are_apart(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c, const Vec3<Real>& d,
+               Real far, Real longest) {
+  const SegmentPoints<Real> closest = closest_of_segments<Real>(a, b, c, d);
+  const Real most = far + rounding_of_segments((b - a).norm(), longest);
+  return (closest.p - closest.q).squaredNorm() > most * most;
 }
 
 /// Adds the rows of edges of the cloth with ridges of mesh m. @return closest points computed
@@ -76,7 +104,7 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
                                 const RowScratch<Real>& scratch, std::size_t m,
                                 ObjectRows<Real>& rows) {
   std::uint64_t tests = 0;
-  const MeshShape<Real>& mesh = source.shapes.meshes[m];
+  const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const Vec3Array<Real>& own = in_frame_of(source.shapes, source.near, m, source.state.x);
@@ -84,19 +112,26 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
   const auto corner = [&](Index v) {
     return in_double(mesh.positions[static_cast<std::size_t>(v)]);
   };
+  ClothFeature<Real> feature;
   for (const ContactCandidate<Real>& pair : source.pairs.edge[m]) {
-    const Edge& e = source.cloths.patches.edges[static_cast<std::size_t>(pair.cloth)];
-    const auto ridge = static_cast<std::size_t>(pair.feature);
-    const std::optional<ContactLook<Real>> look =
-        look_at(source, scratch, pair, e, kEdgeSpan, mesh.edge_rises[ridge], collider);
-    if (!look) continue;
+    const Edge& e = source.cloths.patches.edges[at_index(pair.cloth)];
+    if (pair.cloth != feature.number) feature = look_at(pair.cloth, source, scratch, e, collider);
+    if (pair.distance > feature.far) continue;
+    measure(source, scratch, e, kEdgeSpan, feature);
+    const std::size_t ridge = at_index(pair.feature);
+    const bool carried = feature.lying.clear(mesh.edge_rises[ridge]);
+    if (!may_meet(source, feature, pair, carried)) continue;
     const MeshEdge& other = mesh.edges[ridge];
     ++tests;
+    if (are_apart<Real>(own[at_index(e[0])], own[at_index(e[1])], mesh.positions[at_index(other.a)],
+                        mesh.positions[at_index(other.b)], farthest_row(source, feature, !carried),
+                        mesh.longest_edge))
+      continue;
     const PairSeparation<double> s = separate_pair<double>(
         PairKind::edge_edge, {at(e[0]), at(e[1]), corner(other.a), corner(other.b)});
     const Real distance = static_cast<Real>(s.gap);
-    const bool responds = !look->carried && s.inside;
-    if (distance > farthest_row(source, *look, responds)) continue;
+    const bool responds = !carried && s.inside;
+    if (distance > farthest_row(source, feature, responds)) continue;
     const Vec3<Real>& outward = mesh.edge_normals[ridge];
     Vec3<Real> normal = s.normal.template cast<Real>();
     ContactBarrier<Real> barrier;
@@ -123,23 +158,26 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
                                     const RowScratch<Real>& scratch, std::size_t m,
                                     ObjectRows<Real>& rows) {
   std::uint64_t tests = 0;
-  const MeshShape<Real>& mesh = source.shapes.meshes[m];
+  const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const Vec3Array<Real>& own = in_frame_of(source.shapes, source.near, m, source.state.x);
   const auto at = [&](Index i) { return in_double(own[static_cast<std::size_t>(i)]); };
+  ClothFeature<Real> feature;
   for (const ContactCandidate<Real>& pair : source.pairs.triangle[m]) {
-    const Triangle& t = source.cloths.patches.triangles[static_cast<std::size_t>(pair.cloth)];
-    const auto v = static_cast<std::size_t>(pair.feature);
-    const std::optional<ContactLook<Real>> look =
-        look_at(source, scratch, pair, t, kTriangleSpan, mesh.vertex_rises[v], collider);
-    if (!look) continue;
+    const Triangle& t = source.cloths.patches.triangles[at_index(pair.cloth)];
+    if (pair.cloth != feature.number) feature = look_at(pair.cloth, source, scratch, t, collider);
+    if (pair.distance > feature.far) continue;
+    measure(source, scratch, t, kTriangleSpan, feature);
+    const std::size_t v = at_index(pair.feature);
+    const bool carried = feature.lying.clear(mesh.vertex_rises[v]);
+    if (!may_meet(source, feature, pair, carried)) continue;
     ++tests;
     const PairSeparation<double> s = separate_pair<double>(
         PairKind::vertex_triangle, {in_double(mesh.positions[v]), at(t[0]), at(t[1]), at(t[2])});
     const Real distance = static_cast<Real>(s.gap);
-    const bool responds = !look->carried && s.inside;
-    if (distance > farthest_row(source, *look, responds)) continue;
+    const bool responds = !carried && s.inside;
+    if (distance > farthest_row(source, feature, responds)) continue;
     ContactBarrier<Real> barrier;
     barrier.distance = std::max(distance, Real(0));
     const Vec3<Real> normal =

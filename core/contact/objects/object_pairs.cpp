@@ -1,5 +1,5 @@
-// Patches of cloth look up a mesh's triangles once for all their features; vector code then
-// measures every feature against everything found.
+// Patches of cloth look up the blocks of a mesh's features once for all their own; vector code then
+// searches those whose boxes are within reach of a feature.
 
 #include "core/contact/objects/object_pairs.h"
 
@@ -17,16 +17,16 @@ namespace weft {
 namespace {
 
 template <class Real>
-using Measure = void (*)(const FeatureTable<Real>&);
+using Measure = std::size_t (*)(const FeatureTable<Real>&);
 
-/// Calls visit(n, distance) for each of the `others` of row f that are within reach.
+/// Calls visit(feature, distance) for each of the mesh's features within reach of number f of the
+/// cloth's.
 template <class Real, class Visit>
-void for_each_near(const FeatureTable<Real>& table, std::size_t f, std::size_t others,
+void for_each_near(const FoundFeatures<Real>& found, const FeatureBlocks<Real>& mesh, std::size_t f,
                    Visit&& visit) {
-  if (table.nearest2[f] > table.reach2[f]) return;
-  const Real* row = table.distance2 + f * table.stride;
-  for (std::size_t n = 0; n < others; ++n) {
-    if (row[n] <= table.reach2[f]) visit(n, std::sqrt(row[n]));
+  for (Index n = f == 0 ? 0 : found.ends[f - 1]; n < found.ends[f]; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    visit(mesh.feature[static_cast<std::size_t>(found.hits[k])], std::sqrt(found.hits2[k]));
   }
 }
 
@@ -36,43 +36,56 @@ Real distance_to_border(const Aabb<Real>& inner, const Aabb<Real>& outer) {
   return std::min((inner.lower - outer.lower).minCoeff(), (outer.upper - inner.upper).minCoeff());
 }
 
-/// Measures all of `cloth` against all of `mesh`, and how far each of the cloth's may go before it
-/// can touch what is beyond its reach.
+/// Finds what of a mesh is within reach of features of the cloth, and how far each of these may go
+/// before it can touch what is beyond its reach.
+/// @param near  blocks of the mesh's features in the box
 template <class Real>
-FeatureTable<Real> measure_all(const PairFeatures<Real>& cloth, const PairFeatures<Real>& mesh,
-                               const Aabb<Real>& box, Real thickness, Measure<Real> measure,
-                               FoundPairs<Real>& found, std::vector<Real>& free) {
-  FeatureTable<Real> table;
+void find_near(const PairFeatures<Real>& cloth, const FeatureBlocks<Real>& mesh,
+               const NearBlocks<Real>& near, const Aabb<Real>& box, Real thickness,
+               Measure<Real> measure, FoundFeatures<Real>& found, std::uint64_t& tests,
+               std::vector<Real>& free) {
+  static_assert(sizeof(Aabb<Real>) == 6 * sizeof(Real));
   assert(cloth.reach2.size() == cloth.number.size());
+  FeatureTable<Real> table;
   table.count = cloth.number.size();
-  table.stride = padded(mesh.number.size());
-  found.distance2.resize(table.count * (table.stride + 2));
+  if (table.count == 0) return;
+  table.stride = near.list.size();
+  const std::size_t most = table.count * table.stride * kFeatureLanes;
+  if (found.hits.size() < most) {
+    found.hits.resize(most);
+    found.hits2.resize(most);
+  }
+  found.ends.resize(table.count);
+  found.beyond2.resize(table.count);
   table.cloth = cloth.values.data();
-  table.mesh = mesh.values.data();
+  table.cloth_boxes = cloth.boxes.front().lower.data();
   table.reach2 = cloth.reach2.data();
-  table.distance2 = found.distance2.data();
-  table.nearest2 = table.distance2 + table.count * table.stride;
-  table.beyond2 = table.nearest2 + table.count;
-  measure(table);
-  found.tests += table.count * mesh.number.size();
+  table.blocks = near.list.data();
+  table.boxes = near.boxes.data();
+  table.mesh = mesh.values.data();
+  table.hits = found.hits.data();
+  table.hits2 = found.hits2.data();
+  table.ends = found.ends.data();
+  table.beyond2 = found.beyond2.data();
+  tests += measure(table) * kFeatureLanes;
   for (std::size_t f = 0; f < table.count; ++f) {
     const Real beyond =
-        std::min(std::sqrt(table.beyond2[f]), distance_to_border(cloth.boxes[f], box));
+        std::min(std::sqrt(found.beyond2[f]), distance_to_border(cloth.boxes[f], box));
     Real& known = free[static_cast<std::size_t>(cloth.number[f])];
     known = std::min(known, beyond - cloth.rounding[f] - thickness);
   }
-  return table;
 }
 
 /// All pairs within reach of one kind of features.
 template <class Real>
-void pair_all(const PairFeatures<Real>& cloth, const PairFeatures<Real>& mesh,
-              const Aabb<Real>& box, Real thickness, Measure<Real> measure, FoundPairs<Real>& found,
+void pair_all(const PairFeatures<Real>& cloth, const FeatureBlocks<Real>& mesh,
+              const NearBlocks<Real>& near, const Aabb<Real>& box, Real thickness,
+              Measure<Real> measure, FoundFeatures<Real>& found, std::uint64_t& tests,
               std::vector<ContactCandidate<Real>>& pairs, std::vector<Real>& free) {
-  const FeatureTable<Real> table = measure_all(cloth, mesh, box, thickness, measure, found, free);
-  for (std::size_t f = 0; f < table.count; ++f) {
-    for_each_near(table, f, mesh.number.size(), [&](std::size_t n, Real distance) {
-      pairs.push_back({cloth.number[f], mesh.number[n], distance - cloth.rounding[f]});
+  find_near(cloth, mesh, near, box, thickness, measure, found, tests, free);
+  for (std::size_t f = 0; f < cloth.number.size(); ++f) {
+    for_each_near(found, mesh, f, [&](Index feature, Real distance) {
+      pairs.push_back({cloth.number[f], feature, distance - cloth.rounding[f]});
     });
   }
 }
@@ -80,20 +93,19 @@ void pair_all(const PairFeatures<Real>& cloth, const PairFeatures<Real>& mesh,
 /// Particles against triangles; measures their clearance on the way.
 template <class Real>
 void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about,
-                    FoundPairs<Real>& found) {
+                    PairRoom<Real>& room, FoundPairs<Real>& found) {
   const auto& [cloths, mesh, near, x, c, free, fresh] = pass;
-  const PairFeatures<Real>&particles = found.particles, &triangles = about.triangles;
+  const PairFeatures<Real>& particles = room.particles;
   std::vector<ContactCandidate<Real>>& pairs = found.particle_pairs;
-  const FeatureTable<Real> table =
-      measure_all<Real>(particles, triangles, about.box, cloths.thickness,
-                        measure_points_from_triangles, found, free.particle);
-  for (std::size_t f = 0; f < table.count; ++f) {
+  find_near<Real>(particles, mesh.triangle_blocks, about.triangles, about.box, cloths.thickness,
+                  measure_points_from_triangles, room.near, found.tests, free.particle);
+  for (std::size_t f = 0; f < particles.number.size(); ++f) {
     const auto p = static_cast<std::size_t>(particles.number[f]);
     const Real rounding = particles.rounding[f];
     ContactCandidate<Real> best;
     best.feature = kNone;
-    for_each_near(table, f, triangles.number.size(), [&](std::size_t n, Real distance) {
-      pairs.push_back({particles.number[f], triangles.number[n], distance - rounding});
+    for_each_near(room.near, mesh.triangle_blocks, f, [&](Index triangle, Real distance) {
+      pairs.push_back({particles.number[f], triangle, distance - rounding});
       if (best.feature == kNone || distance < best.distance) best = pairs.back();
     });
     MeshDistance<Real> nearest;
@@ -119,23 +131,24 @@ void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about
 /// All pairs of one patch with one mesh.
 template <class Real>
 void pair_patch(const PairPass<Real>& pass, const NearPatch& patch, Neighbourhood<Real>& about,
-                FoundPairs<Real>& found) {
-  load_particles(pass, patch, found.particles);
-  load_edges(pass, patch, found.edges);
-  load_triangles(pass, patch, found.triangles);
-  Aabb<Real> around = found.particles.around;
-  around.add(found.edges.around);
-  around.add(found.triangles.around);
+                PairRoom<Real>& room, FoundPairs<Real>& found) {
+  load_particles(pass, patch, room.particles);
+  load_edges(pass, patch, room.edges);
+  load_triangles(pass, patch, room.triangles);
+  Aabb<Real> around = room.particles.around;
+  around.add(room.edges.around);
+  around.add(room.triangles.around);
   if (!about.box.contains(around)) {
     about.box = around.grown(pass.mesh.triangle_size * Real(kNeighbourhoodMargin));
-    load_mesh(pass.mesh, about);
+    list_blocks(pass.mesh, about);
   }
   const Real thickness = pass.cloths.thickness;
-  pair_particles(pass, about, found);
-  pair_all<Real>(found.edges, about.edges, about.box, thickness, measure_segments, found,
-                 found.edge_pairs, pass.free.edge);
-  pair_all<Real>(found.triangles, about.vertices, about.box, thickness,
-                 measure_triangles_from_points, found, found.triangle_pairs, pass.free.triangle);
+  pair_particles(pass, about, room, found);
+  pair_all<Real>(room.edges, pass.mesh.ridge_blocks, about.ridges, about.box, thickness,
+                 measure_segments, room.near, found.tests, found.edge_pairs, pass.free.edge);
+  pair_all<Real>(room.triangles, pass.mesh.corner_blocks, about.corners, about.box, thickness,
+                 measure_triangles_from_points, room.near, found.tests, found.triangle_pairs,
+                 pass.free.triangle);
 }
 
 /// Joins what the parts have found for a mesh, in their order.
@@ -192,6 +205,7 @@ ObjectPairs<Real> object_pairs(std::size_t meshes, std::size_t patches) {
   pairs.edge.resize(meshes);
   pairs.triangle.resize(meshes);
   pairs.found.resize(kContactParts);
+  pairs.rooms.resize(kContactParts);
   pairs.neighbourhoods.assign(meshes, std::vector<Neighbourhood<Real>>(patches));
   return pairs;
 }
@@ -222,18 +236,19 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
   pairs.free.triangle.assign(cloths.patches.triangles.size(), kUnlimited);
   const std::size_t count = near.patches.size();
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    const PairPass<Real> pass{cloths,    shapes.meshes[m], near, in_frame_of(shapes, near, m, x),
-                              clearance, pairs.free,       fresh};
+    const PairPass<Real> pass{cloths,    *shapes.meshes[m], near, in_frame_of(shapes, near, m, x),
+                              clearance, pairs.free,        fresh};
     run_parts(executor, count, kContactParts,
               [&](std::size_t c, std::size_t first, std::size_t last) {
                 FoundPairs<Real>& found = pairs.found[c];
+                PairRoom<Real>& room = pairs.rooms[executor ? c : 0];
                 for (auto* list : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
                   list->clear();
                 found.tests = 0;
                 for (std::size_t n = first; n < last; ++n) {
                   stop_point();
                   const NearPatch& patch = near.patches[n];
-                  pair_patch(pass, patch, pairs.neighbourhoods[m][patch.patch], found);
+                  pair_patch(pass, patch, pairs.neighbourhoods[m][patch.patch], room, found);
                 }
               });
     join_found(m, pairs, profile);

@@ -15,13 +15,25 @@
 
 namespace weft {
 
-/// What a part of the collection finds, and room to work.
+/// What the vector code finds near the features of a patch, as a FeatureTable has it.
+template <class Real>
+struct FoundFeatures {
+  std::vector<Index> hits, ends;
+  std::vector<Real> hits2, beyond2;
+};
+
+/// Room in which a part of the collection works.
+template <class Real>
+struct PairRoom {
+  PairFeatures<Real> particles, edges, triangles;
+  FoundFeatures<Real> near;
+};
+
+/// What a part of the collection finds.
 template <class Real>
 struct FoundPairs {
   std::vector<ContactCandidate<Real>> particle_pairs, edge_pairs, triangle_pairs;
   std::uint64_t tests = 0;
-  PairFeatures<Real> particles, edges, triangles;
-  std::vector<Real> distance2;
 };
 
 /// Candidate pairs of each mesh.
@@ -31,6 +43,7 @@ struct ObjectPairs {
   std::vector<Pairs> particle, edge, triangle;
   std::vector<std::vector<Neighbourhood<Real>>> neighbourhoods;  ///< of each mesh and patch
   std::vector<FoundPairs<Real>> found;                           ///< by each part
+  std::vector<PairRoom<Real>> rooms;  ///< of each part; all use the first one where none waits
   FreeDistance<Real> free;
   std::vector<Real> fresh;  ///< clearances that the pairs have measured, of active particles [m]
 };

@@ -65,7 +65,7 @@ std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Inde
   nearby.clear();
   for (; cursor < pairs.size() && pairs[cursor].cloth == i; ++cursor) {
     if (outside && pairs[cursor].distance - moved > reach_of(source, i)) continue;
-    nearby.push_back(distance_to_triangle(source.shapes.meshes[m], pairs[cursor].feature, x));
+    nearby.push_back(distance_to_triangle(*source.shapes.meshes[m], pairs[cursor].feature, x));
     if (std::abs(nearby.back().distance) < std::abs(nearby[nearest].distance))
       nearest = nearby.size() - 1;
   }
@@ -79,7 +79,7 @@ std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Inde
 template <class Real>
 std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, Index i,
                             RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
-  const MeshShape<Real>& mesh = source.shapes.meshes[m];
+  const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const std::size_t nearest = find_nearby(source, m, i, scratch);

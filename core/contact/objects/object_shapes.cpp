@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 #include "core/contact/objects/constants.h"
@@ -14,7 +16,16 @@ namespace weft {
 namespace {
 
 template <class Real>
-void add_shape(const ShapeDef& shape, std::size_t collider, ObjectShapes<Real>& shapes) {
+std::shared_ptr<const MeshShape<Real>> prepared(const TriangleMesh& mesh, MeshStore* store) {
+  if constexpr (std::is_same_v<Real, float>) {
+    if (store) return store->prepared(mesh);
+  }
+  return std::make_shared<const MeshShape<Real>>(prepare_mesh<Real>(mesh));
+}
+
+template <class Real>
+void add_shape(const ShapeDef& shape, std::size_t collider, MeshStore* store,
+               ObjectShapes<Real>& shapes) {
   if (const auto* plane = std::get_if<PlaneDef>(&shape)) {
     const Vec3d n = plane->normal.normalized();
     shapes.planes.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point)), collider});
@@ -27,7 +38,7 @@ void add_shape(const ShapeDef& shape, std::size_t collider, ObjectShapes<Real>& 
   } else {
     const auto* box = std::get_if<BoxDef>(&shape);
     shapes.meshes.push_back(
-        prepare_mesh<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh));
+        prepared<Real>(box ? world_mesh(*box) : std::get<MeshDef>(shape).mesh, store));
     shapes.mesh_collider.push_back(collider);
   }
 }
@@ -40,11 +51,11 @@ Vec3<Real> nearest_on_core(const ObjectRod<Real>& rod, const Vec3<Real>& p) {
 }  // namespace
 
 template <class Real>
-ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders) {
+ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders, MeshStore* store) {
   ObjectShapes<Real> shapes;
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
-    add_shape(colliders[k].shape, k, shapes);
+    add_shape(colliders[k].shape, k, store, shapes);
     ColliderFrame<Real>& frame = shapes.frames.emplace_back();
     frame.pivot = pivot_of(colliders[k].shape);
     frame.radius = radius_of(colliders[k].shape);
@@ -53,8 +64,8 @@ ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders) {
   shapes.own_planes = shapes.planes;
   shapes.own_balls = shapes.balls;
   shapes.own_rods = shapes.rods;
-  for (const MeshShape<Real>& mesh : shapes.meshes)
-    shapes.widest_skin = std::min(shapes.widest_skin, mesh.triangle_size);
+  for (const auto& mesh : shapes.meshes)
+    shapes.widest_skin = std::min(shapes.widest_skin, mesh->triangle_size);
   return shapes;
 }
 
@@ -97,7 +108,7 @@ template <class Real>
 Real clearance_of(const ObjectShapes<Real>& shapes, const Vec3<Real>& p, Real reach) {
   Real nearest = analytic_clearance(shapes, p, reach);
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    const MeshShape<Real>& mesh = shapes.meshes[m];
+    const MeshShape<Real>& mesh = *shapes.meshes[m];
     const Vec3<Real> own = shapes.mesh_frame(m).own(p);
     if (mesh.triangle_tree.bounds().squared_distance(own) > reach * reach) continue;
     const MeshDistance<Real> d = distance_to_mesh(mesh, own, reach);
@@ -112,7 +123,7 @@ Real least_clearance(const ObjectShapes<Real>& shapes, const Vec3<Real>& p, Real
   Real bound = nearest * nearest;
   if (!(nearest > 0)) return nearest;
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    const MeshShape<Real>& mesh = shapes.meshes[m];
+    const MeshShape<Real>& mesh = *shapes.meshes[m];
     const Vec3<Real> own = shapes.mesh_frame(m).own(p);
     bound = mesh.triangle_tree.nearest(
         bound, [&](const Aabb<Real>& box) { return box.squared_distance(own); },
@@ -134,7 +145,7 @@ template <class Real>
 Real signed_distance(const ObjectShapes<Real>& shapes, const Vec3<Real>& p) {
   Real nearest = analytic_clearance(shapes, p, Real(kFarAway));
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    const MeshShape<Real>& mesh = shapes.meshes[m];
+    const MeshShape<Real>& mesh = *shapes.meshes[m];
     if (!mesh.closed) continue;
     const Vec3<Real> own = shapes.mesh_frame(m).own(p);
     const Real outside = std::sqrt(mesh.triangle_tree.bounds().squared_distance(own));
@@ -157,7 +168,7 @@ Real distance_from(const ObjectShapes<Real>& shapes, std::size_t collider, const
       nearest = std::min(nearest, (p - nearest_on_core(rod, p)).norm() - rod.radius);
   }
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    const MeshShape<Real>& mesh = shapes.meshes[m];
+    const MeshShape<Real>& mesh = *shapes.meshes[m];
     if (shapes.mesh_collider[m] != collider || !mesh.closed) continue;
     const Vec3<Real> own = shapes.frames[collider].own(p);
     nearest = std::min(nearest, distance_to_mesh(mesh, own, Real(kFarAway)).distance);
@@ -172,7 +183,7 @@ double top_of(const ObjectShapes<Real>& shapes, std::size_t mesh, const Vec3<Rea
   const Vec3d n = normal.template cast<double>();
   double top = -std::numeric_limits<double>::infinity();
   for (const Index v : vertices) {
-    const Vec3<Real> at = frame.world(shapes.meshes[mesh].positions[static_cast<std::size_t>(v)]);
+    const Vec3<Real> at = frame.world(shapes.meshes[mesh]->positions[static_cast<std::size_t>(v)]);
     top = std::max(top, n.dot(at.template cast<double>()));
   }
   return top;

@@ -3,11 +3,13 @@
 #include <cassert>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/contact/colliders/collider_frame.h"
 #include "core/contact/objects/analytic_shapes.h"
 #include "core/contact/objects/mesh_shape.h"
+#include "core/contact/objects/mesh_store.h"
 #include "core/types.h"
 
 // The shapes of all objects, where they are now, and distances from them.
@@ -21,9 +23,9 @@ struct ObjectShapes {
   std::vector<ObjectPlane<Real>> planes, own_planes;  ///< where they are, and as defined
   std::vector<ObjectBall<Real>> balls, own_balls;
   std::vector<ObjectRod<Real>> rods, own_rods;
-  std::vector<MeshShape<Real>> meshes;
-  std::vector<std::size_t> mesh_collider;   ///< the collider of each mesh
-  std::vector<ColliderFrame<Real>> frames;  ///< of each collider
+  std::vector<std::shared_ptr<const MeshShape<Real>>> meshes;  ///< shared by copies of a world
+  std::vector<std::size_t> mesh_collider;                      ///< the collider of each mesh
+  std::vector<ColliderFrame<Real>> frames;                     ///< of each collider
   /// Beyond the size of a mesh's triangle the pairs grow with the square of a particle's skin [m].
   Real widest_skin = std::numeric_limits<Real>::infinity();
 
@@ -34,9 +36,10 @@ struct ObjectShapes {
   }
 };
 
+/// @param store  has prepared meshes of float; null: they are prepared here
 /// Throws DefinitionError if a collider is out of range.
 template <class Real>
-ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders);
+ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders, MeshStore* store);
 
 /// Puts the shapes of one collider where it is.
 template <class Real>

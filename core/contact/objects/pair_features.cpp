@@ -1,4 +1,4 @@
-// Loads features of cloths as rows, and those of meshes as columns.
+// Loads features of cloths, and lists those of meshes near them.
 
 #include "core/contact/objects/pair_features.h"
 
@@ -9,14 +9,6 @@
 
 namespace weft {
 namespace {
-
-/// Puts vector k of feature n into columns.
-template <class Real>
-void put(const Vec3<Real>& v, std::size_t k, std::size_t stride, std::size_t n,
-         std::vector<Real>& columns) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    columns[(3 * k + axis) * stride + n] = v[static_cast<Index>(axis)];
-}
 
 template <class Real>
 void add_feature(Index feature, Real reach, Real error, const Aabb<Real>& box,
@@ -116,48 +108,34 @@ void load_triangles(const PairPass<Real>& pass, const NearPatch& patch, PairFeat
 }
 
 template <class Real>
-void load_mesh(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
-  PairFeatures<Real>&triangles = about.triangles, &edges = about.edges, &vertices = about.vertices;
-  for (PairFeatures<Real>* features : {&triangles, &edges, &vertices}) features->number.clear();
-  const auto take = [](const OwnedFeatures& owned, std::size_t t, std::vector<Index>& into) {
-    into.insert(into.end(), owned.list.begin() + owned.first[t],
-                owned.list.begin() + owned.first[t + 1]);
-  };
-  mesh.triangle_tree.for_each_overlap(about.box, [&](Index t) {
-    triangles.number.push_back(t);
-    take(mesh.sharp_edges, static_cast<std::size_t>(t), edges.number);
-    take(mesh.sharp_vertices, static_cast<std::size_t>(t), vertices.number);
-  });
-  const auto at = [&](Index v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+void list_blocks(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
   // Padding is far away, yet near enough for its square to be a number.
   constexpr Real kPadding = Real(1e9);
-  std::size_t stride = padded(triangles.number.size());
-  triangles.values.assign(kTriangleNumbers * stride, kPadding);
-  for (std::size_t n = 0; n < triangles.number.size(); ++n) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangles.number[n])];
-    put<Real>(at(t[0]), 0, stride, n, triangles.values);
-    put<Real>(at(t[1]) - at(t[0]), 1, stride, n, triangles.values);
-    put<Real>(at(t[2]) - at(t[0]), 2, stride, n, triangles.values);
-  }
-  prepare_triangles(stride, triangles.values.data());
-  stride = padded(edges.number.size());
-  edges.values.assign(6 * stride, kPadding);
-  for (std::size_t n = 0; n < edges.number.size(); ++n) {
-    const MeshEdge& e = mesh.edges[static_cast<std::size_t>(edges.number[n])];
-    put<Real>(at(e.a), 0, stride, n, edges.values);
-    put<Real>(at(e.b) - at(e.a), 1, stride, n, edges.values);
-  }
-  stride = padded(vertices.number.size());
-  vertices.values.assign(3 * stride, kPadding);
-  for (std::size_t n = 0; n < vertices.number.size(); ++n)
-    put<Real>(at(vertices.number[n]), 0, stride, n, vertices.values);
+  const auto list = [&](const FeatureBlocks<Real>& of, NearBlocks<Real>& into) {
+    into.list.clear();
+    of.tree.for_each_overlap(about.box, [&](Index b) { into.list.push_back(b); });
+    const std::size_t count = into.list.size();
+    const std::size_t stride = (count + kFeatureLanes - 1) / kFeatureLanes * kFeatureLanes;
+    into.list.resize(stride, 0);
+    into.boxes.assign(6 * stride, kPadding);
+    for (std::size_t n = 0; n < count; ++n) {
+      const Aabb<Real>& box = of.boxes[static_cast<std::size_t>(into.list[n])];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        into.boxes[axis * stride + n] = box.lower[static_cast<Index>(axis)];
+        into.boxes[(axis + 3) * stride + n] = box.upper[static_cast<Index>(axis)];
+      }
+    }
+  };
+  list(mesh.triangle_blocks, about.triangles);
+  list(mesh.ridge_blocks, about.ridges);
+  list(mesh.corner_blocks, about.corners);
 }
 
 #define WEFT_INSTANTIATE(Real)                                  \
   template decltype(load_particles<Real>) load_particles<Real>; \
   template decltype(load_edges<Real>) load_edges<Real>;         \
   template decltype(load_triangles<Real>) load_triangles<Real>; \
-  template decltype(load_mesh<Real>) load_mesh<Real>;
+  template decltype(list_blocks<Real>) list_blocks<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -14,22 +14,29 @@
 
 namespace weft {
 
-/// Features of a cloth's patch, or of a mesh near it, as rows or columns of a FeatureTable.
+/// Features of a cloth's patch as the rows of a FeatureTable.
 template <class Real>
 struct PairFeatures {
   std::vector<Index> number;
   std::vector<Real> values;
-  std::vector<Real> reach2;       ///< of the cloth's: how near the other of a pair is [m^2]
+  std::vector<Real> reach2;       ///< how near the other of a pair is [m^2]
   std::vector<Real> rounding;     ///< by which distances may come out too large [m]
-  std::vector<Aabb<Real>> boxes;  ///< of the cloth's
+  std::vector<Aabb<Real>> boxes;  ///< of each
   Aabb<Real> around;              ///< the reach of all
+};
+
+/// Blocks of a mesh's features, as a FeatureTable has them.
+template <class Real>
+struct NearBlocks {
+  std::vector<Index> list;  ///< padded
+  std::vector<Real> boxes;
 };
 
 /// What a mesh has about a patch of the cloth; valid until the patch leaves the box.
 template <class Real>
 struct Neighbourhood {
   Aabb<Real> box;
-  PairFeatures<Real> triangles, edges, vertices;
+  NearBlocks<Real> triangles, ridges, corners;
 };
 
 /// How far each of the near features may go before it can touch what it has no pair with [m].
@@ -51,11 +58,6 @@ struct PairPass {
   std::vector<Real>& fresh;
 };
 
-/// Number of a mesh's features, padded to whole vectors.
-inline std::size_t padded(std::size_t count) {
-  return (count + kFeaturePadding - 1) / kFeaturePadding * kFeaturePadding;
-}
-
 /// Loads the near particles of a patch that may have pairs.
 template <class Real>
 void load_particles(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures<Real>& into);
@@ -68,8 +70,8 @@ void load_edges(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures
 template <class Real>
 void load_triangles(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures<Real>& into);
 
-/// Loads the mesh's features about the neighbourhood's box, as columns.
+/// Lists the mesh's features about the neighbourhood's box.
 template <class Real>
-void load_mesh(const MeshShape<Real>& mesh, Neighbourhood<Real>& about);
+void list_blocks(const MeshShape<Real>& mesh, Neighbourhood<Real>& about);
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include <hwy/targets.h>
 
 #include "core/contact/objects/cloth_patches.h"
+#include "core/contact/objects/feature_blocks.h"
 #include "core/geometry/distance.h"
 #include "tests/support/seeded_random.h"
 
@@ -20,8 +21,7 @@ using test::SeededRandom;
 
 namespace {
 
-constexpr std::size_t kCloth = 5, kMesh = 19, kStride = 24;
-static_assert(kStride % kFeaturePadding == 0);
+constexpr std::size_t kCloth = 5, kMesh = 19;
 
 using Corners = std::array<Vec3d, 3>;
 
@@ -37,22 +37,42 @@ Corners any_corners(Random& random, int kind) {
   return c;
 }
 
-/// The table's inputs, as the kernel has them, and what the distances should be.
+/// Features of a cloth and blocks of a mesh's, and what the distances should be.
 template <class Real>
 struct Case {
-  std::vector<Real> cloth, mesh, reach2;
+  std::vector<Real> cloth, reach2, boxes;
+  std::vector<Aabb<Real>> cloth_boxes;
+  std::vector<Index> blocks;  ///< padded
+  FeatureBlocks<Real> mesh;
   std::vector<std::vector<double>> distance;
 
   struct Result {
-    std::vector<Real> distance2, nearest2, beyond2;
+    std::vector<Index> hits, ends;
+    std::vector<Real> hits2, beyond2;
+    std::size_t blocks = 0;  ///< looked at
+
+    bool operator==(const Result&) const = default;
   };
-  Result run(void (*measure)(const FeatureTable<Real>&)) const {
-    Result r{std::vector<Real>(kCloth * kStride), std::vector<Real>(kCloth),
+  Result run(std::size_t (*measure)(const FeatureTable<Real>&)) const {
+    const std::size_t most = kCloth * blocks.size() * kFeatureLanes;
+    Result r{std::vector<Index>(most), std::vector<Index>(kCloth), std::vector<Real>(most),
              std::vector<Real>(kCloth)};
-    FeatureTable<Real> table{
-        kCloth,        cloth.data(),       kStride,           mesh.data(),
-        reach2.data(), r.distance2.data(), r.nearest2.data(), r.beyond2.data()};
-    measure(table);
+    FeatureTable<Real> table;
+    table.count = kCloth;
+    table.cloth = cloth.data();
+    table.cloth_boxes = cloth_boxes.front().lower.data();
+    table.reach2 = reach2.data();
+    table.stride = blocks.size();
+    table.blocks = blocks.data();
+    table.boxes = boxes.data();
+    table.mesh = mesh.values.data();
+    table.hits = r.hits.data();
+    table.hits2 = r.hits2.data();
+    table.ends = r.ends.data();
+    table.beyond2 = r.beyond2.data();
+    r.blocks = measure(table);
+    r.hits.resize(static_cast<std::size_t>(r.ends.back()));
+    r.hits2.resize(r.hits.size());
     return r;
   }
 };
@@ -99,7 +119,15 @@ double distance_of(Kind kind, const Corners& cloth, const Corners& mesh) {
 }
 
 template <class Real>
-Case<Real> any_case(Random& random, Kind kind) {
+Aabb<Real> box_of(const Corners& corners, std::size_t others) {
+  Aabb<Real> box;
+  for (std::size_t k = 0; k <= others; ++k) box.add(corners[k].cast<Real>());
+  return box;
+}
+
+/// @param apart  of the blocks of the mesh from each other [m]
+template <class Real>
+Case<Real> any_case(Random& random, Kind kind, double apart = 0) {
   const std::size_t on_cloth = kind == Kind::segments                ? 1
                                : kind == Kind::points_from_triangles ? 0
                                                                      : 2;
@@ -107,21 +135,45 @@ Case<Real> any_case(Random& random, Kind kind) {
                               : kind == Kind::points_from_triangles ? 2
                                                                     : 0;
   Case<Real> made;
-  made.mesh.assign((on_mesh == 2 ? kTriangleNumbers : 3 * (on_mesh + 1)) * kStride, Real(1e9));
   std::vector<Corners> cloth, mesh;
   for (std::size_t f = 0; f < kCloth; ++f) {
     const auto numbers = numbers_of<Real>(any_corners(random, random.index(6)), on_cloth);
     made.cloth.insert(made.cloth.end(), numbers.begin(), numbers.end());
     cloth.push_back(corners_of(numbers));
+    made.cloth_boxes.push_back(box_of<Real>(cloth.back(), on_cloth));
     const auto reach = static_cast<Real>(random.uniform(0, 1));
     made.reach2.push_back(reach * reach);
   }
+  std::vector<std::vector<Real>> numbers;
+  std::vector<Index> order;
   for (std::size_t n = 0; n < kMesh; ++n) {
-    const auto numbers = numbers_of<Real>(any_corners(random, random.index(6)), on_mesh);
-    for (std::size_t k = 0; k < numbers.size(); ++k) made.mesh[k * kStride + n] = numbers[k];
-    mesh.push_back(corners_of(numbers));
+    Corners corners = any_corners(random, random.index(6));
+    for (Vec3d& p : corners) p[0] += apart * static_cast<double>(n / kFeatureLanes);
+    numbers.push_back(numbers_of<Real>(corners, on_mesh));
+    mesh.push_back(corners_of(numbers.back()));
+    order.push_back(static_cast<Index>(n));
   }
-  if (on_mesh == 2) prepare_triangles(kStride, made.mesh.data());
+  made.mesh = in_blocks<Real>(
+      order, on_mesh == 2 ? kTriangleNumbers : 3 * (on_mesh + 1),
+      [&](Index n) {
+        const std::vector<Real>& of = numbers[static_cast<std::size_t>(n)];
+        std::vector<Vec3<Real>> vectors;
+        for (std::size_t k = 0; k < of.size(); k += 3)
+          vectors.emplace_back(of[k], of[k + 1], of[k + 2]);
+        return vectors;
+      },
+      [&](Index n) { return box_of<Real>(mesh[static_cast<std::size_t>(n)], on_mesh); });
+  if (on_mesh == 2) prepare_triangles(made.mesh.boxes.size(), made.mesh.values.data());
+  made.blocks.assign(kFeatureLanes, 0);
+  made.boxes.assign(6 * kFeatureLanes, Real(1e9));
+  for (std::size_t b = 0; b < made.mesh.boxes.size(); ++b) {
+    made.blocks[b] = static_cast<Index>(b);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<Index>(axis);
+      made.boxes[axis * kFeatureLanes + b] = made.mesh.boxes[b].lower[k];
+      made.boxes[(axis + 3) * kFeatureLanes + b] = made.mesh.boxes[b].upper[k];
+    }
+  }
   for (const Corners& a : cloth) {
     made.distance.emplace_back();
     for (const Corners& b : mesh) made.distance.back().push_back(distance_of(kind, a, b));
@@ -130,26 +182,36 @@ Case<Real> any_case(Random& random, Kind kind) {
 }
 
 template <class Real>
-void check_against_double(Kind kind, void (*measure)(const FeatureTable<Real>&), double tolerance) {
+void check_against_double(Kind kind, std::size_t (*measure)(const FeatureTable<Real>&),
+                          double tolerance) {
   SeededRandom random(7);
   for (int n = 0; n < 2000; ++n) {
-    const Case<Real> c = any_case<Real>(random, kind);
+    const Case<Real> c = any_case<Real>(random, kind, n % 2 == 0 ? 0 : 2);
     const auto result = c.run(measure);
+    std::size_t hit = 0;
     for (std::size_t f = 0; f < kCloth; ++f) {
-      Real nearest = std::numeric_limits<Real>::max(), beyond = nearest;
-      for (std::size_t k = 0; k < kMesh; ++k) {
-        const Real distance2 = result.distance2[f * kStride + k];
-        INFO("case " << n << " cloth " << f << " mesh " << k);
-        REQUIRE(std::abs(std::sqrt(static_cast<double>(distance2)) - c.distance[f][k]) < tolerance);
-        nearest = std::min(nearest, distance2);
-        if (distance2 > c.reach2[f]) beyond = std::min(beyond, distance2);
+      INFO("case " << n << " cloth " << f);
+      const double reach = std::sqrt(static_cast<double>(c.reach2[f]));
+      double nearest_beyond = std::numeric_limits<double>::infinity();
+      std::vector<bool> found(kMesh, false);
+      for (; hit < static_cast<std::size_t>(result.ends[f]); ++hit) {
+        const Index k = c.mesh.feature[static_cast<std::size_t>(result.hits[hit])];
+        REQUIRE(k != kNone);
+        REQUIRE(!found[static_cast<std::size_t>(k)]);
+        found[static_cast<std::size_t>(k)] = true;
+        const double distance = c.distance[f][static_cast<std::size_t>(k)];
+        REQUIRE(result.hits2[hit] <= c.reach2[f]);
+        REQUIRE(std::abs(std::sqrt(static_cast<double>(result.hits2[hit])) - distance) < tolerance);
       }
-      // Padding is farther than anything, but it is something.
-      REQUIRE(result.nearest2[f] == nearest);
-      if (beyond < std::numeric_limits<Real>::max())
-        REQUIRE(result.beyond2[f] == beyond);
-      else
-        REQUIRE(result.beyond2[f] > Real(1e12));
+      for (std::size_t k = 0; k < kMesh; ++k) {
+        if (found[k]) continue;
+        REQUIRE(c.distance[f][k] > reach - tolerance);
+        nearest_beyond = std::min(nearest_beyond, c.distance[f][k]);
+      }
+      // A bound of all that is beyond reach, and no worse than the distance from its boxes.
+      const double beyond = std::sqrt(static_cast<double>(result.beyond2[f]));
+      REQUIRE(beyond >= reach);
+      REQUIRE(beyond < nearest_beyond + tolerance);
     }
   }
 }
@@ -169,7 +231,7 @@ void use_targets(std::int64_t targets) {
 
 }  // namespace
 
-TEST_CASE("tables of distances agree with the closest points, degenerate features too") {
+TEST_CASE("what is within reach of features is found, degenerate ones too") {
   // A thin triangle may be off by its own thickness over rounding, nearly parallel segments by the
   // root of it.
   SECTION("float, within 1e-3") {
@@ -180,13 +242,25 @@ TEST_CASE("tables of distances agree with the closest points, degenerate feature
   }
 }
 
-TEST_CASE("every instruction set measures the same bits") {
+TEST_CASE("blocks of a mesh beyond reach are not looked at") {
+  SeededRandom random(11);
+  std::size_t near = 0, far = 0;
+  for (int n = 0; n < 100; ++n) {
+    near += any_case<float>(random, Kind::segments).run(measure_segments).blocks;
+    // Features are 2 m long at most, and reach 1 m: of blocks 10 m apart one is near at most.
+    far += any_case<float>(random, Kind::segments, 10).run(measure_segments).blocks;
+  }
+  CHECK(far <= 100 * kCloth);
+  CHECK(near > 200 * kCloth);
+}
+
+TEST_CASE("every instruction set finds the same bits") {
   SeededRandom random(3);
   use_targets(0);
   const std::int64_t all = hwy::SupportedTargets();
   for (int n = 0; n < 200; ++n) {
-    const Case<float> c = any_case<float>(random, Kind::triangles_from_points);
-    const Case<float> s = any_case<float>(random, Kind::segments);
+    const Case<float> c = any_case<float>(random, Kind::triangles_from_points, n % 3);
+    const Case<float> s = any_case<float>(random, Kind::segments, n % 3);
     use_targets(0);
     const auto best = c.run(measure_triangles_from_points);
     const auto best_segments = s.run(measure_segments);
@@ -194,8 +268,8 @@ TEST_CASE("every instruction set measures the same bits") {
       if (!(all & target)) continue;
       use_targets(target);
       INFO(hwy::TargetName(target));
-      REQUIRE(c.run(measure_triangles_from_points).distance2 == best.distance2);
-      REQUIRE(s.run(measure_segments).distance2 == best_segments.distance2);
+      REQUIRE(c.run(measure_triangles_from_points) == best);
+      REQUIRE(s.run(measure_segments) == best_segments);
     }
   }
   use_targets(0);
