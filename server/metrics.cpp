@@ -60,12 +60,13 @@ Metrics::~Metrics() {
   set_asleep(0);
 }
 
-void Metrics::count_tick(double seconds, bool rested) {
-  if (whole_) whole_->count_tick(seconds, rested);
+void Metrics::count_tick(double seconds, double cpu, bool rested) {
+  if (whole_) whole_->count_tick(seconds, cpu, rested);
   add(tick_counts_, kTickBounds, seconds);
   ++ticks_;
   rested_ticks_ += rested ? 1U : 0U;
   tick_nanoseconds_ += nanoseconds(seconds);
+  tick_cpu_nanoseconds_ += nanoseconds(cpu);
 }
 
 void Metrics::count_late(double seconds) {
@@ -136,6 +137,8 @@ std::string Metrics::text(const std::vector<std::pair<std::string, const Metrics
          frames_dropped_.load());
   single(out, "bytes_sent_total", "counter", "WebSocket payload sent.", bytes_sent_.load());
   single(out, "rooms", "gauge", "Open rooms.", rooms.size());
+  single(out, "tick_cpu_seconds_total", "counter", "CPU time of the rooms' ticks.",
+         static_cast<double>(tick_cpu_nanoseconds_) * 1e-9);
   single(out, "cpu_seconds_total", "counter", "CPU time of the rooms' turns.",
          static_cast<double>(cpu_nanoseconds_) * 1e-9);
   of_each("room_ticks_total", "counter", "Ticks simulated.",

@@ -29,7 +29,8 @@ class Metrics {
   Metrics& operator=(const Metrics&) = delete;
 
   /// @param rested  whether all cloth slept, so that the tick computed nothing
-  void count_tick(double seconds, bool rested = false);
+  /// @param seconds,cpu  that the tick took, and the CPU time of its thread [s]
+  void count_tick(double seconds, double cpu, bool rested = false);
   /// @param seconds  between the time when a tick was due and its begin
   void count_late(double seconds);
   /// CPU time of the room's turns: ticks, commands and what is told [s]
@@ -55,6 +56,7 @@ class Metrics {
   Metrics* whole_;
   Histogram tick_counts_{}, late_counts_{};
   std::atomic<std::uint64_t> ticks_{0}, rested_ticks_{0}, tick_nanoseconds_{0}, halts_{0};
+  std::atomic<std::uint64_t> tick_cpu_nanoseconds_{0};
   std::atomic<std::uint64_t> late_nanoseconds_{0}, cpu_nanoseconds_{0};
   std::atomic<std::uint64_t> frames_sent_{0}, frames_dropped_{0}, bytes_sent_{0};
   std::atomic<int> viewers_{0}, asleep_{0};

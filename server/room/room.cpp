@@ -133,7 +133,7 @@ void Room::send_mesh(proto::ViewerId to, const Viewer& viewer) {
 std::optional<double> Room::step_world() {
   measure_forces();
   measure_balance();
-  const double start = clock_();
+  const double start = clock_(), cpu = options_.cpu_clock();
   tick_.replaced = tick_.over_limit = false;
   tick_.runs = true;
   tick_.until = world_->tick() + 1;
@@ -147,12 +147,13 @@ std::optional<double> Room::step_world() {
   tick_.runs = false;
   const TickReport& report = world_->report();
   const double end = clock_(), seconds = end - start;
+  const double cpu_seconds = options_.cpu_clock() - cpu;
   time_.note_end_of_tick(end);
   if (report.halted) {
     note_halt();
     return std::nullopt;
   }
-  metrics_.count_tick(seconds, report.rested);
+  metrics_.count_tick(seconds, cpu_seconds, report.rested);
   time_.note_tick(seconds);
   if (!report.rested) guarantee_.note_tick(*world_);
   const bool fell_asleep = tell_sleep() && world_->sleep().all_asleep();

@@ -217,7 +217,7 @@ TEST_CASE("metrics count all rooms together and tell each one's, and a sum never
   Metrics whole;
   {
     Metrics one(&whole);
-    one.count_tick(0.01);
+    one.count_tick(0.01, 0.008);
     one.set_viewers(3);
     CHECK(whole.text().find("weft_viewers 3\n") != std::string::npos);
   }

@@ -5,8 +5,8 @@
                                      [class] [overrun] [lock-step]
 
 `class`: 30 rooms of `default`, then 15 of a curtain of 32 x 32 particles, one viewer each (weft_load, in a process of
-its own). Told are the CPU time of all turns (ticks, commands, news) and of the process, both a simulated second of one
-room, and simulated per real time, of the slowest room and of all.
+its own). Told are the CPU time of all ticks, of all turns (ticks, commands, news) and of the process, each a simulated
+second of one room, and simulated per real time, of the slowest room and of all.
 `overrun`: 10 light rooms alone, and beside one whose ticks take twice their time. Told is by how much 99 of 100 ticks of
 the light ones are late at most, the best of the runs.
 `lock-step`: 64 rooms of 17 x 17, each advanced by a script of its own at once, and one room advanced 64 times as far.
@@ -80,7 +80,8 @@ async def make_rooms(server, count, **options):
 
 
 def look(server):
-    return server.metric("cpu_seconds_total"), server.cpu(), server.metric("ticks_total")
+    return [server.metric("tick_cpu_seconds_total"), server.metric("cpu_seconds_total"), server.cpu(),
+            server.metric("ticks_total")]
 
 
 async def measure_class(o, title, rooms, options):
@@ -98,9 +99,9 @@ async def measure_class(o, title, rooms, options):
         slowest = server.metric("real_time_factor")
         threads = server.threads()
         load.communicate()
-    ticks = last[2] - first[2]
-    simulated = ticks / 60 / rooms
-    print(f"{title:28} turns {(last[0] - first[0]) / simulated:5.2f}, process {(last[1] - first[1]) / simulated:5.2f} "
+    ticks, turns, process, count = (after - until for after, until in zip(last, first))
+    simulated = count / 60 / rooms
+    print(f"{title:28} ticks {ticks / simulated:5.2f}, turns {turns / simulated:5.2f}, process {process / simulated:5.2f} "
           f"cores a simulated second; x{simulated / seconds:.3f} of real time, slowest x{slowest:.3f}; "
           f"{each:.1f} MiB a room, {threads} threads", flush=True)
 
