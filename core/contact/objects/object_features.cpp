@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <optional>
 
 #include "core/contact/feature_pair.h"
 #include "core/contact/objects/apart.h"
@@ -88,6 +87,28 @@ std::size_t at_index(Index k) {
   return static_cast<std::size_t>(k);
 }
 
+/// Calls visit(pair, feature, carried) for the pairs that could meet while the rows hold.
+/// @param features,pairs  of one kind
+/// @param rises           of what is paired with them
+/// @param span            kEdgeSpan or kTriangleSpan
+template <class Real, std::size_t Count, class Visit>
+void for_pairs_that_may_meet(const ObjectRowSource<Real>& source, const RowScratch<Real>& scratch,
+                             const std::vector<std::array<Index, Count>>& features,
+                             const std::vector<ContactCandidate<Real>>& pairs,
+                             const std::vector<Rise<Real>>& rises, double span,
+                             std::size_t collider, Visit&& visit) {
+  ClothFeature<Real> feature;
+  for (const ContactCandidate<Real>& pair : pairs) {
+    const std::array<Index, Count>& particles = features[at_index(pair.cloth)];
+    if (pair.cloth != feature.number)
+      feature = look_at(pair.cloth, source, scratch, particles, collider);
+    if (pair.distance > feature.far) continue;
+    measure(source, scratch, particles, span, feature);
+    const bool carried = feature.lying.clear(rises[at_index(pair.feature)]);
+    if (may_meet(source, feature, pair, carried)) visit(pair, feature, carried);
+  }
+}
+
 /// Whether segments are farther from each other than `far` [m], rounding allowed for.
 /// @param longest  that the second may be [m]
 template <class Real>
@@ -112,26 +133,21 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
   const auto corner = [&](Index v) {
     return in_double(mesh.positions[static_cast<std::size_t>(v)]);
   };
-  ClothFeature<Real> feature;
-  for (const ContactCandidate<Real>& pair : source.pairs.edge[m]) {
+  const auto add = [&](const ContactCandidate<Real>& pair, const ClothFeature<Real>& feature,
+                       bool carried) {
     const Edge& e = source.cloths.patches.edges[at_index(pair.cloth)];
-    if (pair.cloth != feature.number) feature = look_at(pair.cloth, source, scratch, e, collider);
-    if (pair.distance > feature.far) continue;
-    measure(source, scratch, e, kEdgeSpan, feature);
     const std::size_t ridge = at_index(pair.feature);
-    const bool carried = feature.lying.clear(mesh.edge_rises[ridge]);
-    if (!may_meet(source, feature, pair, carried)) continue;
     const MeshEdge& other = mesh.edges[ridge];
     ++tests;
     if (are_apart<Real>(own[at_index(e[0])], own[at_index(e[1])], mesh.positions[at_index(other.a)],
                         mesh.positions[at_index(other.b)], farthest_row(source, feature, !carried),
                         mesh.longest_edge))
-      continue;
+      return;
     const PairSeparation<double> s = separate_pair<double>(
         PairKind::edge_edge, {at(e[0]), at(e[1]), corner(other.a), corner(other.b)});
     const Real distance = static_cast<Real>(s.gap);
     const bool responds = !carried && s.inside;
-    if (distance > farthest_row(source, feature, responds)) continue;
+    if (distance > farthest_row(source, feature, responds)) return;
     const Vec3<Real>& outward = mesh.edge_normals[ridge];
     Vec3<Real> normal = s.normal.template cast<Real>();
     ContactBarrier<Real> barrier;
@@ -148,7 +164,9 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
     add_row(source, {e[0], e[1]},
             {static_cast<Real>(s.weight[0]), static_cast<Real>(s.weight[1]), 0}, barrier, collider,
             responds, rows);
-  }
+  };
+  for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges, source.pairs.edge[m],
+                          mesh.edge_rises, kEdgeSpan, collider, add);
   return tests;
 }
 
@@ -163,21 +181,16 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const Vec3Array<Real>& own = in_frame_of(source.shapes, source.near, m, source.state.x);
   const auto at = [&](Index i) { return in_double(own[static_cast<std::size_t>(i)]); };
-  ClothFeature<Real> feature;
-  for (const ContactCandidate<Real>& pair : source.pairs.triangle[m]) {
+  const auto add = [&](const ContactCandidate<Real>& pair, const ClothFeature<Real>& feature,
+                       bool carried) {
     const Triangle& t = source.cloths.patches.triangles[at_index(pair.cloth)];
-    if (pair.cloth != feature.number) feature = look_at(pair.cloth, source, scratch, t, collider);
-    if (pair.distance > feature.far) continue;
-    measure(source, scratch, t, kTriangleSpan, feature);
     const std::size_t v = at_index(pair.feature);
-    const bool carried = feature.lying.clear(mesh.vertex_rises[v]);
-    if (!may_meet(source, feature, pair, carried)) continue;
     ++tests;
     const PairSeparation<double> s = separate_pair<double>(
         PairKind::vertex_triangle, {in_double(mesh.positions[v]), at(t[0]), at(t[1]), at(t[2])});
     const Real distance = static_cast<Real>(s.gap);
     const bool responds = !carried && s.inside;
-    if (distance > farthest_row(source, feature, responds)) continue;
+    if (distance > farthest_row(source, feature, responds)) return;
     ContactBarrier<Real> barrier;
     barrier.distance = std::max(distance, Real(0));
     const Vec3<Real> normal =
@@ -187,7 +200,10 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
     std::array<Real, 3> weights;
     for (std::size_t n = 0; n < 3; ++n) weights[n] = static_cast<Real>(-s.weight[n + 1]);
     add_row(source, {t[0], t[1], t[2]}, weights, barrier, collider, responds, rows);
-  }
+  };
+  for_pairs_that_may_meet(source, scratch, source.cloths.patches.triangles,
+                          source.pairs.triangle[m], mesh.vertex_rises, kTriangleSpan, collider,
+                          add);
   return tests;
 }
 
