@@ -91,8 +91,7 @@ struct ClothHit {
 struct Runtime {
   Executor* executor = nullptr;  ///< runs independent chunks; null: serially
   double (*clock)() = nullptr;   ///< seconds, only for the profile
-  MeshStore* meshes =
-      nullptr;  ///< shares prepared meshes among worlds; null: each prepares its own
+  MeshStore* meshes = nullptr;   ///< has prepared meshes; null: the world prepares its own
 };
 
 /// Cloths with everything that acts on them, advanced tick by tick. Not thread-safe. All functions

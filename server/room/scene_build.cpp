@@ -61,8 +61,8 @@ std::vector<SceneNotice> notices_of(const World<Real>& world,
 }
 
 BuiltScene build_scene(const WorldDef& def, Executor* executor, double tick_limit) {
-  static SharedMeshes
-      meshes;  // worlds may be built on any thread, and rebuilt as long as they live
+  // Worlds are built on any thread, and use it again when their fabric changes.
+  static SharedMeshes meshes;
   const SerialScope serial;
   check_size(def);
   check_mesh_bytes(def);

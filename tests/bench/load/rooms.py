@@ -99,7 +99,7 @@ async def measure_class(o, title, rooms, options):
         slowest = server.metric("real_time_factor")
         threads = server.threads()
         load.communicate()
-    ticks, turns, process, count = (after - until for after, until in zip(last, first))
+    ticks, turns, process, count = (after - before for after, before in zip(last, first))
     simulated = count / 60 / rooms
     print(f"{title:28} ticks {ticks / simulated:5.2f}, turns {turns / simulated:5.2f}, process {process / simulated:5.2f} "
           f"cores a simulated second; x{simulated / seconds:.3f} of real time, slowest x{slowest:.3f}; "
