@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Writes what follows from the descriptions of the messages (proto/messages): the declarations in js/commands.d.ts,
-js/results.d.ts, js/parts.d.ts and js/events.d.ts, the names in js/fields.js, the declarations of the Python client with its commands in both forms, the version of both
-packages, and the tables of README.md.
+"""Writes what follows from the descriptions of the messages (proto/messages, proto/frames): the declarations in
+js/commands.d.ts, js/results.d.ts, js/parts.d.ts, js/events.d.ts and js/frame_parts.d.ts, the names in js/fields.js,
+the reader of frames' parts in js/samples.js, the declarations of the Python client with its commands in both forms and
+its parts of frames, the version of both packages, and the tables of README.md.
 
 Usage: generate.py PROGRAM [--check]. PROGRAM is weft_messages, which prints the descriptions. With --check nothing is
 written; it fails if a file is not what it would write.
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from descriptions import NUMBERS, described, objects_of, type_name, unit_text, value_text
 from generate_blocking import blocking_commands
+from generate_frames import flag_rows, python_parts, script_declarations, script_reader, section_rows
 from generate_python import BARE, python_commands, python_messages, python_results, wrapped
 
 PROTO = Path(__file__).parent
@@ -223,6 +225,12 @@ def version():
     return re.search(r"^project\(weft VERSION ([\d.]+)", text, re.MULTILINE)[1]
 
 
+def frame_files(frame):
+    yield PROTO / "js/frame_parts.d.ts", "\n".join(script_declarations(frame)) + "\n"
+    yield PROTO / "js/samples.js", "\n".join(script_reader(frame)) + "\n"
+    yield PROTO / "python/weft/frame_parts.py", "\n".join(python_parts(frame)) + "\n"
+
+
 def python_files(messages):
     client = PROTO / "python/weft"
     commands = "\n".join(python_commands(messages, SUMMARIES)) + "\n"
@@ -236,7 +244,7 @@ def python_files(messages):
     yield client / "version.py", f'{about}\n\n__version__ = "{version()}"\n'
 
 
-def written(messages):
+def written(messages, frame):
     """All files that follow from the descriptions, with their content."""
     yield PROTO / "js/commands.d.ts", "\n".join(command_declarations(messages)) + "\n"
     yield PROTO / "js/results.d.ts", "\n".join(result_declarations(messages)) + "\n"
@@ -247,9 +255,11 @@ def written(messages):
     told = re.sub(r'("version": ")[^"]*', rf"\g<1>{version()}", package.read_text(encoding="utf-8"), count=1)
     yield package, told
     yield from python_files(messages)
+    yield from frame_files(frame)
     page = PROTO / "README.md"
     text = page.read_text(encoding="utf-8")
-    for name, rows in tables(messages).items():
+    frames = {"flags": "\n".join(flag_rows(frame)), "sections": "\n".join(section_rows(frame))}
+    for name, rows in (tables(messages) | frames).items():
         text = between(text, f"<!-- {name}: written by generate.py -->\n", "\n<!-- end -->", rows)
     yield page, text
 
@@ -257,8 +267,9 @@ def written(messages):
 def main():
     program, check = sys.argv[1], "--check" in sys.argv[2:]
     messages = json.loads(subprocess.run([program], check=True, capture_output=True, timeout=60).stdout)
+    frame = messages.pop("frame")
     stale = []
-    for path, content in written(messages):
+    for path, content in written(messages, frame):
         if path.exists() and path.read_text(encoding="utf-8") == content:
             continue
         stale.append(path.relative_to(PROTO.parent).as_posix())

@@ -1,10 +1,9 @@
 #include "proto/frames/frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
-
-#include "proto/frames/section_kinds.h"
 
 namespace weft::proto {
 namespace {
@@ -13,46 +12,30 @@ bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
-bool is_finite(const GrabSample& grab) {
-  return all_finite(grab.held) && all_finite(grab.target) && std::isfinite(grab.force);
+/// The walker that looks for numbers that are not finite.
+struct Finite {
+  bool all = true;
+
+  void required(const Field&, float value) { all = all && std::isfinite(value); }
+  template <std::size_t N>
+  void required(const Field&, const std::array<float, N>& values) {
+    all = all && all_finite(values);
+  }
+  void required(const Field&, std::uint32_t) {}
+  template <Worded Enum>
+  void required(const Field&, Enum) {}
+  void truth(const Field&, std::uint32_t) {}
+  void collider_or_none(const Field&, std::uint32_t) {}
+};
+
+template <Described Sample>
+bool is_finite(const Sample& sample) {
+  Finite finite;
+  Sample::describe(finite, sample);
+  return finite.all;
 }
 
-bool is_finite(const PoseSample& pose) {
-  return all_finite(pose.position) && all_finite(pose.rotation);
-}
-
-bool is_finite(const AppliedCommand&) {
-  return true;
-}
-
-bool is_finite(const ContactSample& c) {
-  return all_finite(c.point) && all_finite(c.normal) && all_finite(c.friction) &&
-         std::isfinite(c.gap) && std::isfinite(c.normal_force);
-}
-
-bool is_finite(const ReactionSample& reaction) {
-  return all_finite(reaction.force);
-}
-
-bool is_finite(const GripperSample& gripper) {
-  return all_finite(gripper.position) && all_finite(gripper.rotation) &&
-         all_finite(gripper.reaction) && all_finite(gripper.torque) &&
-         std::isfinite(gripper.opening) && std::isfinite(gripper.force);
-}
-
-/// Passes each list of samples of a frame to `visit` with the kind of its section, in the order of
-/// the sections.
-template <class AnyFrame, class Visitor>
-void visit_samples(AnyFrame& frame, Visitor&& visit) {
-  visit(kGrabs, frame.grabs);
-  visit(kApplied, frame.applied);
-  visit(kPoses, frame.poses);
-  visit(kContacts, frame.contacts);
-  visit(kReactions, frame.reactions);
-  visit(kGrippers, frame.grippers);
-}
-
-template <class Sample>
+template <Described Sample>
 bool read_samples(std::span<const std::byte> payload, std::vector<Sample>& samples) {
   samples = read_array<Sample>(payload);
   return payload.size() % sizeof(Sample) == 0 &&
@@ -69,10 +52,12 @@ bool read_vectors(const Section& section, std::uint32_t vertices, std::vector<fl
 
 bool read_section(const Section& section, std::uint32_t vertices, Frame& frame) {
   if (section.kind == kPositions) return read_vectors(section, vertices, frame.positions);
-  if (section.kind == kVelocities) return read_vectors(section, vertices, frame.velocities);
   bool fits = true;
-  visit_samples(frame, [&](SectionKind kind, auto& samples) {
-    if (kind == section.kind) fits = read_samples(section.payload, samples);
+  visit_arrays(frame, [&](const FramePart& part, auto& vectors) {
+    if (part.kind == section.kind) fits = read_vectors(section, vertices, vectors);
+  });
+  visit_lists(frame, [&](const FramePart& part, auto& samples) {
+    if (part.kind == section.kind) fits = read_samples(section.payload, samples);
   });
   return fits;
 }
@@ -96,15 +81,18 @@ const char* fault_of(const BinaryHeader& common, const FrameFields& fields) {
 void encode_frame(const FrameView& frame, Bytes& out) {
   const FrameHeader& h = frame.header;
   BinaryWriter writer(out, BinaryType::frame, 0, h.flags);
-  std::uint32_t sections = frame.velocities.empty() ? 1 : 2;
-  visit_samples(frame, [&](SectionKind, auto& samples) { sections += samples.empty() ? 0U : 1U; });
+  std::uint32_t sections = 1;
+  const auto count = [&](const FramePart&, auto& items) { sections += items.empty() ? 0U : 1U; };
+  visit_lists(frame, count);
+  visit_arrays(frame, count);
   writer.put(FrameFields{h.tick, h.time, h.server_time, h.sequence, h.reference, h.epoch,
                          static_cast<std::uint32_t>(frame.positions.size() / 3), 0, sections});
   writer.put_section(kPositions, 0, frame.positions);
-  visit_samples(frame, [&](SectionKind kind, auto& samples) {
-    if (!samples.empty()) writer.put_section(kind, 0, samples);
-  });
-  if (!frame.velocities.empty()) writer.put_section(kVelocities, 0, frame.velocities);
+  const auto put = [&](const FramePart& part, auto& items) {
+    if (!items.empty()) writer.put_section(part.kind, 0, items);
+  };
+  visit_lists(frame, put);
+  visit_arrays(frame, put);
   writer.finish();
 }
 

@@ -8,7 +8,6 @@
 #include <xxhash.h>
 
 #include "proto/codec/order.h"
-#include "proto/frames/section_kinds.h"
 #include "proto/types.h"
 
 namespace weft::proto {

@@ -12,6 +12,16 @@
 
 namespace weft::proto {
 
+/// Sections of a mesh; those of a frame (frame.h) have numbers below 16.
+enum MeshSection : std::uint16_t {
+  kRestPositions = 16,
+  kTriangles = 17,
+  kUv = 18,
+  kColliderPositions = 19,
+  kColliderTriangles = 20,
+  kOrder = 21,
+};
+
 struct ColliderMesh {
   std::uint16_t collider = 0;            ///< its index in the list of the text message
   std::vector<float> positions;          ///< three per vertex [m]

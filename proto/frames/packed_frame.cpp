@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "proto/frames/section_kinds.h"
-
 namespace weft::proto::codec {
 
 Bytes pack_frame(std::span<const std::byte> float_frame, const PackedFields& packed,

@@ -244,9 +244,8 @@ export class WeftClient extends Session {
 
   /**
    * @param {number} n
-   * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  `frames`: which of its frames this
-   *   viewer gets, regardless of its `hz`; by default those that its `hz` allows. `observe`: what
-   *   the frame of its last tick has; the event `frame` with `observed` brings it before the result
+   * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  the frames that were asked for
+   *   come as events `frame` before the result
    * @param {Call} [call]
    */
   advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {

@@ -13,14 +13,7 @@ import {
   readTick,
 } from './bytes.js';
 import { readOrder } from './order.js';
-import {
-  readApplied,
-  readContacts,
-  readGrabs,
-  readGrippers,
-  readPoses,
-  readReactions,
-} from './samples.js';
+import { readParts } from './samples.js';
 
 export { ProtocolError } from './bytes.js';
 
@@ -36,20 +29,10 @@ const MOST_COMPONENTS = 16;
 const FLOAT32 = 0;
 const PACKED = 2;
 const FLAG_KEY = 1;
-const FLAG_JUMP = 2;
-const FLAG_PAUSED = 4;
-const FLAG_OBSERVED = 8;
 
 const KIND = {
   positions: 1,
-  grabs: 2,
-  applied: 3,
-  poses: 4,
-  contacts: 5,
-  reactions: 6,
   packedPositions: 7,
-  velocities: 8,
-  grippers: 9,
   restPositions: 16,
   triangles: 17,
   uv: 18,
@@ -127,32 +110,15 @@ function readFrame(message, unpack) {
     demand(packed !== undefined, 'the frame has no positions');
     return unpack(header, new Uint8Array(view.buffer, view.byteOffset + packed.offset, packed.length));
   };
-  const grabs = find(KIND.grabs);
-  const applied = find(KIND.applied);
-  const poses = find(KIND.poses);
-  const contacts = find(KIND.contacts);
-  const reactions = find(KIND.reactions);
-  const velocities = find(KIND.velocities);
-  const grippers = find(KIND.grippers);
   return {
     type: 'frame',
-    flags,
-    jump: (flags & FLAG_JUMP) !== 0,
-    paused: (flags & FLAG_PAUSED) !== 0,
-    observed: (flags & FLAG_OBSERVED) !== 0,
+    ...readParts(flags, view, find, header.vertices),
     tick: readTick(view, 16),
     time,
     serverTime,
     sequence: header.sequence,
     reference: header.reference,
     epoch: view.getUint32(48, true),
-    grabs: grabs ? readGrabs(view, grabs) : [],
-    applied: applied ? readApplied(view, applied) : [],
-    poses: poses ? readPoses(view, poses) : [],
-    contacts: contacts ? readContacts(view, contacts) : [],
-    reactions: reactions ? readReactions(view, reactions) : [],
-    velocities: velocities ? readFloats(view, velocities, header.vertices * 3) : null,
-    grippers: grippers ? readGrippers(view, grippers) : [],
     positions: positions(),
   };
 }

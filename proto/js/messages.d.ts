@@ -2,6 +2,7 @@
 
 import type { AdvanceCommand, DragCommand1, QueryCommand } from './commands.js';
 import type { State } from './events.js';
+import type { FrameParts } from './frame_parts.js';
 import type {
   Camera,
   ColliderPose,
@@ -51,6 +52,15 @@ export type {
   Tree,
   Viewer,
 } from './parts.js';
+export type {
+  AppliedCommand,
+  ContactSample,
+  FrameParts,
+  GrabSample,
+  GripperSample,
+  PoseSample,
+  ReactionSample,
+} from './frame_parts.js';
 export type {
   AdvanceCommand,
   CameraCommand,
@@ -176,21 +186,8 @@ export type DragOptions = Omit<
   'phase' | 'drag' | 'particle' | 'triangle' | 'barycentric'
 >;
 
-/** A hand at the tick of a frame. */
-export interface GrabSample {
-  id: number;
-  viewer: number;
-  held: number[];
-  target: number[];
-  force: number;
-}
-
-export interface Frame {
+export interface Frame extends FrameParts {
   type: 'frame';
-  flags: number;
-  /** The state was replaced; do not interpolate to it. */
-  jump: boolean;
-  paused: boolean;
   tick: number;
   time: number;
   serverTime: number;
@@ -199,75 +196,6 @@ export interface Frame {
   epoch: number;
   /** Three values per vertex [m]. */
   positions: Float32Array;
-  grabs: GrabSample[];
-  applied: { viewer: number; number: number }[];
-  /** Colliders whose poses differ from the message `mesh`. */
-  poses: PoseSample[];
-  /** Of the cloth, if `view` asked for `forces`. */
-  contacts: ContactSample[];
-  /** Forces on the cloth's supports, if `view` asked for `forces`. */
-  reactions: ReactionSample[];
-  /** It has what `observe` of an `advance` asked for. */
-  observed: boolean;
-  /** Three values per vertex [m/s], if `observe` asked for them. */
-  velocities: Float32Array | null;
-  /** If `observe` asked for them. */
-  grippers: GripperSample[];
-}
-
-export interface GripperSample {
-  /** Index in `MeshAnnouncement.colliders` of its left jaw; the right one follows. */
-  jaw: number;
-  /** It presses something. */
-  gripping: boolean;
-  /** Of its middle [m]. */
-  position: number[];
-  /** From its definition, unit quaternion x, y, z, w. */
-  rotation: number[];
-  /** Between its jaws [m]. */
-  opening: number;
-  /** Most that each jaw presses with [N]. */
-  force: number;
-  /** Of the cloth on both jaws, mean of the tick [N]. */
-  reaction: number[];
-  /** The same about its middle [N m]. */
-  torque: number[];
-}
-
-export interface ContactSample {
-  /** Index in `MeshAnnouncement.colliders`; null: the other side is cloth too. */
-  collider: number | null;
-  /** The cloth particle with the largest weight. */
-  particle: number;
-  /** On the cloth's mid-surface [m]. */
-  point: number[];
-  /** Unit, out of the other side. */
-  normal: number[];
-  /** From the mid-surface to the other side [m]. */
-  gap: number;
-  /** On the cloth, along the normal [N]. */
-  normalForce: number;
-  /** On the cloth, tangential [N]. */
-  friction: number[];
-}
-
-export interface ReactionSample {
-  /** A number, if this client does not know its meaning. */
-  of: 'pin' | 'collider' | number;
-  /** Of the pin, or the collider's index in `MeshAnnouncement.colliders`. */
-  id: number;
-  /** Of a pin on the cloth, of the cloth on a collider [N]. */
-  force: number[];
-}
-
-/** A point p of the collider is at `position` + `rotation` (p - pivot). */
-export interface PoseSample {
-  /** Index in `MeshAnnouncement.colliders`. */
-  collider: number;
-  /** Of its pivot [m]. */
-  position: number[];
-  /** Unit quaternion x, y, z, w. */
-  rotation: number[];
 }
 
 export interface ColliderMesh {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "proto/messages/field.h"
+#include "proto/field.h"
 #include "proto/messages/field_reader.h"
 #include "proto/messages/hold_commands.h"
 

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/field.h"
 #include "proto/hash_text.h"
-#include "proto/messages/field.h"
 #include "proto/messages/hold_commands.h"
 
 // The walker that writes a command as JSON. Included only by the encoders.

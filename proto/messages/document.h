@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/field.h"
 #include "proto/messages/command_writer.h"
-#include "proto/messages/field.h"
 #include "proto/types.h"
 
 // The walker that tells what a message consists of, as JSON, for the generator of declarations,

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "proto/messages/field.h"
+#include "proto/field.h"
 
 // The cloth's energy on the wire, and where it came from and went [J].
 

@@ -9,6 +9,7 @@
 #include "proto/messages/commands.h"
 #include "proto/messages/document.h"
 #include "proto/messages/events.h"
+#include "proto/messages/frame_document.h"
 #include "proto/messages/replies.h"
 
 namespace weft::proto {
@@ -77,6 +78,7 @@ int main() {
       {"replies", replies(std::make_index_sequence<std::variant_size_v<Reply>>{})},
       {"events", {described<State>(), described<Notice>(), described<Bye>()}},
       {"parts", parts<ViewerInfo, PresenceInfo, PinInfo, GrabInfo, StageWork, TreeInfo,
-                      ColliderPose, ContactInfo, ReactionInfo, GripperInfo>()}};
+                      ColliderPose, ContactInfo, ReactionInfo, GripperInfo>()},
+      {"frame", frame_document()}};
   std::cout << all.dump(1) << '\n';
 }

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "proto/error.h"
+#include "proto/field.h"
 #include "proto/limits.h"
-#include "proto/messages/field.h"
 #include "proto/messages/right.h"
 #include "proto/messages/room_commands.h"
 #include "proto/types.h"

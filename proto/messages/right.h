@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "proto/messages/field.h"
+#include "proto/field.h"
 
 // What a viewer may do. Each command tells in its description which right it needs, `kRight`.
 

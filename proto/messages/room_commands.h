@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "proto/error.h"
+#include "proto/field.h"
 #include "proto/limits.h"
-#include "proto/messages/field.h"
 #include "proto/messages/right.h"
 #include "proto/types.h"
 
@@ -140,6 +140,9 @@ struct Advance {
   std::optional<AdvanceFrames> frames;
   std::optional<std::vector<Observed>> observe;
   bool operator==(const Advance&) const = default;
+
+  /// Whether it says itself which of its frames its viewer gets.
+  bool chooses_frames() const { return frames || observe; }
 
   static constexpr const char* kOp = "advance";
   static constexpr Right kRight = Right::operate;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "proto/field.h"
 #include "proto/limits.h"
-#include "proto/messages/field.h"
 #include "proto/messages/right.h"
 
 // Commands about the rooms of a server, and what is told of a room.

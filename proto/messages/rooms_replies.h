@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/messages/field.h"
+#include "proto/field.h"
 #include "proto/messages/rooms_commands.h"
 
 // Answers to commands about the rooms of a server.

@@ -1,6 +1,5 @@
 #include "server/room/frame_maker.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace weft::server {
@@ -45,21 +44,11 @@ Frame FrameMaker::make(const ServedWorld& world, const Holds& holds, const Facts
   return frame;
 }
 
-SharedBytes FrameMaker::make_observed(const ServedWorld& world, const Holds& holds,
-                                      const Facts& facts,
-                                      const std::vector<proto::Observed>& observe) {
-  const auto observes = [&observe](proto::Observed what) {
-    return std::find(observe.begin(), observe.end(), what) != observe.end();
-  };
+SharedBytes FrameMaker::make_for_one(const ServedWorld& world, const Holds& holds,
+                                     const Facts& facts,
+                                     const std::function<void(proto::FrameView&)>& add) {
   proto::FrameView view = this->view(world, holds, facts);
-  view.header.flags |= proto::kFrameObserved;
-  if (observes(proto::Observed::velocities)) view.velocities = floats_of(world.state().v);
-  if (world.reactions() && observes(proto::Observed::contacts)) view.contacts = contacts_;
-  if (world.reactions() && observes(proto::Observed::reactions)) view.reactions = reactions_;
-  if (observes(proto::Observed::grippers)) {
-    grippers_ = gripper_samples(world);
-    view.grippers = grippers_;
-  }
+  add(view);
   proto::Bytes bytes;
   proto::encode_frame(view, bytes);
   return SharedBytes(std::move(bytes));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "server/message.h"
@@ -24,9 +25,9 @@ class FrameMaker {
   std::vector<proto::AppliedCommand>& applied() { return applied_; }
   /// Contacts and reactions are in its second encoding, if they are wanted and measured.
   Frame make(const ServedWorld& world, const Holds& holds, const Facts& facts);
-  /// One with what `advance` observes, in the same encoding.
-  SharedBytes make_observed(const ServedWorld& world, const Holds& holds, const Facts& facts,
-                            const std::vector<proto::Observed>& observe);
+  /// One for a single viewer, in the same encoding: `add` gives it what others do not have.
+  SharedBytes make_for_one(const ServedWorld& world, const Holds& holds, const Facts& facts,
+                           const std::function<void(proto::FrameView&)>& add);
   /// Frames made.
   std::uint64_t count() const { return count_; }
 
@@ -40,7 +41,6 @@ class FrameMaker {
   std::vector<proto::AppliedCommand> applied_;
   std::vector<proto::ContactSample> contacts_;
   std::vector<proto::ReactionSample> reactions_;
-  std::vector<proto::GripperSample> grippers_;
 };
 
 }  // namespace weft::server

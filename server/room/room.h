@@ -236,6 +236,7 @@ class Room {
   bool shows_next_tick() const;
   void show_advanced();
   proto::Error stalled_error() const;
+  bool advance_wants_forces() const;
   void finish_advance(const std::optional<proto::Error>& error = {});
   void end_paused_advance();
 

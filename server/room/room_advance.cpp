@@ -1,6 +1,7 @@
 #include <string>
 
 #include "server/room/room.h"
+#include "server/translate/observation.h"
 
 // Ticks that a viewer requests, without a clock.
 
@@ -48,14 +49,28 @@ bool Room::advance_waits() const {
   return order_.advance && shows_next_tick() && frames_wait(viewers_.at(order_.advance->viewer));
 }
 
+/// Whether its viewer gets contacts and reactions of the coming tick.
+bool Room::advance_wants_forces() const {
+  if (!order_.advance) return false;
+  const proto::Advance& wanted = order_.advance->wanted;
+  const bool last = order_.advance->left <= 1;
+  if (last && wanted.observe && observes_forces(*wanted.observe)) return true;
+  if (wanted.frames.value_or(proto::AdvanceFrames::none) == proto::AdvanceFrames::none)
+    return false;
+  const auto caller = viewers_.find(order_.advance->viewer);
+  return caller != viewers_.end() && caller->second.wants_forces;
+}
+
 void Room::show_advanced() {
   const Viewer& viewer = viewers_.at(order_.advance->viewer);
   const auto& observe = order_.advance->wanted.observe;
   if (observe && order_.advance->left == 0) {
-    const FrameMaker::Facts facts = frame_facts();
-    return output_.send(order_.advance->viewer,
-                        {frame_maker_.make_observed(*world_, holds_, facts, *observe), true,
-                         Topic::frame, viewer.ticket});
+    FrameMaker::Facts facts = frame_facts();
+    facts.forces = false;  // the observation has its own
+    const Observation seen = observation_of(*world_, *observe);
+    const SharedBytes frame = frame_maker_.make_for_one(
+        *world_, holds_, facts, [&seen](proto::FrameView& view) { show(seen, view); });
+    return output_.send(order_.advance->viewer, {frame, true, Topic::frame, viewer.ticket});
   }
   const Frame frame = encode_frame();
   const bool full = viewer.wants_forces && frame.with_forces;

@@ -310,7 +310,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);
   caller.stalled = caller.stalled && frames_wait(caller);
-  const bool shown = command.frames || command.observe;
+  const bool shown = command.chooses_frames();
   if (caller.stalled && shown) return stalled_error();
   order_.advance = Advance{viewer, std::nullopt, command.n, command, clock_()};
   frames_.begin_advance(shown ? viewer : 0);

@@ -8,27 +8,9 @@
 // When a room sends frames and announces changes, and what they contain.
 
 namespace weft::server {
-namespace {
-
-bool observes_forces(const proto::Advance& advance) {
-  return advance.observe &&
-         std::any_of(advance.observe->begin(), advance.observe->end(), [](proto::Observed what) {
-           return what == proto::Observed::contacts || what == proto::Observed::reactions;
-         });
-}
-
-}  // namespace
-
 /// Measures contacts and reactions as long as a viewer wants them.
 void Room::measure_forces() {
-  bool in_frames = output_.wants_forces();
-  if (order_.advance && order_.advance->left <= 1)
-    in_frames = in_frames || observes_forces(order_.advance->wanted);
-  if (order_.advance && order_.advance->wanted.frames.value_or(proto::AdvanceFrames::none) !=
-                            proto::AdvanceFrames::none) {
-    const auto caller = viewers_.find(order_.advance->viewer);
-    in_frames = in_frames || (caller != viewers_.end() && caller->second.wants_forces);
-  }
+  const bool in_frames = output_.wants_forces() || advance_wants_forces();
   forces_.in_frames = in_frames;
   const bool wanted = in_frames || forces_.asked_at(world_->tick());
   if (wanted == forces_.measured) return;

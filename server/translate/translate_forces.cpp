@@ -107,23 +107,6 @@ std::vector<proto::ContactSample> contact_samples(const ServedWorld& world) {
   return samples;
 }
 
-std::vector<proto::GripperSample> gripper_samples(const ServedWorld& world) {
-  std::vector<proto::GripperSample> samples;
-  for (const Gripper& gripper : world.grippers()) {
-    const Eigen::Quaternionf q = gripper.pose.rotation.cast<float>();
-    const GripperLoad load = load_of(gripper, world.colliders(), world.tick_seconds());
-    samples.push_back({static_cast<std::uint32_t>(gripper.jaw[0]),
-                       gripper.gripping ? 1U : 0U,
-                       floats(gripper.pose.position),
-                       {q.x(), q.y(), q.z(), q.w()},
-                       static_cast<float>(gripper.opening),
-                       static_cast<float>(gripper.force),
-                       floats(load.force),
-                       floats(load.torque)});
-  }
-  return samples;
-}
-
 std::vector<proto::ReactionSample> reaction_samples(const ServedWorld& world) {
   std::vector<proto::ReactionSample> samples;
   const Reactions& reactions = *world.reactions();

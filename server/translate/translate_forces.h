@@ -18,7 +18,6 @@ proto::ReactionInfo reactions_of(const ServedWorld& world, const Reactions& reac
 
 /// As measured in the world's last tick.
 std::vector<proto::ContactSample> contact_samples(const ServedWorld& world);
-std::vector<proto::GripperSample> gripper_samples(const ServedWorld& world);
 std::vector<proto::ReactionSample> reaction_samples(const ServedWorld& world);
 
 }  // namespace weft::server

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "proto/messages/field.h"
+#include "proto/field.h"
 #include "proto/types.h"
 #include "tests/fuzz/dice.h"
 
@@ -17,7 +17,7 @@
 
 namespace weft::fuzz {
 
-/// A walker of proto's descriptions (proto/messages/field.h).
+/// A walker of proto's descriptions (proto/field.h).
 class FieldDraw {
  public:
   /// @param wild  probability that a number is not near a usual one

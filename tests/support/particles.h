@@ -84,7 +84,8 @@ struct Particles {
   }
   Contact<Real> meet(const ContactDef& def, const std::vector<ColliderDef>& colliders,
                      Executor* executor = nullptr) const {
-    return Contact<Real>({def}, colliders, make_patches(state.x, edges, triangles), executor, nullptr);
+    return Contact<Real>({def}, colliders, make_patches(state.x, edges, triangles), executor,
+                         nullptr);
   }
 
   void kick() {

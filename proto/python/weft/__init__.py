@@ -34,13 +34,12 @@ from .client import Client
 from .connecting import SUBPROTOCOL, connect
 from .drag import Drag
 from .errors import CallTimeout, CommandError, ConnectionLost, ProtocolError, WeftError
+from .frame_parts import ContactSample, GrabSample, GripperSample, Pose, ReactionSample
 from .frames import decode_frame
 from .meshes import decode_mesh
 from .packed import FrameDecoder
 from .page import Page
-from .samples import (
-    ColliderMesh, ContactSample, Data, Frame, GrabSample, GripperSample, Hit, MeshData, Pose, ReactionSample, Rows,
-)  # fmt: skip
+from .samples import ColliderMesh, Data, Frame, Hit, MeshData, Rows
 from .version import __version__
 
 if sys.byteorder != "little":

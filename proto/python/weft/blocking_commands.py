@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, overload
 
+from .client import Observation
 from .fields import Hold
 from .messages import (
     Camera, ColliderPose, Contact, Crossings, Energy, EnergyBalance, Fabric, Fan, Grab, GripperState, Pin, Reactions,
@@ -18,7 +19,7 @@ from .results import (
     ResumeResult, SaveResult, SetResult, SpeedResult, StepResult, ViewResult,
 )  # fmt: skip
 from .runner import Runner
-from .samples import Data, Frame, Hit, Observation
+from .samples import Data, Frame, Hit
 from .timeouts import CLIENTS
 
 

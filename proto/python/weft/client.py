@@ -10,11 +10,18 @@ from .drag import Drag
 from .errors import ConnectionLost
 from .fields import Hold, hold_fields, is_number, listed, without_none
 from .queries import Queries
+from .reading import demand
 from .results import (
     AdvanceResult, HelloResult, LoadResult, MoveResult1, MoveResult2, PinResult, ReleaseResult, ViewResult,
 )  # fmt: skip
-from .samples import Frame, Hit, Observation
+from .samples import Frame, Hit
 from .timeouts import ADVANCE_SECONDS, ADVANCE_TICK_SECONDS, CLIENTS, LOAD_SECONDS
+
+
+class Observation(AdvanceResult):
+    """The answer to an `advance` that observes."""
+
+    observation: Frame  # of its last tick
 
 
 class Client(Queries):
@@ -149,8 +156,16 @@ class Client(Queries):
             ticks = n if is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
         fields = without_none({"frames": frames, "observe": None if observe is None else list(observe)})
-        result = await self.request("advance", timeout=timeout, n=n, **fields)
-        return result if observe is None else {**result, "observation": self._observation}
+        observed: list[Frame] = []
+        end = self.on("frame", lambda frame: observed.append(frame) if frame.observed else None)
+        try:
+            result = await self.request("advance", timeout=timeout, n=n, **fields)
+        finally:
+            end()
+        if observe is None:
+            return result
+        demand(len(observed) > 0, "what was observed did not come before the answer")
+        return {**result, "observation": observed[-1]}
 
     async def hash(self, *, timeout: float | None = CLIENTS) -> str:
         """Hash of all that decides the future of the scene."""

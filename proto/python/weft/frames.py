@@ -3,67 +3,31 @@
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, cast
 
 from . import layout
+from .frame_parts import ARRAYS, LISTS
 from .reading import demand, read_common, read_sections, rows_of
-from .samples import ContactSample, Frame, GrabSample, GripperSample, Pose, ReactionSample
+from .samples import Frame
+
+KEY = 1  # bit 0 of the flags
 
 
-def _entries(payload: memoryview | None, form: struct.Struct) -> list[tuple]:
-    payload = payload or memoryview(b"")
-    demand(len(payload) % form.size == 0, "a section does not fit")
-    return list(form.iter_unpack(payload))
-
-
-def _grab(entry: tuple) -> GrabSample:
-    id_, viewer, *numbers = entry
-    demand(all(map(math.isfinite, numbers)), "a number is not finite")
-    return GrabSample(id_, viewer, tuple(numbers[0:3]), tuple(numbers[3:6]), numbers[6])
-
-
-def _pose(entry: tuple) -> tuple[int, Pose]:
-    collider, *numbers = entry
-    demand(all(map(math.isfinite, numbers)), "a number is not finite")
-    return collider, Pose(tuple(numbers[0:3]), tuple(numbers[3:7]))
-
-
-def _contact(entry: tuple) -> ContactSample:
-    collider, particle, *numbers = entry
-    demand(all(map(math.isfinite, numbers)), "a number is not finite")
-    return ContactSample(
-        collider=None if collider == layout.NO_COLLIDER else collider,
-        particle=particle,
-        point=tuple(numbers[0:3]),
-        normal=tuple(numbers[3:6]),
-        gap=numbers[6],
-        normal_force=numbers[7],
-        friction=tuple(numbers[8:11]),
-    )
-
-
-def _reaction(entry: tuple) -> ReactionSample:
-    of, id_, *force = entry
-    demand(all(map(math.isfinite, force)), "a number is not finite")
-    return ReactionSample(layout.REACTION_OF.get(of) or of, id_, tuple(force))
-
-
-def _gripper(entry: tuple) -> GripperSample:
-    jaw, gripping, *numbers = entry
-    demand(all(map(math.isfinite, numbers)), "a number is not finite")
-    return GripperSample(
-        jaw=jaw,
-        gripping=bool(gripping),
-        position=tuple(numbers[0:3]),
-        rotation=tuple(numbers[3:7]),
-        opening=numbers[7],
-        force=numbers[8],
-        reaction=tuple(numbers[9:12]),
-        torque=tuple(numbers[12:15]),
-    )
+def _parts(sections: dict[tuple[int, int], memoryview], vertices: int) -> dict[str, Any]:
+    """What the frame has beside times and positions."""
+    parts: dict[str, Any] = {}
+    for name, (kind, form, entry, collected) in LISTS.items():
+        payload = sections.get((kind, 0), memoryview(b""))
+        demand(len(payload) % form.size == 0, "a section does not fit")
+        entries = list(form.iter_unpack(payload))
+        demand(all(all(map(math.isfinite, numbers)) for numbers in entries), "a number is not finite")
+        parts[name] = collected(map(entry, entries))
+    for name, kind in ARRAYS.items():
+        array = sections.get((kind, 0))
+        parts[name] = rows_of(array, "f", vertices, 3) if array is not None else None
+    return parts
 
 
 def decode_frame(message: bytes) -> Frame:
@@ -80,12 +44,11 @@ def decode_frame_by(message: bytes, unpack: Callable[[Frame, float, int, bytes],
     tick, time, server_time, sequence, reference, epoch, vertices, step, count = fields
     demand(tick < layout.TICK_END, "the tick is too large")
     demand(math.isfinite(time) and math.isfinite(server_time), "a time is not finite")
-    key = bool(flags & layout.KEY)
+    key = bool(flags & KEY)
     demand(key == (reference == sequence), "a key frame builds on no other")
     fits = key and step == 0 if codec == layout.FLOAT32 else math.isfinite(step) and step > 0
     demand(fits, "the step does not fit the codec")
     sections = read_sections(message, start, count)
-    velocities = sections.get((layout.VELOCITIES, 0))
     frame = Frame(
         tick=tick,
         time=time,
@@ -95,13 +58,7 @@ def decode_frame_by(message: bytes, unpack: Callable[[Frame, float, int, bytes],
         epoch=epoch,
         flags=flags,
         positions=cast(Any, None),  # until the end
-        grabs=tuple(map(_grab, _entries(sections.get((layout.GRABS, 0)), layout.GRAB))),
-        applied=dict(_entries(sections.get((layout.APPLIED, 0)), layout.APPLIED_ENTRY)),
-        poses=dict(map(_pose, _entries(sections.get((layout.POSES, 0)), layout.POSE))),
-        contacts=tuple(map(_contact, _entries(sections.get((layout.CONTACTS, 0)), layout.CONTACT))),
-        reactions=tuple(map(_reaction, _entries(sections.get((layout.REACTIONS, 0)), layout.REACTION))),
-        velocities=rows_of(velocities, "f", vertices, 3) if velocities is not None else None,
-        grippers=tuple(map(_gripper, _entries(sections.get((layout.GRIPPERS, 0)), layout.GRIPPER))),
+        **_parts(sections, vertices),
     )
     if unpack is None or codec == layout.FLOAT32:
         positions = rows_of(sections.get((layout.POSITIONS, 0)), "f", vertices, 3)

@@ -55,7 +55,6 @@ class Session:
         self.mesh_data: MeshData = None  # type: ignore[assignment]
         self._announced: Mesh | None = None  # a mesh whose data is on the way
         self._packed: FrameDecoder | None = None  # of the present mesh
-        self._observation: Frame | None = None  # the last frame that an `advance` observed
         self.frame: Frame | None = None
         self.state: State | None = None
         self.roster: Roster | None = None
@@ -300,8 +299,6 @@ class Session:
             return "", None  # of another mesh
         demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")
         self.frame = message
-        if message.observed:
-            self._observation = message
         return "frame", message
 
     def _decode(self, content: bytes) -> Frame | MeshData | Data:

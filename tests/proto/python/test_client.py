@@ -37,7 +37,10 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
         ids = set()
         for call in golden.read_json("client_calls.json"):
             method = getattr(self.client, call["method"])
-            await method(*call["args"], **call["options"])
+            try:
+                await method(*call["args"], **call["options"])
+            except weft.ProtocolError:  # this server answers without the frame that tells what was observed
+                self.assertIn("observe", call["options"])
             sent = dict(self.server.heard[-1])
             ids.add(sent.pop("id"))
             self.assertEqual(sent, call["sends"])

@@ -7,6 +7,7 @@ and not changed by a change of the wire.
 import json
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import golden
 import weft
@@ -54,15 +55,11 @@ class LastVersion(unittest.TestCase):
     def test_a_decoder_that_knows_no_new_section_reads_all_others_of_the_frame(self):
         message = golden.read("frame_observed.bin")
         now = weft.decode_frame(message)
-        newer = {"VELOCITIES": 60000, "GRIPPERS": 60001}  # kinds that the last version did not know
-        kept = {name: getattr(weft.layout, name) for name in newer}
-        try:
-            for name, kind in newer.items():
-                setattr(weft.layout, name, kind)
+        # The kinds that the last version did not know.
+        arrays = {"velocities": 60000}
+        lists = {"grippers": (60001, *weft.frame_parts.LISTS["grippers"][1:])}
+        with patch.dict(weft.frame_parts.ARRAYS, arrays), patch.dict(weft.frame_parts.LISTS, lists):
             then = weft.decode_frame(message)
-        finally:
-            for name, kind in kept.items():
-                setattr(weft.layout, name, kind)
         self.assertIsNone(then.velocities)
         self.assertEqual(then.grippers, ())
         for name in ("tick", "grabs", "contacts", "reactions", "applied"):

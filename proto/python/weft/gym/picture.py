@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..announcement import Collider, Mesh
-from ..samples import Frame, MeshData, Pose
+from ..frame_parts import Pose
+from ..samples import Frame, MeshData
 
 BACKGROUND, OBJECT, CLOTH, BACK = (236, 238, 242), (150, 155, 165), (42, 111, 151), (224, 122, 95)
 LIGHT = np.array([0.4, 0.8, 0.45]) / np.linalg.norm([0.4, 0.8, 0.45])

@@ -8,7 +8,7 @@
 
 #include "core/ranges.h"
 
-// What commands consist of. Each is a struct with
+// What messages consist of: commands, answers, and the lists in frames. Each is a struct with
 //
 //   static constexpr const char* kOp     its word in `op`; a part of a message has kName, the name
 //                                        of its type in declarations
