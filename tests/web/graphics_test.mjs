@@ -114,34 +114,62 @@ test('the ring on the cloth keeps what it had when it was first seen, wherever i
   for (const triangle of [null, 7, 20, null, 41, 3]) assert.deepEqual(show(triangle), first);
 });
 
-test('a hand that lets go leaves nothing behind, in simple light and in the whole', async () => {
+test('hands that let go leave a few marks behind, and to take hold again makes no program', async () => {
   const alive = {};
-  const stage = new Stage(made_up_canvas(alive), false, { lost() {}, changed() {} });
+  const made = {};
+  const stage = new Stage(made_up_canvas(alive, made), false, { lost() {}, changed() {} });
   const orbit = new OrbitCamera();
-  orbit.update(1); // towards where the hand is
+  orbit.update(1); // towards where the hands are
   const { camera } = orbit;
   const { announcement, data } = mesh_of(6, [GROUND]);
   const world = new WorldView(announcement, data, stage);
   const hands = new Hands({ append() {} });
   stage.scene.add(hands.group);
-  const show = (shown) => {
-    hands.update(shown, camera, 64, 48);
+  const hand = (key) => ({ key, id: 1, name: '', color: '#aa3333', held: [0.5, 1, 0.5], target: [0.5, 1.2, 0.5],
+    own: true, finger: false, hidden: false, force: 1 });
+  const show = (...keys) => {
+    hands.update(keys.map(hand), camera, 64, 48);
     world.look_from(camera);
     stage.draw(camera);
     const { Buffer, VertexArray } = alive;
-    return { Buffer, VertexArray };
+    return { Buffer, VertexArray, programs: made.Program };
   };
-  const hand = { key: 'own', id: 1, name: '', color: '#aa3333', held: [0.5, 1, 0.5], target: [0.5, 1.2, 0.5],
-    own: true, finger: false, hidden: false, force: 1 };
   for (const lit of [false, true]) {
     if (lit) await stage.complete(camera);
-    const without = show([]);
-    const first = show([hand]);
-    assert.ok(first.Buffer >= without.Buffer + 12, 'its line and its two dots are drawn');
+    const without = show();
+    const first = show('first');
+    if (!lit) assert.ok(first.Buffer >= without.Buffer + 12, 'its line and its two dots are drawn');
     for (let time = 0; time < 3; time++) {
-      assert.deepEqual(show([]), without);
-      assert.deepEqual(show([{ ...hand, key: `hand ${time}` }]), first);
+      assert.deepEqual(show(), first); // the mark is kept for the next one
+      assert.deepEqual(show(`hand ${time}`), first);
     }
-    show([]);
+    const many = Array.from({ length: 20 }, (_, k) => `many ${k}`);
+    show(...many);
+    const after = show();
+    assert.ok(after.Buffer <= first.Buffer + 4 * 14, 'marks of four hands at most are kept');
+    show(...many);
+    assert.deepEqual(show(), after);
+    assert.equal(after.programs, first.programs);
+  }
+});
+
+test('the programs of a hand are there before it takes hold', async () => {
+  for (const simple of [true, false]) {
+    const made = {};
+    const stage = new Stage(made_up_canvas({}, made), simple, { lost() {}, changed() {} });
+    const orbit = new OrbitCamera();
+    orbit.update(1);
+    const hands = new Hands({ append() {} });
+    stage.scene.add(hands.group);
+    const draw = (...shown) => {
+      hands.update(shown, orbit.camera, 64, 48);
+      stage.draw(orbit.camera);
+      return made.Program;
+    };
+    draw();
+    await stage.complete(orbit.camera);
+    const before = draw();
+    const hand = { key: 'own', id: 1, name: '', color: '#aa3333', held: [0.5, 1, 0.5], target: [0.5, 1.2, 0.5] };
+    assert.equal(draw({ ...hand, own: true, finger: false, hidden: false, force: 1 }), before);
   }
 });

@@ -11,8 +11,12 @@ const NUMBERS = {
 };
 const LARGE = 1024; // every limit that is asked for
 
-/** @param {object} canvas @param {Record<string, number>} alive is filled with counts by kind */
-function made_up_context(canvas, alive) {
+/**
+ * @param {object} canvas
+ * @param {Record<string, number>} alive is filled with counts by kind
+ * @param {Record<string, number>} made  the same of all that ever were
+ */
+function made_up_context(canvas, alive, made) {
   const { VERSION, SHADING_LANGUAGE_VERSION, SCISSOR_BOX, VIEWPORT, ...rest } = NUMBERS;
   const answers = new Map([
     [VERSION, 'WebGL 2.0'],
@@ -20,7 +24,10 @@ function made_up_context(canvas, alive) {
     [SCISSOR_BOX, [0, 0, canvas.width, canvas.height]],
     [VIEWPORT, [0, 0, canvas.width, canvas.height]],
   ]);
-  const counted = (kind, step) => (alive[kind] = (alive[kind] ?? 0) + step);
+  const counted = (kind, step) => {
+    alive[kind] = (alive[kind] ?? 0) + step;
+    if (step > 0) made[kind] = (made[kind] ?? 0) + step;
+  };
   const context = {
     ...NUMBERS,
     canvas,
@@ -50,11 +57,11 @@ function made_up_context(canvas, alive) {
   });
 }
 
-/** A canvas whose context is made up. @param {Record<string, number>} alive */
-export function made_up_canvas(alive) {
+/** A canvas whose context is made up, and counts what is alive and what was ever made there. */
+export function made_up_canvas(alive, made = {}) {
   const canvas = { width: 64, height: 48, style: {}, addEventListener() {}, removeEventListener() {} };
   let context;
-  canvas.getContext = () => (context ??= made_up_context(canvas, alive));
+  canvas.getContext = () => (context ??= made_up_context(canvas, alive, made));
   return canvas;
 }
 

@@ -12,6 +12,7 @@ const LABEL_OFFSET = 14; // [pixels]
 const FINGER_OFFSET = 56; // of a label that a finger must not cover, upwards [pixels]
 const STEADY_PART = 0.04; // by which a force changes before it is written anew
 const STEADY_FORCE = 0.05; // [N]
+const MOST_SPARE = 4; // marks of hands that have let go
 
 /** A hand that holds the cloth, as drawn. */
 export interface Hand {
@@ -43,27 +44,35 @@ export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
 export class Hands {
   readonly group = new Group();
   private marks = new Map<string, HandMark>();
+  /** Kept for the next hand: with the last mark of its kind a program would go, and be made anew in the middle of a grasp. */
+  private spare: HandMark[] = [];
   shown: Hand[] = [];
 
-  constructor(private labels: HTMLElement) {}
+  constructor(private labels: HTMLElement) {
+    this.spare.push(this.make()); // so that programs are made before the first grasp
+  }
 
   update(hands: Hand[], camera: PerspectiveCamera, width: number, height: number): void {
     this.shown = hands;
     const present = new Set(hands.map(({ key }) => key));
     for (const [name, mark] of this.marks) {
       if (present.has(name)) continue;
-      mark.dispose();
+      mark.hide();
+      this.spare.push(mark);
       this.marks.delete(name);
     }
+    while (this.spare.length > MOST_SPARE) this.spare.pop()?.dispose();
     for (const hand of hands) {
-      let mark = this.marks.get(hand.key);
-      if (!mark) {
-        mark = new HandMark(this.labels);
-        this.marks.set(hand.key, mark);
-        this.group.add(mark.group);
-      }
+      const mark = this.marks.get(hand.key) ?? this.spare.pop() ?? this.make();
+      this.marks.set(hand.key, mark);
       mark.update(hand, camera, width, height);
     }
+  }
+
+  private make(): HandMark {
+    const mark = new HandMark(this.labels);
+    this.group.add(mark.group);
+    return mark;
   }
 }
 
@@ -80,9 +89,18 @@ class HandMark {
     for (const mark of this.parts) this.group.add(mark.group);
     this.label.className = 'name';
     labels.append(this.label);
+    this.hide();
+  }
+
+  /** Until the next update; what it said is forgotten. */
+  hide(): void {
+    this.group.visible = false;
+    this.label.hidden = true;
+    this.force = null;
   }
 
   update(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
+    this.group.visible = true;
     this.line.set([hand.held, hand.target], width, height);
     this.held.set(hand.held, camera, height);
     this.target.set(hand.target, camera, height);

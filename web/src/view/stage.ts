@@ -142,9 +142,14 @@ export class Stage {
    * unless the light stays simple. Call it when a first picture is on the screen.
    */
   complete(camera: PerspectiveCamera): Promise<void> {
-    if (this.simple) return Promise.resolve();
-    this.completing ??= this.prepare(camera);
+    this.completing ??= this.simple ? this.prepare_simple(camera) : this.prepare(camera);
     return this.completing;
+  }
+
+  /** Programs of what is not seen yet, as the marks of a hand. */
+  private async prepare_simple(camera: PerspectiveCamera): Promise<void> {
+    await next_task();
+    this.renderer.compile(this.scene, camera);
   }
 
   private async prepare(camera: PerspectiveCamera): Promise<void> {

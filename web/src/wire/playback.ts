@@ -25,6 +25,7 @@ export class Playback {
   private interval = 1 / 60; // between frames [s]
   private jitter = 0; // by which frames arrive late [s]
   private pace = new HoldingPace();
+  private held = false; // by this viewer
   private renewed = false; // the newest frame's moment was shown before as it was then
 
   constructor(vertices: number) {
@@ -65,6 +66,8 @@ export class Playback {
     if (!newest) return false;
     const elapsed = Math.min(0.1, Math.max(0, now - this.last_sample));
     this.last_sample = now;
+    if (holds && !this.held) this.pace.take_hold();
+    this.held = holds;
     const before = this.shown_time;
     const behind = newest.serverTime - before;
     if (Number.isFinite(behind)) this.pace.look(elapsed, now - this.offset - newest.serverTime, behind);
@@ -76,6 +79,7 @@ export class Playback {
     if (this.shown_time === before && !this.renewed) return false;
     this.renewed = false;
     this.show();
+    this.add_new_hands(newest);
     return true;
   }
 
@@ -106,6 +110,12 @@ export class Playback {
     }
     const rate = 1 + Math.min(0.15, Math.max(-0.15, 2 * behind));
     return Math.min(this.shown_time + elapsed * rate, newest.serverTime);
+  }
+
+  /** A hand is seen as soon as it is told of, though the cloth is shown as it was a little before. */
+  private add_new_hands(newest: Frame): void {
+    const shown = new Set(this.grabs.map(({ id }) => id));
+    this.grabs = [...this.grabs, ...newest.grabs.filter(({ id }) => !shown.has(id))];
   }
 
   private show(): void {
