@@ -387,7 +387,7 @@ export class Session extends Emitter {
 
   /** @param {import('./frames.js').Received} received */
   #receive({ sequence, frame }) {
-    this.#connection.send(encodeAck(sequence));
+    if (!frame?.observed) this.#connection.send(encodeAck(sequence));
     if (!frame) return this.#key.renew() && this.post('view', { codec: 'packed' });
     this.#key.fulfil();
     const own = frame.applied.find(({ viewer }) => viewer === this.viewer);

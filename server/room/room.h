@@ -235,6 +235,7 @@ class Room {
   bool frames_wait(const Viewer& viewer) const;
   bool shows_next_tick() const;
   void show_advanced();
+  void show_observation();
   proto::Error stalled_error() const;
   bool advance_wants_forces() const;
   void finish_advance(const std::optional<proto::Error>& error = {});

@@ -61,21 +61,24 @@ bool Room::advance_wants_forces() const {
   return caller != viewers_.end() && caller->second.wants_forces;
 }
 
+/// What it observes of its last tick is shown with its result.
 void Room::show_advanced() {
+  if (order_.advance->wanted.observe && order_.advance->left == 0) return;
   const Viewer& viewer = viewers_.at(order_.advance->viewer);
-  const auto& observe = order_.advance->wanted.observe;
-  if (observe && order_.advance->left == 0) {
-    FrameMaker::Facts facts = frame_facts();
-    facts.forces = false;  // the observation has its own
-    const Observation seen = observation_of(*world_, *observe);
-    const SharedBytes frame = frame_maker_.make_for_one(
-        *world_, holds_, facts, [&seen](proto::FrameView& view) { show(seen, view); });
-    return output_.send(order_.advance->viewer, {frame, true, Topic::frame, viewer.ticket});
-  }
   const Frame frame = encode_frame();
   const bool full = viewer.wants_forces && frame.with_forces;
   output_.send(order_.advance->viewer,
                {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
+}
+
+void Room::show_observation() {
+  const Viewer& viewer = viewers_.at(order_.advance->viewer);
+  FrameMaker::Facts facts = frame_facts();
+  facts.forces = false;  // the observation has its own
+  const Observation seen = observation_of(*world_, *order_.advance->wanted.observe);
+  const SharedBytes frame = frame_maker_.make_for_one(
+      *world_, holds_, facts, [&seen](proto::FrameView& view) { show(seen, view); });
+  output_.send(order_.advance->viewer, {frame, true, Topic::frame, viewer.ticket});
 }
 
 /// Ends an `advance` whose viewer takes none of its frames, so that it does not hold up the room.
@@ -89,15 +92,18 @@ proto::Error Room::stalled_error() const {
   return error;
 }
 
+/// What was observed and the answer are sent at once, so that they wake the network but once.
 void Room::finish_advance(const std::optional<proto::Error>& error) {
+  const proto::AdvanceReply reply{world_->tick(), error ? 0 : world_->hash()};
+  if (!error && order_.advance->wanted.observe) show_observation();
   const Advance done = *order_.advance;
   order_.advance.reset();
-  order_.log.shorten_advance(done.left);
-  frames_.note_advance();  // ticks of sleeping cloth make no frames, but viewers see where it ends
   if (error)
     output_.send(done.viewer, text_message(proto::encode_error(*error)));
   else
-    answer(done.viewer, done.id, proto::AdvanceReply{world_->tick(), world_->hash()});
+    answer(done.viewer, done.id, reply);
+  order_.log.shorten_advance(done.left);
+  frames_.note_advance();  // ticks of sleeping cloth make no frames, but viewers see where it ends
   news_.state = true;
 }
 

@@ -294,7 +294,8 @@ class Session:
             self.mesh, self.mesh_data = self._fitting(message), message
             self._announced = self._packed = None
             return "mesh", message
-        await self._socket.send(encode_ack(message.sequence))
+        if not message.observed:
+            await self._socket.send(encode_ack(message.sequence))
         if self.mesh is None or self.mesh["epoch"] != message.epoch:
             return "", None  # of another mesh
         demand(len(message.positions) == self.mesh["vertices"], "the frame does not fit the mesh")

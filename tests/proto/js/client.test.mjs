@@ -168,6 +168,17 @@ test('a mesh and its frames are told, and every frame is acknowledged', async ()
   assert.deepEqual([...socket.acks[1]], [4, 1, 0, 0, 255, 255, 255, 255]);
 });
 
+test('a frame that an advance observed is told and not acknowledged', async () => {
+  const { client, socket } = await join();
+  const frames = [];
+  client.on('frame', (frame) => frames.push(frame));
+  socket.say(GRID);
+  socket.sayBytes(readGolden('mesh_grid.bin'));
+  socket.sayBytes(readGolden('frame_observed.bin'));
+  assert.deepEqual(frames.map(({ observed }) => observed), [true]);
+  assert.equal(socket.acks.length, 0);
+});
+
 test('a frame of another epoch is acknowledged and not told', async () => {
   const { client, socket } = await join();
   socket.say({ ...GRID, epoch: 2 });

@@ -154,6 +154,11 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(self.server.acks[0], weft.encode_ack(1))
         self.assertEqual(self.server.acks[1], weft.encode_ack(2**32 - 1))
 
+    async def test_a_frame_that_an_advance_observed_is_told_and_not_acknowledged(self):
+        await self.server.say(golden.read("frame_observed.bin"), HANDS)
+        await self.server.until(lambda: len(self.server.acks) == 1)
+        self.assertEqual(self.server.acks[0], weft.encode_ack(2**32 - 1))  # of the other one
+
     async def test_frames_can_be_waited_for_by_tick_and_listed(self):
         await self.server.say(HANDS)
         self.assertEqual((await self.client.frame_at(5)).tick, 2**40 + 5)
