@@ -30,8 +30,6 @@ struct ClampDisc {
   double beyond(const std::array<double, 2>& place, std::size_t axis) const;
 
   bool holds(const std::array<double, 2>& place) const;
-
-  friend bool operator==(const ClampDisc&, const ClampDisc&) = default;
 };
 
 /// The clamp of a disc around a particle: of a grid that bends by the quadratic form, if its radius

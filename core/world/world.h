@@ -68,9 +68,9 @@ struct TickReport {
   double brought = 0;  ///< energy added by the scene's disturbances just before [J]
   double largest_strain = 0;
   int damped_substeps = 0;  ///< that the implicit solver repeated by backward Euler
-  bool violent = false;     ///< stepped by verlet: implicit would have dissipated too much
-  bool touching = false;    ///< stepped by verlet: something touched or could have
-  bool rested = false;      ///< all slept and nothing moved: nothing was computed, no work counted
+  /// Of the implicit solver, if the scene wants it; verlet steps a tick that it gives up.
+  ImplicitStatus implicit = ImplicitStatus::done;
+  bool rested = false;  ///< all slept and nothing moved: nothing was computed, no work counted
   /// The tick was ended from outside (stop_signal.h): the state at its start is restored, and all
   /// other fields are as before it.
   bool halted = false;

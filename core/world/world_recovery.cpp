@@ -90,7 +90,8 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   const bool finite = std::isfinite(result.before.total()) && std::isfinite(result.after.total()) &&
                       std::isfinite(result.work);
   // Relaxation keeps lengths, not energy: it has no bound to be judged by.
-  const bool solved = kind != SolverKind::implicit || !solvers_.implicit.unsolved;
+  const bool solved =
+      kind != SolverKind::implicit || solvers_.implicit.status != ImplicitStatus::unsolved;
   if (finite && solved && (kind == SolverKind::relaxation || !account_.is_runaway(result)))
     return std::nullopt;
   d.cause = !finite   ? DivergenceCause::not_finite
@@ -117,9 +118,10 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
 template <class Real>
 bool World<Real>::leaves_to_verlet(const AdvanceResult& result, int substeps) {
   if (!solvers_.implicit.refuses) return false;
-  if (!solvers_.implicit.violent && !solvers_.implicit.touching)
-    solvers_.implicit.violent = examine(result, SolverKind::implicit, substeps).has_value();
-  return solvers_.implicit.violent || solvers_.implicit.touching;
+  ImplicitStatus& status = solvers_.implicit.status;
+  if (!given_up(status) && examine(result, SolverKind::implicit, substeps))
+    status = ImplicitStatus::violent;
+  return given_up(status);
 }
 
 template <class Real>
@@ -129,11 +131,12 @@ void World<Real>::advance_or_recover(int substeps) {
   int without_loss = 0;
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
-    solvers_.implicit.violent = solvers_.implicit.touching = false;
     // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
     solvers_.implicit.refuses = without_loss <= kMostSubsteps &&
                                 refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
+    solvers_.implicit.status = ImplicitStatus::done;
     if (solvers_.touching && solvers_.implicit.refuses) {
+      solvers_.implicit.status = ImplicitStatus::touching;
       kind = SolverKind::verlet;
       substeps = without_loss;
     }
@@ -155,8 +158,7 @@ void World<Real>::advance_or_recover(int substeps) {
     report_.work = result.work;
     report_.largest_strain = result.largest_strain;
     report_.damped_substeps = result.damped_substeps;
-    report_.violent = solvers_.implicit.violent;
-    report_.touching = kind != solver_of(def_) && !solvers_.implicit.violent;
+    report_.implicit = solvers_.implicit.status;
     if (!divergence) {
       account_.accept(result, tick_seconds());
       if (energy_) energy_->book(result, report_.brought);
@@ -172,7 +174,7 @@ void World<Real>::advance_or_recover(int substeps) {
     if (last && kind == SolverKind::implicit && without_loss <= kMostSubsteps) {
       // However many substeps it takes: a cloth that is stopped in each tick would never move.
       report_.divergence->remedy = DivergenceRemedy::more_substeps;
-      solvers_.implicit.violent = true;
+      solvers_.implicit.status = ImplicitStatus::violent;
       kind = SolverKind::verlet;
       substeps = without_loss;
       attempt = -1;

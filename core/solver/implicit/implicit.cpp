@@ -146,7 +146,7 @@ bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& 
     after = energies_at(step, work.x, work.v);
     const bool sound = solved && explained(before.energies, after.energies, brought, work.credit);
     if (work.refuses && is_violent(step, before, after, brought, sound)) {
-      work.violent = true;
+      work.status = ImplicitStatus::violent;
       return false;
     }
     if (sound) return true;
@@ -276,7 +276,7 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
   take_hands(step);
   for (typename ImplicitWorkspace<Real>::System& system : work.systems)
     std::visit([&](auto& s) { s.set_pinned(state.inverse_mass); }, system);
-  work.unsolved = work.violent = work.touching = false;
+  work.status = ImplicitStatus::done;
   see_velocities(state.v, grabs);
   for (int s = 0; s < substeps; ++s) {
     stop_point();
@@ -284,18 +284,23 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     const EnergyReading before = reading;
     double brought = 0;
     const Real end = static_cast<Real>(s + 1) / count;
-    if (!solve_soundly(step, begin, end, before, reading, brought)) work.unsolved = true;
-    if (work.violent) return result;
+    const bool solved = solve_soundly(step, begin, end, before, reading, brought);
+    if (given_up(work.status)) return result;
+    if (!solved) work.status = ImplicitStatus::unsolved;
     result.damped_substeps += step.damped ? 1 : 0;
     result.work += brought;
     if (step.metered) collision.meter->add(step.flows);
     finish_forces(step);
-    work.touching = work.refuses && moves_far(step, collision);
-    if (work.touching) return result;
+    if (work.refuses && moves_far(step, collision)) {
+      work.status = ImplicitStatus::touching;
+      return result;
+    }
     result.blow_up = move(step, collision);
     if (result.blow_up) return result;
-    work.touching = work.refuses && collision.touches(state);
-    if (work.touching) return result;
+    if (work.refuses && collision.touches(state)) {
+      work.status = ImplicitStatus::touching;
+      return result;
+    }
     if (!collision.empty()) reading = energies_at(step, state.x, state.v);
   }
   work.end_x = state.x;

@@ -14,6 +14,7 @@
 #include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/element_system.h"
 #include "core/solver/implicit/grid_system.h"
+#include "core/solver/implicit/status.h"
 #include "core/solver/verlet.h"
 
 // The implicit solver.
@@ -67,14 +68,12 @@ struct ImplicitWorkspace {
   std::size_t hand_count = 0;
   std::vector<double> starts;  ///< of each part's first linear system in a substep
   GridVector<Real> residual, step, direction, product, preconditioned;
-  double last_dt = 0;           ///< [s]; 0: no history
-  double credit = 0;            ///< recently lost energy that may return [J]
-  bool unsolved = false;        ///< a linear system of the last tick was not solved
-  bool refuses = false;         ///< the coming tick ends if it is violent or touches
-  bool violent = false;         ///< the last tick ended for violent motion
-  bool touching = false;        ///< the last tick ended for contact
-  double violent_energy = 0;    ///< least energy of a violent substep [J]
-  double far_displacement = 0;  ///< see moves_far() [m]
+  double last_dt = 0;    ///< [s]; 0: no history
+  double credit = 0;     ///< recently lost energy that may return [J]
+  bool refuses = false;  ///< the coming tick ends if it is violent or touches
+  ImplicitStatus status = ImplicitStatus::done;  ///< of the last tick
+  double violent_energy = 0;                     ///< least energy of a violent substep [J]
+  double far_displacement = 0;                   ///< see moves_far() [m]
 
   void prepare(const ClothModel<Real>& model);
 
