@@ -10,8 +10,8 @@ import type { Reach } from './reach.js';
 const MOST_LOOKED_AT = 8; // hands whose targets are looked for behind cloth; it takes a ray each
 
 /**
- * The hands in the cloth as they are drawn: the own ones at their pointers, others as in the shown
- * frame.
+ * The hands in the cloth as they are drawn: the own ones at their pointers, others as the playback
+ * shows them.
  * @param grabs of all viewers, as the server last told
  * @param own   by the numbers of their pointers
  */

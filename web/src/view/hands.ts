@@ -44,7 +44,7 @@ export function owner_of({ id, viewer }: Grab, who: Viewer | undefined) {
 export class Hands {
   readonly group = new Group();
   private marks = new Map<string, HandMark>();
-  /** Kept for the next hand: with the last mark of its kind a program would go, and be made anew in the middle of a grasp. */
+  /** Kept for the next hand: with the last mark a program would go, and be made anew in the next grasp. */
   private spare: HandMark[] = [];
   shown: Hand[] = [];
 
@@ -61,12 +61,12 @@ export class Hands {
       this.spare.push(mark);
       this.marks.delete(name);
     }
-    while (this.spare.length > MOST_SPARE) this.spare.pop()?.dispose();
     for (const hand of hands) {
       const mark = this.marks.get(hand.key) ?? this.spare.pop() ?? this.make();
       this.marks.set(hand.key, mark);
       mark.update(hand, camera, width, height);
     }
+    while (this.spare.length > MOST_SPARE) this.spare.pop()?.dispose();
   }
 
   private make(): HandMark {
@@ -85,21 +85,21 @@ class HandMark {
   private force: number | null = null; // as written [N]
   private label_width = 0; // of what is written; 0: not measured yet [pixels]
 
-  constructor(labels: HTMLElement) {
+  constructor(private labels: HTMLElement) {
     for (const mark of this.parts) this.group.add(mark.group);
     this.label.className = 'name';
-    labels.append(this.label);
-    this.hide();
+    this.group.visible = false;
   }
 
-  /** Until the next update; what it said is forgotten. */
+  /** Until the next update; its force is forgotten. */
   hide(): void {
     this.group.visible = false;
-    this.label.hidden = true;
+    this.label.remove();
     this.force = null;
   }
 
   update(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
+    if (!this.group.visible) this.labels.append(this.label);
     this.group.visible = true;
     this.line.set([hand.held, hand.target], width, height);
     this.held.set(hand.held, camera, height);

@@ -36,6 +36,7 @@ export class Stage {
   private exposure: Exposure;
   private exposed = 0; // pictures in the mean that is shown
   private completing: Promise<void> | null = null;
+  private camera: PerspectiveCamera | null = null; // of the pictures; none before the first one
   /** Whether reflections and shadows are there. */
   lit = false;
   private room: WebGLRenderTarget | null = null; // that surfaces reflect
@@ -60,6 +61,7 @@ export class Stage {
     canvas.addEventListener('webglcontextrestored', () => {
       if (this.room) this.make_room();
       if (this.lit) this.light_up(true);
+      if (this.camera) this.renderer.compile(this.scene, this.camera);
       heard.lost(false);
     });
   }
@@ -138,15 +140,16 @@ export class Stage {
   }
 
   /**
-   * Prepares reflections and shadows beside the pictures that are drawn meanwhile, and adds them,
-   * unless the light stays simple. Call it when a first picture is on the screen.
+   * Prepares programs, and unless the light stays simple reflections and shadows, beside the
+   * pictures that are drawn meanwhile, and adds them. Call it when a first picture is on the screen.
    */
   complete(camera: PerspectiveCamera): Promise<void> {
+    this.camera = camera;
     this.completing ??= this.simple ? this.prepare_simple(camera) : this.prepare(camera);
     return this.completing;
   }
 
-  /** Programs of what is not seen yet, as the marks of a hand. */
+  /** Makes the programs of what is not seen yet, such as marks of hands. */
   private async prepare_simple(camera: PerspectiveCamera): Promise<void> {
     await next_task();
     this.renderer.compile(this.scene, camera);

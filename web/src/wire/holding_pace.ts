@@ -6,8 +6,8 @@ const MEASURED_TIME = 0.2; // over which the distance to the newest frame is ave
 const AGE_TIME = 1; // over which the newest frame's age is averaged [s]
 const CORRECTION = 4; // of the speed by a second too far behind [1/s]
 const MOST_CORRECTION = 0.25;
-const COMING_CORRECTION = 20; // the same when a hand has just taken hold [1/s]
-const MOST_COMING_CORRECTION = 1;
+const HURRY_CORRECTION = 20; // the same when a hand has just taken hold [1/s]
+const MOST_HURRY_CORRECTION = 1;
 const BRAKING_TIME = 0.008; // in which the picture halts before the newest frame [s]
 const NEAR_ENOUGH = 1e-4; // to the newest frame to be called there [s]
 
@@ -28,7 +28,7 @@ export class HoldingPace {
   private interval = 1 / 60; // between frames [s]
   private behind: number | null = null; // mean distance to the newest frame [s]
   private age = 0; // mean of the newest frame since its earliest possible arrival [s]
-  private coming = false; // from where the picture was without a hand
+  private hurries = false; // until the picture is at its place behind the newest frame
 
   /**
    * @param delay    from the earliest possible arrival of the frame before to this one's arrival [s]
@@ -50,7 +50,7 @@ export class HoldingPace {
 
   /** A hand takes hold: what it does is to be seen soon, so the picture hurries to its place. */
   take_hold(): void {
-    this.coming = true;
+    this.hurries = true;
   }
 
   /** Looks at a picture before it goes on. @param age of the newest frame [s] */
@@ -69,15 +69,21 @@ export class HoldingPace {
   /** By how much the picture goes on in some time [s]. @param behind the newest frame now [s] */
   step(elapsed: number, behind: number): number {
     if (behind < NEAR_ENOUGH) return behind;
+    if (this.hurries && this.lateness(behind) <= 0) {
+      this.hurries = false;
+      this.behind = this.wanted;
+    }
     return Math.min(elapsed * this.speed(behind), behind * (1 - Math.exp(-elapsed / BRAKING_TIME)));
   }
 
-  /** Of the picture, by the server's. */
+  /** By how much the picture is farther behind than its place at this moment of a tick may be [s]. */
+  private lateness(behind: number): number {
+    return behind - this.wanted - this.interval / 2;
+  }
+
+  /** Of the picture, as a factor of the natural speed. */
   private speed(behind: number): number {
-    const late = behind - this.wanted - this.interval / 2;
-    if (this.coming && late > 0) return 1 + Math.min(MOST_COMING_CORRECTION, COMING_CORRECTION * late);
-    if (this.coming) this.behind = this.wanted;
-    this.coming = false;
+    if (this.hurries) return 1 + Math.min(MOST_HURRY_CORRECTION, HURRY_CORRECTION * this.lateness(behind));
     const excess = CORRECTION * ((this.behind ?? behind) - this.wanted);
     return 1 + Math.min(MOST_CORRECTION, Math.max(-MOST_CORRECTION, excess));
   }

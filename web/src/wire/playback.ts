@@ -57,7 +57,7 @@ export class Playback {
   }
 
   /**
-   * Updates positions and grabs to the moment to show; tells whether they changed.
+   * Updates positions and grabs to the moment to show, with hands that come after it; tells whether they changed.
    * @param now   client's clock [s]
    * @param holds whether this viewer has a hand in the cloth
    */
@@ -79,7 +79,7 @@ export class Playback {
     if (this.shown_time === before && !this.renewed) return false;
     this.renewed = false;
     this.show();
-    this.add_new_hands(newest);
+    this.add_new_hands();
     return true;
   }
 
@@ -112,10 +112,11 @@ export class Playback {
     return Math.min(this.shown_time + elapsed * rate, newest.serverTime);
   }
 
-  /** A hand is seen as soon as it is told of, though the cloth is shown as it was a little before. */
-  private add_new_hands(newest: Frame): void {
-    const shown = new Set(this.grabs.map(({ id }) => id));
-    this.grabs = [...this.grabs, ...newest.grabs.filter(({ id }) => !shown.has(id))];
+  /** A hand is seen as soon as it is told of: it waits where it begins until the picture has come to that moment. */
+  private add_new_hands(): void {
+    const grabs = new Map(this.grabs.map((grab) => [grab.id, grab]));
+    for (const frame of this.frames) for (const grab of frame.grabs) if (!grabs.has(grab.id)) grabs.set(grab.id, grab);
+    if (grabs.size > this.grabs.length) this.grabs = [...grabs.values()];
   }
 
   private show(): void {
