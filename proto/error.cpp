@@ -72,10 +72,13 @@ Error range_error(std::string field, double value, Range range) {
 Error word_error(std::string field, std::string_view value, std::vector<std::string> allowed) {
   std::string list;
   for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
-  Error error = make_error(ErrorCode::unknown_value, field + " must be one of " + list);
+  Error error =
+      make_error(ErrorCode::unknown_value,
+                 allowed.empty() ? field + " must be one of those that are there; there are none"
+                                 : field + " must be one of " + list);
   error.field = std::move(field);
   error.value = quoted_value(value);
-  error.limit = Limit{{}, {}, {}, std::move(allowed)};
+  if (!allowed.empty()) error.limit = Limit{{}, {}, {}, std::move(allowed)};
   return error;
 }
 

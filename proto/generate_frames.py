@@ -7,7 +7,6 @@ from generate_python import WIDTH
 
 HEAD = "Written by proto/generate.py from proto/frames. Do not edit."
 BESIDE = "What a frame has beside times and positions."
-NOTHING = "2**32 - 1"  # where a list's place could stand
 
 # --- words ---
 
@@ -21,12 +20,18 @@ def numbers(kind):
     return int(kind[4:]) if kind.startswith("f32x") else 0
 
 
+def power_text(value):
+    return "2³² − 1" if value == 2**32 - 1 else str(value)
+
+
 def sentence(text):
     return text[:1].upper() + text[1:] + "." if text else ""
 
 
-def noted(field):
-    return field["meaning"] + unit_text(field)
+def with_unit(field):
+    """What a field means in a client."""
+    unknown = "; a number, if this client does not know its meaning" if field["type"] == "word" else ""
+    return field["meaning"] + unknown + unit_text(field)
 
 
 def field_text(field):
@@ -36,8 +41,10 @@ def field_text(field):
         told.insert(0, "1 or 0")
     if kind == "word":
         told.insert(0, ", ".join(f"{number} {word}" for number, word in enumerate(field["words"])))
+    if kind == "word":
+        told.append("skip others")
     if kind == "collider_or_none":
-        told.append("none is 2³² − 1")
+        told.append(f"none: {power_text(field['none'])}")
     name = field["name"].replace("_", " ")
     wire = f"f32×{numbers(kind)}" if numbers(kind) else "f32" if kind == "f32" else "u32"
     return f"{wire} {name}" + (f" ({'; '.join(told)})" if told else "") + unit_text(field)
@@ -90,7 +97,7 @@ def script_declarations(frame):
         sample = part["sample"]
         yield from ("", f"/** One for each {sample['each']}. */", f"export interface {sample['name']} {{")
         for field in sample["fields"]:
-            yield from member(camel(field["name"]), script_type(field), noted(field))
+            yield from member(camel(field["name"]), script_type(field), with_unit(field))
         yield "}"
     yield from ("", f"/** {BESIDE} */", "export interface FrameParts {", "  flags: number;")
     for flag in frame["flags"]:
@@ -112,8 +119,9 @@ def script_value(field):
         return f"readNumber(view, {at})"
     if kind == "word":
         return f"readWord(view, {at}, {field['words']!r})"
-    place = f"view.getUint32({at}, true)"
-    return {"u32": place, "truth": f"{place} !== 0", "collider_or_none": f"readPlace(view, {at})"}[kind]
+    if kind == "collider_or_none":
+        return f"readPlace(view, {at}, {field['none']})"
+    return f"view.getUint32({at}, true)" + (" !== 0" if kind == "truth" else "")
 
 
 def script_reader(frame):
@@ -148,10 +156,13 @@ def python_type(field):
 
 def python_line(name, kind, note):
     note = note.replace("`", "")
-    return f"    {name}: {kind}" + (f"  # {note}" if note else "")
+    line = f"    {name}: {kind}"
+    if len(line) + len(note) + 4 > WIDTH:
+        return f"    # {note}\n{line}"
+    return line + (f"  # {note}" if note else "")
 
 
-def held(part):
+def class_and_fields(part):
     """The class of a list's entries and their fields: without the key, by which a dict has them."""
     sample, keyed = part["sample"], part.get("keyed", False)
     name = sample["name"].removesuffix("Sample") if keyed else sample["name"]
@@ -159,7 +170,7 @@ def held(part):
 
 
 def held_type(part):
-    name, fields = held(part)
+    name, fields = class_and_fields(part)
     if not part.get("keyed"):
         return f"tuple[{name}, ...]"
     return f"dict[int, {python_type(fields[0]) if len(fields) == 1 else name}]"
@@ -175,7 +186,7 @@ def python_value(field, place):
         return f"({words})[e[{place}]] if e[{place}] < {len(field['words'])} else e[{place}]"
     value = f"e[{place}]"
     if kind == "collider_or_none":
-        return f"None if {value} == NO_COLLIDER else {value}"
+        return f"None if {value} == {field['none']} else {value}"
     return f"bool({value})" if kind == "truth" else value
 
 
@@ -185,14 +196,14 @@ def python_entry(part):
     for field in part["sample"]["fields"]:
         places[field["name"]] = place
         place += numbers(field["type"]) or 1
-    name, fields = held(part)
+    name, fields = class_and_fields(part)
     values = [python_value(field, places[field["name"]]) for field in fields]
     if not part.get("keyed"):
         return f"{name}({', '.join(values)})"
     return f"(e[0], {values[0]})" if len(values) == 1 else f"(e[0], {name}({', '.join(values)}))"
 
 
-def form(part):
+def struct_format(part):
     """The format of an entry for `struct`."""
     kinds = "".join("f" * (numbers(f["type"]) or 1) if f["type"][0] == "f" else "I" for f in part["sample"]["fields"])
     return "<" + re.sub(r"(.)\1+", lambda found: f"{len(found[0])}{found[1]}", kinds)
@@ -200,25 +211,27 @@ def form(part):
 
 def python_parts(frame):
     yield from (f'"""{BESIDE} {HEAD}"""', "", "from __future__ import annotations", "")
-    yield from ("from dataclasses import dataclass", "from struct import Struct")
+    yield from ("from dataclasses import dataclass, field", "from struct import Struct")
     yield "from typing import TYPE_CHECKING, Any"
-    yield from ("", "if TYPE_CHECKING:", "    from .samples import Floats", "", f"NO_COLLIDER = {NOTHING}")
+    yield from ("", "if TYPE_CHECKING:", "    from .samples import Floats")
     for part in frame["lists"]:
-        name, fields = held(part)
+        name, fields = class_and_fields(part)
         if len(fields) == 1:
             continue
         yield from ("", "", "@dataclass(frozen=True)", f"class {name}:")
         yield from (f'    """One for each {part["sample"]["each"]}."""', "")
-        yield from (python_line(field["name"], python_type(field), noted(field)) for field in fields)
-    yield from ("", "", "@dataclass(frozen=True)", "class FrameParts:", f'    """{BESIDE}"""')
+        yield from (python_line(field["name"], python_type(field), with_unit(field)) for field in fields)
+    yield from ("", "", "@dataclass(frozen=True, kw_only=True)", "class FrameParts:", f'    """{BESIDE}"""')
     yield from ("", "    flags: int")
     for part in frame["lists"]:
         key = part["sample"]["fields"][0]
         keyed = ["by " + ", ".join(filter(None, (key["name"], key["meaning"])))] if part.get("keyed") else []
-        yield python_line(part["name"], held_type(part), "; ".join(filter(None, [*keyed, part["note"]])))
+        usual = "field(default_factory=dict)" if part.get("keyed") else "()"
+        note = "; ".join(filter(None, [*keyed, part["note"]]))
+        yield python_line(part["name"], f"{held_type(part)} = {usual}", note)
     for part in frame["arrays"]:
         note = f"one row of 3 per vertex [{part['unit']}], {part['note']}"
-        yield python_line(part["name"], "Floats | None", note)
+        yield python_line(part["name"], "Floats | None = None", note)
     for flag in frame["flags"]:
         yield from ("", "    @property", f"    def {flag['name']}(self) -> bool:")
         yield f'        """{sentence(flag["meaning"])}"""'
@@ -227,7 +240,7 @@ def python_parts(frame):
     yield "LISTS: dict[str, tuple[int, Struct, Any, Any]] = {"
     for part in frame["lists"]:
         kind = "dict" if part.get("keyed") else "tuple"
-        parts = [str(part["kind"]), f'Struct("{form(part)}")', f"lambda e: {python_entry(part)}", kind]
+        parts = [str(part["kind"]), f'Struct("{struct_format(part)}")', f"lambda e: {python_entry(part)}", kind]
         line = f'    "{part["name"]}": ({", ".join(parts)}),'
         if len(line) <= WIDTH:
             yield line

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string_view>
 #include <type_traits>
 
 #include "core/cloth/fabric_presets.h"
@@ -229,7 +230,8 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
   visit_fields(def, [&](const std::string& path, const FieldInfo& info, auto& value) {
     if (found || wanted != path + info.name) return;
     found = true;
-    parse_field(path, info, text, value);
+    const std::string as_given = key.substr(0, key.size() - std::string_view(info.name).size());
+    parse_field(as_given, info, text, value);
   });
   if (!found) throw unknown_key(def, key);
   // The guard belongs to Weft's contact: the seed's own self-contact replaces it.

@@ -10,13 +10,14 @@
 #include "proto/field.h"
 #include "proto/types.h"
 
-// The binary message `frame`: positions of the vertices, and lists of what else is so at its tick.
-// README.md section 6. Flags and lists are described once, here: encoder and decoder walk the
-// descriptions, and generate.py writes the decoders' parts of the clients and the page's tables of
-// them. The walker of a list's entries has, beside `required`,
+// The binary message `frame`: positions of the vertices, and lists of hands, contacts and the like
+// at its tick. README.md section 6. Flags, lists and arrays are described once, here: encoder and
+// decoder walk the descriptions, and generate.py writes the clients' readers and the page's tables
+// of them; positions and the key bit, which decide how to decode, the clients know themselves. The
+// walker of a list's entries has, beside `required`,
 //
 //   truth(Field, value)             of 32 bits, 0 or 1
-//   collider_or_none(Field, value)  a place in the list of `mesh`, or kNoCollider
+//   collider_or_none(Field, value)  a place in `colliders` of `mesh`, or kNoCollider
 
 namespace weft::proto {
 
@@ -112,7 +113,7 @@ struct PoseSample {
   static constexpr const char* kName = "PoseSample";
   static constexpr const char* kEach = "collider that is not as defined";
   static void describe(auto& io, auto& pose) {
-    io.required(Field{"collider", "its place in the list of `mesh`"}, pose.collider);
+    io.required(Field{"collider", "its place in `colliders` of `mesh`"}, pose.collider);
     io.required(Field{"position", "of its pivot", {}, "m"}, pose.position);
     io.required(Field{"rotation", "unit quaternion x y z w"}, pose.rotation);
   }
@@ -135,7 +136,7 @@ struct ContactSample {
   static constexpr const char* kEach = "contact of the cloth";
   static void describe(auto& io, auto& contact) {
     io.collider_or_none(
-        Field{"collider", "the other side's place in the list of `mesh`; none: cloth"},
+        Field{"collider", "the other side's place in `colliders` of `mesh`; none for cloth"},
         contact.collider);
     io.required(Field{"particle", "of the cloth, with the largest weight"}, contact.particle);
     io.required(Field{"point", "of the cloth's mid-surface", {}, "m"}, contact.point);
@@ -160,10 +161,10 @@ struct ReactionSample {
   bool operator==(const ReactionSample&) const = default;
 
   static constexpr const char* kName = "ReactionSample";
-  static constexpr const char* kEach = "force on a support of the cloth";
+  static constexpr const char* kEach = "pin or collider that bears the cloth";
   static void describe(auto& io, auto& reaction) {
-    io.required(Field{"of", "whose it is; skip others"}, reaction.of);
-    io.required(Field{"id", "of the pin, or the collider's place in the list of `mesh`"},
+    io.required(Field{"of", "whose it is"}, reaction.of);
+    io.required(Field{"id", "of the pin, or the collider's place in `colliders` of `mesh`"},
                 reaction.id);
     io.required(Field{"force", "of a pin on the cloth, of the cloth on a collider", {}, "N"},
                 reaction.force);
@@ -186,8 +187,9 @@ struct GripperSample {
   static constexpr const char* kName = "GripperSample";
   static constexpr const char* kEach = "gripper";
   static void describe(auto& io, auto& gripper) {
-    io.required(Field{"jaw", "its left jaw's place in the list of `mesh`; the right one follows"},
-                gripper.jaw);
+    io.required(
+        Field{"jaw", "its left jaw's place in `colliders` of `mesh`; the right one follows"},
+        gripper.jaw);
     io.truth(Field{"gripping", "it presses something"}, gripper.gripping);
     io.required(Field{"position", "of its middle", {}, "m"}, gripper.position);
     io.required(Field{"rotation", "from its definition, unit quaternion x y z w"},
@@ -220,11 +222,14 @@ template <class AnyFrame, class Visitor>
 void visit_lists(AnyFrame& frame, Visitor&& visit) {
   visit(FramePart{kGrabs, "grabs"}, frame.grabs);
   visit(FramePart{kApplied, "applied", "", true}, frame.applied);
-  visit(FramePart{kPoses, "poses", "", true}, frame.poses);
-  visit(FramePart{kContacts, "contacts", "if `view` or `observe` asked for them"}, frame.contacts);
-  visit(FramePart{kReactions, "reactions", "if `view` or `observe` asked for them"},
+  visit(FramePart{kPoses, "poses", "its point p is at position + rotation (p - pivot)", true},
+        frame.poses);
+  visit(FramePart{kContacts, "contacts", "if `view` or `observe` asked for them; as in `query`"},
+        frame.contacts);
+  visit(FramePart{kReactions, "reactions", "if `view` or `observe` asked for them; as in `query`"},
         frame.reactions);
-  visit(FramePart{kGrippers, "grippers", "if `observe` asked for them"}, frame.grippers);
+  visit(FramePart{kGrippers, "grippers", "if `observe` asked for them; as in `query`"},
+        frame.grippers);
 }
 
 /// Passes each array beside the positions, in the order of the message; they follow the lists.

@@ -9,7 +9,7 @@ export function tokenOf(link) {
 }
 
 /**
- * The address of a server's socket; `given` may be that of its page.
+ * The address of a server's socket; `given` may be that of its page, with `#room=…` for a room.
  * @param {string} given
  * @param {'socket' | 'http'} [mesh]  where the mesh is to come from
  */
@@ -23,9 +23,11 @@ export function socketAddress(given, mesh) {
   }
   const protocol = SOCKETS.get(url.protocol);
   if (!protocol) throw new TypeError(`'${given}' is no address of a server: ${wanted}`);
+  const room = new URLSearchParams(url.hash.slice(1)).get('room'); // as the page's links name it
   url.protocol = protocol;
   url.hash = '';
   if (url.pathname === '/') url.pathname = '/ws';
+  if (room && url.pathname === '/ws') url.pathname = `/ws/${encodeURIComponent(room)}`;
   if (mesh === 'http') url.searchParams.set('mesh', 'http');
   return url;
 }

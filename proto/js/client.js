@@ -193,7 +193,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   mute(viewer, options = {}, call) {
-    return this.request('mute', { viewer, ...options }, call);
+    return this.request('mute', { viewer, ...known('mute', options) }, call);
   }
 
   /**
@@ -203,7 +203,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   giveHand(viewer, options = {}, call) {
-    return this.request('give_hand', { viewer, ...options }, call);
+    return this.request('give_hand', { viewer, ...known('give_hand', options) }, call);
   }
 
   /**
@@ -212,7 +212,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   presence(where, call) {
-    return this.request('presence', where, call);
+    return this.request('presence', known('presence', where), call);
   }
 
   /**
@@ -230,7 +230,7 @@ export class WeftClient extends Session {
    * @param {Call} [call]
    */
   lead(options = {}, call) {
-    return this.request('lead', options, call);
+    return this.request('lead', known('lead', options), call);
   }
 
   /**

@@ -53,6 +53,7 @@ export class Connection extends Emitter {
   constructor(url, { WebSocket, timers, random, reconnect }) {
     super();
     this.#url = url;
+    if (!WebSocket) throw new TypeError('no WebSocket here: pass { WebSocket } of the package ws');
     this.#WebSocket = WebSocket;
     this.#timers = timers;
     this.#random = random;

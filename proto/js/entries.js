@@ -7,8 +7,6 @@ import { demand, readFloats } from './bytes.js';
  * @typedef {(kind: number) => Section | undefined} Find
  */
 
-const NO_COLLIDER = 0xffffffff;
-
 /**
  * @template Entry
  * @param {Section | undefined} section  absent: the list is empty
@@ -68,11 +66,12 @@ export function readWord(view, at, words) {
 }
 
 /**
- * A collider's place in its list, or null.
+ * A place in a list, or null.
  * @param {DataView} view
  * @param {number} at
+ * @param {number} none  stands for none
  */
-export function readPlace(view, at) {
+export function readPlace(view, at, none) {
   const place = view.getUint32(at, true);
-  return place === NO_COLLIDER ? null : place;
+  return place === none ? null : place;
 }

@@ -22,7 +22,7 @@ export interface AppliedCommand {
 
 /** One for each collider that is not as defined. */
 export interface PoseSample {
-  /** Its place in the list of `mesh`. */
+  /** Its place in `colliders` of `mesh`. */
   collider: number;
   /** Of its pivot [m]. */
   position: number[];
@@ -32,7 +32,7 @@ export interface PoseSample {
 
 /** One for each contact of the cloth. */
 export interface ContactSample {
-  /** The other side's place in the list of `mesh`; none: cloth. */
+  /** The other side's place in `colliders` of `mesh`; none for cloth. */
   collider: number | null;
   /** Of the cloth, with the largest weight. */
   particle: number;
@@ -48,11 +48,11 @@ export interface ContactSample {
   friction: number[];
 }
 
-/** One for each force on a support of the cloth. */
+/** One for each pin or collider that bears the cloth. */
 export interface ReactionSample {
-  /** Whose it is; skip others. */
+  /** Whose it is; a number, if this client does not know its meaning. */
   of: 'pin' | 'collider' | number;
-  /** Of the pin, or the collider's place in the list of `mesh`. */
+  /** Of the pin, or the collider's place in `colliders` of `mesh`. */
   id: number;
   /** Of a pin on the cloth, of the cloth on a collider [N]. */
   force: number[];
@@ -60,7 +60,7 @@ export interface ReactionSample {
 
 /** One for each gripper. */
 export interface GripperSample {
-  /** Its left jaw's place in the list of `mesh`; the right one follows. */
+  /** Its left jaw's place in `colliders` of `mesh`; the right one follows. */
   jaw: number;
   /** It presses something. */
   gripping: boolean;
@@ -91,12 +91,13 @@ export interface FrameParts {
   observed: boolean;
   grabs: GrabSample[];
   applied: AppliedCommand[];
+  /** Its point p is at position + rotation (p - pivot). */
   poses: PoseSample[];
-  /** If `view` or `observe` asked for them. */
+  /** If `view` or `observe` asked for them; as in `query`. */
   contacts: ContactSample[];
-  /** If `view` or `observe` asked for them. */
+  /** If `view` or `observe` asked for them; as in `query`. */
   reactions: ReactionSample[];
-  /** If `observe` asked for them. */
+  /** If `observe` asked for them; as in `query`. */
   grippers: GripperSample[];
   /** Three values per vertex [m/s], if `observe` asked for them. */
   velocities: Float32Array | null;

@@ -2,7 +2,7 @@
 // specification; messages.d.ts has the types of all messages.
 //
 //   import { WeftClient } from './index.js';
-//   const weft = new WeftClient('ws://127.0.0.1:8080/ws');   // in Node 18: , { WebSocket }
+//   const weft = new WeftClient('ws://127.0.0.1:8080/ws');   // Node 20 and older: , { WebSocket } of ws
 //   await weft.connect();
 //   const hit = await weft.pick([0, 1, 3], [0, 0, -1]);
 //   if (hit) {

@@ -34,7 +34,7 @@ export function readParts(flags, view, find, vertices) {
       rotation: readVector(view, at + 16, 4),
     })),
     contacts: readList(find(5), 52, (at) => ({
-      collider: readPlace(view, at),
+      collider: readPlace(view, at, 4294967295),
       particle: view.getUint32(at + 4, true),
       point: readVector(view, at + 8, 3),
       normal: readVector(view, at + 20, 3),

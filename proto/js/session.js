@@ -30,7 +30,7 @@ import { ClockEstimate, LatencyMeter } from './timing.js';
  * @typedef {object} Events
  * @property {import('./messages.js').Welcome} welcome  after each (re)connection
  * @property {Mesh} mesh
- * @property {import('./messages.js').Frame} frame      of the present mesh, decoded and acknowledged
+ * @property {import('./messages.js').Frame} frame      of the present mesh, decoded
  * @property {import('./messages.js').State} state
  * @property {import('./messages.js').Roster} roster
  * @property {import('./messages.js').PresenceNews} presence  of others and of this viewer

@@ -38,7 +38,9 @@ class SampleDocument {
     add(field, "word", sizeof(Enum))["words"] = kWords<Enum>;
   }
   void truth(const Field& field, std::uint32_t) { add(field, "truth", 4); }
-  void collider_or_none(const Field& field, std::uint32_t) { add(field, "collider_or_none", 4); }
+  void collider_or_none(const Field& field, std::uint32_t) {
+    add(field, "collider_or_none", 4)["none"] = kNoCollider;
+  }
 
   /// Of what was told so far.
   std::size_t bytes() const { return bytes_; }

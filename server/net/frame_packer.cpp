@@ -39,6 +39,9 @@ std::size_t FramePacker::kept_frames() const {
 
 SharedBytes FramePacker::pack(const SharedBytes& frame, PackedStream& stream) {
   if (stream.error <= 0 || frame.size() < proto::kFrameBytes) return frame;
+  // What a script observes is told to the bit.
+  const auto flags = proto::read_at<proto::BinaryHeader>(bytes_of(frame), 0).flags;
+  if ((flags & proto::kFrameObserved) != 0) return frame;
   const auto fields = proto::read_at<FrameFields>(bytes_of(frame), proto::kCommonBytes);
   const bool fits =
       mesh_.order && fields.epoch == mesh_.epoch && fields.vertices == mesh_.order->size();

@@ -73,7 +73,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void join(const Grant& grant);
   void await_token();
   void on_first(std::string_view text);
-  void refuse_entry(const std::optional<proto::Id>& id);
+  void refuse_entry(const std::optional<proto::Id>& id, const char* why);
   void read();
   void on_message();
   void on_text(std::string_view text);
@@ -179,16 +179,17 @@ void Session::on_first(std::string_view text) {
     return put(*request);
   }
   const std::optional<proto::Id> id = request ? request->id : request.error().id;
+  const char* const why = hello && hello->token ? "this token is not known" : "a token is needed";
   pauses_ = true;
   watch_.expires_after(duration_of(kWrongTokenSeconds));
-  watch_.async_wait([self = shared_from_this(), id](error_code error) {
-    if (!error) self->refuse_entry(id);
+  watch_.async_wait([self = shared_from_this(), id, why](error_code error) {
+    if (!error) self->refuse_entry(id, why);
   });
 }
 
-void Session::refuse_entry(const std::optional<proto::Id>& id) {
+void Session::refuse_entry(const std::optional<proto::Id>& id, const char* why) {
   refuse(unknown_token(true, id));
-  close_by_policy(kCloseToken, "a token is needed");
+  close_by_policy(kCloseToken, why);
 }
 
 void Session::read() {

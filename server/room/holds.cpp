@@ -66,7 +66,8 @@ std::optional<proto::Error> check_new_hand(const Holds& holds, ViewerId viewer, 
                          "drag", drag, "end it or use another number");
   }
   if (own >= limits.drags_per_viewer)
-    return too_many("drags of one viewer", limits.drags_per_viewer);
+    return too_many("drags of one viewer", limits.drags_per_viewer,
+                    "end one first; with the policy one_hand a viewer has one");
   if (holds.hands().size() >= limits.drags) return too_many("drags", limits.drags);
   return std::nullopt;
 }

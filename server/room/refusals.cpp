@@ -16,9 +16,9 @@ proto::Error field_error(ErrorCode code, std::string message, const char* field,
   return error;
 }
 
-proto::Error too_many(const char* what, std::size_t limit) {
+proto::Error too_many(const char* what, std::size_t limit, std::string hint) {
   proto::Error error = make_error(ErrorCode::too_many,
-                                  "at most " + std::to_string(limit) + " " + what, "end one first");
+                                  "at most " + std::to_string(limit) + " " + what, std::move(hint));
   proto::Limit bound;
   bound.maximum = static_cast<double>(limit);
   error.limit = bound;

@@ -18,7 +18,7 @@ proto::Error field_error(proto::ErrorCode code, std::string message, const char*
 
 /// @param what   there may be no more of, in the plural
 /// @param limit  so many may be
-proto::Error too_many(const char* what, std::size_t limit);
+proto::Error too_many(const char* what, std::size_t limit, std::string hint = "end one first");
 
 proto::Error unknown_pin(std::uint32_t pin);
 proto::Error unknown_drag(std::uint32_t drag, std::string hint = {});

@@ -61,7 +61,7 @@ bool Room::advance_wants_forces() const {
   return caller != viewers_.end() && caller->second.wants_forces;
 }
 
-/// What it observes of its last tick is shown with its result.
+/// What the advance observes of its last tick is sent with its result, not here.
 void Room::show_advanced() {
   if (order_.advance->wanted.observe && order_.advance->left == 0) return;
   const Viewer& viewer = viewers_.at(order_.advance->viewer);
@@ -92,7 +92,8 @@ proto::Error Room::stalled_error() const {
   return error;
 }
 
-/// What was observed and the answer are sent at once, so that they wake the network but once.
+/// What was observed and the answer follow each other at once, so that they seldom wake the network
+/// thread twice.
 void Room::finish_advance(const std::optional<proto::Error>& error) {
   const proto::AdvanceReply reply{world_->tick(), error ? 0 : world_->hash()};
   if (!error && order_.advance->wanted.observe) show_observation();

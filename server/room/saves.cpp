@@ -10,11 +10,14 @@ namespace weft::server {
 
 std::optional<proto::Error> Saves::check(const std::string& name, std::size_t particles) const {
   if (!saves_.contains(name) && saves_.size() >= kMostSaves)
-    return too_many("saves of a room, under other names", kMostSaves);
+    return too_many("saves of a room", kMostSaves, "save in place of one, under its name");
   std::size_t all = particles;
   for (const auto& [other, save] : saves_)
     if (other != name) all += save.world->model().mass.size();
-  if (all > kMostSavedParticles) return too_many("particles in all saves", kMostSavedParticles);
+  if (all > kMostSavedParticles) {
+    return too_many("particles in all saves", kMostSavedParticles,
+                    "save in place of one, under its name");
+  }
   return std::nullopt;
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -174,6 +175,20 @@ TEST_CASE("a cloth that travels far gets new lattices, and float32 where no boun
   fine.receive(p.packer, float_frame(n + 2, n + 2, 1));
   CHECK(fine.packed());
   CHECK(fine.key());
+}
+
+TEST_CASE("what an advance observed goes as it is, and packed frames do not notice") {
+  Packing p;
+  Receiver viewer;
+  viewer.receive(p.packer, float_frame(1, 1));
+  viewer.receive(p.packer, float_frame(2, 2));
+  const SharedBytes observed = float_frame(3, 3, 0, proto::kFrameKey | proto::kFrameObserved);
+  viewer.receive(p.packer, observed);
+  CHECK_FALSE(viewer.packed());
+  CHECK(std::ranges::equal(bytes_of(viewer.message), bytes_of(observed)));
+  viewer.receive(p.packer, float_frame(4, 4));
+  CHECK(viewer.packed());
+  CHECK(viewer.last.header.reference == 2);
 }
 
 TEST_CASE("frames of another mesh go as they are") {

@@ -53,6 +53,10 @@ TEST_CASE("a save holds no viewer's hand, restoring lets go of those there are a
 TEST_CASE("a name that nothing was saved under is refused with those that there are") {
   TestRoom t;
   t.join(1);
+  const auto none = t.say(1, name_text("restore", "b", 7));
+  CHECK(none["code"] == "unknown_save");
+  CHECK(none["message"] == "name must be one of those that are there; there are none");
+  CHECK_FALSE(none.contains("limit"));
   t.say(1, name_text("save", "a", 1));
   const auto refused = t.say(1, name_text("restore", "b", 2));
   CHECK(refused["code"] == "unknown_save");
@@ -68,6 +72,7 @@ TEST_CASE("a room keeps a bounded number of states, in place of earlier ones, of
   const auto refused = t.say(1, name_text("save", "one-more", 2));
   CHECK(refused["code"] == "too_many");
   CHECK(refused["limit"]["maximum"] == kMostSaves);
+  CHECK(refused["hint"] == "save in place of one, under its name");
   CHECK(t.say(1, name_text("save", "s0", 3))["op"] == "result");
   t.say(1, R"({"op":"load","scene":"other","id":4})");
   CHECK(t.say(1, name_text("restore", "s0", 5))["code"] == "unknown_save");

@@ -1,6 +1,6 @@
 """Addresses of servers."""
 
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs, quote, urlsplit
 
 from .errors import WeftError
 
@@ -14,7 +14,7 @@ def token_of(link: str) -> str | None:
 
 
 def socket_address(url: str) -> str:
-    """The address of a server's socket; the argument may be that of its page."""
+    """The address of a server's socket; the argument may be that of its page, with #room=… for a room."""
     scheme = {"http": "ws", "https": "wss"}
     try:
         parts = urlsplit(url)
@@ -24,4 +24,7 @@ def socket_address(url: str) -> str:
     if not known:
         raise WeftError(f"{url!r} is no address of a server: give one as ws://127.0.0.1:8080/ws, or that of its page")
     path = parts.path if parts.path not in ("", "/") else "/ws"
+    room = parse_qs(parts.fragment).get("room", [""])[0]
+    if room and path == "/ws":
+        path += "/" + quote(room, safe="")
     return parts._replace(scheme=scheme.get(parts.scheme, parts.scheme), path=path, fragment="").geturl()

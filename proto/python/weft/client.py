@@ -155,15 +155,18 @@ class Client(Queries):
         if timeout is CLIENTS:
             ticks = n if is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
+        if isinstance(observe, str):
+            raise TypeError(f"observe is a list of words, as [{observe!r}]")
         fields = without_none({"frames": frames, "observe": None if observe is None else list(observe)})
-        observed: list[Frame] = []
-        end = self.on("frame", lambda frame: observed.append(frame) if frame.observed else None)
+        if observe is None:
+            return await self.request("advance", timeout=timeout, n=n, **fields)
+        frames_told: list[Frame] = []
+        end = self.on("frame", frames_told.append)
         try:
             result = await self.request("advance", timeout=timeout, n=n, **fields)
         finally:
             end()
-        if observe is None:
-            return result
+        observed = [frame for frame in frames_told if frame.observed and frame.tick == result["tick"]]
         demand(len(observed) > 0, "what was observed did not come before the answer")
         return {**result, "observation": observed[-1]}
 

@@ -29,7 +29,10 @@ def hold_fields(hold: Hold) -> dict[str, Any]:
         return {"particle": hold}
     if isinstance(hold, Hit):
         return {"triangle": hold.triangle, "barycentric": list(hold.barycentric)}
-    assert isinstance(hold, Mapping)
+    if hold is None:
+        raise TypeError("nothing to hold: `pick` answers None where its ray misses the cloth")
+    if not isinstance(hold, Mapping):
+        raise TypeError(f"{hold!r} is no place to hold: give a particle, a hit or a dict")
     names = ("triangle", "barycentric") if "triangle" in hold else ("particle",)
     return {name: hold[name] for name in names}
 

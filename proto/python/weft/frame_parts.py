@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .samples import Floats
-
-NO_COLLIDER = 2**32 - 1
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class Pose:
 class ContactSample:
     """One for each contact of the cloth."""
 
-    collider: int | None  # the other side's place in the list of mesh; none: cloth
+    collider: int | None  # the other side's place in colliders of mesh; none for cloth
     particle: int  # of the cloth, with the largest weight
     point: tuple[float, float, float]  # of the cloth's mid-surface [m]
     normal: tuple[float, float, float]  # unit, out of the other side
@@ -46,10 +44,10 @@ class ContactSample:
 
 @dataclass(frozen=True)
 class ReactionSample:
-    """One for each force on a support of the cloth."""
+    """One for each pin or collider that bears the cloth."""
 
-    of: str | int  # whose it is; skip others
-    id: int  # of the pin, or the collider's place in the list of mesh
+    of: str | int  # whose it is; a number, if this client does not know its meaning
+    id: int  # of the pin, or the collider's place in colliders of mesh
     force: tuple[float, float, float]  # of a pin on the cloth, of the cloth on a collider [N]
 
 
@@ -57,7 +55,7 @@ class ReactionSample:
 class GripperSample:
     """One for each gripper."""
 
-    jaw: int  # its left jaw's place in the list of mesh; the right one follows
+    jaw: int  # its left jaw's place in colliders of mesh; the right one follows
     gripping: bool  # it presses something
     position: tuple[float, float, float]  # of its middle [m]
     rotation: tuple[float, float, float, float]  # from its definition, unit quaternion x y z w
@@ -67,18 +65,19 @@ class GripperSample:
     torque: tuple[float, float, float]  # the same about its middle [N m]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class FrameParts:
     """What a frame has beside times and positions."""
 
     flags: int
-    grabs: tuple[GrabSample, ...]
-    applied: dict[int, int]  # by viewer
-    poses: dict[int, Pose]  # by collider, its place in the list of mesh
-    contacts: tuple[ContactSample, ...]  # if view or observe asked for them
-    reactions: tuple[ReactionSample, ...]  # if view or observe asked for them
-    grippers: tuple[GripperSample, ...]  # if observe asked for them
-    velocities: Floats | None  # one row of 3 per vertex [m/s], if observe asked for them
+    grabs: tuple[GrabSample, ...] = ()
+    applied: dict[int, int] = field(default_factory=dict)  # by viewer
+    # by collider, its place in colliders of mesh; its point p is at position + rotation (p - pivot)
+    poses: dict[int, Pose] = field(default_factory=dict)
+    contacts: tuple[ContactSample, ...] = ()  # if view or observe asked for them; as in query
+    reactions: tuple[ReactionSample, ...] = ()  # if view or observe asked for them; as in query
+    grippers: tuple[GripperSample, ...] = ()  # if observe asked for them; as in query
+    velocities: Floats | None = None  # one row of 3 per vertex [m/s], if observe asked for them
 
     @property
     def key(self) -> bool:
@@ -109,7 +108,7 @@ LISTS: dict[str, tuple[int, Struct, Any, Any]] = {
     "contacts": (
         5,
         Struct("<2I11f"),
-        lambda e: ContactSample(None if e[0] == NO_COLLIDER else e[0], e[1], e[2:5], e[5:8], e[8], e[9], e[10:13]),
+        lambda e: ContactSample(None if e[0] == 4294967295 else e[0], e[1], e[2:5], e[5:8], e[8], e[9], e[10:13]),
         tuple,
     ),
     "reactions": (

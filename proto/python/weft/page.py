@@ -1,21 +1,24 @@
 """The page of a server within a notebook."""
 
 import html
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlencode, urlsplit
 
-from .address import socket_address
+from .address import socket_address, token_of
 
 
 class Page:
     """Shows a server's live page where the last value of a cell is displayed: see it and hold the cloth there.
 
-    `url` is the server's address, that of its page or its socket; the browser that shows the notebook opens it.
+    `url` is the server's address, that of its page or of a room's socket; the browser that shows the notebook opens it.
     """
 
     def __init__(self, url: str, *, height: int = 480):
         parts = urlsplit(socket_address(url))
         scheme = {"ws": "http", "wss": "https"}[parts.scheme]
-        self.url = parts._replace(scheme=scheme, path=parts.path.removesuffix("ws"), query="").geturl()
+        folder, _, room = (parts.path + "/").partition("/ws/")
+        told = {"token": token_of(url), "room": unquote(room.strip("/"))}
+        fragment = urlencode({name: value for name, value in told.items() if value})
+        self.url = parts._replace(scheme=scheme, path=folder + "/", query="", fragment=fragment).geturl()
         self.height = height  # [pixels]
 
     def _repr_html_(self) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
-from .frame_parts import FrameParts
+from .frame_parts import ContactSample, FrameParts, GrabSample, GripperSample, Pose, ReactionSample
 
 if TYPE_CHECKING:
     import numpy
@@ -38,7 +38,7 @@ class Rows(Sequence[tuple[Any, ...]]):
         return tuple(self.flat[start : start + self.width])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Frame(FrameParts):
     """Positions of the vertices at a tick."""
 

@@ -147,6 +147,14 @@ TEST_CASE("a field of a later cloth is set and refused by its place in the list"
   CHECK(def.cloths[0].columns == 5);
   CHECK(def.cloths[0].fabric.friction == 0.7);
   CHECK_THROWS_AS(set_field(def, "cloths[2].rows", "12"), DefinitionError);
+  for (const std::string key : {"cloths[0].fabric.friction", "cloths[1].rows", "fabric.shear"}) {
+    try {
+      set_field(def, key, "-7");
+      FAIL("it is refused");
+    } catch (const DefinitionError& error) {
+      CHECK(error.field == key);  // as it was given
+    }
+  }
   CHECK(refused_field([](WorldDef& d) { d.cloths[1].rows = 1; }) == "cloths[1].rows");
   CHECK(refused_field([](WorldDef& d) { d.cloths[1].fabric.shear = 1e5; }) ==
         "cloths[1].fabric.shear");

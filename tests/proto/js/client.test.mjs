@@ -51,6 +51,10 @@ test('the address of the page leads to the socket, and what is none is told with
     'https://host/': 'wss://host/ws',
     'ws://host:1': 'ws://host:1/ws',
     'wss://host/weft/ws': 'wss://host/weft/ws',
+    'http://host:1/#room=ada': 'ws://host:1/ws/ada',
+    'http://host:1/#token=x&room=ada': 'ws://host:1/ws/ada',
+    'ws://host:1/ws#room=ada': 'ws://host:1/ws/ada',
+    'ws://host:1/ws/ben#room=ada': 'ws://host:1/ws/ben',
   };
   for (const [given, wanted] of Object.entries(addresses)) {
     const client = new WeftClient(given, options);
@@ -61,6 +65,16 @@ test('the address of the page leads to the socket, and what is none is told with
   }
   for (const url of ['host:1', 'ftp://host/ws', 'ws://host:99999/ws', ''])
     assert.throws(() => new WeftClient(url, options), /ws:\/\/127\.0\.0\.1:8080\/ws/, url);
+});
+
+test('where there is no WebSocket, that is told with what to pass', () => {
+  const own = globalThis.WebSocket;
+  delete globalThis.WebSocket;
+  try {
+    assert.throws(() => new WeftClient('ws://host:1/ws'), /pass \{ WebSocket \} of the package ws/);
+  } finally {
+    if (own) globalThis.WebSocket = own;
+  }
 });
 
 /** The name that a method of the golden calls has in JavaScript. @param {string} name */

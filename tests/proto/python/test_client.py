@@ -33,14 +33,14 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
     async def test_each_call_sends_the_golden_command_with_an_id_of_its_own(self):
         self.server.answers = {
             "pick": [{"hit": None}], "hash": [{"hash": "ff"}], "query": [{"data": []}],
+            "advance": [golden.read("frame_observed.bin"), {"tick": 60}],
         }
         ids = set()
         for call in golden.read_json("client_calls.json"):
             method = getattr(self.client, call["method"])
-            try:
-                await method(*call["args"], **call["options"])
-            except weft.ProtocolError:  # this server answers without the frame that tells what was observed
-                self.assertIn("observe", call["options"])
+            result = await method(*call["args"], **call["options"])
+            if "observe" in call["options"]:
+                self.assertEqual((result["observation"].tick, result["observation"].observed), (60, True))
             sent = dict(self.server.heard[-1])
             ids.add(sent.pop("id"))
             self.assertEqual(sent, call["sends"])
@@ -155,9 +155,17 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(self.server.acks[1], weft.encode_ack(2**32 - 1))
 
     async def test_a_frame_that_an_advance_observed_is_told_and_not_acknowledged(self):
+        told = []
+        self.client.on("frame", told.append)
         await self.server.say(golden.read("frame_observed.bin"), HANDS)
         await self.server.until(lambda: len(self.server.acks) == 1)
         self.assertEqual(self.server.acks[0], weft.encode_ack(2**32 - 1))  # of the other one
+        self.assertEqual([frame.observed for frame in told], [True, False])
+
+    async def test_an_answer_without_what_was_observed_is_an_error(self):
+        self.server.answers = {"advance": [{"tick": 3}]}
+        with self.assertRaisesRegex(weft.ProtocolError, "observed"):
+            await self.client.advance(1, observe=["velocities"])
 
     async def test_frames_can_be_waited_for_by_tick_and_listed(self):
         await self.server.say(HANDS)
@@ -299,17 +307,12 @@ class JoiningTest(unittest.IsolatedAsyncioTestCase):
         with self.assertRaises(weft.ConnectionLost):
             await weft.connect(url)
 
-    async def test_the_address_of_the_page_leads_to_the_socket(self):
-        async with PlayedServer() as server:
-            page = server.url.replace("ws://", "http://").removesuffix("/ws")
-            for url in (page, page + "/", page.replace("http", "ws"), server.url):
-                async with weft.connect(url):
-                    self.assertEqual(server.socket.path, "/ws", url)
-
-    async def test_what_is_no_address_is_told_with_one_that_is(self):
-        for url in ("127.0.0.1:8080", "ftp://127.0.0.1/ws", "ws://", "ws://127.0.0.1:x/ws", "ws://127.0.0.1:99999/ws", ""):
-            with self.assertRaisesRegex(weft.WeftError, "ws://127.0.0.1:8080/ws"):
-                await weft.connect(url, timeout=1)
+    async def test_what_cannot_be_held_or_observed_is_told_before_it_is_sent(self):
+        async with PlayedServer() as server, weft.connect(server.url) as client:
+            with self.assertRaisesRegex(TypeError, "misses the cloth"):
+                client.drag(None)
+            with self.assertRaisesRegex(TypeError, "list of words"):
+                await client.advance(1, observe="grippers")
 
     async def test_a_server_that_says_nothing_is_given_up(self):
         async with PlayedServer(welcome=()) as server:
