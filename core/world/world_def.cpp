@@ -36,13 +36,22 @@ std::string text_of(const FieldInfo& info, const Value& value) {
     return text_of(value);
 }
 
+/// What may help whoever gave a key that is none.
+std::string hint_for(const std::string& key, const std::vector<std::string>& keys) {
+  for (const char* list : {"colliders", "pins", "grippers", "hands", "fans", "winds"})
+    if (key.starts_with(list)) return std::string(list) + " are set in the scene's own text alone";
+  const auto without_group = std::find_if(
+      keys.begin(), keys.end(), [&key](const std::string& k) { return k.ends_with("." + key); });
+  const std::string meant = without_group != keys.end() ? *without_group : nearest_word(key, keys);
+  return meant.empty() ? "" : "did you mean " + meant + "?";
+}
+
 DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
   std::vector<std::string> keys = {"fabric"};
   for (const FieldListing& field : list_fields(def)) keys.push_back(field.key);
   std::string all;
   for (const std::string& known : keys) all += (all.empty() ? "" : ", ") + known;
-  const std::string nearest = nearest_word(key, keys);
-  return {"key", key, "one of " + all, nearest.empty() ? "" : "did you mean " + nearest + "?"};
+  return {"key", key, "one of " + all, hint_for(key, keys)};
 }
 
 }  // namespace

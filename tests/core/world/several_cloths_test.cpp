@@ -136,6 +136,22 @@ TEST_CASE("a hand's and a pin's disc stay in their cloth") {
   CHECK(particles_in_disc(world.model(), second.first, 100.0).front() == second.first);
 }
 
+TEST_CASE("a key that is none is refused with the one that may be meant") {
+  WorldDef def = windy_world(row_wise_and_hinged());
+  const auto hint = [&def](const std::string& key) -> std::string {
+    try {
+      set_field(def, key, "1");
+    } catch (const DefinitionError& error) {
+      return error.hint;
+    }
+    return "taken";
+  };
+  CHECK(hint("wind") == "did you mean environment.wind?");
+  CHECK(hint("fabric.frction") == "did you mean fabric.friction?");
+  CHECK(hint("colliders[0].friction") == "colliders are set in the scene's own text alone");
+  CHECK(hint("zzzzzzzz").empty());
+}
+
 TEST_CASE("a field of a later cloth is set and refused by its place in the list") {
   WorldDef def = windy_world(row_wise_and_hinged());
   set_field(def, "cloths[1].rows", "12");
