@@ -102,8 +102,10 @@ std::string describe(const PinExtent& pin) {
   if (pin.asked_area == 0)
     return name + "a strip of " + number(pin.asked) + " m holds the fabric up to " +
            number(pin.held) + " m from its side" + clamped;
+  const std::string reach =
+      pin.held > 0 ? ", up to " + number(pin.held) + " m from its middle" : ": a single particle";
   return name + "a disc of " + number(pin.asked) + " m holds " + number(pin.held_area) + " m2 of " +
-         number(pin.asked_area) + ", up to " + number(pin.held) + " m from its middle" + clamped;
+         number(pin.asked_area) + reach + clamped;
 }
 
 }  // namespace
