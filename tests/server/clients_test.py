@@ -35,6 +35,19 @@ process.exit(0);
 """
 
 
+class Refusals(unittest.TestCase):
+    def test_a_script_is_told_why_the_server_does_not_let_it_in(self):
+        server = Server("--max-viewers", "1")
+        try:
+            with self.assertRaisesRegex(weft.ConnectionLost, "there is no such room; .*rooms"):
+                weft.open(server.websocket + "/nowhere")
+            with weft.open(server.websocket):
+                with self.assertRaisesRegex(weft.ConnectionLost, "at most 1 viewers; try again later"):
+                    weft.open(server.websocket)
+        finally:
+            self.assertEqual(server.stop(), 0)
+
+
 class Loops(unittest.TestCase):
     def setUp(self):
         self.server = Server("--paused", "--max-messages-per-second", str(RATE))

@@ -1,6 +1,11 @@
 """Addresses of servers."""
 
-from urllib.parse import parse_qs, quote, urlsplit
+from __future__ import annotations
+
+import json
+from urllib.error import HTTPError
+from urllib.parse import parse_qs, quote, unquote, urlencode, urlsplit
+from urllib.request import urlopen
 
 from .errors import WeftError
 
@@ -28,3 +33,29 @@ def socket_address(url: str) -> str:
     if room and path == "/ws":
         path += "/" + quote(room, safe="")
     return parts._replace(scheme=scheme.get(parts.scheme, parts.scheme), path=path, fragment="").geturl()
+
+
+def page_address(socket: str, path: str = "", query: str = "") -> tuple[str, str]:
+    """The address of a page or another resource beside a socket, and the room that the socket is of, if it names one."""
+    parts = urlsplit(socket)
+    folder, _, room = (parts.path + "/").partition("/ws/")
+    scheme = {"ws": "http", "wss": "https"}[parts.scheme]
+    address = parts._replace(scheme=scheme, path=f"{folder}/{path}", query=query, fragment="").geturl()
+    return address, unquote(room.strip("/"))
+
+
+def refusal_of(socket: str, seconds: float) -> str:
+    """Why a server refuses a socket of this address now; empty if it does not, or does not tell."""
+    _, room = page_address(socket)
+    address, _ = page_address(socket, "api/v1/connect", urlencode({"room": room}) if room else "")
+    try:
+        with urlopen(address, timeout=seconds):
+            return ""
+    except HTTPError as answer:
+        try:
+            error = json.loads(answer.read(1 << 16))["error"]
+            return "; ".join(str(error[name]) for name in ("message", "hint") if name in error)
+        except (ValueError, KeyError, TypeError, OSError):
+            return ""
+    except OSError:
+        return ""

@@ -8,10 +8,10 @@ from collections.abc import Generator
 from typing import Any
 
 from . import packages
-from .address import socket_address, token_of
+from .address import refusal_of, socket_address, token_of
 from .client import Client
 from .errors import ConnectionLost, ProtocolError
-from .timeouts import CALL_SECONDS
+from .timeouts import CALL_SECONDS, REFUSAL_SECONDS
 
 SUBPROTOCOL = "weft.v1"
 MOST_MESSAGE_BYTES = 256 * 2**20
@@ -41,7 +41,10 @@ class Connecting:
                 open_timeout=self._timeout,
                 close_timeout=self._timeout,
             )
-        except (OSError, asyncio.TimeoutError, packages.websockets.InvalidHandshake) as error:
+        except packages.websockets.InvalidHandshake as error:
+            why = await asyncio.to_thread(refusal_of, self._url, REFUSAL_SECONDS)
+            raise ConnectionLost(1006, f"no connection to {self._url}: {why or error}") from error
+        except (OSError, asyncio.TimeoutError) as error:
             raise ConnectionLost(1006, f"no connection to {self._url}: {error}") from error
         if socket.subprotocol != SUBPROTOCOL:
             await socket.close(4002)

@@ -1,9 +1,9 @@
 """The page of a server within a notebook."""
 
 import html
-from urllib.parse import unquote, urlencode, urlsplit
+from urllib.parse import urlencode
 
-from .address import socket_address, token_of
+from .address import page_address, socket_address, token_of
 
 
 class Page:
@@ -13,12 +13,10 @@ class Page:
     """
 
     def __init__(self, url: str, *, height: int = 480):
-        parts = urlsplit(socket_address(url))
-        scheme = {"ws": "http", "wss": "https"}[parts.scheme]
-        folder, _, room = (parts.path + "/").partition("/ws/")
-        told = {"token": token_of(url), "room": unquote(room.strip("/"))}
+        address, room = page_address(socket_address(url))
+        told = {"token": token_of(url), "room": room}
         fragment = urlencode({name: value for name, value in told.items() if value})
-        self.url = parts._replace(scheme=scheme, path=folder + "/", query="", fragment=fragment).geturl()
+        self.url = f"{address}#{fragment}" if fragment else address
         self.height = height  # [pixels]
 
     def _repr_html_(self) -> str:

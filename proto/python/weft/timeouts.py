@@ -4,6 +4,7 @@ import math
 
 CALL_SECONDS = 30.0  # for an answer or a frame
 LOAD_SECONDS = 300.0  # for an answer to `load`
+REFUSAL_SECONDS = 2.0  # for why a server refuses a connection
 ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for an answer to `advance`, and more for each tick
 
 # This very object as the timeout of a call means the client's `call_timeout`; so a checker sees a number there.
