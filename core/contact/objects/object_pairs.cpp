@@ -26,7 +26,9 @@ void for_each_near(const FoundFeatures<Real>& found, const FeatureBlocks<Real>& 
                    Visit&& visit) {
   for (Index n = f == 0 ? 0 : found.ends[f - 1]; n < found.ends[f]; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    visit(mesh.feature[static_cast<std::size_t>(found.hits[k])], std::sqrt(found.hits2[k]));
+    const Index feature = mesh.feature[static_cast<std::size_t>(found.hits[k])];
+    // The reach of cloth that flies apart includes what stands for no feature, however far.
+    if (feature != kNone) visit(feature, std::sqrt(found.hits2[k]));
   }
 }
 
