@@ -36,7 +36,7 @@ std::string text_of(const FieldInfo& info, const Value& value) {
     return text_of(value);
 }
 
-/// What may help whoever gave a key that is none.
+/// A hint for a key that is none.
 std::string hint_for(const std::string& key, const std::vector<std::string>& keys) {
   for (const char* list : {"colliders", "pins", "grippers", "hands", "fans", "winds"})
     if (key.starts_with(list)) return std::string(list) + " are set in the scene's own text alone";
