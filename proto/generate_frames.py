@@ -40,9 +40,8 @@ def field_text(field):
     if kind == "truth":
         told.insert(0, "1 or 0")
     if kind == "word":
-        told.insert(0, ", ".join(f"{number} {word}" for number, word in enumerate(field["words"])))
-    if kind == "word":
-        told.append("skip others")
+        words = ", ".join(f"{number} {word}" for number, word in enumerate(field["words"]))
+        told = [words, *told, "skip others"]
     if kind == "collider_or_none":
         told.append(f"none: {power_text(field['none'])}")
     name = field["name"].replace("_", " ")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from http.client import HTTPException
 from urllib.error import HTTPError
 from urllib.parse import parse_qs, quote, unquote, urlencode, urlsplit
 from urllib.request import urlopen
@@ -55,7 +56,7 @@ def refusal_of(socket: str, seconds: float) -> str:
         try:
             error = json.loads(answer.read(1 << 16))["error"]
             return "; ".join(str(error[name]) for name in ("message", "hint") if name in error)
-        except (ValueError, KeyError, TypeError, OSError):
+        except (ValueError, KeyError, TypeError, OSError, HTTPException):
             return ""
-    except OSError:
+    except (OSError, HTTPException):
         return ""

@@ -1,5 +1,6 @@
 """Which socket and which page an address leads to."""
 
+import asyncio
 import unittest
 
 import golden  # noqa: F401  (finds the package beside the tests)
@@ -33,6 +34,18 @@ class AddressTest(unittest.IsolatedAsyncioTestCase):
         for url in ("127.0.0.1:8080", "ftp://127.0.0.1/ws", "ws://", "ws://127.0.0.1:x/ws", "ws://127.0.0.1:99999/ws", ""):
             with self.assertRaisesRegex(weft.WeftError, "ws://127.0.0.1:8080/ws"):
                 await weft.connect(url, timeout=1)
+
+    async def test_a_server_that_speaks_no_http_is_a_lost_connection(self):
+        async def babble(_, writer):
+            writer.write(b"nonsense\r\n\r\n")
+            await writer.drain()
+            writer.close()
+
+        server = await asyncio.start_server(babble, "127.0.0.1", 0)
+        async with server:
+            port = server.sockets[0].getsockname()[1]
+            with self.assertRaises(weft.ConnectionLost):
+                await weft.connect(f"ws://127.0.0.1:{port}/ws", timeout=5)
 
 
 if __name__ == "__main__":
