@@ -27,17 +27,18 @@ bool touches(const GuardedPair<Real>& pair, const QuadArray<Real>& x, Real small
   return !(pair.bound > largest * std::numeric_limits<Real>::epsilon() * Real(kRoundingsOfNoGap));
 }
 
-/// Keeps pairs open that were so before and still touch: nothing tells on which side of each other
+/// Opens pairs that touch unless they were apart before: nothing tells on which side of each other
 /// their features are. What was apart once is so at any gap.
-/// @param first  number of the first new pair
+/// @param first   number of the first new pair
+/// @param unseen  these are the first pairs, and none was apart before
 template <class Real>
-void keep_touching_open(std::size_t first, const QuadArray<Real>& x, Real smallest_gap,
-                        GuardedPairs<Real>& pairs) {
+void open_touching(std::size_t first, bool unseen, const QuadArray<Real>& x, Real smallest_gap,
+                   GuardedPairs<Real>& pairs) {
   const std::vector<std::uint64_t>& keys = pairs.open_keys;
-  if (keys.empty()) return;
+  if (keys.empty() && !unseen) return;
   for_pairs_from(pairs, first, [&](GuardedPair<Real>& pair) {
     if (!touches(pair, x, smallest_gap)) return;
-    if (!std::binary_search(keys.begin(), keys.end(), key_of(pair))) return;
+    if (!unseen && !std::binary_search(keys.begin(), keys.end(), key_of(pair))) return;
     pair.open = true;
     ++pairs.open;
   });
@@ -216,12 +217,13 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
   predict(Real(0), paths_, search_.motion);
   search_.boxes.forget();
   search_.tree.refit(search_.motion, true);
-  if (std::exchange(tangled_.unseen, false) || open_pairs() > 0)
+  const bool unseen = std::exchange(tangled_.unseen, false);
+  if (unseen || open_pairs() > 0)
     find_tangles(search_.tree, cloths_, awake_.resting, step_.from, state.inverse_mass, tangled_);
   drop_all_pairs(pairs_);
   find_near_patches(search_);
   test_near_patches(search_, cloths_, {awake_.resting, tangled_, true}, executor_, pairs_, profile);
-  keep_touching_open(0, step_.from, regions_.smallest_gap, pairs_);
+  open_touching(0, unseen, step_.from, regions_.smallest_gap, pairs_);
   if (open_pairs() > 0) {
     note_touches(pairs_, step_.from, tangled_);
     paths_.horizon = std::min(paths_.horizon, std::max(static_cast<Real>(kLookAgain), dt));
@@ -248,7 +250,7 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   const std::size_t kept = pairs_.all.size();
   test_near_patches(search_, cloths_, {awake_.resting, tangled_, false}, executor_, pairs_,
                     profile);
-  keep_touching_open(kept, step_.from, regions_.smallest_gap, pairs_);
+  open_touching(kept, false, step_.from, regions_.smallest_gap, pairs_);
   place_new_particles(pairs_, kept, step_.from, making_);
   admit_pairs(kept, step_, executor_, pairs_, regions_);
   list_pairs_from(kept, pairs_);
