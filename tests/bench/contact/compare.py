@@ -33,6 +33,8 @@ def program_of(commit, scratch):
     tree, build, program = (scratch / f"{name}{end}" for end in ("", "-build", "-bench"))
     if not tree.exists():
         run("git", "worktree", "add", "--detach", tree, commit, cwd=ROOT)
+        # An old commit configures its page too, with packages that no work tree has by itself.
+        (tree / "web/node_modules").symlink_to(ROOT / "web/node_modules")
     if not (build / "core/libweft_core.a").exists():
         run("cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
             "-DWEFT_TESTS=OFF", stdout=subprocess.DEVNULL)
