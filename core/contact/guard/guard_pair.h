@@ -22,8 +22,6 @@ struct GuardedPair {
   Index a = 0, b = 0;        ///< particle and triangle, or two edges, the lower one first
   Real bound = 0;            ///< the features at their anchors are at least this far apart [m]
   std::uint32_t listed = 0;  ///< last listing that met it; see GuardedPairs
-  /// Of each particle its next pair, if it came after all were collected: number x 4 + place.
-  std::array<Index, 4> next = {kNone, kNone, kNone, kNone};
 };
 
 /// Names a pair.

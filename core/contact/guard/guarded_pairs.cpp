@@ -57,17 +57,21 @@ void list_all_pairs(std::size_t n, GuardedPairs<Real>& pairs) {
     pairs.is_active[i] = end[i] > begin[i] ? 1 : 0;
   }
   pairs.later.assign(n, kNone);
+  pairs.links.clear();
+  pairs.listed = pairs.all.size();
   pairs.most = 2 * pairs.all.size() + n;
 }
 
 template <class Real>
 void list_pairs_from(std::size_t first, GuardedPairs<Real>& pairs) {
-  assert(first <= pairs.all.size());
+  assert(pairs.listed <= first && first <= pairs.all.size());
+  pairs.links.resize(pairs.all.size() - pairs.listed);
   for_pairs_from(pairs, first, [&](GuardedPair<Real>& pair) {
+    const Index number = pairs.number_of(pair);
     for (std::size_t m = 0; m < 4; ++m) {
       const auto i = static_cast<std::size_t>(pair.particle[m]);
-      const auto link = 4 * pairs.number_of(pair) + static_cast<Index>(m);
-      pair.next[m] = std::exchange(pairs.later[i], link);
+      pairs.links[static_cast<std::size_t>(number) - pairs.listed][m] =
+          std::exchange(pairs.later[i], 4 * number + static_cast<Index>(m));
       if (!std::exchange(pairs.is_active[i], 1)) pairs.active.push_back(pair.particle[m]);
     }
   });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <vector>
@@ -19,10 +20,13 @@ struct GuardedPairs {
   std::size_t most = 0;               ///< beyond this number, with those that are gone, all are
                                       ///< collected anew
   std::vector<Index> begin, end, of;  ///< of each particle its pairs, as a range of `of`
-  std::vector<Index> later;           ///< of each particle its last one that came later, as `next`
-  std::vector<Index> active;          ///< particles in pairs
-  std::vector<char> is_active;        ///< of each particle
-  std::uint32_t listing = 0;          ///< number of the last pass that visits each pair once
+  std::vector<Index> later;           ///< of each particle its last one that came later, as `links`
+  std::size_t listed = 0;             ///< how many did not: the others have links
+  /// Of each that came later its particles' next ones: number x 4 + place, or kNone.
+  std::vector<std::array<Index, 4>> links;
+  std::vector<Index> active;                ///< particles in pairs
+  std::vector<char> is_active;              ///< of each particle
+  std::uint32_t listing = 0;                ///< number of the last pass that visits each pair once
   std::vector<std::uint64_t> dropped_keys;  ///< of those that went last, ascending
   std::vector<std::uint64_t> open_keys;     ///< of those that went last and were open, ascending
   std::vector<GuardedPair<Real>> arrived;   ///< came since rows were made
@@ -40,6 +44,10 @@ struct GuardedPairs {
   }
 };
 
+/// Pairs of a particle that are fetched ahead of the one that is visited: they lie anywhere in
+/// memory.
+inline constexpr std::size_t kPairsAhead = 8;
+
 /// Calls visit(pair) for each pair of a particle that is not gone or open.
 /// @param pairs  GuardedPairs, const or not
 template <class Pairs, class Visit>
@@ -47,12 +55,15 @@ void for_pairs_of(Pairs& pairs, std::size_t particle, Visit&& visit) {
   assert(particle < pairs.end.size() && particle < pairs.later.size());
   const auto end = static_cast<std::size_t>(pairs.end[particle]);
   for (auto k = static_cast<std::size_t>(pairs.begin[particle]); k < end; ++k) {
+    if (k + kPairsAhead < end)
+      __builtin_prefetch(&pairs.all[static_cast<std::size_t>(pairs.of[k + kPairsAhead])]);
     auto& pair = pairs.all[static_cast<std::size_t>(pairs.of[k])];
     if (!pair.gone) visit(pair);
   }
   for (Index link = pairs.later[particle]; link != kNone;) {
     auto& pair = pairs.all[static_cast<std::size_t>(link / 4)];
-    link = pair.next[static_cast<std::size_t>(link % 4)];
+    link = pairs.links[static_cast<std::size_t>(link / 4) - pairs.listed]
+                      [static_cast<std::size_t>(link % 4)];
     if (!pair.gone) visit(pair);
   }
 }

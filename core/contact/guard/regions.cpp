@@ -14,13 +14,13 @@
 namespace weft {
 namespace {
 
-/// How far the sides of a pair want to move in the coming step [m], each at least a little.
+/// The part of a gap that a side gets, by how far the sides want to move in the coming step: each
+/// at least a little.
+/// @param own, other  lengths of their displacements [m]
 template <class Real>
-BothSides<Real> speeds_of(const GuardedPair<Real>& pair, const GuardedStep<Real>& step) {
-  const auto [first, second] =
-      largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
-  const Real both = std::max(first, second) * Real(kLeastShare) + Real(1e-9);
-  return {first + both, second + both};
+Real share_of(Real own, Real other) {
+  const Real both = std::max(own, other) * Real(kLeastShare) + Real(1e-9);
+  return (own + both) / ((own + both) + (other + both));
 }
 
 /// Bounds the regions of a pair's particles by their side's share of its gap.
@@ -29,8 +29,9 @@ template <class Real, class Takes>
 void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Regions<Real>& regions,
                Takes&& takes) {
   const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
-  const auto [first, second] = speeds_of(pair, step);
-  const Real share = first / (first + second);
+  const auto [first, second] =
+      largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
+  const Real share = share_of(first, second);
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = static_cast<std::size_t>(pair.particle[k]);
     if (!takes(i)) continue;
@@ -39,44 +40,56 @@ void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Reg
   }
 }
 
+/// Both sides' largest of a number of each particle, from 0 on.
+/// @param at  one number a particle
+template <class Real>
+[[gnu::always_inline]] inline BothSides<Real> sides_of(const GuardedPair<Real>& pair,
+                                                       const std::vector<Real>& at) {
+  const auto of = [&](std::size_t k) { return at[static_cast<std::size_t>(pair.particle[k])]; };
+  const Real second = std::max(std::max(Real(0), of(2)), of(3)), first = std::max(Real(0), of(0)),
+             either = of(1);
+  if (pair.kind == PairKind::vertex_triangle) return {first, std::max(second, either)};
+  return {std::max(first, either), second};
+}
+
 /// Lists the pairs of a particle with the radii that others have in them, and for measuring those
 /// whose bound may not be enough for a particle that is being anchored: the first of these in the
 /// pair asks for all.
 template <class Real>
 void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  const Regions<Real>& regions, AnchorPart<Real>& part) {
-  const auto ahead_of = [&](std::size_t j) {
-    return step.length[j] * Real(2 * kStepsOfRoom) + regions.smallest_gap;
+  const auto ahead_of = [&](Real length) {
+    return length * Real(2 * kStepsOfRoom) + regions.smallest_gap;
   };
+  const Real ahead = ahead_of(step.length[static_cast<std::size_t>(particle)]);
   for_pairs_of(pairs, static_cast<std::size_t>(particle), [&](const GuardedPair<Real>& pair) {
-    const std::size_t middle = first_side(pair.kind);
-    Real radii[2] = {0, 0}, ahead[2] = {-1, -1};
-    Index first = kNone;
-    std::size_t at = 0;
-    for (std::size_t m = 0; m < 4; ++m) {
-      const auto j = static_cast<std::size_t>(pair.particle[m]);
-      const std::size_t side = m < middle ? 0 : 1;
-      if (regions.wave_of[j] != regions.wave) {
-        radii[side] = std::max(radii[side], regions.radius[j]);
-        continue;
-      }
-      if (first == kNone) first = pair.particle[m];
-      if (pair.particle[m] == particle) at = side;
-      ahead[side] = std::max(ahead[side], ahead_of(j));
+    // Those that are being anchored have none yet.
+    const auto [first, second] = sides_of(pair, regions.radius);
+    const auto [first_length, second_length] = sides_of(pair, step.length);
+    const std::array<Index, 4>& p = pair.particle;
+    const bool on_first =
+        particle == p[0] || (pair.kind == PairKind::edge_edge && particle == p[1]);
+    const Real most = std::max(first, second), other = on_first ? second : first;
+    AnchorClaim<Real>& claim = part.claims.emplace_back();
+    claim.pair = pairs.number_of(pair);
+    claim.ample = pair.bound > most + other + ahead;
+    claim.own = on_first ? first : second;
+    claim.other = other;
+    claim.own_length = on_first ? first_length : second_length;
+    claim.other_length = on_first ? second_length : first_length;
+    Real ahead_on[2] = {-1, -1};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto j = static_cast<std::size_t>(p[k]);
+      if (regions.wave_of[j] != regions.wave) continue;
+      if (ahead_on[0] < 0 && ahead_on[1] < 0 && p[k] != particle) return;
+      Real& side = ahead_on[k < first_side(pair.kind) ? 0 : 1];
+      side = std::max(side, ahead_of(step.length[j]));
     }
-    const auto is_ample = [&](std::size_t side, Real displacement) {
-      return pair.bound > std::max(radii[0], radii[1]) + radii[1 - side] + displacement;
-    };
-    const bool ample = is_ample(at, ahead_of(static_cast<std::size_t>(particle)));
-    part.claims.push_back(
-        {pairs.number_of(pair), particle, radii[at], radii[1 - at], at == 0, ample});
-    if (first != particle) return;
-    const auto wants = [&](std::size_t side) {
-      return ahead[side] >= 0 && !is_ample(side, ahead[side]);
-    };
-    if (!wants(0) && !wants(1)) return;
-    part.columns[pair.kind].add(part.claims.back().pair, 0, pair.particle);
+    const bool enough = (ahead_on[0] < 0 || pair.bound > most + second + ahead_on[0]) &&
+                        (ahead_on[1] < 0 || pair.bound > most + first + ahead_on[1]);
+    if (!enough) part.columns[pair.kind].add(claim.pair, 0, p);
   });
+  part.ends.push_back(part.claims.size());
 }
 
 /// Measures the gaps of the pairs in the columns.
@@ -94,23 +107,23 @@ void measure_claimed(const QuadArray<Real>& anchor, AnchorPart<Real>& part) {
 /// @param claims  all of one particle
 /// @param first   in the first wave
 template <class Real>
-Real share_claims(std::span<const AnchorClaim<Real>> claims, bool first,
+Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, bool first,
                   const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                   const Regions<Real>& regions, std::vector<Index>& next) {
   Real radius = std::numeric_limits<Real>::infinity();
+  const Real length = step.length[static_cast<std::size_t>(particle)];
   for (const AnchorClaim<Real>& claim : claims) {
     const GuardedPair<Real>& pair = pairs[claim.pair];
     const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
-    // What is far apart, even if its side gets the least share, changes nothing.
-    if (claim.ample && gap * Real(kLeastOfGap) >= radius) continue;
-    const BothSides<Real> speed = speeds_of(pair, step);
-    const Real share =
-        gap * ((claim.on_first ? speed.first : speed.second) / (speed.first + speed.second));
     const Real left = gap - claim.other;
+    // What is far apart, even if its side gets the least share, changes nothing.
+    if (gap * Real(kLeastOfGap) >= radius &&
+        (claim.ample || (left >= std::max(radius, 2 * length) && left >= claim.own)))
+      continue;
+    const Real share = gap * share_of(claim.own_length, claim.other_length);
     radius = std::min(radius, std::max(Real(0), std::min(share, left)));
     // The others' radii alone are too much for the gap, or they leave less than the next steps
     // need.
-    const Real length = step.length[static_cast<std::size_t>(claim.particle)];
     const bool too_much = claim.own + claim.other > gap;
     const bool greedy = first && left < share && left < 2 * length;
     if (!too_much && !greedy) continue;
@@ -119,7 +132,7 @@ Real share_claims(std::span<const AnchorClaim<Real>> claims, bool first,
           (regions.radius[static_cast<std::size_t>(j)] > 0 || greedy))
         next.push_back(j);
     }
-    next.push_back(claim.particle);
+    next.push_back(particle);
   }
   return radius;
 }
@@ -155,6 +168,7 @@ void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>&
   run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
     AnchorPart<Real>& part = regions.parts[n];
     part.claims.clear();
+    part.ends.clear();
     for (std::size_t k = from; k < to; ++k) list_claims(in_wave[k], pairs, step, regions, part);
     measure_claimed(regions.anchor, part);
   });
@@ -166,12 +180,12 @@ void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>&
   });
   run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
     AnchorPart<Real>& part = regions.parts[n];
-    auto claim = part.claims.begin();
-    for (std::size_t k = from; k < to; ++k) {
-      const auto begin = claim;
-      while (claim != part.claims.end() && claim->particle == in_wave[k]) ++claim;
-      regions.radius[static_cast<std::size_t>(in_wave[k])] =
-          share_claims<Real>({begin, claim}, first, pairs, step, regions, part.next);
+    const std::span<const AnchorClaim<Real>> claims = part.claims;
+    for (std::size_t k = from, begin = 0; k < to; ++k) {
+      const std::size_t end = part.ends[k - from];
+      regions.radius[static_cast<std::size_t>(in_wave[k])] = share_claims<Real>(
+          in_wave[k], claims.subspan(begin, end - begin), first, pairs, step, regions, part.next);
+      begin = end;
     }
   });
   regions.next.clear();

@@ -19,11 +19,12 @@ namespace weft {
 /// A pair of a particle that is being anchored.
 template <class Real>
 struct AnchorClaim {
-  Index pair = 0, particle = 0;
+  Index pair = 0;
+  bool ample = false;  ///< the bound is far more than any of its particles needs
   /// Radii of the particles that keep their anchors, on its side and across [m].
   Real own = 0, other = 0;
-  bool on_first = false;  ///< the particle is on the first side
-  bool ample = false;     ///< the bound is far more than any of its particles needs
+  /// How far the sides want to move in the coming step, its own and the other [m].
+  Real own_length = 0, other_length = 0;
 };
 
 /// Some of the particles that are anchored together.
@@ -31,6 +32,7 @@ template <class Real>
 struct AnchorPart {
   ColumnsByKind<Real> columns;            ///< of pairs whose bounds are to be measured
   std::vector<AnchorClaim<Real>> claims;  ///< of its particles, in their order
+  std::vector<std::size_t> ends;          ///< of each particle's claims
   std::vector<Index> next;                ///< particles to be anchored besides
 };
 
