@@ -18,6 +18,9 @@ namespace {
 /// contact leaves between the cloth and an object [m].
 constexpr double kFlatRise = 2e-6;
 
+/// Squared distances from boxes may come out too large by this factor.
+constexpr double kBoxRounding = 1 + 1e-5;
+
 /// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
@@ -263,6 +266,7 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
   result.feature = nearest.feature;
   const double sign = mesh.closed && away.dot(outward.template cast<double>()) < 0 ? -1 : 1;
   result.distance = static_cast<Real>(sign * distance);
+  result.size = distance;
   result.normal = outward;  // serves where there is no direction
   if (distance > kNoDirection) result.normal = (away * (sign / distance)).template cast<Real>();
   return result;
@@ -271,19 +275,25 @@ MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, co
 template <class Real>
 MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real>& p, Real reach) {
   assert(reach >= 0);
+  // The nearest triangle in double precision: a thin one that only comes out nearest may tell the
+  // wrong side.
+  const Vec3d point = p.template cast<double>();
   Index best = kNone;
+  double least = static_cast<double>(reach) * static_cast<double>(reach);
   mesh.triangle_tree.nearest(
       reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
       [&](Index t, Real bound) {
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-        const auto corner = [&](std::size_t k) {
-          return mesh.positions[static_cast<std::size_t>(triangle[k])];
+        const auto corner = [&](std::size_t k) -> Vec3d {
+          return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
         };
-        const Real d2 =
-            (p - closest_on_triangle<Real>(p, corner(0), corner(1), corner(2)).point).squaredNorm();
-        if (d2 > bound || (d2 == bound && best != kNone && t > best)) return bound;
+        const double d2 =
+            (point - closest_on_triangle<double>(point, corner(0), corner(1), corner(2)).point)
+                .squaredNorm();
+        if (d2 > least || (d2 == least && best != kNone && t > best)) return bound;
         best = t;
-        return d2;
+        least = d2;
+        return std::min(bound, static_cast<Real>(d2 * kBoxRounding));
       });
   if (best == kNone) return {};
   return distance_to_triangle(mesh, best, p);

@@ -74,6 +74,8 @@ template <class Real>
 struct MeshDistance {
   Index triangle = kNone;
   Real distance = 0;  ///< [m]; negative inside a closed mesh
+  double size = 0;    ///< of the distance, to tell the nearest: both sides of a needle are as near
+                      ///< in single precision [m]
   int feature = 0;    ///< of the triangle that is nearest, as TrianglePoint has it
   Vec3<Real> normal;  ///< unit, out of the solid (or towards the point, if the mesh is open)
 };

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/feature_distance.h"
@@ -92,6 +93,21 @@ void pair_all(const PairFeatures<Real>& cloth, const FeatureBlocks<Real>& mesh,
   }
 }
 
+/// The nearest of the triangles that a particle is paired with. Those that rounding leaves in doubt
+/// are measured: one that only comes out nearest may tell the wrong side.
+/// @param most  distance, less its rounding, beyond which none is the nearest [m]
+template <class Real>
+MeshDistance<Real> nearest_of(std::span<const ContactCandidate<Real>> pairs, Real most,
+                              const MeshShape<Real>& mesh, const Vec3<Real>& x) {
+  MeshDistance<Real> nearest;
+  for (const ContactCandidate<Real>& pair : pairs) {
+    if (pair.distance > most) continue;
+    const MeshDistance<Real> d = distance_to_triangle(mesh, pair.feature, x);
+    if (nearest.triangle == kNone || d.size < nearest.size) nearest = d;
+  }
+  return nearest;
+}
+
 /// Particles against triangles; measures their clearance on the way.
 template <class Real>
 void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about,
@@ -104,15 +120,16 @@ void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about
   for (std::size_t f = 0; f < particles.number.size(); ++f) {
     const auto p = static_cast<std::size_t>(particles.number[f]);
     const Real rounding = particles.rounding[f];
-    ContactCandidate<Real> best;
-    best.feature = kNone;
+    const std::size_t first = pairs.size();
+    Real least = std::numeric_limits<Real>::infinity();
     for_each_near(room.near, mesh.triangle_blocks, f, [&](Index triangle, Real distance) {
       pairs.push_back({particles.number[f], triangle, distance - rounding});
-      if (best.feature == kNone || distance < best.distance) best = pairs.back();
+      least = std::min(least, distance);
     });
     MeshDistance<Real> nearest;
-    if (best.feature != kNone) {
-      nearest = distance_to_triangle(mesh, best.feature, x[p]);
+    if (pairs.size() > first) {
+      nearest = nearest_of<Real>({pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end()},
+                                 least + rounding, mesh, x[p]);
     } else if (mesh.closed && c.distance[p] < 0) {
       // Deep inside a solid nothing is within reach, yet the particle must find its way out.
       nearest = distance_to_mesh(mesh, x[p], Real(kFarAway));

@@ -66,8 +66,7 @@ std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Inde
   for (; cursor < pairs.size() && pairs[cursor].cloth == i; ++cursor) {
     if (outside && pairs[cursor].distance - moved > reach_of(source, i)) continue;
     nearby.push_back(distance_to_triangle(*source.shapes.meshes[m], pairs[cursor].feature, x));
-    if (std::abs(nearby.back().distance) < std::abs(nearby[nearest].distance))
-      nearest = nearby.size() - 1;
+    if (nearby.back().size < nearby[nearest].size) nearest = nearby.size() - 1;
   }
   return nearest;
 }

@@ -95,6 +95,20 @@ std::size_t draw_about(unsigned seed) {
   return crossed;
 }
 
+/// Needles of 0.4 m with their points up, anywhere on half a square metre.
+TriangleMesh needle_bed(double radius, Random& random) {
+  TriangleMesh bed;
+  for (int n = 0; n < 29; ++n) {
+    const TriangleMesh one = test::needle(radius, 0.4, 3);
+    const Vec3d tip = random.vector(0.3).cwiseProduct(Vec3d(1, 0.16, 1));
+    const auto before = static_cast<Index>(bed.positions.size());
+    for (const Vec3d& p : one.positions) bed.positions.push_back(p + tip);
+    for (const Triangle& t : one.triangles)
+      bed.triangles.push_back({t[0] + before, t[1] + before, t[2] + before});
+  }
+  return bed;
+}
+
 /// A bar along z under a roof that falls by little to both sides and ends in walls; many triangles
 /// long, so that its ridge ends nowhere near.
 TriangleMesh roof(double half_width, double height, int parts) {
@@ -128,6 +142,41 @@ TEST_CASE("patches drawn about sharp and thin objects by any force pass through 
     const test::Repeatable repeatable(seed);
     CHECK(draw_about<float>(seed) == 0);
     if (seed <= 60) CHECK(draw_about<double>(seed) == 0);
+  }
+}
+
+TEST_CASE("what is farther from a needle than this is thick is outside of it, however thin it is") {
+  const double radius = GENERATE(1e-6, 1e-5, 1e-4, 1e-3);
+  Random random(test::seed_or(7));
+  const MeshShape<float> shape = prepare_mesh<float>(needle_bed(radius, random));
+  REQUIRE(shape.closed);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3<float> p = random.vector(0.5).cast<float>();
+    const float distance = distance_to_mesh(shape, p, 10.0F).distance;
+    REQUIRE(distance > -2 * static_cast<float>(radius));
+  }
+}
+
+TEST_CASE("a sheet that falls on needles of any width is neither through them nor inside") {
+  const double radius = GENERATE(1e-6, 1e-5, 1e-4, 1e-3);
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    Random random(seed);
+    WorldDef def;
+    def.cloths[0].rows = def.cloths[0].columns = 28;
+    def.cloths[0].width = def.cloths[0].height = 0.8;
+    def.cloths[0].origin = Vec3d(-0.4, 0.1, -0.4);
+    def.cloths[0].u = Vec3d::UnitX(), def.cloths[0].v = Vec3d::UnitZ();
+    def.cloths[0].fabric.thickness = 0.001;
+    def.colliders = {{"bed", MeshDef{needle_bed(radius, random)}}};
+    World<float> world(def);
+    for (int tick = 0; tick < 40; ++tick) {
+      world.step();
+      INFO("radius " << radius << " seed " << seed << " tick " << tick);
+      REQUIRE(world.bad_starts().empty());
+    }
+    const auto& mesh = std::get<MeshDef>(def.colliders[0].shape).mesh;
+    CHECK(count_crossings(world.state().x, world.model().edges, world.model().triangles, mesh)
+              .all() == 0);
   }
 }
 
