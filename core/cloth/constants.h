@@ -50,9 +50,13 @@ inline constexpr double kLeastSoftness = kSoftnessRange.minimum;
 inline constexpr double kCrumpledArea = 0.05;
 
 /// Smaller rest angles of a mesh are rounding [rad]: it counts as flat. Larger: slight folds at
-/// rest are lost where `automatic` takes the quadratic form. Smaller: rounding of a file's vertices
-/// makes a flat mesh bend by hinges.
+/// rest are lost where `automatic` takes the quadratic form.
 inline constexpr double kFlatRestAngle = 1e-5;
+
+/// So does a piece of a mesh whose vertices lie this near to a plane, as a fraction of its mean
+/// edge [1], and these many roundings of its coordinates. Larger: slight curves at rest are lost.
+/// Smaller: rounding of a file's vertices makes a flat mesh bend by hinges.
+inline constexpr double kFlatRest = 1e-3, kRoundingsOfFlat = 4;
 
 /// Error of a slope across an edge of a mesh, over what a quadratic field rises by up to the next
 /// particle, that is left as it is [1]. Larger: meshes bend too stiffly by up to this. Smaller:

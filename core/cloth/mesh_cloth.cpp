@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/flat_rest.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
 #include "core/cloth/membrane.h"
@@ -257,15 +258,16 @@ void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
 /// Keeps the hinges or replaces them by the quadratic form.
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
+  const bool wanted = def.bending_model == BendingModel::quadratic;
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
     most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));
-  const bool wanted = def.bending_model == BendingModel::quadratic;
-  if (wanted && most > kFlatRestAngle)
+  const bool flat = most <= kFlatRestAngle || (def.rest_angle == 0 && lies_flat(model));
+  if (wanted && !flat)
     throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
                           "this mesh is not flat at rest");
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
-  if (model.hinges.empty() || !(wanted || (may && most <= kFlatRestAngle))) return;
+  if (model.hinges.empty() || !(wanted || (may && flat))) return;
   ClothPart<Real>& part = model.parts.front();
   part.bends_by_links = true;
   part.bending_time = static_cast<Real>(part.fabric.bending_damping);

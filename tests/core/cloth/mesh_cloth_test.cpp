@@ -190,6 +190,27 @@ TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hin
   }
 }
 
+TEST_CASE("a flat mesh is so wherever it lies, and with six digits a vertex") {
+  ClothDef def = sheet_cloth(25, 6, 0.005);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5, Vec3d(1, 2, 3).normalized()));
+  const Vec3d place = GENERATE(Vec3d(0, 0, 0), Vec3d(3, 2, 1), Vec3d(-90, 5, 40));
+  const double digit = GENERATE(1e-9, 1e-6);
+  for (Vec3d& p : def.mesh->mesh.positions) {
+    p = turn * p + place;
+    for (double& x : p) x = std::round(x / digit) * digit;
+  }
+  CHECK(build_cloth<float>(def).hinges.empty());
+  CHECK(build_cloth<double>(def).hinges.empty());
+  def.bending_model = BendingModel::quadratic;
+  CHECK_NOTHROW(build_cloth<float>(def));
+}
+
+TEST_CASE("a mesh that bulges by a hundredth of an edge is curved at rest") {
+  ClothDef def = sheet_cloth(25, 6, 0.005);
+  for (Vec3d& p : def.mesh->mesh.positions) p[2] += 0.01 * 0.005 * std::sin(200 * p[0]);
+  CHECK_FALSE(build_cloth<float>(def).hinges.empty());
+}
+
 TEST_CASE("a curved mesh is at rest as it lies") {
   ClothDef def = sheet_cloth(9, 9, 0.1);
   def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);

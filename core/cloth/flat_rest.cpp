@@ -1,0 +1,85 @@
+// Tells a flat mesh from one that is curved at rest.
+
+#include "core/cloth/flat_rest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/cloth/constants.h"
+
+namespace weft {
+namespace {
+
+/// The first particle of each particle's piece: what hangs together by edges.
+template <class Real>
+std::vector<Index> pieces_of(const ClothModel<Real>& model) {
+  std::vector<Index> first(model.rest_positions.size());
+  std::iota(first.begin(), first.end(), 0);
+  const auto root = [&](Index i) {
+    for (;;) {
+      Index& up = first[static_cast<std::size_t>(i)];
+      if (up == i) return i;
+      up = first[static_cast<std::size_t>(up)];
+      i = up;
+    }
+  };
+  for (const Edge& edge : model.edges) {
+    const auto [low, high] = std::minmax({root(edge[0]), root(edge[1])});
+    first[static_cast<std::size_t>(high)] = low;
+  }
+  for (Index& i : first) i = root(i);
+  return first;
+}
+
+/// What a piece of a mesh is compared with a plane by.
+struct PieceShape {
+  Vec3d normal = Vec3d::Zero();             ///< sum of its triangles' areas, all on one side [m^2]
+  double low = INFINITY, high = -INFINITY;  ///< along the normal [m]
+  double edges = 0;                         ///< length of all [m]
+  std::size_t edge_count = 0;
+};
+
+}  // namespace
+
+template <class Real>
+bool lies_flat(const ClothModel<Real>& model) {
+  const std::vector<Index> piece_of = pieces_of(model);
+  std::vector<PieceShape> pieces(piece_of.size());
+  const auto at = [&](Index i) -> Vec3d {
+    return model.rest_positions[static_cast<std::size_t>(i)].template cast<double>();
+  };
+  const auto piece = [&](Index i) -> PieceShape& {
+    return pieces[static_cast<std::size_t>(piece_of[static_cast<std::size_t>(i)])];
+  };
+  for (const Triangle& t : model.triangles) {
+    const Vec3d area = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
+    Vec3d& normal = piece(t[0]).normal;
+    normal += normal.dot(area) < 0 ? (-area).eval() : area;
+  }
+  for (const Edge& edge : model.edges) {
+    piece(edge[0]).edges += (at(edge[1]) - at(edge[0])).norm();
+    ++piece(edge[0]).edge_count;
+  }
+  double farthest = 0;
+  for (std::size_t i = 0; i < piece_of.size(); ++i) {
+    const Vec3d x = at(static_cast<Index>(i));
+    PieceShape& own = piece(static_cast<Index>(i));
+    const double height = own.normal.normalized().dot(x);
+    own.low = std::min(own.low, height);
+    own.high = std::max(own.high, height);
+    farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  }
+  const double rounding =
+      farthest * static_cast<double>(std::numeric_limits<Real>::epsilon()) * kRoundingsOfFlat;
+  return std::all_of(pieces.begin(), pieces.end(), [&](const PieceShape& p) {
+    return p.edge_count == 0 ||
+           p.high - p.low <= kFlatRest * p.edges / static_cast<double>(p.edge_count) + rounding;
+  });
+}
+
+template bool lies_flat(const ClothModel<float>&);
+template bool lies_flat(const ClothModel<double>&);
+
+}  // namespace weft

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/cloth/cloth_model.h"
+
+// Tells a flat mesh from one that is curved at rest.
+
+namespace weft {
+
+/// Whether each piece of a mesh lies in a plane, but for what the vertices of a file are rounded
+/// by.
+/// @param model  the mesh alone, with its edges
+template <class Real>
+bool lies_flat(const ClothModel<Real>& model);
+
+}  // namespace weft
