@@ -93,6 +93,38 @@ void check_head(std::string_view bytes, const std::string& ending, const std::st
   }
 }
 
+/// Whether the line of an OBJ that begins at `at` has numbers: v, vn or vt.
+bool has_numbers(std::string_view text, std::size_t at) {
+  while (at < text.size() && (text[at] == ' ' || text[at] == '\t')) ++at;
+  return at < text.size() && text[at] == 'v';
+}
+
+/// The text of an OBJ as assimp reads it right: numbers have a digit before their point, and no
+/// line goes on after a backslash. It leaves out a vertex `v 0 1 .5` without a word, and all faces
+/// name others then.
+std::string plain_obj(std::string_view text, const std::string& name) {
+  std::string plain;
+  plain.reserve(text.size() + text.size() / 16);
+  bool numbers = has_numbers(text, 0);
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    const bool returns = k + 2 < text.size() && text[k + 1] == '\r' && text[k + 2] == '\n';
+    if (c == '\\' && k + 1 < text.size() && (text[k + 1] == '\n' || returns)) {
+      plain.push_back(' ');
+      k += returns ? 2 : 1;
+      continue;
+    }
+    if (c == '#') numbers = false;
+    if (numbers && c == ',') throw unreadable(name, "a number has a comma; OBJ has points");
+    const char last = plain.empty() ? '\n' : plain.back();
+    const bool begins = last == ' ' || last == '\t' || last == '-' || last == '+';
+    if (numbers && c == '.' && begins) plain.push_back('0');
+    plain.push_back(c);
+    if (c == '\n') numbers = has_numbers(text, k + 1);
+  }
+  return plain;
+}
+
 /// Merges the meshes of a scene, and vertices at the same position.
 class Welder {
  public:
@@ -167,8 +199,11 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
   if (bytes.size() > limits.bytes)
     throw DefinitionError("mesh", name, "at most " + std::to_string(limits.bytes) + " bytes",
                           "it has " + std::to_string(bytes.size()));
+  if (bytes.empty()) throw unreadable(name, "it is empty");
   const std::string ending = ending_of(name);
   check_head(bytes, ending, name);
+  const std::string plain = ending == "obj" ? plain_obj(bytes, name) : std::string();
+  if (ending == "obj") bytes = plain;
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -171,6 +171,17 @@ TEST_CASE("polygons are cut into triangles of the same area; points and lines ar
   CHECK(surface_area(file.mesh) == Approx(1));
 }
 
+TEST_CASE("numbers of an OBJ may lack the digit before their point, and its lines may go on") {
+  const MeshFile whole =
+      read_mesh("v 0 0 0.5\nv -0.5 0.25 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "a.obj");
+  const MeshFile other =
+      read_mesh("v 0 0 .5\nv -.5 .25 .0\nv 0 \\\n 1 0 # .x\nv 5 5 5\nf 1 2 \\\r\n3\n", "a.obj");
+  CHECK(other.mesh.positions == whole.mesh.positions);
+  CHECK(other.mesh.triangles == whole.mesh.triangles);
+  CHECK_THROWS_AS(read_mesh("v 0 0 0,5\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj"), DefinitionError);
+  CHECK_THROWS_AS(read_mesh("", "a.obj"), DefinitionError);
+}
+
 TEST_CASE("files that are no whole mesh are refused by name, cut at any length") {
   CHECK(refusal("", "a.obj") != "accepted");
   CHECK(refusal("hello", "a.xyz") == "a name that ends in .obj, .ply, .stl or .glb");
