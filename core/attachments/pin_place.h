@@ -10,9 +10,10 @@
 
 namespace weft {
 
-// Places of a cloth that do not depend on its resolution. They are given in the fabric: `left` is u
-// = 0, `right` the largest u, `top` is v = 0 (row 0 of a grid), `bottom` the largest v, wherever
-// these lie in space.
+// Places of a cloth that do not depend on its resolution. They are given in the fabric: `left` is
+// the least u, `right` the largest, `top` the least v (row 0 of a grid), `bottom` the largest,
+// wherever these lie in space. On a mesh whose uv run upwards in v, `top` is the lower edge; a mesh
+// without uv gets v downwards.
 
 enum class Corner : std::uint8_t { top_left, top_right, bottom_left, bottom_right };
 
@@ -55,16 +56,24 @@ PinnedParticles find_pinned(const ClothModel<Real>& model, const PinDef& def);
 /// Passes each field of a place or pin to `visit(info, value)`.
 template <class Value, class Visitor>
 void visit_field_of_particle(Value& particle, Visitor&& visit) {
-  visit(FieldInfo{"particle", 0, 1e7, "", "index in its cloth"}, particle);
+  visit(
+      FieldInfo{"particle", 0, 1e7, "",
+                "index in its cloth, row by row in a grid; a mesh is renumbered, so not as in its "
+                "file: find it by its place in the first state"},
+      particle);
 }
 template <class Value, class Visitor>
 void visit_field_of_corner(Value& corner, Visitor&& visit) {
-  visit(choice("corner", "top_left|top_right|bottom_left|bottom_right", "corner of the fabric"),
+  visit(choice("corner", "top_left|top_right|bottom_left|bottom_right",
+               "corner of the fabric: top is the least v, as of a side"),
         corner);
 }
 template <class Def, class Visitor>
 void visit_fields_of_strip(Def& strip, Visitor&& visit) {
-  visit(choice("side", "top|bottom|left|right", "side of the fabric"), strip.side);
+  visit(choice("side", "top|bottom|left|right",
+               "side of the fabric: top is the least v, left the least u; on a mesh whose v runs "
+               "upwards, as in most OBJ, top is the lower edge, without uv the upper one"),
+        strip.side);
   visit(FieldInfo{"width", 0, 100, "m",
                   "width of the pinned strip; on a grid it clamps at its border, and with 0 it "
                   "holds a line that turns"},

@@ -184,11 +184,13 @@ template <class Io>
 void describe_hand(Io& io, HandDef& hand) {
   io.text({"cloth", 1, 64, true, false, "name of the cloth; without it the first"}, hand.cloth);
   io.fields([&](auto&& visit) { visit_fields_of_hand(hand, visit); });
-  io.list(ListInfo{"path", 1, kMostHandKeys,
-                   "targets of its pull, in order of time; it lets go at the last time"},
-          hand.path, [](Io& in, HandKey& key) {
-            in.fields([&](auto&& visit) { visit_fields_of_hand_key(key, visit); });
-          });
+  io.list(
+      ListInfo{"path", 1, kMostHandKeys,
+               "targets of its pull, in order of time; it takes hold at the first time and lets "
+               "go after the last, so with one target alone after a single tick"},
+      hand.path, [](Io& in, HandKey& key) {
+        in.fields([&](auto&& visit) { visit_fields_of_hand_key(key, visit); });
+      });
 }
 
 template <class Io>
