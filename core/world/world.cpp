@@ -44,6 +44,19 @@ Sleep<Real> make_sleep(const WorldDef& def, const ClothModel<Real>& model) {
   return Sleep<Real>(model, def.sleep, 1 / def.tick_rate, together);
 }
 
+/// Throws DefinitionError unless the ends of each edge start apart: what is in one place has no
+/// direction in which to leave it.
+template <class Real>
+void check_edges(const Vec3Array<Real>& x, const std::vector<Edge>& edges) {
+  for (const auto& [a, b] : edges) {
+    if (x[static_cast<std::size_t>(a)] != x[static_cast<std::size_t>(b)]) continue;
+    throw DefinitionError(
+        "start.x", "particles " + std::to_string(a) + " and " + std::to_string(b) + " in one place",
+        "particles of an edge that are apart",
+        "take the positions of the scene's own particles, in metres");
+  }
+}
+
 /// The definition after validation, with the jaws of grippers among its colliders; nothing is built
 /// from an invalid one.
 WorldDef validated(WorldDef def) {
@@ -64,6 +77,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   for (const ClothDef& cloth : def_.cloths) scene_fabrics_.push_back(cloth.fabric);
   if (def_.start) validate(*def_.start, model_.mass.size());
   state_ = state_at(def_.start, model_);
+  if (def_.start) check_edges(state_.x, model_.edges);
   build_contact();
   prepare_solver();
   refuse_too_stiff();

@@ -78,6 +78,16 @@ void add_number(CLI::App& command, const char* name, Number& value, const Option
       ->type_name(std::is_integral_v<Number> ? "INT" : "NUMBER");
 }
 
+/// Adds an option that takes a path, of which the empty one would mean that none is given.
+void add_path(CLI::App& command, const char* name, std::string& value, const char* allowed,
+              const std::string& description) {
+  const auto read = [name, &value, allowed](const std::string& text) {
+    if (text.empty()) throw OptionError(name, text, allowed);
+    value = text;
+  };
+  command.add_option_function<std::string>(name, read, description);
+}
+
 void add_switch(CLI::App& command, const char* name, bool& value, const char* description) {
   command.add_flag(name, value, description)->disable_flag_override();
 }
@@ -102,9 +112,10 @@ void add_serve(CLI::App& app, ServerOptions& o, std::vector<std::string>& settin
              "Ticks between two counts of crossings (60; 0: none)");
   add_number(serve, "--tick-limit", o.tick_limit, kTickLimits,
              "Seconds of CPU after which a tick is given up and the room pauses (2; 0: never)");
-  serve.add_option("--tokens", o.tokens,
-                   "File of tokens, one a line: role token [name] (without it, the lines of the "
-                   "environment variable WEFT_TOKENS)");
+  add_path(serve, "--tokens", o.tokens,
+           "a file with one line for each token: role token [name]; leave it out to serve without",
+           "File of tokens, one a line: role token [name] (without it, the lines of the "
+           "environment variable WEFT_TOKENS)");
   serve.add_option("--web", o.web, "Directory of the page (default: web beside the program)");
   serve.add_option(
       "--allow-origin", o.allowed_origins,
@@ -138,11 +149,12 @@ void add_simulate(CLI::App& app, SimulateOptions& o, std::vector<std::string>& s
   simulate.add_option("--scenes", o.scenes, "Directory of further scenes and their meshes");
   add_number(simulate, "--ticks", o.ticks, kTickCounts, "Ticks (600)");
   simulate.add_option("--set", settings, "Setting of the scene as key=value; may be repeated");
-  simulate.add_option("--out", o.out, "Write the cloth at the end, FILE.obj or FILE.ply");
-  simulate.add_option("--start", o.start,
-                      "Begin where FILE.npy says: a series, or an array of particles x 3 or 6");
-  simulate.add_option("--series", o.series,
-                      "Write time, energies, forces, positions and velocities into FILE.npy");
+  add_path(simulate, "--out", o.out, "a file that ends in .obj or .ply",
+           "Write the cloth at the end, FILE.obj or FILE.ply");
+  add_path(simulate, "--start", o.start, "a .npy file",
+           "Begin where FILE.npy says: a series, or an array of particles x 3 or 6");
+  add_path(simulate, "--series", o.series, "a file that ends in .npy",
+           "Write time, energies, forces, positions and velocities into FILE.npy");
   add_number(simulate, "--series-every", o.series_every, kTickCounts,
              "Ticks between two records of it (1)");
   add_switch(simulate, "--balance", o.balance,

@@ -65,13 +65,14 @@ std::string page_directory(const ServerOptions& options) {
 }
 
 /// Reads the tokens of the file or, without one, of the environment, from which they are taken, so
-/// that no child process has them.
+/// that no child process has them. A variable that is there without a token is refused, as a server
+/// that should have had tokens would be open.
 void read_tokens(const ServerOptions& options, Tokens& tokens) {
   const char* const given = std::getenv(kTokensVariable);
-  const std::string text = given ? given : "";
+  const std::optional<std::string> text = given ? std::optional<std::string>(given) : std::nullopt;
   ::unsetenv(kTokensVariable);
   if (!options.tokens.empty()) return tokens.read_file(options.tokens);
-  if (!text.empty()) tokens.read(kTokensVariable, text);
+  if (text) tokens.read(kTokensVariable, *text);
 }
 
 /// Lets the process have a descriptor for each socket, as far as the system allows.

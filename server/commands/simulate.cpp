@@ -68,6 +68,7 @@ struct Measurement {
   std::size_t broken_promises = 0;           ///< those that its contact rules out
   Verdict<Real> verdict;                     // of a hard case
   proto::Guarantee guarantee;                ///< at the end
+  bool halted = false;                       ///< the tick after these was given up
 };
 
 /// @returns false if the tick exceeded its limit; the state is then unchanged
@@ -119,11 +120,10 @@ void look(World<Real>& world, bool judged, CrossingCounter<Real>& counter, Measu
   m.broken_promises += broken_promises(world, found);
 }
 
+/// A tick that is given up ends it, and the series is then not written.
 /// @param error  repetitions that go along with it; null: none
-/// @returns nothing if a tick was given up
 template <class Real>
-std::optional<Measurement<Real>> run(World<Real>& world, const SimulateOptions& options,
-                                     ErrorOfRun* error) {
+Measurement<Real> run(World<Real>& world, const SimulateOptions& options, ErrorOfRun* error) {
   WorkLimit limit(options.tick_limit);
   const LimitWatch watch(limit);
   Measurement<Real> m;
@@ -135,16 +135,19 @@ std::optional<Measurement<Real>> run(World<Real>& world, const SimulateOptions& 
   std::optional<Series<Real>> series;
   if (!options.series.empty())
     series.emplace(options.series, world, options.series_every, options.ticks);
-  for (int i = 1; i <= options.ticks; ++i) {
-    if (!measure_tick(world, limit, m)) return std::nullopt;
+  int done = 0;
+  for (int i = 1; i <= options.ticks; done = i++) {
+    m.halted = !measure_tick(world, limit, m);
+    if (m.halted) break;
     promise.note_tick(world);
     if (series) series->note_tick(world);
     if (error) error->step();
     if (judged) m.verdict.look(world);
     if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
   }
-  if (series) series->finish();
-  promise.count(world);
+  if (m.halted && done % options.check_every != 0) look(world, judged, counter, m);
+  if (series && !m.halted) series->finish();
+  if (done > 0) promise.count(world);
   m.guarantee = promise.guarantee(world);
   std::sort(m.ticks.begin(), m.ticks.end());
   return m;
@@ -290,6 +293,23 @@ int warn_of_crossings(const Measurement<Real>& m) {
   return m.broken_promises > 0 ? kCrossed : 0;
 }
 
+/// Reports a tick that was given up, and what was found in those before it.
+template <class Real>
+int tell_halt(const SimulateOptions& options, const World<Real>& world,
+              const Measurement<Real>& m) {
+  std::fprintf(stderr,
+               "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
+               "fewer particles or substeps, or raise --tick-limit\n",
+               static_cast<unsigned long long>(world.tick() + 1), options.scene.c_str(),
+               options.tick_limit);
+  warn_of_crossings(m);
+  if (m.guarantee.reasons.empty()) return kHalted;
+  std::string told = proto::name_of(m.guarantee.state);
+  for (const std::string& reason : m.guarantee.reasons) told += "; " + reason;
+  std::fprintf(stderr, "weft: guarantee %s\n", told.c_str());
+  return kHalted;
+}
+
 /// Checks the path of an output before minutes are spent.
 /// @param name  of the option
 void check_out(const char* name, const std::string& path, bool ending, const char* endings) {
@@ -297,6 +317,8 @@ void check_out(const char* name, const std::string& path, bool ending, const cha
   if (!ending) throw OptionError(name, path, std::string("a file that ends in ") + endings);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw OptionError(name, path, "a file, and this is a folder");
   if (!folder.empty() && !std::filesystem::is_directory(folder, error))
     throw OptionError(name, path, "a file in a folder that exists");
   if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
@@ -353,16 +375,8 @@ int simulate_in(const SimulateOptions& options) {
     const TickCost cost = world.cost_in(world.environment());
     std::fprintf(stderr, "weft: %s\n", error->cost_told_before(cost).c_str());
   }
-  const std::optional<Measurement<Real>> measured = run(world, options, error ? &*error : nullptr);
-  if (!measured) {
-    std::fprintf(stderr,
-                 "weft: tick %llu of scene %s took more than %g s of CPU and was given up; take "
-                 "fewer particles or substeps, or raise --tick-limit\n",
-                 static_cast<unsigned long long>(world.tick() + 1), options.scene.c_str(),
-                 options.tick_limit);
-    return kHalted;
-  }
-  const Measurement<Real>& measurement = *measured;
+  const Measurement<Real> measurement = run(world, options, error ? &*error : nullptr);
+  if (measurement.halted) return tell_halt(options, world, measurement);
   const Json result = summary(options, world, measurement, notices, error ? &*error : nullptr);
   if (options.json)
     std::printf("%s\n", result.dump(2).c_str());

@@ -1,9 +1,11 @@
 #include "server/commands/start_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,6 +60,16 @@ std::string bytes_at(std::ifstream& file, std::size_t place, std::size_t count) 
   return bytes;
 }
 
+/// Throws if anything follows a table, which would then not be what its writer meant.
+void check_end(std::ifstream& file, const NpyTable& table) {
+  file.clear();
+  file.seekg(0, std::ios::end);
+  const auto bytes = static_cast<std::size_t>(file.tellg());
+  const std::size_t end = table.header_bytes + table.records * table.record_bytes;
+  if (bytes > end)
+    throw std::runtime_error("it has " + std::to_string(bytes - end) + " bytes behind its array");
+}
+
 StartDef start_of(std::ifstream& file) {
   const NpyTable table = read_npy_header(bytes_at(file, 0, kMostNpyHeader));
   const NpyField* array = table.field("");
@@ -74,6 +86,7 @@ StartDef start_of(std::ifstream& file) {
       std::max(x->offset + x->count() * x->bytes, v->offset + v->count() * v->bytes);
   const std::string record = bytes_at(file, last, end);
   if (record.size() < end) throw std::runtime_error("it is cut off");
+  check_end(file, table);
   StartDef start;
   start.x = vectors_of(record, *x, 0);
   if (!array || columns == 6) start.v = vectors_of(record, *v, array ? 3 : 0);

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/trim.hpp>
@@ -79,7 +80,11 @@ void Tokens::add_line(const char* source, int number, std::string_view line) {
            "a name of at most " + std::to_string(proto::kMostNameCharacters) + " characters");
   if (find(token, {})) refuse(source, number, "each token once");
   const std::lock_guard lock(mutex_);
-  entries_.push_back({token, {*role, HandRight::by_policy, name, true}, false});
+  Grant grant{*role, HandRight::by_policy, name, true};
+  grant.token = ++last_number_;
+  // A token with a name is one person's; one without may be a whole class's.
+  if (!name.empty()) grant.maker = "token " + std::to_string(grant.token);
+  entries_.push_back({token, std::move(grant), false});
   required_ = true;
 }
 
@@ -124,6 +129,7 @@ std::string Tokens::make(const Grant& grant) {
       static_cast<std::ptrdiff_t>(kMostMadeTokens))
     entries_.erase(std::find_if(entries_.begin(), entries_.end(), made));
   entries_.push_back({token, grant, true});
+  entries_.back().grant.token = ++last_number_;
   return token;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -21,7 +22,7 @@ class Tokens {
   /// Adds the tokens of a file, and tells in the log if others may read it. Throws OptionError.
   void read_file(const std::string& path);
 
-  /// Makes a token that was never given before.
+  /// Makes a token that was never given before, and numbers it.
   std::string make(const Grant& grant);
 
   /// What a token grants in a room. Takes as long for a wrong token as for a right one.
@@ -43,7 +44,8 @@ class Tokens {
 
   mutable std::mutex mutex_;
   std::vector<Entry> entries_;
-  bool required_ = false;  // set before other threads ask
+  std::uint64_t last_number_ = 0;  // of a token
+  bool required_ = false;          // set before other threads ask
 };
 
 /// Refuses a token, without repeating it.

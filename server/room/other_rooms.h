@@ -25,7 +25,9 @@ class OtherRooms {
   virtual proto::ListRoomsReply list() const = 0;
 
   /// Keeps a name for a room that is being built.
-  virtual proto::Result<std::shared_ptr<RoomName>> reserve(const std::string& name) = 0;
+  /// @param maker  whom the room counts for, in a bound of its own; empty: nobody
+  virtual proto::Result<std::shared_ptr<RoomName>> reserve(const std::string& name,
+                                                           const std::string& maker) = 0;
   /// Opens the room of a reserved name.
   virtual proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>& name,
                                               BuiltScene&& scene, bool paused) = 0;

@@ -23,9 +23,11 @@ enum class HandRight : std::uint8_t {
 struct Grant {
   proto::Role role = proto::Role::operator_;
   HandRight hand = HandRight::by_policy;
-  std::string name;       ///< of the person that has the token; may be empty
-  bool by_token = false;  ///< otherwise as everyone without a token
-  std::string room = {};  ///< where it counts; empty: in all rooms
+  std::string name;         ///< of the person that has the token; may be empty
+  bool by_token = false;    ///< otherwise as everyone without a token
+  std::string room = {};    ///< where it counts; empty: in all rooms
+  std::uint64_t token = 0;  ///< number of the token, which tells nothing of it; 0: none
+  std::string maker = {};   ///< whom rooms made by it count for; empty: each viewer for itself
   bool operator==(const Grant&) const = default;
 };
 

@@ -152,8 +152,11 @@ class Room {
     double next_turn = 0;  ///< its commands wait until then, after an expensive one [s]
     HandRight hand = HandRight::by_policy;
     bool by_token = false;
-    bool by_link = false;  ///< its token counts in one room
-    double next_name = 0;  ///< it may change its name from then on [s]
+    bool by_link = false;     ///< its token counts in one room
+    bool named = false;       ///< its token is one person's
+    std::uint64_t token = 0;  ///< number of its token; 0: none
+    std::string maker;        ///< see Grant
+    double next_name = 0;     ///< it may change its name from then on [s]
     Presence presence;
   };
 
@@ -196,6 +199,9 @@ class Room {
   // room_people.cpp: viewers that come and go, and what they may do
   void join(proto::ViewerId id, const Join& join);
   void admit(Viewer& viewer, const Grant& grant);
+  void take_token(Viewer& viewer, const Grant& grant);
+  void leave_mute(const Viewer& viewer);
+  bool comes_muted(const Grant& grant);
   void ask_newcomer(Viewer& viewer);
   void leave(proto::ViewerId viewer);
   void pass_on_operation();
@@ -310,6 +316,7 @@ class Room {
   Outcome apply(proto::ViewerId viewer, const proto::Fork& command);
   BuiltScene fork() const;
   bool operates_here_alone(proto::ViewerId viewer) const;
+  std::string maker_of(proto::ViewerId viewer) const;
   Outcome query_numbers(const proto::Query& command, std::span<const float> values,
                         std::uint32_t components);
   Outcome query_boxes(const proto::Query& command);
@@ -337,6 +344,8 @@ class Room {
   std::map<proto::ViewerId, Viewer> viewers_;
   std::size_t glances_ = 0;  ///< how many of them glance
   Rights rights_;
+  /// How many that were muted have left, by the number of their token.
+  std::map<std::uint64_t, std::uint32_t> muted_away_;
   Holds holds_;
 
   News news_;

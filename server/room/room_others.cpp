@@ -35,6 +35,15 @@ bool Room::operates_here_alone(ViewerId viewer) const {
   return options_.has_tokens && viewers_.at(viewer).by_link;
 }
 
+/// Whom the rooms that a viewer makes count for; empty: nobody, as it operates the server. What a
+/// viewer may in a copy, and gives on by its links, counts for who made that copy.
+std::string Room::maker_of(ViewerId viewer) const {
+  const Viewer& maker = viewers_.at(viewer);
+  const bool counts = maker.info.role == Role::viewer || (maker.by_link && !maker.maker.empty());
+  if (!counts) return {};
+  return maker.maker.empty() ? "viewer " + std::to_string(viewer) : maker.maker;
+}
+
 /// The scene is built beside the one of this room, as by a `load`.
 Room::Outcome Room::apply(ViewerId viewer, const proto::CreateRoom& command) {
   if (!options_.others) return no_other_rooms();
@@ -45,7 +54,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::CreateRoom& command) {
     if (auto error = check_scene_name(*command.scene, options_.scene_names))
       return *std::move(error);
   }
-  auto name = options_.others->reserve(command.name);
+  auto name = options_.others->reserve(command.name, maker_of(viewer));
   if (!name) return std::move(name).error();
   start_build(viewer, [this, scene = command.scene] {
     return scene ? definition_of(*scene) : first_scene(options_, scenes_);
@@ -82,14 +91,15 @@ BuiltScene Room::fork() const {
 /// A viewer that may operate no other room gets a token for its copy.
 Room::Outcome Room::apply(ViewerId viewer, const proto::Fork& command) {
   if (!options_.others) return no_other_rooms();
-  auto name = options_.others->reserve(command.name);
+  auto name = options_.others->reserve(command.name, maker_of(viewer));
   if (!name) return std::move(name).error();
   const auto room = options_.others->open(*name, fork(), command.paused.value_or(paused()));
   if (!room) return room.error();
   proto::ForkReply reply{world_->tick(), *room, {}};
   const Viewer& maker = viewers_.at(viewer);
   if (options_.make_token && maker.by_token && (maker.by_link || maker.info.role == Role::viewer))
-    reply.token = options_.make_token({Role::operator_, HandRight::given, "", true, room->name});
+    reply.token = options_.make_token(
+        {Role::operator_, HandRight::given, "", true, room->name, 0, maker_of(viewer)});
   return proto::Reply(std::move(reply));
 }
 

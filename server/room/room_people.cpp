@@ -58,8 +58,40 @@ void Room::ask_newcomer(Viewer& viewer) {
   output_.set_role(viewer.info.id, Role::viewer);
 }
 
+/// A mute stays with its token when its viewer leaves or takes another, for who comes with it next.
+void Room::leave_mute(const Viewer& viewer) {
+  const bool muted = viewer.hand == HandRight::muted && !viewer.glances;
+  if (muted && viewer.token != 0) ++muted_away_[viewer.token];
+}
+
+/// Whether who comes with a token is muted: the token was left so, or is that of a person that is.
+bool Room::comes_muted(const Grant& grant) {
+  if (grant.token == 0) return false;
+  const auto away = muted_away_.find(grant.token);
+  if (away != muted_away_.end()) {
+    if (--away->second == 0) muted_away_.erase(away);
+    return true;
+  }
+  return !grant.name.empty() &&
+         std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
+           const Viewer& other = entry.second;
+           return other.token == grant.token && other.hand == HandRight::muted && !other.glances;
+         });
+}
+
+/// Notes whose token a viewer has, unless it has told it before. Who glances takes no mute along.
+void Room::take_token(Viewer& viewer, const Grant& grant) {
+  viewer.maker = grant.maker;
+  if (viewer.glances || viewer.token == grant.token) return;
+  leave_mute(viewer);
+  if (comes_muted(grant)) viewer.hand = HandRight::muted;
+  viewer.token = grant.token;
+  viewer.named = !grant.name.empty();
+}
+
 /// Gives a viewer what its token grants.
 void Room::admit(Viewer& viewer, const Grant& grant) {
+  take_token(viewer, grant);
   viewer.info.role = grant.role;
   viewer.by_token = grant.by_token;
   viewer.by_link = !grant.room.empty();
@@ -78,6 +110,7 @@ void Room::leave(ViewerId viewer) {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
   const bool glanced = found->second.glances;
+  leave_mute(found->second);
   viewers_.erase(found);
   if (glanced) {
     --glances_;
@@ -174,6 +207,8 @@ std::optional<proto::Error> Room::set_hand(ViewerId by, ViewerId viewer, HandRig
     other.hand = right;
   else if (other.hand == right)
     other.hand = HandRight::by_policy;
+  // A person that may hold again is muted nowhere else.
+  if (other.named && other.hand != HandRight::muted) muted_away_.erase(other.token);
   let_go_forbidden(viewer);
   news_.roster = true;
   return std::nullopt;
@@ -251,7 +286,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Invite& command) {
       command.right == proto::Invitation::look ? HandRight::muted : HandRight::given;
   const Role role = operates ? Role::operator_ : Role::viewer;
   return proto::Reply(proto::InviteReply{
-      world_->tick(), options_.make_token({role, hand, "", true, options_.name})});
+      world_->tick(),
+      options_.make_token({role, hand, "", true, options_.name, 0, maker_of(viewer)})});
 }
 
 /// Tells who points and looks where, within the rate that many hands may cost each viewer.

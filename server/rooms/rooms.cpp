@@ -8,11 +8,20 @@
 
 #include "proto/room_name.h"
 #include "server/constants.h"
+#include "server/room/refusals.h"
 
 namespace weft::server {
 namespace {
 
 using proto::ErrorCode;
+
+/// Rooms at a time that count for one maker. More: few viewers take all rooms. Fewer: copies of
+/// copies cannot be compared.
+constexpr std::size_t kMostRoomsOfMaker = 4;
+
+/// Shares of what all rooms may cost: of one maker's, so that any one room is possible, and of all
+/// makers', so that something is left for operators.
+constexpr double kShareOfMaker = 0.5, kShareOfMakers = 0.75;
 
 proto::Error name_error(ErrorCode code, const std::string& name, std::string message,
                         std::string hint) {
@@ -27,10 +36,10 @@ proto::Error unknown_room(const std::string& name) {
                     "list_rooms tells those that there are");
 }
 
-proto::Error over(const char* what, double sum, double most) {
+proto::Error over(const char* whose, const char* what, double sum, double most) {
   proto::Error error = proto::make_error(
       ErrorCode::too_costly,
-      "all rooms together would have " + std::to_string(std::llround(sum)) + " " + what,
+      std::string(whose) + " would have " + std::to_string(std::llround(sum)) + " " + what,
       "close a room, or take a lighter scene");
   error.limit = proto::Limit{};
   error.limit->maximum = most;
@@ -45,7 +54,9 @@ class Rooms::Reserved : public RoomName {
   ~Reserved() override {
     const std::lock_guard lock(rooms_.mutex_);
     rooms_.reserved_.erase(name_);
-    if (!rooms_.rooms_.contains(name_)) rooms_.costs_.erase(name_);  // opening it failed
+    if (rooms_.rooms_.contains(name_)) return;
+    rooms_.costs_.erase(name_);  // opening it failed
+    rooms_.makers_.erase(name_);
   }
   const std::string& text() const override { return name_; }
 
@@ -165,20 +176,32 @@ proto::ListRoomsReply Rooms::list() const {
   return reply;
 }
 
-proto::Result<std::shared_ptr<RoomName>> Rooms::reserve(const std::string& name) {
+/// Why there may be no further room. Under the lock.
+std::optional<proto::Error> Rooms::check_count(const std::string& maker) const {
+  if (rooms_.size() + reserved_.size() >= options_.most)
+    return too_many("rooms at a time", options_.most, "close one that is no longer used");
+  if (maker.empty()) return std::nullopt;
+  const auto own = std::count_if(makers_.begin(), makers_.end(),
+                                 [&](const auto& entry) { return entry.second == maker; });
+  if (static_cast<std::size_t>(own) >= kMostRoomsOfMaker)
+    return too_many("rooms at a time of one viewer that is no operator of the server",
+                    kMostRoomsOfMaker, "close one of them, or ask an operator for a room");
+  const std::size_t most = options_.most - options_.most / 4;
+  if (makers_.size() >= most)
+    return too_many("rooms at a time of viewers that are no operators of the server", most,
+                    "ask an operator for a room, or to close one");
+  return std::nullopt;
+}
+
+proto::Result<std::shared_ptr<RoomName>> Rooms::reserve(const std::string& name,
+                                                        const std::string& maker) {
   const std::lock_guard lock(mutex_);
   if (rooms_.contains(name) || reserved_.contains(name))
     return name_error(ErrorCode::room_exists, name, "there is a room of this name",
                       "take another name, or connect to it");
-  if (rooms_.size() + reserved_.size() >= options_.most) {
-    proto::Error error = proto::make_error(
-        ErrorCode::too_many, "at most " + std::to_string(options_.most) + " rooms at a time",
-        "close one that is no longer used");
-    error.limit = proto::Limit{};
-    error.limit->maximum = static_cast<double>(options_.most);
-    return error;
-  }
+  if (auto error = check_count(maker)) return *std::move(error);
   reserved_.insert(name);
+  if (!maker.empty()) makers_[name] = maker;
   return std::shared_ptr<RoomName>(std::make_shared<Reserved>(*this, name));
 }
 
@@ -211,6 +234,7 @@ bool Rooms::shut(const std::string& name) {
     room = std::move(found->second);
     rooms_.erase(found);
     costs_.erase(name);
+    makers_.erase(name);
     options_.on_closed(name);
   }
   room->close();
@@ -227,19 +251,42 @@ std::optional<proto::Error> Rooms::close(const std::string& name) {
   return std::nullopt;
 }
 
+/// Why a room may not cost so much beside others, within a share of what all may. Under the lock.
+/// @param counts  whether another room is one of them
+/// @param whose   they are, as the error tells
+std::optional<proto::Error> Rooms::check_sum(const std::string& room, const TickCost& cost,
+                                             const std::function<bool(const std::string&)>& counts,
+                                             const char* whose, double share) const {
+  double particles = cost.particles, updates = cost.updates() * cost.tick_rate;
+  for (const auto& [name, other] : costs_) {
+    if (name == room || !counts(name)) continue;
+    particles += other.particles;
+    updates += other.updates() * other.tick_rate;
+  }
+  const double most = share * kMostParticlesOfRooms, most_updates = share * kMostUpdatesOfRooms;
+  if (particles > most) return over(whose, "particles", particles, most);
+  if (updates > most_updates)
+    return over(whose, "updates of particles a second", updates, most_updates);
+  return std::nullopt;
+}
+
 std::optional<proto::Error> Rooms::admit(const std::string& room, const TickCost& cost) {
   const std::lock_guard lock(mutex_);
   // A room that has been closed during its turn costs nothing any more.
   if (!rooms_.contains(room) && !reserved_.contains(room)) return std::nullopt;
-  double particles = cost.particles, updates = cost.updates() * cost.tick_rate;
-  for (const auto& [name, other] : costs_) {
-    if (name == room) continue;
-    particles += other.particles;
-    updates += other.updates() * other.tick_rate;
+  const auto any = [](const std::string&) { return true; };
+  if (auto error = check_sum(room, cost, any, "all rooms together", 1)) return error;
+  if (const auto made = makers_.find(room); made != makers_.end()) {
+    const auto own = [&](const std::string& name) {
+      const auto other = makers_.find(name);
+      return other != makers_.end() && other->second == made->second;
+    };
+    const auto anyones = [this](const std::string& name) { return makers_.contains(name); };
+    if (auto error = check_sum(room, cost, own, "the rooms of one viewer", kShareOfMaker))
+      return error;
+    if (auto error = check_sum(room, cost, anyones, "the rooms of all viewers", kShareOfMakers))
+      return error;
   }
-  if (particles > kMostParticlesOfRooms) return over("particles", particles, kMostParticlesOfRooms);
-  if (updates > kMostUpdatesOfRooms)
-    return over("updates of particles a second", updates, kMostUpdatesOfRooms);
   costs_[room] = cost;
   return std::nullopt;
 }

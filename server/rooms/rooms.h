@@ -62,7 +62,8 @@ class Rooms : public OtherRooms {
   bool builds() const { return !builders_.idle(); }
 
   proto::ListRoomsReply list() const override;
-  proto::Result<std::shared_ptr<RoomName>> reserve(const std::string& name) override;
+  proto::Result<std::shared_ptr<RoomName>> reserve(const std::string& name,
+                                                   const std::string& maker) override;
   proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>& name, BuiltScene&& scene,
                                       bool paused) override;
   std::optional<proto::Error> close(const std::string& name) override;
@@ -73,6 +74,10 @@ class Rooms : public OtherRooms {
 
   HostServices services();
   bool shut(const std::string& name);
+  std::optional<proto::Error> check_count(const std::string& maker) const;
+  std::optional<proto::Error> check_sum(const std::string& room, const TickCost& cost,
+                                        const std::function<bool(const std::string&)>& counts,
+                                        const char* whose, double share) const;
   proto::Readiness readiness_of(const HostedRoom& room) const;
 
   RoomsOptions options_;
@@ -84,10 +89,11 @@ class Rooms : public OtherRooms {
   ThreadPool pool_;
   SharedPool shared_pool_;
   LimitWatch watch_;
-  mutable std::mutex mutex_;  // of the next four
+  mutable std::mutex mutex_;  // of the next five
   std::map<std::string, std::shared_ptr<HostedRoom>> rooms_;
   std::set<std::string> reserved_;
-  std::map<std::string, TickCost> costs_;  ///< of each room's world
+  std::map<std::string, TickCost> costs_;      ///< of each room's world
+  std::map<std::string, std::string> makers_;  ///< of the rooms, reserved or open, that have one
   bool stopped_ = false;
   // Their threads use what stands above.
   Scheduler scheduler_;

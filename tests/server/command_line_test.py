@@ -78,6 +78,10 @@ class CommandLine(unittest.TestCase):
             (["simulate", "--set", "cloth.rows=2.5"], "cloth.rows"),
             (["simulate", "--set", "nothing=1"], "nothing"),
             (["simulate", "--out", "cloth.stl"], ".obj or .ply"),
+            (["simulate", "--out", ""], "--out = (nothing): allowed is a file that ends in .obj or .ply"),
+            (["simulate", "--series", ""], "--series = (nothing): allowed is a file that ends in .npy"),
+            (["simulate", "--start", ""], "--start = (nothing): allowed is a .npy file"),
+            (["serve", "--tokens", ""], "--tokens = (nothing): allowed is a file with one line for each token"),
             (["scenes", "--xml"], "--xml"),
         ]
         for arguments, named in table:
@@ -267,6 +271,15 @@ class CommandLine(unittest.TestCase):
         refused = run("simulate", "--set", "model=sed")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("weft or seed", refused.stderr)
+
+    def test_an_output_that_is_a_folder_is_refused_before_the_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for option, name in (("--out", "cloth.obj"), ("--series", "run.npy")):
+                path = os.path.join(folder, name)
+                os.mkdir(path)
+                result = run("simulate", "--ticks", "2", option, path)
+                self.assertEqual((result.returncode, result.stdout), (2, ""))
+                self.assertIn(f"{option} = {path}: allowed is a file", result.stderr)
 
     def test_simulate_writes_the_cloth(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -149,13 +149,6 @@ class Files(unittest.TestCase):
         self.assertEqual(process.wait(timeout=240), 0)
         self.assertEqual(self.names(), ["run.npy"])
 
-    def test_a_folder_in_the_place_of_the_file_is_told(self):
-        self.path.mkdir()
-        result = self.simulate()
-        self.assertEqual(result.returncode, 5)
-        self.assertIn(str(self.path), result.stderr)
-        self.assertEqual(self.names(), ["cloth.obj"])
-
 
 if __name__ == "__main__":
     main()

@@ -327,7 +327,7 @@ TEST_CASE("tokens grant what their line says, and lines that are wrong are refus
               "operator ABCDEFGHIJKLMNOP\nadmin a~b.c-d_e~f.g-h_ Ada\n");
   CHECK(tokens.required());
   CHECK(tokens.find("0123456789abcdef", "default") ==
-        Grant{Role::viewer, HandRight::by_policy, "Class 7b", true});
+        Grant{Role::viewer, HandRight::by_policy, "Class 7b", true, "", 1, "token 1"});
   CHECK(tokens.find("ABCDEFGHIJKLMNOP", "ada")->role == Role::operator_);
   CHECK(tokens.find("a~b.c-d_e~f.g-h_", "default")->role == Role::admin);
   for (const char* wrong : {"", "0", "0123456789abcde", "0123456789abcdef0", "0123456789abcdeF",

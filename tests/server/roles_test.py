@@ -216,6 +216,34 @@ class WithTokens(SocketTest):
         await operator.ask("mute", viewer=pupil.id)
         self.assertEqual((await pupil.ask("drag", phase="move", target=[0, 1, 0]))["code"], "not_allowed")
 
+    async def test_who_was_muted_is_muted_when_it_comes_again_with_its_token(self):
+        operator, pupil = await self.enter(OPERATOR), await self.enter(LOOKER)
+        await operator.ask("mute", viewer=pupil.id)
+        seen = len(operator.texts)
+        await pupil.socket.close()
+        await operator.wait_text(lambda m: m["op"] == "roster" and len(m["viewers"]) == 1, seen)
+        again = await self.enter(LOOKER, name="Another")
+        self.assertEqual((await again.ask("drag", phase="start", particle=100))["code"], "not_allowed")
+        await operator.ask("mute", viewer=again.id, muted=False)
+        self.assertEqual((await again.ask("drag", phase="start", particle=100))["op"], "result")
+
+    async def test_one_pupil_has_four_rooms_and_copies_of_copies_and_what_guests_make_count_among_them(self):
+        pupil = await self.enter(LOOKER)
+        own = await self.enter((await pupil.ask("fork", name="a"))["token"], room="a")
+        guest = await self.enter((await own.ask("invite", right="hold"))["token"], room="a")
+        again = await self.enter(LOOKER)
+        for maker, name in ((own, "b"), (guest, "c"), (again, "d")):
+            self.assertEqual((await maker.ask("fork", name=name))["op"], "result")
+        for maker in (pupil, own, guest, again):
+            error = await maker.ask("fork", name="e")
+            self.assertEqual((error["code"], error["limit"]), ("too_many", {"maximum": 4}))
+            self.assertIn("operator", error["hint"])
+        teacher = await self.enter(OPERATOR)
+        for name in "efghi":
+            self.assertEqual((await teacher.ask("fork", name=name))["op"], "result", "operators are not bound")
+        await teacher.ask("close_room", name="b")
+        self.assertEqual((await pupil.ask("fork", name="b"))["op"], "result")
+
     async def test_a_viewer_takes_a_better_token_at_once_and_a_wrong_one_is_refused(self):
         viewer = await self.enter(LOOKER)
         self.assertEqual((await viewer.ask("reset"))["code"], "not_allowed")
@@ -254,6 +282,16 @@ class TokensAtTheStart(unittest.TestCase):
                 self.assertNotIn("0123456789abcdefgh", done.stderr)
             self.assertEqual(self.serve("--tokens", folder).returncode, 2)
             self.assertEqual(self.serve("--tokens", str(Path(folder, "absent"))).returncode, 2)
+
+    def test_where_tokens_are_asked_for_and_none_is_given_no_server_starts(self):
+        for options, environment, named in (((), {"WEFT_TOKENS": ""}, "WEFT_TOKENS"),
+                                            ((), {"WEFT_TOKENS": "\n"}, "WEFT_TOKENS"),
+                                            (("--tokens", ""), {}, "--tokens"),
+                                            (("--tokens", "/dev/null"), {"WEFT_TOKENS": TOKENS}, "--tokens")):
+            done = self.serve(*options, **environment)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(f"weft: {named} = ", done.stderr)
+            self.assertIn("allowed is", done.stderr)
 
     def test_the_environment_gives_tokens_too(self):
         done = self.serve("--bind", "0.0.0.0", WEFT_TOKENS=TOKENS)

@@ -64,8 +64,9 @@ struct TestRooms {
     rooms.start();
   }
 
-  proto::Result<proto::RoomInfo> open(const std::string& name, bool paused = false) {
-    const auto kept = rooms.reserve(name);
+  proto::Result<proto::RoomInfo> open(const std::string& name, bool paused = false,
+                                      const std::string& maker = {}) {
+    const auto kept = rooms.reserve(name, maker);
     if (!kept) return kept.error();
     return rooms.open(*kept, build_scene(small_scene("other"), nullptr, 0), paused);
   }
@@ -82,9 +83,9 @@ TickCost cost_of(double particles) {
 TEST_CASE("a name belongs to one room, from its reservation until the room is closed") {
   TestRooms t;
   {
-    const auto kept = t.rooms.reserve("a");
+    const auto kept = t.rooms.reserve("a", "");
     REQUIRE(kept);
-    CHECK(t.rooms.reserve("a").error().code == proto::ErrorCode::room_exists);
+    CHECK(t.rooms.reserve("a", "").error().code == proto::ErrorCode::room_exists);
     CHECK(t.rooms.find("a") == nullptr);
   }
   const auto room = t.open("a", true);
@@ -111,13 +112,55 @@ TEST_CASE("the default room is there from the start and cannot be closed") {
 TEST_CASE("there are no more rooms than allowed, those that are being built among them") {
   TestRooms t(3);
   REQUIRE(t.open("a"));
-  const auto kept = t.rooms.reserve("b");
+  const auto kept = t.rooms.reserve("b", "");
   REQUIRE(kept);
-  const auto refused = t.rooms.reserve("c");
+  const auto refused = t.rooms.reserve("c", "");
   CHECK(refused.error().code == proto::ErrorCode::too_many);
   CHECK(refused.error().limit->maximum == 3);
   CHECK(t.rooms.list().rooms.size() == 2);
   CHECK(t.rooms.list().most == 3);
+}
+
+TEST_CASE("one viewer has four rooms at a time, and viewers leave operators a quarter of all") {
+  TestRooms t(12);
+  for (const char* name : {"a", "b", "c"}) REQUIRE(t.open(name, true, "pupil"));
+  {
+    const auto kept = t.rooms.reserve("d", "pupil");  // counts while it is being built
+    REQUIRE(kept);
+    CHECK_FALSE(t.rooms.reserve("e", "pupil"));
+  }
+  REQUIRE(t.open("d", true, "pupil"));
+  const proto::Error refused = t.open("e", true, "pupil").error();
+  CHECK(refused.code == proto::ErrorCode::too_many);
+  CHECK(refused.limit->maximum == 4);
+  CHECK_FALSE(refused.hint.empty());
+  CHECK(t.open("e", true, "other"));
+  CHECK(t.open("f", true));
+  CHECK_FALSE(t.rooms.close("b"));
+  CHECK(t.open("g", true, "pupil"));
+  for (const char* name : {"h", "i", "j", "k"}) REQUIRE(t.open(name, true, name));
+  const proto::Error full = t.open("l", true, "last").error();
+  CHECK(full.code == proto::ErrorCode::too_many);
+  CHECK(full.limit->maximum == 9);
+  CHECK(t.open("l", true));
+}
+
+TEST_CASE("one viewer's rooms may cost half of what all may, and those of viewers three quarters") {
+  TestRooms t(12);
+  for (const char* name : {"a", "b"}) REQUIRE(t.open(name, true, "pupil"));
+  REQUIRE(t.open("c", true, "other"));
+  REQUIRE(t.open("d", true, "third"));
+  const double most = kMostParticlesOfRooms, own = 35;  // of each of them
+  CHECK_FALSE(t.rooms.admit("a", cost_of(most / 2 - own)));
+  const auto half = t.rooms.admit("b", cost_of(own + 1));
+  REQUIRE(half);
+  CHECK(half->code == proto::ErrorCode::too_costly);
+  CHECK(half->limit->maximum == most / 2);
+  CHECK_FALSE(t.rooms.admit("c", cost_of(most / 4 - own)));
+  const auto three_quarters = t.rooms.admit("d", cost_of(own + 1));
+  REQUIRE(three_quarters);
+  CHECK(three_quarters->limit->maximum == most * 0.75);
+  CHECK_FALSE(t.rooms.admit("default", cost_of(most / 4)));
 }
 
 TEST_CASE("all rooms together keep to one bound of particles and one of updates") {

@@ -119,8 +119,10 @@ class Series(unittest.TestCase):
         cases = {"text.npy": b"no such file", "empty.npy": b"", "cut.npy": whole[:-1], "header.npy": whole[:50],
                  "few.npy": x[:-1], "flat.npy": x.ravel(), "four.npy": numpy.hstack([x, x[:, :1]]),
                  "whole.npy": x.astype("i8"), "fortran.npy": numpy.asfortranarray(x), "none.npy": series[:0],
-                 "infinite.npy": infinite, "far.npy": far, "fast.npy": fast}
-        words = {"few.npy": "start.x", "infinite.npy": "start.x[3]", "far.npy": "start.x[4]", "fast.npy": "start.v[5]"}
+                 "infinite.npy": infinite, "far.npy": far, "fast.npy": fast, "longer.npy": whole + b"\0",
+                 "point.npy": 0 * x}
+        words = {"few.npy": "start.x", "infinite.npy": "start.x[3]", "far.npy": "start.x[4]", "fast.npy": "start.v[5]",
+                 "point.npy": "start.x"}
         for name, content in cases.items():
             path = self.folder / name
             path.write_bytes(content) if isinstance(content, bytes) else numpy.save(path, content)

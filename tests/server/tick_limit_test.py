@@ -128,6 +128,25 @@ class Ends(SocketTest):
             self.assertIn("0.05 s of CPU", run.stderr)
             self.assertEqual(run.stdout, "")
 
+    def test_simulate_tells_what_crossed_before_the_tick_that_is_given_up(self):
+        scenes = subprocess.run([PROGRAM, "scenes", "--json", "hard-start-fold"], capture_output=True, text=True,
+                                timeout=PATIENCE, check=True)
+        # A fold that starts through itself; after six ticks a storm asks for thousands of substeps.
+        storm = {**json.loads(scenes.stdout), "name": "storm", "verdict": {"strain": 0, "clear_after": 0}}
+        storm["winds"] = [{"time": time, "wind": 3 * [speed]} for time, speed in ((0, 0), (0.1, 0), (0.101, 100))]
+        storm["environment"]["air_density"] = 1000
+        with tempfile.TemporaryDirectory() as folder:
+            path = scene_file(folder, storm)
+            for every, looked_at in (("1", 6), ("4", 2), ("1000", 1)):
+                run = subprocess.run([PROGRAM, "simulate", "--scene", path, "--ticks", "9", "--any-cost",
+                                      "--tick-limit", "0.5", "--check-every", every],
+                                     capture_output=True, text=True, timeout=PATIENCE, check=False)
+                self.assertEqual((run.returncode, run.stdout), (4, ""), run)
+                self.assertRegex(run.stderr, "tick 7 of scene .* was given up")
+                self.assertRegex(run.stderr, r"weft: [1-9]\d* crossings of cloth with cloth and 0 with objects in "
+                                             rf"{looked_at} of {looked_at} ticks, from tick {min(int(every), 6)} on\n")
+                self.assertIn("weft: guarantee bad_start; cloth started through itself\n", run.stderr)
+
     def test_simulate_refuses_what_would_cost_too_much_unless_told_otherwise(self):
         large = ("--set", "cloths[0].rows=600", "--set", "cloths[0].columns=600")
         costly = {**HEAVY, "name": "costly", "cloths": [{**HEAVY["cloths"][0], "rows": 100, "columns": 100}]}

@@ -1,4 +1,5 @@
 #include <limits>
+#include <string>
 
 #include <catch2/catch.hpp>
 
@@ -72,4 +73,27 @@ TEST_CASE("a start of another number of particles, or of none that could be, is 
   } catch (const DefinitionError& error) {
     CHECK(error.field == field);
   }
+}
+
+TEST_CASE("a start in which the ends of an edge are in one place is refused, and named by them") {
+  WorldDef def = hammock();
+  const World<float> world(def);
+  const StartDef start = start_of(world);
+  const auto [a, b] = world.model().edges.back();
+  const auto refusal = [&](const StartDef& wrong) {
+    def.start = wrong;
+    try {
+      const World<float> taken(def);
+    } catch (const DefinitionError& error) {
+      return error.field + " " + error.value;
+    }
+    return std::string("it was taken");
+  };
+  StartDef fallen = start, point = start;
+  fallen.x[static_cast<std::size_t>(a)] = fallen.x[static_cast<std::size_t>(b)];
+  for (Vec3d& x : point.x) x = Vec3d(0.1, 1, 0.2);
+  CHECK(refusal(fallen) ==
+        "start.x particles " + std::to_string(a) + " and " + std::to_string(b) + " in one place");
+  CHECK(refusal(point).starts_with("start.x particles "));
+  CHECK(refusal(start) == "it was taken");
 }

@@ -1,0 +1,85 @@
+// A mute holds for who comes again with its token.
+
+#include <stdexcept>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "tests/server/fakes.h"
+
+namespace weft::server {
+namespace {
+
+using nlohmann::json;
+using proto::Role;
+
+constexpr proto::ViewerId kOperator = 1;
+
+/// A room with an operator, to which viewers come with tokens.
+struct Class {
+  TestRoom t{true};
+  proto::ViewerId last = kOperator;
+
+  Class() { t.join(kOperator); }
+
+  proto::ViewerId come(std::uint64_t token, const char* name = "", bool glances = false) {
+    Grant grant{Role::viewer, HandRight::by_policy, name, true, "", token};
+    t.room->take({++last, 0, Join{false, grant, glances}});
+    return last;
+  }
+  void say(const char* op, proto::ViewerId viewer, const char* more = "") {
+    t.say(kOperator,
+          std::string(R"({"op":")") + op + R"(","viewer":)" + std::to_string(viewer) + more + "}");
+  }
+  bool holds(proto::ViewerId viewer) {
+    const json people = t.say(kOperator, R"({"op":"query","id":9,"what":"roster"})")["data"];
+    for (const json& person : people)
+      if (person["id"] == viewer) return person["hand"];
+    throw std::runtime_error("the viewer is not in the room");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("of those that come by one token as many are muted as were when they left") {
+  Class room;
+  const auto max = room.come(7), lea = room.come(7);
+  room.say("mute", max);
+  CHECK(room.holds(room.come(7)));  // the token of a class is no one's alone
+  room.t.leave(max);
+  CHECK(room.holds(room.come(8)));
+  const auto wall = room.come(7, "", true);  // to glance is no way out
+  room.t.leave(wall);
+  const auto again = room.come(7);
+  CHECK_FALSE(room.holds(again));
+  CHECK(room.holds(room.come(7)));
+  CHECK(room.holds(lea));
+  room.t.room->take({again, 1, Grant{Role::viewer, HandRight::by_policy, "", true, "", 8}});
+  room.t.leave(again);
+  const auto by_other = room.come(8), by_same = room.come(7);
+  CHECK_FALSE(room.holds(by_other));
+  CHECK_FALSE(room.holds(by_same));
+  room.say("give_hand", by_other);
+  room.say("mute", by_same, R"(,"muted":false)");
+  room.t.leave(by_other);
+  room.t.leave(by_same);
+  CHECK(room.holds(room.come(7)));
+  CHECK(room.holds(room.come(8)));
+}
+
+TEST_CASE("a person that is muted is so by every connection with its token, until it may hold") {
+  Class room;
+  const auto first = room.come(7, "Max");
+  room.say("mute", first);
+  const auto second = room.come(7, "Max");
+  CHECK_FALSE(room.holds(second));
+  room.t.leave(first);
+  room.t.leave(second);
+  const auto again = room.come(7, "Max");
+  CHECK_FALSE(room.holds(again));
+  room.say("mute", again, R"(,"muted":false)");
+  CHECK(room.holds(again));
+  CHECK(room.holds(room.come(7, "Max")));
+}
+
+}  // namespace weft::server
