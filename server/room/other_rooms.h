@@ -25,7 +25,7 @@ class OtherRooms {
   virtual proto::ListRoomsReply list() const = 0;
 
   /// Keeps a name for a room that is being built.
-  /// @param maker  whom the room counts for, in a bound of its own; empty: nobody
+  /// @param maker  the viewer or token that the room counts for; empty: none, it has no bound
   virtual proto::Result<std::shared_ptr<RoomName>> reserve(const std::string& name,
                                                            const std::string& maker) = 0;
   /// Opens the room of a reserved name.

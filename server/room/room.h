@@ -164,6 +164,8 @@ class Room {
   struct Rights {
     proto::Policy policy = proto::Policy::everybody;
     bool chosen = false;  ///< by an operator
+    /// How many that were muted have left, by the number of their token.
+    std::map<std::uint64_t, std::uint32_t> muted_away;
   };
 
   /// The tick that runs, or the last one.
@@ -344,8 +346,6 @@ class Room {
   std::map<proto::ViewerId, Viewer> viewers_;
   std::size_t glances_ = 0;  ///< how many of them glance
   Rights rights_;
-  /// How many that were muted have left, by the number of their token.
-  std::map<std::uint64_t, std::uint32_t> muted_away_;
   Holds holds_;
 
   News news_;

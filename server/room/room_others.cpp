@@ -35,8 +35,8 @@ bool Room::operates_here_alone(ViewerId viewer) const {
   return options_.has_tokens && viewers_.at(viewer).by_link;
 }
 
-/// Whom the rooms that a viewer makes count for; empty: nobody, as it operates the server. What a
-/// viewer may in a copy, and gives on by its links, counts for who made that copy.
+/// The maker that the rooms of a viewer count for; empty if it operates the server. What a viewer
+/// may in a copy, and gives on by its links, counts for the maker of that copy.
 std::string Room::maker_of(ViewerId viewer) const {
   const Viewer& maker = viewers_.at(viewer);
   const bool counts = maker.info.role == Role::viewer || (maker.by_link && !maker.maker.empty());

@@ -58,18 +58,19 @@ void Room::ask_newcomer(Viewer& viewer) {
   output_.set_role(viewer.info.id, Role::viewer);
 }
 
-/// A mute stays with its token when its viewer leaves or takes another, for who comes with it next.
+/// A mute stays with its token when its viewer leaves or takes another: the next one with it has
+/// it.
 void Room::leave_mute(const Viewer& viewer) {
   const bool muted = viewer.hand == HandRight::muted && !viewer.glances;
-  if (muted && viewer.token != 0) ++muted_away_[viewer.token];
+  if (muted && viewer.token != 0) ++rights_.muted_away[viewer.token];
 }
 
-/// Whether who comes with a token is muted: the token was left so, or is that of a person that is.
+/// Whether a token comes muted: it was left so, or is that of a person that is.
 bool Room::comes_muted(const Grant& grant) {
   if (grant.token == 0) return false;
-  const auto away = muted_away_.find(grant.token);
-  if (away != muted_away_.end()) {
-    if (--away->second == 0) muted_away_.erase(away);
+  const auto away = rights_.muted_away.find(grant.token);
+  if (away != rights_.muted_away.end()) {
+    if (--away->second == 0) rights_.muted_away.erase(away);
     return true;
   }
   return !grant.name.empty() &&
@@ -79,7 +80,7 @@ bool Room::comes_muted(const Grant& grant) {
          });
 }
 
-/// Notes whose token a viewer has, unless it has told it before. Who glances takes no mute along.
+/// Notes whose token a viewer has, unless it has told it before. A glance takes no mute along.
 void Room::take_token(Viewer& viewer, const Grant& grant) {
   viewer.maker = grant.maker;
   if (viewer.glances || viewer.token == grant.token) return;
@@ -181,7 +182,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Hello& command) {
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::SetPolicy& command) {
   const bool news = rights_.policy != command.policy;
-  rights_ = {command.policy, true};
+  rights_.policy = command.policy;
+  rights_.chosen = true;
   for (auto& [id, other] : viewers_)
     if (other.hand == HandRight::waiting) other.hand = HandRight::by_policy;
   // Who tells others to watch has something to show.
@@ -208,7 +210,7 @@ std::optional<proto::Error> Room::set_hand(ViewerId by, ViewerId viewer, HandRig
   else if (other.hand == right)
     other.hand = HandRight::by_policy;
   // A person that may hold again is muted nowhere else.
-  if (other.named && other.hand != HandRight::muted) muted_away_.erase(other.token);
+  if (other.named && other.hand != HandRight::muted) rights_.muted_away.erase(other.token);
   let_go_forbidden(viewer);
   news_.roster = true;
   return std::nullopt;
