@@ -140,8 +140,7 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
 
-/// Whether the quadratic form may replace the hinges: for a cloth that is flat at rest; a mesh is
-/// checked later.
+/// Whether the quadratic form may replace the hinges: in a cloth that is at rest as it is made.
 inline bool quadratic_bending_fits(const ClothDef& def) {
   return def.rest_angle == 0;
 }

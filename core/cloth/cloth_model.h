@@ -69,8 +69,8 @@ struct QuadraticBending {
   Real twist = 0;    ///< (B_w + B_f) / (h_u h_v), times |cell difference|^2 / 2 [N/m]
 };
 
-/// Two particles of a mesh that is flat at rest, with the energy 1/2 weight |x_j - x_i|^2: an entry
-/// of its bending's constant matrix, whose rows sum to zero; see mesh_bending.h.
+/// Two particles of a mesh, with the energy 1/2 weight |x_j - x_i|^2: an entry of its bending's
+/// constant matrix, whose rows sum to zero; see mesh_bending.h.
 struct BendingLink {
   Index i = 0, j = 0;  ///< counted from the part's first particle
   double weight = 0;   ///< of either sign [N/m]; in double, for what is flat is a sum that vanishes
@@ -84,6 +84,19 @@ struct TriangleCurvatures {
   std::vector<Index> particles;     ///< counted from the part's first
   std::vector<Vec3<Real>> weights;  ///< of each in the three curvatures [1/m^2]
   std::vector<Vec3<Real>> stiffness;  ///< by triangle: rigidity times area [N m^3]
+};
+
+/// What curves a mesh at rest. A triangle whose curvatures are c = sum_i w_i x_i, and at rest kappa
+/// along its normal n, has the energy sum k/2 |c - kappa n|^2. Here is what the links lack of it:
+/// -n . sum_i pull_i x_i with pull = sum k kappa w, and the sum of all k/2 kappa^2.
+template <class Real>
+struct RestCurves {
+  std::vector<Triangle> triangles;   ///< their corners, counted from the part's first particle
+  std::vector<std::size_t> begin;    ///< of each triangle's particles below, and the last one's end
+  std::vector<Index> particles;      ///< counted from the part's first
+  std::vector<Real> pulls;           ///< of each, along the normal [N]
+  std::vector<Real> smallest_cross;  ///< by triangle: doubled area below which it is crumpled [m^2]
+  double energy = 0;                 ///< of the cloth laid flat [J]
 };
 
 /// The present cells of a grid, and the particles at their corners, numbered row by row. A whole
@@ -182,10 +195,12 @@ struct ClothPart {
   Real rest_diagonal = 0;       ///< of the box around its rest positions [m]
   std::optional<GridSprings<Real>> grid_springs;  ///< the same springs, if they are regular
   QuadraticBending<Real> quadratic_bending;       ///< of a grid; it then has no hinges
-  std::vector<BendingLink> bending_links;         ///< of a mesh that is flat at rest
+  std::vector<BendingLink> bending_links;         ///< of a mesh
   Real bending_time = 0;  ///< tau of the quadratic form's dashpots (bending_dashpots.h) [s]
   TriangleCurvatures<Real> curvatures;  ///< of such a mesh, if it has these
+  RestCurves<Real> rest_curves;         ///< of such a mesh, if it is curved at rest
   bool bends_by_links = false;          ///< such a mesh, though it may have none
+  bool curved_at_rest = false;          ///< and then it has rest curves
   std::vector<HeldStrip> held_strips;   ///< that the links are made for
   std::size_t bending_stencils = 0;     ///< or links of the quadratic form; see bending_stencil.h
   GridCells cells;                      ///< of a grid, whole or cut

@@ -77,6 +77,10 @@ inline constexpr int kSlopeRounds = 2;
 /// particle bend with half as many more.
 inline constexpr double kLeastLink = 1e-8;
 
+/// Triangles around an edge that are unfolded at most [1]. Larger: time where a vertex joins what
+/// no edge joins. Smaller: particles that slopes need are left out.
+inline constexpr std::size_t kMostUnfolded = 512;
+
 /// Largest factor of the bending of a mesh's triangle that a strip holds in part [1]. Larger: a
 /// stiff triangle takes more substeps. Smaller: where it is held nearly whole the cloth bends from
 /// behind the strip's border.

@@ -1,17 +1,17 @@
-// Fits slopes across the edges of a flat mesh that are exact for quadratic fields.
+// Fits slopes across the edges of a mesh that are exact for quadratic fields.
 
 #include "core/cloth/edge_slope.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <tuple>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "core/cloth/constants.h"
-#include "core/geometry/triangle_sides.h"
+#include "core/cloth/unfolding.h"
 
 namespace weft {
 namespace {
@@ -22,43 +22,12 @@ std::vector<Edge> ends_of(const std::vector<EdgeSides>& edges) {
   return ends;
 }
 
-/// The edges of each triangle, opposite to its corners.
-std::vector<std::array<Index, 3>> edges_of_triangles(const std::vector<EdgeSides>& edges,
-                                                     const std::vector<Triangle>& triangles) {
-  std::vector<std::array<Index, 3>> of(triangles.size(), {kNone, kNone, kNone});
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (edges[e].triangle[side] == kNone) continue;
-      const auto t = static_cast<std::size_t>(edges[e].triangle[side]);
-      const auto corner =
-          std::find(triangles[t].begin(), triangles[t].end(), edges[e].opposite[side]);
-      of[t][static_cast<std::size_t>(corner - triangles[t].begin())] = static_cast<Index>(e);
-    }
-  }
-  return of;
-}
-
 void add_member(Index particle, std::vector<Index>& members) {
   if (std::find(members.begin(), members.end(), particle) == members.end())
     members.push_back(particle);
 }
 
 }  // namespace
-
-std::vector<EdgeSides> sides_of(const std::vector<Triangle>& triangles) {
-  std::vector<EdgeSides> edges;
-  for (const TriangleSide& side : sorted_sides(triangles)) {
-    if (edges.empty() || edges.back().ends != side.ends)
-      edges.push_back({side.ends, {kNone, kNone}, {kNone, kNone}});
-    EdgeSides& edge = edges.back();
-    const std::size_t second = edge.triangle[0] == kNone ? 0 : 1;
-    assert(edge.triangle[second] == kNone && "at most two triangles at an edge");
-    edge.triangle[second] = side.triangle;
-    edge.opposite[second] =
-        triangles[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.corner)];
-  }
-  return edges;
-}
 
 void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list) {
   for (ParticleWeight& one : list) {
@@ -69,9 +38,10 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
   list.push_back({particle, weight});
 }
 
-EdgeSlopes::EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles)
+EdgeSlopes::EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles,
+                       bool flat)
     : x_(x), edges_(sides_of(triangles)), of_(edges_of_triangles(edges_, triangles)),
-      neighbours_(x.size(), ends_of(edges_)) {}
+      neighbours_(x.size(), ends_of(edges_)), flat_(flat) {}
 
 /// Coordinates in the plane of an edge, from its middle.
 struct EdgeSlopes::Frame {
@@ -79,6 +49,7 @@ struct EdgeSlopes::Frame {
   double length = 0;                  ///< of the edge [m]
   double height = 0;                  ///< mean of its triangles' [m]
   std::array<double, 2> foot{}, y{};  ///< along and across, of the triangles' third corners [m]
+  std::optional<Unfolding> around;    ///< of a mesh that is not flat
 
   /// In units of the edge's length and height [1].
   Eigen::Vector2d place(const Vec3d& p) const {
@@ -100,10 +71,20 @@ EdgeSlopes::Frame EdgeSlopes::frame_of(const EdgeSides& edge) const {
     const Vec3d to = at(edge.opposite[side]) - frame.middle;
     frame.foot[side] = to.dot(frame.along);
     frame.y[side] = to.dot(frame.across);
+    if (!flat_ && side == 1) frame.y[1] = -(to - frame.along * frame.foot[1]).norm();
   }
   frame.height = edge.is_border() ? frame.y[0] : 0.5 * (frame.y[0] - frame.y[1]);
   assert(frame.height > 0);
+  if (!flat_) frame.around.emplace(edge, x_, edges_, of_);
   return frame;
+}
+
+/// Of a particle, in the edge's plane and in units of its length and height [1].
+Eigen::Vector2d EdgeSlopes::place_of(Index particle, const Frame& frame) const {
+  if (flat_) return frame.place(x_[static_cast<std::size_t>(particle)]);
+  const Eigen::Vector2d* const place = frame.around->place(particle);
+  assert(place != nullptr && "only particles that were laid out have a place");
+  return {(*place)[0] / frame.length, (*place)[1] / frame.height};
 }
 
 /// Corners of the edge's triangles and of those beside them.
@@ -242,7 +223,7 @@ std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
 /// @param value   of the fields at a particle, about 1 nearby
 /// @param wanted  change of the slopes of the fields
 template <int Fields, class ValueAt>
-void EdgeSlopes::amend(const EdgeSides& edge, const Frame& frame, const ValueAt& value,
+void EdgeSlopes::amend(const EdgeSides& edge, Frame& frame, const ValueAt& value,
                        const Eigen::Matrix<double, Fields, 1>& wanted,
                        std::vector<ParticleWeight>& slope) const {
   Members members = nearest(edge);
@@ -250,8 +231,9 @@ void EdgeSlopes::amend(const EdgeSides& edge, const Frame& frame, const ValueAt&
   std::vector<Eigen::Matrix<double, Fields, 1>> values;
   for (int round = 0;; ++round) {
     places.clear(), values.clear();
+    if (frame.around) frame.around->lay_out(members);
     for (const Index i : members) {
-      places.push_back(frame.place(x_[static_cast<std::size_t>(i)]));
+      places.push_back(place_of(i, frame));
       values.push_back(value(i));
     }
     const FieldFit<Fields> fit(places, values);
@@ -266,11 +248,9 @@ void EdgeSlopes::amend(const EdgeSides& edge, const Frame& frame, const ValueAt&
 }
 
 std::vector<ParticleWeight> EdgeSlopes::across(const EdgeSides& edge) const {
-  const Frame frame = frame_of(edge);
+  Frame frame = frame_of(edge);
   std::vector<ParticleWeight> slope = mean_inside(edge, frame);
-  const auto value = [&](Index i) {
-    return squares_at(frame.place(x_[static_cast<std::size_t>(i)]));
-  };
+  const auto value = [&](Index i) { return squares_at(place_of(i, frame)); };
   Eigen::Vector3d wrong = Eigen::Vector3d::Zero();
   for (const ParticleWeight& one : slope) wrong += one.weight * value(one.particle);
   if (wrong.cwiseAbs().maxCoeff() * frame.height > kRightSlope)
@@ -288,7 +268,7 @@ std::vector<ParticleWeight> EdgeSlopes::across_clamped(const EdgeSides& edge,
                                                        const std::vector<double>& beyond) const {
   assert(beyond.size() == x_.size());
   const auto at = [&](Index i) { return beyond[static_cast<std::size_t>(i)]; };
-  const Frame frame = frame_of(edge);
+  Frame frame = frame_of(edge);
   std::vector<ParticleWeight> slope = mean_inside(edge, frame);
   double rise = 0;  // of the distance, across the edge
   for (const ParticleWeight& one : slope) rise += one.weight * at(one.particle);

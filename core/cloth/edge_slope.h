@@ -4,24 +4,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/cloth/edge_sides.h"
 #include "core/cloth/neighbours.h"
 #include "core/types.h"
 
-// Slope of a field across the edges of a flat mesh, from its values at the particles.
+// Slope of a field across the edges of a mesh, from its values at the particles.
 
 namespace weft {
-
-/// An edge and the one or two triangles at it.
-struct EdgeSides {
-  Edge ends = {kNone, kNone};
-  std::array<Index, 2> triangle = {kNone, kNone};
-  std::array<Index, 2> opposite = {kNone, kNone};  ///< their third corners
-
-  bool is_border() const { return triangle[1] == kNone; }
-};
-
-/// All edges of triangles, at most two of which share one, sorted by their ends.
-std::vector<EdgeSides> sides_of(const std::vector<Triangle>& triangles);
 
 /// A particle's share in a linear function of a field.
 struct ParticleWeight {
@@ -38,8 +27,10 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 /// surroundings makes it so.
 class EdgeSlopes {
  public:
-  /// @param x  of a mesh whose triangles are flat together wherever they meet [m]
-  EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles);
+  /// @param x     of the particles [m]
+  /// @param flat  whether the triangles are flat together wherever they meet; if not, what lies
+  ///              around an edge is unfolded into its plane (unfolding.h)
+  EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles, bool flat);
 
   const std::vector<EdgeSides>& edges() const { return edges_; }
 
@@ -71,8 +62,9 @@ class EdgeSlopes {
   void add_inside(const EdgeSides& edge, const Frame& frame, std::size_t side, double share,
                   std::vector<ParticleWeight>& slope) const;
   std::vector<ParticleWeight> mean_inside(const EdgeSides& edge, const Frame& frame) const;
+  Eigen::Vector2d place_of(Index particle, const Frame& frame) const;
   template <int Fields, class ValueAt>
-  void amend(const EdgeSides& edge, const Frame& frame, const ValueAt& value,
+  void amend(const EdgeSides& edge, Frame& frame, const ValueAt& value,
              const Eigen::Matrix<double, Fields, 1>& wanted,
              std::vector<ParticleWeight>& slope) const;
   Members nearest(const EdgeSides& edge) const;
@@ -82,6 +74,7 @@ class EdgeSlopes {
   std::vector<EdgeSides> edges_;
   std::vector<std::array<Index, 3>> of_;  // edges of each triangle
   Neighbours neighbours_;
+  bool flat_;
 };
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-// Sums the curvatures of a flat mesh's triangles into one quadratic form.
+// Sums the curvatures of a mesh's triangles into one quadratic form.
 
 #include "core/cloth/mesh_bending.h"
 
@@ -190,12 +190,49 @@ void append(const std::vector<CurvatureWeight>& curvature, const Eigen::Vector3d
   list.stiffness.push_back(stiffness.cast<Real>());
 }
 
+/// Takes off a triangle's curvatures what they are along itself at rest.
+/// @returns what they are along its normal [1/m]
+Eigen::Vector3d lift_off(const Triangle& t, const Vec3Array<double>& x,
+                         std::vector<CurvatureWeight>& curvature) {
+  const auto at = [&](Index i) -> const Vec3d& { return x[static_cast<std::size_t>(i)]; };
+  Eigen::Matrix3d values = Eigen::Matrix3d::Zero();  // a column for each curvature
+  for (const CurvatureWeight& one : curvature)
+    values += (at(one.particle) - at(t[0])) * one.weight.transpose();
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << at(t[1]) - at(t[0]), at(t[2]) - at(t[0]);
+  const Vec3d normal = edges.col(0).cross(edges.col(1)).normalized();
+  const Eigen::Matrix<double, 2, 3> along =
+      (edges.transpose() * edges).inverse() * edges.transpose() * values;
+  add_weight(t[0], along.colwise().sum().transpose(), curvature);
+  add_weight(t[1], -along.row(0).transpose(), curvature);
+  add_weight(t[2], -along.row(1).transpose(), curvature);
+  return values.transpose() * normal;
+}
+
+/// @param rest       of the curvatures, along the normal [1/m]
+/// @param stiffness  of each [N m^3]
+template <class Real>
+void append(const Triangle& t, const std::vector<CurvatureWeight>& curvature,
+            const Eigen::Vector3d& rest, const Eigen::Vector3d& stiffness, double area,
+            RestCurves<Real>& curves) {
+  if (curves.begin.empty()) curves.begin.push_back(0);
+  curves.triangles.push_back(t);
+  const Eigen::Vector3d moment = stiffness.cwiseProduct(rest);
+  for (const CurvatureWeight& one : curvature) {
+    curves.particles.push_back(one.particle);
+    curves.pulls.push_back(static_cast<Real>(moment.dot(one.weight)));
+  }
+  curves.begin.push_back(curves.particles.size());
+  curves.smallest_cross.push_back(static_cast<Real>(2 * kCrumpledArea * area));
+  curves.energy += 0.5 * moment.dot(rest);
+}
+
 }  // namespace
 
 template <class Real>
 void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
   const PartMesh mesh(model, part);
-  const EdgeSlopes edges(mesh.x, mesh.triangles);
+  const EdgeSlopes edges(mesh.x, mesh.triangles, !part.curved_at_rest);
   std::vector<double> free;
   for (const FlatTriangle& flat : mesh.flat) free.push_back(flat.free);
   Slopes slopes;
@@ -206,12 +243,18 @@ void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
   const Eigen::Vector3d rigidity(fabric.bending_warp, fabric.bending_weft,
                                  fabric.bending_warp + fabric.bending_weft);
   part.curvatures = {};
+  part.rest_curves = {};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const FlatTriangle& flat = mesh.flat[t];
     if (flat.free == 0) continue;
     const double stiffening = std::min(1 / flat.free, kMostMeshStiffening);
     const Eigen::Vector3d stiffness = rigidity * (flat.area * stiffening);
-    const auto weights = curvature(mesh.triangles[t], t, flat, edges, slopes);
+    const Triangle& corners = mesh.triangles[t];
+    auto weights = curvature(corners, t, flat, edges, slopes);
+    if (part.curved_at_rest) {
+      const Eigen::Vector3d rest = lift_off(corners, mesh.x, weights);
+      append(corners, weights, rest, stiffness, flat.area, part.rest_curves);
+    }
     matrix.add(weights, stiffness);
     if (part.bending_time > 0) append(weights, stiffness, part.curvatures);
   }

@@ -4,7 +4,7 @@
 
 #include "core/cloth/cloth_model.h"
 
-// Bending of a mesh that is flat at rest.
+// Bending of a mesh.
 
 namespace weft {
 
@@ -18,12 +18,20 @@ namespace weft {
 /// triangles and no force inside, what has no energy is flat, and no fold has less than a part of
 /// what hinges would give it.
 ///
+/// A mesh that is curved at rest is unfolded around each edge. Its triangles' curvatures at rest
+/// lie along their normals, as those of a surface do in a chart that keeps lengths; what a mesh
+/// leaves along the triangle is taken off by the triangle's own gradient, so that it is at rest as
+/// it lies, on any triangles. Its energy is that of the curvatures' difference from these, which
+/// the part's rest curves complete (forces/rest_curve.h). A fold at rest is a curvature too: what
+/// is folded by theta at rest is right to theta^2.
+///
 /// A held strip does not bend: a triangle inside it has its slope, and what lies beside it turns
 /// about their common edge. A triangle that the border cuts bends only beyond that, where it has
 /// the curvature of the whole turn: its rigidity is divided by its free part.
 ///
-/// Gives the part its links, and the curvatures that these are made of if it damps bending.
-/// @param part  of the model; its mesh must be flat at rest, and its `material` gives the threads
+/// Gives the part its links and rest curves, and the curvatures that these are made of if it damps
+/// bending.
+/// @param part  of the model, told whether it is curved at rest; its `material` gives the threads
 template <class Real>
 void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part);
 

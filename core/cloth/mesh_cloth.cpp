@@ -259,16 +259,13 @@ void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
 template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   const bool wanted = def.bending_model == BendingModel::quadratic;
+  const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
+  if (model.hinges.empty() || !(wanted || may)) return;
+  ClothPart<Real>& part = model.parts.front();
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
     most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));
-  const bool flat = most <= kFlatRestAngle || (def.rest_angle == 0 && lies_flat(model));
-  if (wanted && !flat)
-    throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
-                          "this mesh is not flat at rest");
-  const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
-  if (model.hinges.empty() || !(wanted || (may && flat))) return;
-  ClothPart<Real>& part = model.parts.front();
+  part.curved_at_rest = most > kFlatRestAngle && !lies_flat(model);
   part.bends_by_links = true;
   part.bending_time = static_cast<Real>(part.fabric.bending_damping);
   bend_by_links(model, part);

@@ -13,8 +13,9 @@ namespace weft {
 /// model `springs` every edge is a spring instead, with k = Y(a) sum A / l^2 over its one or two
 /// triangles (approximate, exact in the mean over directions for equilateral triangles), with Y(a)
 /// = Y_w cos^4 a + Y_f sin^4 a + 6 G sin^2 a cos^2 a, the stiffness of the fabric's tensor along
-/// the edge. A mesh that is flat at rest bends by mesh_bending.h. Otherwise hinges over all inner
-/// edges have B l^2 / (A1 + A2); their rest angle is that of the mesh plus the cloth's rest angle.
+/// the edge. A mesh bends by mesh_bending.h. With a rest angle, or if hinges were asked for, hinges
+/// over all inner edges have B l^2 / (A1 + A2); their rest angle is that of the mesh plus the
+/// cloth's.
 /// Mass: a third of each triangle to its corners, or equal. Particles are renumbered breadth-first,
 /// so that neighbours lie near each other in memory.
 ///

@@ -56,6 +56,36 @@ std::vector<double> rows_of_links(const ClothModel<Real>& model, const ClothPart
   return others;
 }
 
+/// Adds what the rest curves add to the links' absolute rows, however the cloth is folded, unless
+/// its triangles are crumpled: pulls times the turning of the normal, both ways, and the sum of
+/// pulled distances times the second derivative of the normal.
+template <class Real>
+void add_rows_of_curves(const ClothModel<Real>& model, const ClothPart<Real>& part,
+                        std::vector<double>& rows) {
+  const RestCurves<Real>& curves = part.rest_curves;
+  const auto number = [&](Index i) { return static_cast<std::size_t>(part.particles.first + i); };
+  for (std::size_t t = 0; t < curves.triangles.size(); ++t) {
+    const auto x = [&](Index i) -> Vec3d {
+      return model.rest_positions[number(i)].template cast<double>();
+    };
+    const Triangle& corner = curves.triangles[t];
+    const Vec3d e = x(corner[1]) - x(corner[0]), f = x(corner[2]) - x(corner[0]);
+    // A corner turns the normal by 1 / its height.
+    Vec3d turning(Vec3d(f - e).norm(), f.norm(), e.norm());
+    turning /= e.cross(f).norm();
+    double pulls = 0, most = 0;
+    for (std::size_t n = curves.begin[t]; n < curves.begin[t + 1]; ++n) {
+      const double pull = std::abs(static_cast<double>(curves.pulls[n]));
+      pulls += pull;
+      most += pull * (x(curves.particles[n]) - x(corner[0])).norm();
+      rows[number(curves.particles[n])] += pull * turning.sum();
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      rows[number(corner[k])] +=
+          turning[static_cast<Eigen::Index>(k)] * (pulls + 2 * most * turning.sum());
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -104,6 +134,7 @@ void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& par
   std::vector<double> rows(model.mass.size(), 0);
   if (!part.bending_links.empty()) {
     rows = rows_of_links(model, part);
+    add_rows_of_curves(model, part, rows);
   } else {
     visit_bending_stencils(
         part, [&](double k, const Index* corners, const double* weights, int count) {

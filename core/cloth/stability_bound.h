@@ -32,7 +32,8 @@ template <class Real>
 void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part);
 
 /// The same of its quadratic form, in place of hinges: each stencil w with energy k/2 |w x|^2
-/// adds k |w_i| sum|w| to the Gershgorin rows of its particles; the links of a mesh are those rows.
+/// adds k |w_i| sum|w| to the Gershgorin rows of its particles; the links of a mesh are those rows,
+/// to which rest curves add theirs.
 /// Its dashpots have a bound of their own.
 template <class Real>
 void bound_quadratic_bending(const ClothModel<Real>& model, ClothPart<Real>& part);

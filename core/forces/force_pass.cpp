@@ -11,6 +11,7 @@
 #include "core/forces/cell_misfit.h"
 #include "core/forces/hinge.h"
 #include "core/forces/membrane.h"
+#include "core/forces/rest_curve.h"
 #include "core/forces/spring.h"
 #include "core/forces/stencil_force.h"
 #include "core/forces/thread_lock.h"
@@ -167,6 +168,7 @@ ElasticEnergy elastic_energy(const ClothModel<Real>& model, const ClothPart<Real
                                                      at(x, h.x[3]), h.smallest_normal2);
     energy.bending += static_cast<double>(hinge_energy(h, angle.theta));
   }
+  energy.bending += rest_curve_energy(part, x);
   if (quadratic_stencil_count(part) == 0) return energy;
   visit_bending_stencils(part, [&](double k, const Index* corners, const double* weights,
                                    int count) {

@@ -6,6 +6,7 @@
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/force_pass.h"
+#include "core/forces/rest_curve.h"
 #include "core/forces/stencil_force.h"
 #include "core/solver/verlet.h"
 
@@ -22,6 +23,25 @@ IndexRange take(const std::vector<Element>& from, const IndexRange& range, const
     if (wanted(element)) to.push_back(element);
   }
   return {first, static_cast<Index>(to.size()) - first};
+}
+
+/// The rest curves of the triangles whose curvature has a particle of some kind.
+template <class Real, class Wanted>
+RestCurves<Real> curves_with(const RestCurves<Real>& all, Wanted&& wanted) {
+  RestCurves<Real> some;
+  some.begin.push_back(0);
+  for (std::size_t t = 0; t < all.triangles.size(); ++t) {
+    const auto begin = static_cast<std::ptrdiff_t>(all.begin[t]),
+               end = static_cast<std::ptrdiff_t>(all.begin[t + 1]);
+    if (!std::any_of(all.particles.begin() + begin, all.particles.begin() + end, wanted)) continue;
+    some.triangles.push_back(all.triangles[t]);
+    some.smallest_cross.push_back(all.smallest_cross[t]);
+    some.particles.insert(some.particles.end(), all.particles.begin() + begin,
+                          all.particles.begin() + end);
+    some.pulls.insert(some.pulls.end(), all.pulls.begin() + begin, all.pulls.begin() + end);
+    some.begin.push_back(some.particles.size());
+  }
+  return some;
 }
 
 /// The cells of a grid that have a particle of some kind, cut out with the rows and columns between
@@ -151,6 +171,8 @@ void HeldForces<Real>::list_part(const ClothModel<Real>& model, const ClothPart<
   near.triangles = take(
       model.triangles, part.triangles, [this](const auto& t) { return touches(&t[0], 3); },
       near_.triangles);
+  near.rest_curves =
+      curves_with(part.rest_curves, [&](Index i) { return holds(part.particles.first + i); });
   near.grid_springs = part.grid_springs;
   if (part.grid_springs)
     near.cells = cells_with(part.cells, [&](Index i) { return holds(part.particles.first + i); });
@@ -173,6 +195,7 @@ void HeldForces<Real>::act(std::size_t part, const Surroundings<Real>& around,
   add_membrane_forces(near_, near, x, v, force_);
   add_locking_forces(near_, near, x, force_);
   add_hinge_forces(near_, near, x, v, force_);
+  add_rest_curve_forces(near, x, force_);
   bending_.visit(part, [&](double k, const StencilView& stencil) {
     add_stencil_force(k, stencil, x, force_);
   });

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/forces/force_pass.h"
+#include "core/forces/rest_curve.h"
 #include "core/solver/membrane_relaxation.h"
 #include "core/stop_signal.h"
 
@@ -55,6 +56,7 @@ void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
     const StageTimer timer(tick.profile, Stage::bending, model.hinges.size() + stencils);
     add_hinge_forces(model, tick.state.x, tick.state.v, work.force);
     for (std::size_t p = 0; p < model.parts.size(); ++p) {
+      add_rest_curve_forces(model.parts[p], tick.state.x, work.force);
       if (in_rows(tick, p) || quadratic_stencil_count(model.parts[p]) == 0) continue;
       add_quadratic_bending_forces(model.parts[p], tick.state.x, work.force);
     }

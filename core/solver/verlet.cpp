@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "core/forces/rest_curve.h"
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
@@ -49,9 +50,11 @@ void evaluate_elements(Tick<Real>& tick, std::size_t p, const Vec3Array<Real>& v
     const StageTimer timer(tick.profile, Stage::stretch, size_of(part.locks));
     add_locking_forces(tick.model, part, tick.state.x, tick.work.internal);
   }
-  if (part.hinges.count == 0) return;
-  const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges));
+  const std::size_t curved = part.rest_curves.triangles.size();
+  if (part.hinges.count == 0 && curved == 0) return;
+  const StageTimer timer(tick.profile, Stage::bending, size_of(part.hinges) + curved);
   add_hinge_forces(tick.model, part, tick.state.x, velocity, tick.work.internal);
+  add_rest_curve_forces(part, tick.state.x, tick.work.internal);
 }
 
 /// Forces of sling impulses and air. Grids store them as their external forces; the arrays of the

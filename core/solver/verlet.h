@@ -100,7 +100,8 @@ struct VerletWorkspace {
   bool kicks_at_once(const ClothModel<Real>& model, std::size_t part) const {
     assert(part < grids.size() && part < meshes.size());
     const ClothPart<Real>& cloth = model.parts[part];
-    const bool more = cloth.hinges.count > 0 || cloth.locks.count > 0;
+    const bool more =
+        cloth.hinges.count > 0 || cloth.locks.count > 0 || !cloth.rest_curves.triangles.empty();
     return grids[part].fits() || (meshes[part].fits() && !more);
   }
 

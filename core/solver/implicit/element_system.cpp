@@ -7,6 +7,7 @@
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/hinge.h"
+#include "core/forces/rest_curve.h"
 #include "core/geometry/hinge_angle.h"
 
 namespace weft {
@@ -31,8 +32,8 @@ Eigen::Map<Vec3<Real>> at(Real* p, Index particle) {
 
 template <class Real>
 ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPart<Real>& part)
-    : particles_(part.particles), springs_(part.springs), hinges_(part.hinges),
-      tensor_(part.membrane_tensor) {
+    : number_(static_cast<std::size_t>(&part - model.parts.data())), particles_(part.particles),
+      springs_(part.springs), hinges_(part.hinges), tensor_(part.membrane_tensor) {
   const auto count = static_cast<std::size_t>(particles_.count);
   const auto margin = static_cast<std::size_t>(kGridMargin);
   size_ = (3 * count + margin - 1) / margin * margin;
@@ -134,6 +135,7 @@ void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonP
       add_to(diagonal_[i], {own, 0, 0, own, 0, own});
     }
   }
+  add_rest_curve_forces(model.parts[number_], point.x, force);
   for (std::size_t n = 0; n < hinge_terms_.size(); ++n) {
     const Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(hinges_.first) + n];
     const auto x = [&](int k) -> const Vec3<Real>& {

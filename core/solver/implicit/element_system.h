@@ -14,7 +14,8 @@ namespace weft {
 
 /// The linear systems of cloths other than regular grids, element by element,
 /// preconditioned by the inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the
-/// gradient of its angle (Gauss-Newton: the curvature of the angle itself may be indefinite).
+/// gradient of its angle (Gauss-Newton: the curvature of the angle itself may be indefinite). Rest
+/// curves push without a matrix of their own: that of the links holds most of their energy's.
 template <class Real>
 class ElementSystem {
  public:
@@ -55,6 +56,7 @@ class ElementSystem {
 
   void linearise_membrane(const NewtonPoint<Real>& point, Vec3Array<Real>& force);
 
+  std::size_t number_;  ///< of the part
   IndexRange particles_, springs_, hinges_;
   MembraneTensor<Real> tensor_;
   std::vector<MembraneElement> membrane_;

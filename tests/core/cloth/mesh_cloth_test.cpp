@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/forces/force_pass.h"
 #include "core/forces/hinge.h"
+#include "core/forces/rest_curve.h"
 #include "core/geometry/hinge_angle.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
@@ -174,11 +175,18 @@ TEST_CASE("equilateral triangles bend by hinges with rigidity B in every directi
   CHECK(energy / area_per_hinge == Approx(0.5 * 1e-3 * kCurvature * kCurvature).epsilon(0.01));
 }
 
-TEST_CASE("a mesh bends by the quadratic form if it is flat at rest, else by hinges") {
-  ClothDef flat = sheet_cloth(7, 8, 0.1);
-  CHECK(build_cloth<float>(flat).hinges.empty());
+TEST_CASE("a mesh bends by the quadratic form, but with a rest angle or if asked to by hinges") {
+  ClothDef flat = sheet_cloth(7, 8, 0.1), curved = flat;
+  curved.mesh->mesh.positions[20][2] += 0.01;
+  for (const BendingModel model : {BendingModel::automatic, BendingModel::quadratic}) {
+    flat.bending_model = curved.bending_model = model;
+    CHECK(build_cloth<float>(flat).hinges.empty());
+    CHECK(build_cloth<float>(flat).parts[0].rest_curves.triangles.empty());
+    CHECK(build_cloth<float>(curved).hinges.empty());
+    CHECK(!build_cloth<float>(curved).parts[0].rest_curves.triangles.empty());
+  }
+  flat.bending_model = BendingModel::automatic;
   for (const auto& change : std::vector<void (*)(ClothDef&)>{
-           [](ClothDef& d) { d.mesh->mesh.positions[20][2] += 0.001; },
            [](ClothDef& d) { d.rest_angle = 0.1; },
            [](ClothDef& d) { d.bending_model = BendingModel::hinges; },
            [](ClothDef& d) { d.bending_model = BendingModel::sine_hinges; }}) {
@@ -199,21 +207,20 @@ TEST_CASE("a flat mesh is so wherever it lies, and with six digits a vertex") {
     p = turn * p + place;
     for (double& x : p) x = std::round(x / digit) * digit;
   }
-  CHECK(build_cloth<float>(def).hinges.empty());
-  CHECK(build_cloth<double>(def).hinges.empty());
-  def.bending_model = BendingModel::quadratic;
-  CHECK_NOTHROW(build_cloth<float>(def));
+  CHECK_FALSE(build_cloth<float>(def).parts[0].curved_at_rest);
+  CHECK_FALSE(build_cloth<double>(def).parts[0].curved_at_rest);
 }
 
 TEST_CASE("a mesh that bulges by a hundredth of an edge is curved at rest") {
   ClothDef def = sheet_cloth(25, 6, 0.005);
   for (Vec3d& p : def.mesh->mesh.positions) p[2] += 0.01 * 0.005 * std::sin(200 * p[0]);
-  CHECK_FALSE(build_cloth<float>(def).hinges.empty());
+  CHECK(build_cloth<float>(def).parts[0].curved_at_rest);
 }
 
 TEST_CASE("a curved mesh is at rest as it lies") {
   ClothDef def = sheet_cloth(9, 9, 0.1);
   def.membrane_model = GENERATE(MembraneModel::triangles, MembraneModel::springs);
+  def.bending_model = GENERATE(BendingModel::automatic, BendingModel::hinges);
   for (Vec3d& p : def.mesh->mesh.positions) p[2] = 0.3 * std::sin(3 * p[0]) * std::cos(2 * p[1]);
   const ClothModel<double> model = build_cloth<double>(def);
   const Vec3Array<double> still(model.mass.size(), Vec3d::Zero());
@@ -221,6 +228,8 @@ TEST_CASE("a curved mesh is at rest as it lies") {
   add_spring_forces(model, model.rest_positions, still, force);
   add_membrane_forces(model, model.rest_positions, still, force);
   add_hinge_forces(model, model.rest_positions, still, force);
+  add_quadratic_bending_forces(model, model.rest_positions, force);
+  add_rest_curve_forces(model.parts[0], model.rest_positions, force);
   for (const Vec3d& f : force) CHECK(f.norm() < 1e-9);  // springs have 1e-14 m^2 added to l^2
 }
 
@@ -333,7 +342,7 @@ TEST_CASE("degenerate meshes are refused with the name of what is wrong") {
   ClothDef quadratic = good;
   quadratic.bending_model = BendingModel::quadratic;
   CHECK(refused(quadratic) == "nothing");
-  quadratic.mesh->mesh.positions[5][2] += 0.01;
+  quadratic.rest_angle = 0.1;
   CHECK(refused(quadratic) == "cloth.bending_model");
 }
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/cloth/edge_sides.h"
+#include "core/types.h"
+
+// What lies around an edge of a curved mesh, laid flat.
+
+namespace weft {
+
+/// Lays the triangles around an edge into its plane, each beside one that lies there already and
+/// with its own shape, those nearest in number of steps first. What can be developed keeps all
+/// lengths by that. Elsewhere the places differ with the way that leads there, by the cube of the
+/// distance, and the shortest way counts.
+class Unfolding {
+ public:
+  /// Lays out the edge, along the first axis with its middle at the origin, and the first of its
+  /// triangles on the positive side of it, the other one on the negative.
+  /// @param x      of the particles [m]
+  /// @param edges  of the mesh
+  /// @param of     the edges of each triangle, opposite to its corners
+  Unfolding(const EdgeSides& edge, const Vec3Array<double>& x, const std::vector<EdgeSides>& edges,
+            const std::vector<std::array<Index, 3>>& of);
+
+  /// Lays out more triangles until these particles have a place, and removes those that no way of
+  /// at most kMostUnfolded triangles leads to.
+  void lay_out(std::vector<Index>& particles);
+
+  /// Of a particle [m]; null if it was not laid out.
+  const Eigen::Vector2d* place(Index particle) const;
+
+ private:
+  struct Place {
+    Index particle = kNone;
+    Eigen::Vector2d at;
+  };
+  struct Border {
+    Index edge = kNone;
+    std::size_t beyond = 0;  ///< its side that is not laid out, 0 or 1
+  };
+
+  void add_triangle(Index triangle, const EdgeSides& from, std::size_t side);
+  void cross(const Border& border);
+
+  const Vec3Array<double>& x_;
+  const std::vector<EdgeSides>& edges_;
+  const std::vector<std::array<Index, 3>>& of_;
+  std::vector<Place> places_;
+  std::vector<Index> triangles_;  // that are laid out
+  std::vector<Border> borders_;   // in the order in which they were reached
+  std::size_t crossed_ = 0;       // of these
+};
+
+}  // namespace weft
