@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cloth/corner_places.h"
 #include "core/error.h"
 
 namespace weft {
@@ -36,16 +37,16 @@ void validate(const GrabDef& def, std::size_t triangles) {
 template <class Real>
 void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
   assert(def.radius > 0);
-  const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
+  const CornerUv corners = corner_places(model, def.triangle);
   double u = 0, v = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto& m = model.material[static_cast<std::size_t>(corners[k])];
-    u += def.barycentric[k] * static_cast<double>(m[0]);
-    v += def.barycentric[k] * static_cast<double>(m[1]);
+    u += def.barycentric[k] * corners[k][0];
+    v += def.barycentric[k] * corners[k][1];
   }
   double sum = 0;
   std::vector<double> weights;
-  const IndexRange& part = part_of_particle(model, corners[0]).particles;
+  const Index corner = model.triangles[static_cast<std::size_t>(def.triangle)][0];
+  const IndexRange& part = part_of_particle(model, corner).particles;
   for (Index i = part.first; i < part.end(); ++i) {
     const auto p = static_cast<std::size_t>(i);
     const double du = static_cast<double>(model.material[p][0]) - u;

@@ -37,7 +37,8 @@ enum class MembraneModel {
 /// The shape that a mesh has without strain.
 enum class RestShape {
   placed,  ///< as its vertices lie in space
-  uv,      ///< flat, as its (u, v) in metres say: it starts strained where its vertices lie
+  uv,      ///< flat, as its (u, v) in metres say: it starts strained where its vertices lie. With
+           ///< seams each triangle rests on its own, and all is unbent
 };
 
 /// Outline of a grid within its rectangle.
@@ -62,6 +63,9 @@ struct ClothMesh {
                                           ///< are the rest shape [m]; empty: projected along the
                                           ///< axis that the mesh faces
   MeshPlacement placement = {};           ///< origin of `mesh`; not applied again
+  std::vector<CornerUv> corner_uv = {};   ///< by triangle, of its corners, where a vertex has
+                                          ///< several at a seam, of which `uv` has one; empty:
+                                          ///< those of the vertices
 };
 
 /// A cloth: rectangular with rows x columns particles, flat at rest, or a triangle mesh.

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/cloth/corner_places.h"
 #include "core/cloth/cut_grid.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
@@ -24,10 +25,24 @@ IndexRange append(std::vector<T>& to, const std::vector<T>& from) {
   return range;
 }
 
+/// Gives the triangles places of their own, of a model that had none.
+template <class Real>
+void fill_corners(ClothModel<Real>& model) {
+  if (!model.corner_material.empty()) return;
+  std::vector<std::array<std::array<Real, 2>, 3>> corners;
+  for (Index t = 0; t < static_cast<Index>(model.triangles.size()); ++t)
+    corners.push_back(stored_corners(model, t));
+  model.corner_material = std::move(corners);
+}
+
 /// Appends a cloth to a model, with its indices shifted.
 template <class Real>
 void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   assert(cloth.parts.size() == 1);
+  if (!cloth.corner_material.empty() || !model.corner_material.empty()) {
+    fill_corners(cloth);
+    fill_corners(model);
+  }
   const Index shift = model.particle_count();
   for (Triangle& triangle : cloth.triangles) {
     for (Index& corner : triangle) corner += shift;
@@ -52,6 +67,7 @@ void append_cloth(ClothModel<Real>&& cloth, ClothModel<Real>& model) {
   append(model.rest_positions, cloth.rest_positions);
   append(model.start_positions, cloth.start_positions);
   append(model.material, cloth.material);
+  append(model.corner_material, cloth.corner_material);
   append(model.triangle_area, cloth.triangle_area);
   append(model.spring_kinds, cloth.spring_kinds);
   part.particles = append(model.mass, cloth.mass);

@@ -201,6 +201,8 @@ struct ClothPart {
   RestCurves<Real> rest_curves;         ///< of such a mesh, if it is curved at rest
   bool bends_by_links = false;          ///< such a mesh, though it may have none
   bool curved_at_rest = false;          ///< and then it has rest curves
+  bool rests_by_triangle = false;       ///< each triangle as its `corner_material`, all unbent;
+                                        ///< the rest positions are where it starts
   std::vector<HeldStrip> held_strips;   ///< that the links are made for
   std::size_t bending_stencils = 0;     ///< or links of the quadratic form; see bending_stencil.h
   GridCells cells;                      ///< of a grid, whole or cut
@@ -218,14 +220,18 @@ std::size_t membrane_elements(const ClothPart<Real>& part) {
 template <class Real>
 struct ClothModel {
   std::vector<ClothPart<Real>> parts;         ///< in the order of their particles; at least one
-  Vec3Array<Real> rest_positions;             ///< of a shape without strain [m]
+  Vec3Array<Real> rest_positions;             ///< of a shape without strain, unless a part
+                                              ///< `rests_by_triangle` [m]
   Vec3Array<Real> start_positions;            ///< where it begins, mostly the same [m]
   std::vector<std::array<Real, 2>> material;  ///< (u, v) coordinates in the fabric of its part [m]
-  std::vector<Real> mass;                     ///< [kg], positive
-  std::vector<Triangle> triangles;            ///< of a grid with alternating diagonals
-  std::vector<Real> triangle_area;            ///< at rest [m^2]
-  std::vector<Edge> edges;                    ///< unique edges of the triangles
-  std::vector<Spring<Real>> springs;          ///< of a grid ordered by first end, then kind
+  /// (u, v) of each triangle's corners [m], where a particle has several at a seam and `material`
+  /// one of them; empty: those of the particles. See corner_places.h.
+  std::vector<std::array<std::array<Real, 2>, 3>> corner_material;
+  std::vector<Real> mass;             ///< [kg], positive
+  std::vector<Triangle> triangles;    ///< of a grid with alternating diagonals
+  std::vector<Real> triangle_area;    ///< at rest [m^2]
+  std::vector<Edge> edges;            ///< unique edges of the triangles
+  std::vector<Spring<Real>> springs;  ///< of a grid ordered by first end, then kind
   std::vector<SpringKind> spring_kinds;
   std::vector<Hinge<Real>> hinges;               ///< empty for a part with quadratic bending
   std::vector<MembraneTriangle<Real>> membrane;  ///< of a mesh, ordered by their first particle

@@ -6,22 +6,29 @@
 #include <cmath>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/corner_places.h"
 #include "core/geometry/hinge_angle.h"
 #include "core/geometry/triangle_sides.h"
 
 namespace weft {
 namespace {
 
+/// Rigidity over an edge in the fabric of one of its triangles [N m].
+template <class Real>
+double rigidity_at(const TriangleSide& side, const HingeSettings& settings,
+                   const ClothModel<Real>& model) {
+  const CornerUv corners = corner_places(model, side.triangle);
+  const auto &a = corners[static_cast<std::size_t>(side.corner + 1) % 3],
+             &b = corners[static_cast<std::size_t>(side.corner + 2) % 3];
+  return settings.rigidity(std::abs(b[0] - a[0]), std::abs(b[1] - a[1]));
+}
+
 template <class Real>
 void add_hinge(const HingeSettings& settings, const TriangleSide& first, const TriangleSide& second,
                ClothModel<Real>& model) {
   assert(first.ends == second.ends && first.triangle != second.triangle);
-  const auto& material = model.material;
-  const auto i = static_cast<std::size_t>(first.ends[0]),
-             j = static_cast<std::size_t>(first.ends[1]);
-  const double rigidity = settings.rigidity(
-      std::abs(static_cast<double>(material[j][0]) - static_cast<double>(material[i][0])),
-      std::abs(static_cast<double>(material[j][1]) - static_cast<double>(material[i][1])));
+  const double rigidity =
+      (rigidity_at(first, settings, model) + rigidity_at(second, settings, model)) / 2;
   assert(rigidity >= 0);
   if (rigidity == 0) return;
   const Triangle& t1 = model.triangles[static_cast<std::size_t>(first.triangle)];
@@ -32,8 +39,7 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
   hinge.x[1] = t1[(corner + 2) % 3];
   hinge.x[2] = t1[corner];
   hinge.x[3] = t2[static_cast<std::size_t>(second.corner)];
-  const double length2 =
-      (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
+  const double length2 = rest_length2(model, first, second);
   const double area =
       static_cast<double>(model.triangle_area[static_cast<std::size_t>(first.triangle)]) +
       static_cast<double>(model.triangle_area[static_cast<std::size_t>(second.triangle)]);
@@ -42,7 +48,7 @@ void add_hinge(const HingeSettings& settings, const TriangleSide& first, const T
   hinge.damping = static_cast<Real>(settings.damping) * hinge.stiffness;
   hinge.rest_angle = static_cast<Real>(settings.rest_angle);
   hinge.sine_form = settings.sine_form;
-  if (settings.add_own_angle) {
+  if (settings.add_own_angle && !rests_by_triangle(model)) {
     const auto x = [&](std::size_t k) -> const Vec3<Real>& {
       return model.rest_positions[static_cast<std::size_t>(hinge.x[k])];
     };

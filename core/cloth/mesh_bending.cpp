@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/corner_places.h"
 #include "core/cloth/edge_slope.h"
 #include "core/cloth/held_strip.h"
 #include "core/cloth/membrane.h"
@@ -83,9 +84,8 @@ struct PartMesh {
     for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {
       Triangle t = model.triangles[static_cast<std::size_t>(n)];
       std::array<Vec3d, 3> corners;
-      RestCorners material;
+      const RestCorners material = corner_places(model, n);
       for (std::size_t k = 0; k < 3; ++k) {
-        material[k] = place_of(model, t[k]);
         t[k] -= part.particles.first;
         corners[k] = x[static_cast<std::size_t>(t[k])];
       }

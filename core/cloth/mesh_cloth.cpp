@@ -8,18 +8,18 @@
 #include <map>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/corner_places.h"
 #include "core/cloth/flat_rest.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/hinges.h"
 #include "core/cloth/membrane.h"
 #include "core/cloth/mesh_bending.h"
+#include "core/cloth/mesh_uv.h"
 #include "core/cloth/stability_bound.h"
 #include "core/error.h"
 
 namespace weft {
 namespace {
-
-using Uv = std::vector<std::array<double, 2>>;
 
 std::string at(const char* list, std::size_t index) {
   return std::string("cloth.mesh.") + list + "[" + std::to_string(index) + "]";
@@ -69,67 +69,6 @@ void refuse_crowded_edges(const TriangleMesh& mesh) {
   }
 }
 
-void refuse_other_uv(const ClothMesh& cloth) {
-  const std::size_t vertices = cloth.mesh.positions.size();
-  if (cloth.uv.empty() || cloth.uv.size() == vertices) return;
-  throw DefinitionError("cloth.mesh.uv", std::to_string(cloth.uv.size()) + " pairs",
-                        std::to_string(vertices) + ", one a vertex, or none");
-}
-
-/// Area in (u, v), negative where it is turned over.
-double signed_area(const Uv& uv, const Triangle& t) {
-  const auto& a = uv[static_cast<std::size_t>(t[0])];
-  const auto& b = uv[static_cast<std::size_t>(t[1])];
-  const auto& c = uv[static_cast<std::size_t>(t[2])];
-  return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
-}
-
-double doubled_area(const Uv& uv, const Triangle& t) {
-  return 2 * std::abs(signed_area(uv, t));
-}
-
-/// Projects along the axis that most of the surface faces, with v downwards if possible.
-Uv projected(const TriangleMesh& mesh) {
-  Vec3d faced = Vec3d::Zero();
-  for (const Triangle& t : mesh.triangles) {
-    const auto x = [&](std::size_t k) -> const Vec3d& {
-      return mesh.positions[static_cast<std::size_t>(t[k])];
-    };
-    faced += (x(1) - x(0)).cross(x(2) - x(0)).cwiseAbs();
-  }
-  Uv uv;
-  for (const Vec3d& p : mesh.positions) {
-    if (faced[2] >= faced[0] && faced[2] >= faced[1])
-      uv.push_back({p[0], -p[1]});
-    else if (faced[1] >= faced[0])
-      uv.push_back({p[0], p[2]});
-    else
-      uv.push_back({p[2], -p[1]});
-  }
-  return uv;
-}
-
-/// Material coordinates in metres.
-Uv material_of(const ClothMesh& cloth) {
-  const double area = surface_area(cloth.mesh);
-  double whole = 0, least = INFINITY;
-  if (!cloth.uv.empty()) {
-    for (const Triangle& t : cloth.mesh.triangles) {
-      const double a = doubled_area(cloth.uv, t);
-      whole += 0.5 * a;
-      least = std::min(least, a);
-    }
-  }
-  const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
-  if (!(whole > 0) || !(least > kLeastUvArea * mean)) return projected(cloth.mesh);
-  Uv material = cloth.uv;
-  const double scale = std::sqrt(area / whole);
-  for (auto& point : material) {
-    for (double& x : point) x *= scale;
-  }
-  return material;
-}
-
 /// cos^2 of the angle between an edge and the warp.
 double squared_cosine(double du, double dv) {
   const double d2 = du * du + dv * dv;
@@ -141,37 +80,53 @@ double stiffness_along(const FabricDef& f, double cos2) {
   return f.stretch_warp * cos2 * cos2 + f.stretch_weft * sin2 * sin2 + 6 * f.shear * sin2 * cos2;
 }
 
+/// A triangle of the mesh with the particles at its corners.
+struct PlacedTriangle {
+  Triangle particles;
+  std::size_t old = 0;  ///< its number in the mesh
+  double area = 0;      ///< at rest [m^2]
+
+  Index first() const { return *std::min_element(particles.begin(), particles.end()); }
+};
+
 template <class Real>
-void place_particles(const ClothDef& def, const std::vector<Index>& order,
-                     ClothModel<Real>& model) {
-  const TriangleMesh& mesh = def.mesh->mesh;
-  const Uv material = material_of(*def.mesh);
+std::array<Real, 2> stored(const std::array<double, 2>& place) {
+  return {static_cast<Real>(place[0]), static_cast<Real>(place[1])};
+}
+
+template <class Real>
+void place_particles(const TriangleMesh& mesh, const MeshMaterial& material,
+                     const std::vector<Index>& order, ClothModel<Real>& model) {
+  const bool by_triangle = rests_by_triangle(model);
   assert(order.size() == mesh.positions.size());
   std::vector<Index> place(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const auto old = static_cast<std::size_t>(order[k]);
     place[old] = static_cast<Index>(k);
     model.rest_positions.push_back(mesh.positions[old].template cast<Real>());
-    model.material.push_back(
-        {static_cast<Real>(material[old][0]), static_cast<Real>(material[old][1])});
+    model.material.push_back(stored<Real>(material.of_vertices[old]));
   }
   const auto new_index = [&](Index old) { return place[static_cast<std::size_t>(old)]; };
-  std::vector<std::pair<Triangle, double>> triangles;
+  std::vector<PlacedTriangle> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& old = mesh.triangles[t];
     const auto x = [&](std::size_t k) -> const Vec3d& {
       return mesh.positions[static_cast<std::size_t>(old[k])];
     };
-    triangles.push_back({{new_index(old[0]), new_index(old[1]), new_index(old[2])},
-                         0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm()});
+    const double area = by_triangle ? 0.5 * std::abs(doubled_area(material.of_corners[t]))
+                                    : 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
+    triangles.push_back({{new_index(old[0]), new_index(old[1]), new_index(old[2])}, t, area});
   }
-  std::stable_sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) {
-    return *std::min_element(a.first.begin(), a.first.end()) <
-           *std::min_element(b.first.begin(), b.first.end());
-  });
-  for (const auto& [triangle, area] : triangles) {
-    model.triangles.push_back(triangle);
-    model.triangle_area.push_back(static_cast<Real>(area));
+  std::stable_sort(
+      triangles.begin(), triangles.end(),
+      [](const PlacedTriangle& a, const PlacedTriangle& b) { return a.first() < b.first(); });
+  for (const PlacedTriangle& t : triangles) {
+    model.triangles.push_back(t.particles);
+    model.triangle_area.push_back(static_cast<Real>(t.area));
+    if (material.of_corners.empty()) continue;
+    const CornerUv& corners = material.of_corners[t.old];
+    model.corner_material.push_back(
+        {stored<Real>(corners[0]), stored<Real>(corners[1]), stored<Real>(corners[2])});
   }
 }
 
@@ -192,29 +147,41 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
   }
 }
 
+/// Y(a) of the edge in the fabric of one of its triangles [N/m].
+template <class Real>
+double stiffness_at(const TriangleSide& side, const FabricDef& fabric,
+                    const ClothModel<Real>& model) {
+  const auto corners = stored_corners(model, side.triangle);
+  const auto &a = corners[static_cast<std::size_t>(side.corner + 1) % 3],
+             &b = corners[static_cast<std::size_t>(side.corner + 2) % 3];
+  return stiffness_along(
+      fabric, squared_cosine(static_cast<double>(b[0] - a[0]), static_cast<double>(b[1] - a[1])));
+}
+
 /// Adds one spring per edge, in the order of the edges.
 template <class Real>
 void add_edge_springs(const FabricDef& fabric, ClothModel<Real>& model) {
-  std::map<Edge, double> area;
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = model.triangles[t][k], b = model.triangles[t][(k + 1) % 3];
-      area[{std::min(a, b), std::max(a, b)}] += static_cast<double>(model.triangle_area[t]);
-    }
-  }
-  for (const Edge& edge : model.edges) {
-    const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
-    const double cos2 =
-        squared_cosine(static_cast<double>(model.material[j][0] - model.material[i][0]),
-                       static_cast<double>(model.material[j][1] - model.material[i][1]));
-    const double length2 =
-        (model.rest_positions[j] - model.rest_positions[i]).template cast<double>().squaredNorm();
-    const double stiffness = stiffness_along(fabric, cos2) * area.at(edge) / length2;
+  const std::vector<TriangleSide> sides = sorted_sides(model.triangles);
+  const auto area_of = [&](const TriangleSide& side) {
+    return static_cast<double>(model.triangle_area[static_cast<std::size_t>(side.triangle)]);
+  };
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const TriangleSide& first = sides[s];
+    const bool is_inner = s + 1 < sides.size() && sides[s + 1].ends == first.ends;
+    const TriangleSide& second = is_inner ? sides[++s] : first;
+    const double along = stiffness_at(first, fabric, model);
+    // Sum of Y A, in a form that is exact where both triangles have the same Y.
+    const double pull = is_inner
+                            ? along * (area_of(first) + area_of(second)) +
+                                  (stiffness_at(second, fabric, model) - along) * area_of(second)
+                            : along * area_of(first);
+    const double length2 = rest_length2(model, first, second);
+    const double stiffness = pull / length2;
     assert(length2 > 0 && stiffness >= 0);
     if (stiffness == 0) continue;
     Spring<Real> spring;
-    spring.i = edge[0];
-    spring.j = edge[1];
+    spring.i = first.ends[0];
+    spring.j = first.ends[1];
     spring.rest_length = static_cast<Real>(std::sqrt(length2));
     spring.stiffness = static_cast<Real>(stiffness);
     model.springs.push_back(spring);
@@ -230,7 +197,8 @@ void add_edge_damping(ClothModel<Real>& model, ClothPart<Real>& part) {
   add_spring_damping({time, time, time}, model, part);
 }
 
-/// Adds one membrane triangle per triangle, at rest as it lies and with the material's directions.
+/// Adds one membrane triangle per triangle, at rest as it lies and with the material's directions,
+/// or as it lies in the fabric.
 template <class Real>
 void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
   refuse_indefinite_membrane(fabric);
@@ -239,19 +207,22 @@ void add_membrane(const FabricDef& fabric, ClothModel<Real>& model) {
   tensor.weft = static_cast<Real>(fabric.stretch_weft);
   tensor.coupling = static_cast<Real>(membrane_coupling(fabric));
   tensor.shear = static_cast<Real>(fabric.shear);
+  const bool by_triangle = rests_by_triangle(model);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     std::array<Vec3d, 3> x;
-    RestCorners material;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(model.triangles[t][k]);
       x[k] = model.rest_positions[i].template cast<double>();
-      material[k] = {static_cast<double>(model.material[i][0]),
-                     static_cast<double>(model.material[i][1])};
     }
+    const RestCorners material = corner_places(model, static_cast<Index>(t));
+    if (by_triangle && doubled_area(material) == 0)
+      throw DefinitionError("cloth.mesh.uv", "a triangle that is a line in the solver's precision",
+                            "triangles with an area", "move the uv nearer to zero");
     if (!((x[1] - x[0]).cross(x[2] - x[0]).norm() > 0))
       throw DefinitionError("cloth.mesh", "a triangle that is a line in the solver's precision",
                             "triangles with an area", "move the mesh nearer to the origin");
-    model.membrane.push_back(membrane_triangle<Real>(model.triangles[t], laid_flat(x, material)));
+    model.membrane.push_back(membrane_triangle<Real>(
+        model.triangles[t], by_triangle ? material : laid_flat(x, material)));
   }
 }
 
@@ -260,7 +231,11 @@ template <class Real>
 void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   const bool wanted = def.bending_model == BendingModel::quadratic;
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
-  if (model.hinges.empty() || !(wanted || may)) return;
+  const bool by_triangle = rests_by_triangle(model);
+  if (wanted && by_triangle)
+    throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
+                          "a mesh with seams has no shape at rest as a whole in uv");
+  if (model.hinges.empty() || by_triangle || !(wanted || may)) return;
   ClothPart<Real>& part = model.parts.front();
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
@@ -307,7 +282,8 @@ std::vector<Index> breadth_first_order(std::size_t vertices,
 
 namespace {
 
-/// A cloth at rest as its mesh lies.
+/// A cloth at rest as its mesh lies; or, of a mesh with seams whose rest shape is its uv, as each
+/// of its triangles lies there.
 template <class Real>
 ClothModel<Real> build_placed(const ClothDef& def) {
   assert(def.mesh);
@@ -319,7 +295,9 @@ ClothModel<Real> build_placed(const ClothDef& def) {
   ClothModel<Real> model;
   model.parts.emplace_back();
   ClothPart<Real>& part = model.parts.front();
-  place_particles(def, breadth_first_order(mesh.positions.size(), mesh.triangles), model);
+  part.rests_by_triangle = def.rest_shape == RestShape::uv && has_seams(*def.mesh);
+  place_particles(mesh, part.rests_by_triangle ? pieces_of(*def.mesh) : material_of(*def.mesh),
+                  breadth_first_order(mesh.positions.size(), mesh.triangles), model);
   lump_masses(def, model);
   const FabricDef& fabric = def.fabric;
   connect_triangles(
@@ -346,26 +324,6 @@ ClothModel<Real> build_placed(const ClothDef& def) {
   return model;
 }
 
-/// The same mesh, laid flat as its (u, v) say. Throws DefinitionError if a triangle has no area
-/// there or is turned over.
-ClothDef laid_out(const ClothDef& def) {
-  ClothDef flat = def;
-  const ClothMesh& cloth = *def.mesh;
-  double whole = 0;
-  for (const Triangle& t : cloth.mesh.triangles) whole += signed_area(cloth.uv, t);
-  const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
-  for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t) {
-    const double area = signed_area(cloth.uv, cloth.mesh.triangles[t]);
-    if (mean != 0 && area / mean > kLeastUvArea) continue;
-    throw DefinitionError("cloth.rest_shape", "uv",
-                          "placed where a triangle has no area in uv, or is turned over",
-                          "triangle " + std::to_string(t) + " is; unfold the uv");
-  }
-  for (std::size_t i = 0; i < cloth.uv.size(); ++i)
-    flat.mesh->mesh.positions[i] = Vec3d(cloth.uv[i][0], cloth.uv[i][1], 0);
-  return flat;
-}
-
 }  // namespace
 
 template <class Real>
@@ -376,6 +334,7 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   validate(mesh, "cloth.mesh.");
   refuse_unused_and_coincident<Real>(mesh);
   refuse_other_uv(*def.mesh);
+  if (has_seams(*def.mesh)) return build_placed<Real>(def);
   ClothModel<Real> model;
   try {
     model = build_placed<Real>(laid_out(def));

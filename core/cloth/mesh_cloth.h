@@ -19,8 +19,12 @@ namespace weft {
 /// Mass: a third of each triangle to its corners, or equal. Particles are renumbered breadth-first,
 /// so that neighbours lie near each other in memory.
 ///
-/// Material coordinates are the uv, scaled equally in both directions so that the areas agree; or,
-/// without usable uv, the projection along the axis that the mesh faces most, with v downwards.
+/// Material coordinates are those of mesh_uv.h. At seams each triangle has those of its own
+/// corners; over an edge there hinges have the mean of both triangles' rigidities.
+///
+/// With the rest shape `uv` a mesh without seams is built as it lies there, flat. With seams each
+/// of its triangles rests as its corners lie there (ClothPart::rests_by_triangle), and it bends by
+/// hinges that are flat at rest.
 ///
 /// The definition must be valid, except for its mesh. Throws DefinitionError on "cloth.mesh...." if
 /// a vertex is unused, two vertices coincide, a triangle has no area or appears twice, or an edge

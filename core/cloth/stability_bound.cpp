@@ -6,8 +6,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "core/cloth/bending_stencil.h"
+#include "core/cloth/corner_places.h"
 #include "core/geometry/hinge_angle.h"
 
 namespace weft {
@@ -107,12 +109,15 @@ template <class Real>
 void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part) {
   assert(part.hinges.end() <= static_cast<Index>(model.hinges.size()));
   std::vector<double> bend(model.mass.size(), 0), damping(model.mass.size(), 0);
+  std::map<Edge, std::array<Vec3d, 4>> unrolled;
+  if (part.rests_by_triangle) unrolled = unrolled_hinges(model, part);
   for (Index k = part.hinges.first; k < part.hinges.end(); ++k) {
     const Hinge<Real>& h = model.hinges[static_cast<std::size_t>(k)];
-    const auto at = [&](int corner) {
-      return model.rest_positions[static_cast<std::size_t>(h.x[corner])]
-          .template cast<double>()
-          .eval();
+    const auto at = [&](int corner) -> Vec3d {
+      if (part.rests_by_triangle)
+        return unrolled.at(
+            {std::min(h.x[0], h.x[1]), std::max(h.x[0], h.x[1])})[static_cast<std::size_t>(corner)];
+      return model.rest_positions[static_cast<std::size_t>(h.x[corner])].template cast<double>();
     };
     const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));
     double sum = 0;

@@ -144,6 +144,7 @@ class Welder {
         if (place[i] == kNone) place[i] = weld(mesh, i, has_uv);
         triangle[k] = place[i];
       }
+      add_corners(mesh, face, triangle, has_uv);
       file_.mesh.triangles.push_back(triangle);
       check("triangles", file_.mesh.triangles.size(), limits_.triangles);
     }
@@ -151,13 +152,40 @@ class Welder {
   }
 
   void finish() {
-    if (!all_have_uv_) file_.uv.clear();
+    if (all_have_uv_) return;
+    file_.uv.clear();
+    file_.corner_uv.clear();
   }
 
  private:
   void check(const char* what, std::size_t count, std::size_t most) const {
     if (count > most)
       throw DefinitionError("mesh", name_, "at most " + std::to_string(most) + " " + what);
+  }
+
+  /// (u, v) of the corners as their vertices have them.
+  CornerUv of_vertices(const Triangle& triangle) const {
+    CornerUv corners;
+    for (std::size_t k = 0; k < 3; ++k)
+      corners[k] = file_.uv[static_cast<std::size_t>(triangle[k])];
+    return corners;
+  }
+
+  /// Keeps the uv of the next triangle's corners from the first seam on.
+  void add_corners(const aiMesh& mesh, const aiFace& face, const Triangle& triangle, bool has_uv) {
+    CornerUv corners = of_vertices(triangle);
+    const CornerUv first = corners;
+    for (unsigned k = 0; has_uv && k < 3; ++k) corners[k] = uv_of(mesh, face.mIndices[k]);
+    if (file_.corner_uv.empty() && corners == first) return;
+    if (file_.corner_uv.empty()) {
+      for (const Triangle& earlier : file_.mesh.triangles)
+        file_.corner_uv.push_back(of_vertices(earlier));
+    }
+    file_.corner_uv.push_back(corners);
+  }
+
+  static std::array<double, 2> uv_of(const aiMesh& mesh, unsigned i) {
+    return {mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y};
   }
 
   Index weld(const aiMesh& mesh, unsigned i, bool has_uv) {
@@ -174,7 +202,7 @@ class Welder {
     if (!is_new) return there->second;
     file_.mesh.positions.emplace_back(key[0], key[1], key[2]);
     file_.uv.push_back({0, 0});
-    if (has_uv) file_.uv.back() = {mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y};
+    if (has_uv) file_.uv.back() = uv_of(mesh, i);
     check("vertices", file_.mesh.positions.size(), limits_.vertices);
     return there->second;
   }

@@ -21,6 +21,7 @@ std::string encode_mesh(const TriangleMesh& mesh, const std::string& name);
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<std::array<double, 2>> uv;  ///< one per vertex, or empty; a downward v is not flipped
+  std::vector<CornerUv> corner_uv = {};   ///< by triangle; empty unless a vertex has several
 };
 
 /// Largest accepted file; checked before and after parsing.
@@ -35,7 +36,8 @@ bool is_mesh_file_name(std::string_view name);
 
 /// Reads OBJ, PLY, STL or GLB. All meshes of the file are merged, with their nodes' transformations
 /// applied; polygons are triangulated, points and lines dropped; vertices at exactly the same
-/// position are merged, with the uv of the first, in the order of first use in the file.
+/// position are merged, in the order of first use in the file. Their uv is that of the first; where
+/// others have another, at a seam, `corner_uv` keeps what each triangle has at its corners.
 ///
 /// The parser is not safe for every file: one from an untrusted source is parsed in a separate
 /// process with limits (server/scene/mesh_child.h).

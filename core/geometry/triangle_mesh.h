@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct TriangleMesh {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
 };
+
+/// (u, v) of a triangle's corners, where the fabric or a texture lies.
+using CornerUv = std::array<std::array<double, 2>, 3>;
 
 /// Source and placement of a mesh: p = position + R (scale p_source).
 struct MeshPlacement {

@@ -48,7 +48,7 @@ void build_start_fold(WorldDef& def, const std::string&) {
   placement.source = "loop";
   placement.position = Vec3d(0, 0.5, 0);
   const MeshFile loop = built_in_mesh("loop", {});
-  cloth.mesh = ClothMesh{placed(loop.mesh, placement), loop.uv, placement};
+  cloth.mesh = ClothMesh{placed(loop.mesh, placement), loop.uv, placement, loop.corner_uv};
   fall_and_come_apart(def);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/cloth/corner_places.h"
+
 namespace weft {
 namespace {
 
@@ -44,9 +46,9 @@ double area_of_disc(const ClothModel<Real>& model, const ClothPart<Real>& part, 
                     double radius) {
   double area = 0;
   for (Index t = part.triangles.first; t < part.triangles.end(); ++t) {
-    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    const CornerUv corners = corner_places(model, t);
     const auto at = [&](std::size_t k) -> Place {
-      return place_of(model, corners[k % 3]) - centre;
+      return Place(corners[k % 3][0], corners[k % 3][1]) - centre;
     };
     double within = 0;
     for (std::size_t k = 0; k < 3; ++k) within += area_to_side(at(k), at(k + 1), radius);

@@ -58,22 +58,26 @@ std::string packed(const MeshFile& file) {
   put(out, static_cast<std::uint64_t>(file.mesh.positions.size()));
   put(out, static_cast<std::uint64_t>(file.mesh.triangles.size()));
   put(out, static_cast<std::uint64_t>(file.uv.size()));
+  put(out, static_cast<std::uint64_t>(file.corner_uv.size()));
   for (const Vec3d& p : file.mesh.positions)
     for (int axis = 0; axis < 3; ++axis) put(out, p[axis]);
   for (const Triangle& t : file.mesh.triangles) put(out, t);
   for (const auto& uv : file.uv) put(out, uv);
+  for (const CornerUv& corners : file.corner_uv) put(out, corners);
   return out;
 }
 
 bool unpack(std::string_view bytes, const MeshFileLimits& limits, MeshFile& file) {
   Take take(bytes);
-  std::uint64_t vertices = 0, triangles = 0, uv = 0;
-  if (!take(vertices) || !take(triangles) || !take(uv)) return false;
-  if (vertices > limits.vertices || triangles > limits.triangles || (uv != 0 && uv != vertices))
+  std::uint64_t vertices = 0, triangles = 0, uv = 0, corner_uv = 0;
+  if (!take(vertices) || !take(triangles) || !take(uv) || !take(corner_uv)) return false;
+  if (vertices > limits.vertices || triangles > limits.triangles || (uv != 0 && uv != vertices) ||
+      (corner_uv != 0 && (uv == 0 || corner_uv != triangles)))
     return false;
   file.mesh.positions.resize(vertices);
   file.mesh.triangles.resize(triangles);
   file.uv.resize(uv);
+  file.corner_uv.resize(corner_uv);
   for (Vec3d& p : file.mesh.positions)
     for (int axis = 0; axis < 3; ++axis)
       if (!take(p[axis])) return false;
@@ -84,6 +88,8 @@ bool unpack(std::string_view bytes, const MeshFileLimits& limits, MeshFile& file
   }
   for (auto& point : file.uv)
     if (!take(point)) return false;
+  for (CornerUv& corners : file.corner_uv)
+    if (!take(corners)) return false;
   return take.empty();
 }
 
@@ -150,7 +156,7 @@ MeshFile read_mesh_apart(const std::string& path, const MeshFileLimits& limits) 
   const pid_t child = spawn_child(path, file.number, to_parent.number);
   if (child < 0) throw refused(path, "a file", "no process can be made for it");
   to_parent.close_now();
-  const std::size_t most = 64 + limits.vertices * 40 + limits.triangles * 12;
+  const std::size_t most = 64 + limits.vertices * 40 + limits.triangles * 60;
   std::string answer;
   const bool ended = read_all(from_child.number, most, answer);
   if (!ended) kill(child, SIGKILL);

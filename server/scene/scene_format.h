@@ -126,6 +126,7 @@ void describe_cloth(Io& io, ClothDef& cloth) {
                 inner.mesh(mesh.placement, [&](const MeshFile& file) {
                   mesh.mesh = placed(file.mesh, mesh.placement);
                   mesh.uv = file.uv;
+                  mesh.corner_uv = file.corner_uv;
                 });
               });
             });

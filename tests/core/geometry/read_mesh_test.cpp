@@ -162,6 +162,27 @@ TEST_CASE("uv come with their vertices") {
   }
 }
 
+TEST_CASE("a vertex with several uv is one vertex, and each triangle keeps those of its corners") {
+  // A strip of four triangles; from the third on, the lower edge begins anew in uv.
+  const std::string vertices =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 2 0\nv 1 2 0\n"
+      "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 0 2\nvt 1 2\nvt 5 5\nvt 5 6\nvt 0 1\n";
+  const std::string first = "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n";
+  const MeshFile whole =
+      read_mesh(vertices + first + "f 3/9 4/4 6/6\nf 3/3 6/6 5/5\n", "strip.obj");
+  CHECK(whole.uv.size() == 6);
+  CHECK(whole.corner_uv.empty());  // another number of the same uv is no seam
+  const MeshFile cut = read_mesh(vertices + first + "f 3/7 4/8 6/6\nf 3/7 6/6 5/5\n", "strip.obj");
+  CHECK(cut.mesh.triangles == whole.mesh.triangles);
+  CHECK(cut.mesh.positions == whole.mesh.positions);
+  CHECK(cut.uv == whole.uv);
+  REQUIRE(cut.corner_uv.size() == 4);
+  CHECK(cut.corner_uv[0] == CornerUv{{{0, 0}, {1, 0}, {1, 1}}});
+  CHECK(cut.corner_uv[1] == CornerUv{{{0, 0}, {1, 1}, {0, 1}}});
+  CHECK(cut.corner_uv[2] == CornerUv{{{5, 5}, {5, 6}, {1, 2}}});
+  CHECK(cut.corner_uv[3] == CornerUv{{{5, 5}, {1, 2}, {0, 2}}});
+}
+
 TEST_CASE("polygons are cut into triangles of the same area; points and lines are left out") {
   const MeshFile file =
       read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1 2 3 4\nl 5 6\np 5\n",
