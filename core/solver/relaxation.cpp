@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "core/forces/force_pass.h"
 #include "core/forces/rest_curve.h"
@@ -43,8 +42,7 @@ double kept(const Tick<Real>& tick) {
   return (1 - tick.solver.damping) / (1 + tick.surroundings.damping * static_cast<double>(tick.dt));
 }
 
-/// Everything that is a force, not a constraint, except gravity and the bending of parts that are
-/// swept row by row.
+/// Everything that is a force, not a constraint, but gravity and the bending that is swept by rows.
 template <class Real>
 void evaluate_forces(Tick<Real>& tick, const HandStep<Real>& hands) {
   const ClothModel<Real>& model = tick.model;
