@@ -11,7 +11,6 @@
 #include <Eigen/LU>
 
 #include "core/cloth/constants.h"
-#include "core/cloth/unfolding.h"
 
 namespace weft {
 namespace {
@@ -39,9 +38,9 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 }
 
 EdgeSlopes::EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles,
-                       bool flat)
+                       const FlatShapes* shapes)
     : x_(x), edges_(sides_of(triangles)), of_(edges_of_triangles(edges_, triangles)),
-      neighbours_(x.size(), ends_of(edges_)), flat_(flat) {}
+      neighbours_(x.size(), ends_of(edges_)), shapes_(shapes) {}
 
 /// Coordinates in the plane of an edge, from its middle.
 struct EdgeSlopes::Frame {
@@ -49,7 +48,7 @@ struct EdgeSlopes::Frame {
   double length = 0;                  ///< of the edge [m]
   double height = 0;                  ///< mean of its triangles' [m]
   std::array<double, 2> foot{}, y{};  ///< along and across, of the triangles' third corners [m]
-  std::optional<Unfolding> around;    ///< of a mesh that is not flat
+  std::optional<Unfolding> around;    ///< of a mesh that is not flat as a whole
 
   /// In units of the edge's length and height [1].
   Eigen::Vector2d place(const Vec3d& p) const {
@@ -58,6 +57,7 @@ struct EdgeSlopes::Frame {
 };
 
 EdgeSlopes::Frame EdgeSlopes::frame_of(const EdgeSides& edge) const {
+  if (shapes_ != nullptr) return unfolded_frame(edge);
   const auto at = [&](Index i) -> const Vec3d& { return x_[static_cast<std::size_t>(i)]; };
   Frame frame;
   frame.middle = 0.5 * (at(edge.ends[0]) + at(edge.ends[1]));
@@ -71,17 +71,30 @@ EdgeSlopes::Frame EdgeSlopes::frame_of(const EdgeSides& edge) const {
     const Vec3d to = at(edge.opposite[side]) - frame.middle;
     frame.foot[side] = to.dot(frame.along);
     frame.y[side] = to.dot(frame.across);
-    if (!flat_ && side == 1) frame.y[1] = -(to - frame.along * frame.foot[1]).norm();
   }
   frame.height = edge.is_border() ? frame.y[0] : 0.5 * (frame.y[0] - frame.y[1]);
   assert(frame.height > 0);
-  if (!flat_) frame.around.emplace(edge, x_, edges_, of_);
+  return frame;
+}
+
+/// The same of an edge whose surroundings are unfolded, without places in space.
+EdgeSlopes::Frame EdgeSlopes::unfolded_frame(const EdgeSides& edge) const {
+  Frame frame;
+  frame.length = length_of(*shapes_, edge);
+  for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side) {
+    const BesideEdge own = beside(*shapes_, edge, side);
+    frame.foot[side] = (own.foot / own.length - 0.5) * frame.length;
+    frame.y[side] = side == 0 ? own.height : -own.height;
+  }
+  frame.height = edge.is_border() ? frame.y[0] : 0.5 * (frame.y[0] - frame.y[1]);
+  assert(frame.height > 0);
+  frame.around.emplace(edge, *shapes_, edges_, of_);
   return frame;
 }
 
 /// Of a particle, in the edge's plane and in units of its length and height [1].
 Eigen::Vector2d EdgeSlopes::place_of(Index particle, const Frame& frame) const {
-  if (flat_) return frame.place(x_[static_cast<std::size_t>(particle)]);
+  if (shapes_ == nullptr) return frame.place(x_[static_cast<std::size_t>(particle)]);
   const Eigen::Vector2d* const place = frame.around->place(particle);
   assert(place != nullptr && "only particles that were laid out have a place");
   return {(*place)[0] / frame.length, (*place)[1] / frame.height};

@@ -6,6 +6,7 @@
 
 #include "core/cloth/edge_sides.h"
 #include "core/cloth/neighbours.h"
+#include "core/cloth/unfolding.h"
 #include "core/types.h"
 
 // Slope of a field across the edges of a mesh, from its values at the particles.
@@ -27,10 +28,12 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 /// surroundings makes it so.
 class EdgeSlopes {
  public:
-  /// @param x     of the particles [m]
-  /// @param flat  whether the triangles are flat together wherever they meet; if not, what lies
-  ///              around an edge is unfolded into its plane (unfolding.h)
-  EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles, bool flat);
+  /// @param x       of the particles of a mesh whose triangles are flat together wherever they
+  ///                meet [m]
+  /// @param shapes  of its triangles, if they are not: what lies around an edge is then unfolded
+  ///                into its plane, and x is not read; else null
+  EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles,
+             const FlatShapes* shapes);
 
   const std::vector<EdgeSides>& edges() const { return edges_; }
 
@@ -59,6 +62,7 @@ class EdgeSlopes {
   using Members = std::vector<Index>;
 
   Frame frame_of(const EdgeSides& edge) const;
+  Frame unfolded_frame(const EdgeSides& edge) const;
   void add_inside(const EdgeSides& edge, const Frame& frame, std::size_t side, double share,
                   std::vector<ParticleWeight>& slope) const;
   std::vector<ParticleWeight> mean_inside(const EdgeSides& edge, const Frame& frame) const;
@@ -74,7 +78,7 @@ class EdgeSlopes {
   std::vector<EdgeSides> edges_;
   std::vector<std::array<Index, 3>> of_;  // edges of each triangle
   Neighbours neighbours_;
-  bool flat_;
+  const FlatShapes* shapes_;
 };
 
 }  // namespace weft

@@ -38,12 +38,11 @@ struct FlatTriangle {
   double area = 0;
   double free = 1;  ///< part of it that no strip holds
 
-  /// @param x         of its corners [m]
+  /// @param flat      its corners [m]
   /// @param material  their (u, v) [m]
-  FlatTriangle(const std::array<Vec3d, 3>& x, const RestCorners& material,
+  FlatTriangle(const RestCorners& flat, const RestCorners& material,
                const std::vector<HeldStrip>& strips)
       : free(strips.empty() ? 1 : free_part(strips, material)) {
-    const RestCorners flat = laid_flat(x, material);
     for (std::size_t k = 0; k < 3; ++k) corner[k] = {flat[k][0], flat[k][1]};
     const Eigen::Vector2d a = corner[1] - corner[0], b = corner[2] - corner[0];
     area = 0.5 * std::abs(a[0] * b[1] - a[1] * b[0]);
@@ -90,8 +89,15 @@ struct PartMesh {
         corners[k] = x[static_cast<std::size_t>(t[k])];
       }
       triangles.push_back(t);
-      flat.emplace_back(corners, material, part.held_strips);
+      flat.emplace_back(part.rests_by_triangle ? material : laid_flat(corners, material), material,
+                        part.held_strips);
     }
+  }
+
+  FlatShapes shapes() const {
+    FlatShapes shapes{triangles, {}};
+    for (const FlatTriangle& one : flat) shapes.corners.push_back(one.corner);
+    return shapes;
   }
 };
 
@@ -232,7 +238,9 @@ void append(const Triangle& t, const std::vector<CurvatureWeight>& curvature,
 template <class Real>
 void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
   const PartMesh mesh(model, part);
-  const EdgeSlopes edges(mesh.x, mesh.triangles, !part.curved_at_rest);
+  const bool unfolds = part.curved_at_rest || part.rests_by_triangle;
+  const FlatShapes shapes = unfolds ? mesh.shapes() : FlatShapes();
+  const EdgeSlopes edges(mesh.x, mesh.triangles, unfolds ? &shapes : nullptr);
   std::vector<double> free;
   for (const FlatTriangle& flat : mesh.flat) free.push_back(flat.free);
   Slopes slopes;

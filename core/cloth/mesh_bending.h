@@ -25,6 +25,9 @@ namespace weft {
 /// the part's rest curves complete (forces/rest_curve.h). A fold at rest is a curvature too: what
 /// is folded by theta at rest is right to theta^2.
 ///
+/// So is one whose triangles rest by themselves, sewn along the seams of their (u, v): these say
+/// the shapes, and all are flat at rest, across the seams too.
+///
 /// A held strip does not bend: a triangle inside it has its slope, and what lies beside it turns
 /// about their common edge. A triangle that the border cuts bends only beyond that, where it has
 /// the curvature of the whole turn: its rigidity is divided by its free part.

@@ -232,15 +232,12 @@ void choose_bending(const ClothDef& def, ClothModel<Real>& model) {
   const bool wanted = def.bending_model == BendingModel::quadratic;
   const bool may = def.bending_model == BendingModel::automatic && quadratic_bending_fits(def);
   const bool by_triangle = rests_by_triangle(model);
-  if (wanted && by_triangle)
-    throw DefinitionError("cloth.bending_model", "quadratic", "hinges or automatic",
-                          "a mesh with seams has no shape at rest as a whole in uv");
-  if (model.hinges.empty() || by_triangle || !(wanted || may)) return;
+  if (model.hinges.empty() || !(wanted || may)) return;
   ClothPart<Real>& part = model.parts.front();
   double most = 0;
   for (const Hinge<Real>& hinge : model.hinges)
     most = std::max(most, std::abs(static_cast<double>(hinge.rest_angle)));
-  part.curved_at_rest = most > kFlatRestAngle && !lies_flat(model);
+  part.curved_at_rest = !by_triangle && most > kFlatRestAngle && !lies_flat(model);
   part.bends_by_links = true;
   part.bending_time = static_cast<Real>(part.fabric.bending_damping);
   bend_by_links(model, part);

@@ -23,8 +23,8 @@ namespace weft {
 /// corners; over an edge there hinges have the mean of both triangles' rigidities.
 ///
 /// With the rest shape `uv` a mesh without seams is built as it lies there, flat. With seams each
-/// of its triangles rests as its corners lie there (ClothPart::rests_by_triangle), and it bends by
-/// hinges that are flat at rest.
+/// of its triangles rests as its corners lie there (ClothPart::rests_by_triangle), and it is
+/// flat at rest across the seams too.
 ///
 /// The definition must be valid, except for its mesh. Throws DefinitionError on "cloth.mesh...." if
 /// a vertex is unused, two vertices coincide, a triangle has no area or appears twice, or an edge

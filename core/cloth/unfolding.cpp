@@ -10,13 +10,32 @@
 
 namespace weft {
 
-Unfolding::Unfolding(const EdgeSides& edge, const Vec3Array<double>& x,
+BesideEdge beside(const FlatShapes& shapes, const EdgeSides& edge, std::size_t side) {
+  assert(side < 2 && edge.triangle[side] != kNone);
+  const auto t = static_cast<std::size_t>(edge.triangle[side]);
+  const auto corner = [&](Index particle) -> const Eigen::Vector2d& {
+    const Triangle& particles = shapes.triangles[t];
+    const auto found = std::find(particles.begin(), particles.end(), particle);
+    assert(found != particles.end());
+    return shapes.corners[t][static_cast<std::size_t>(found - particles.begin())];
+  };
+  const Eigen::Vector2d start = corner(edge.ends[0]), along = corner(edge.ends[1]) - start,
+                        to = corner(edge.opposite[side]) - start;
+  const double length = along.norm();
+  assert(length > 0);
+  return {length, to.dot(along) / length, std::abs(along[0] * to[1] - along[1] * to[0]) / length};
+}
+
+double length_of(const FlatShapes& shapes, const EdgeSides& edge) {
+  const double length = beside(shapes, edge, 0).length;
+  return edge.is_border() ? length : 0.5 * (length + beside(shapes, edge, 1).length);
+}
+
+Unfolding::Unfolding(const EdgeSides& edge, const FlatShapes& shapes,
                      const std::vector<EdgeSides>& edges,
                      const std::vector<std::array<Index, 3>>& of)
-    : x_(x), edges_(edges), of_(of) {
-  const auto at = [&](Index i) -> const Vec3d& { return x_[static_cast<std::size_t>(i)]; };
-  const double half = 0.5 * (at(edge.ends[1]) - at(edge.ends[0])).norm();
-  assert(half > 0);
+    : shapes_(shapes), edges_(edges), of_(of) {
+  const double half = 0.5 * length_of(shapes, edge);
   places_.push_back({edge.ends[0], {-half, 0}});
   places_.push_back({edge.ends[1], {half, 0}});
   for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side)
@@ -40,17 +59,13 @@ void Unfolding::add_triangle(Index triangle, const EdgeSides& from, std::size_t 
   }
   const Index apex = from.opposite[side];
   if (place(apex) != nullptr) return;
-  const auto at = [&](Index i) -> const Vec3d& { return x_[static_cast<std::size_t>(i)]; };
-  const Vec3d along = (at(from.ends[1]) - at(from.ends[0])).normalized();
-  const Vec3d to = at(apex) - at(from.ends[0]);
-  const double foot = to.dot(along), height = (to - along * foot).norm();
-  const Eigen::Vector2d start = *place(from.ends[0]);
-  const Eigen::Vector2d line = (*place(from.ends[1]) - start).normalized();
-  Eigen::Vector2d out(-line[1], line[0]);
+  const BesideEdge own = beside(shapes_, from, side);
+  const Eigen::Vector2d start = *place(from.ends[0]), line = *place(from.ends[1]) - start;
+  Eigen::Vector2d out = Eigen::Vector2d(-line[1], line[0]).normalized();
   const Index other = from.opposite[1 - side];
   const Eigen::Vector2d* const before = other == kNone ? nullptr : place(other);
   if (before != nullptr && out.dot(*before - start) > 0) out = -out;
-  places_.push_back({apex, start + line * foot + out * height});
+  places_.push_back({apex, start + line * (own.foot / own.length) + out * own.height});
 }
 
 void Unfolding::cross(const Border& border) {

@@ -6,9 +6,28 @@
 #include "core/cloth/edge_sides.h"
 #include "core/types.h"
 
-// What lies around an edge of a curved mesh, laid flat.
+// What lies around an edge of a mesh that is not flat as a whole, laid flat.
 
 namespace weft {
+
+/// The triangles of a mesh, each laid flat on its own.
+struct FlatShapes {
+  std::vector<Triangle> triangles;
+  std::vector<std::array<Eigen::Vector2d, 3>> corners;  ///< by triangle [m]
+};
+
+/// A triangle beside one of its edges [m].
+struct BesideEdge {
+  double length = 0;  ///< of the edge in this triangle
+  double foot = 0;    ///< of the third corner along it, from the edge's first end
+  double height = 0;  ///< of the third corner over it
+};
+
+/// @param side  of the edge, 0 or 1, where it has a triangle
+BesideEdge beside(const FlatShapes& shapes, const EdgeSides& edge, std::size_t side);
+
+/// Length of an edge: the mean where its triangles, sewn together, differ [m].
+double length_of(const FlatShapes& shapes, const EdgeSides& edge);
 
 /// Lays the triangles around an edge into its plane, each beside one that lies there already and
 /// with its own shape, those nearest in number of steps first. What can be developed keeps all
@@ -18,10 +37,9 @@ class Unfolding {
  public:
   /// Lays out the edge, along the first axis with its middle at the origin, and the first of its
   /// triangles on the positive side of it, the other one on the negative.
-  /// @param x      of the particles [m]
   /// @param edges  of the mesh
   /// @param of     the edges of each triangle, opposite to its corners
-  Unfolding(const EdgeSides& edge, const Vec3Array<double>& x, const std::vector<EdgeSides>& edges,
+  Unfolding(const EdgeSides& edge, const FlatShapes& shapes, const std::vector<EdgeSides>& edges,
             const std::vector<std::array<Index, 3>>& of);
 
   /// Lays out more triangles until these particles have a place, and removes those that no way of
@@ -44,7 +62,7 @@ class Unfolding {
   void add_triangle(Index triangle, const EdgeSides& from, std::size_t side);
   void cross(const Border& border);
 
-  const Vec3Array<double>& x_;
+  const FlatShapes& shapes_;
   const std::vector<EdgeSides>& edges_;
   const std::vector<std::array<Index, 3>>& of_;
   std::vector<Place> places_;
