@@ -55,7 +55,7 @@ inline constexpr double kFlatRestAngle = 1e-5;
 
 /// So does a piece of a mesh whose vertices lie this near to a plane, as a fraction of its mean
 /// edge [1], and these many roundings of its coordinates. Larger: slight curves at rest are lost.
-/// Smaller: rounding of a file's vertices makes a flat mesh bend by hinges.
+/// Smaller: rounding of a file's vertices makes a flat mesh a curved one, which takes longer.
 inline constexpr double kFlatRest = 1e-3, kRoundingsOfFlat = 4;
 
 /// Error of a slope across an edge of a mesh, over what a quadratic field rises by up to the next
