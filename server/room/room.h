@@ -202,6 +202,7 @@ class Room {
   void join(proto::ViewerId id, const Join& join);
   void admit(Viewer& viewer, const Grant& grant);
   void take_token(Viewer& viewer, const Grant& grant);
+  void follow_person(const Viewer& changed);
   void leave_mute(const Viewer& viewer);
   bool comes_muted(const Grant& grant);
   void ask_newcomer(Viewer& viewer);

@@ -209,11 +209,22 @@ std::optional<proto::Error> Room::set_hand(ViewerId by, ViewerId viewer, HandRig
     other.hand = right;
   else if (other.hand == right)
     other.hand = HandRight::by_policy;
-  // A person that may hold again is muted nowhere else.
-  if (other.named && other.hand != HandRight::muted) rights_.muted_away.erase(other.token);
   let_go_forbidden(viewer);
+  if (other.named) follow_person(other);
   news_.roster = true;
   return std::nullopt;
+}
+
+/// A person is muted by every connection with its token or by none, also those to come.
+void Room::follow_person(const Viewer& changed) {
+  const bool muted = changed.hand == HandRight::muted;
+  if (!muted) rights_.muted_away.erase(changed.token);
+  for (auto& [id, other] : viewers_) {
+    if (other.token != changed.token || other.glances) continue;
+    if (muted == (other.hand == HandRight::muted)) continue;
+    other.hand = muted ? HandRight::muted : HandRight::by_policy;
+    let_go_forbidden(id);
+  }
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Mute& command) {

@@ -82,4 +82,17 @@ TEST_CASE("a person that is muted is so by every connection with its token, unti
   CHECK(room.holds(room.come(7, "Max")));
 }
 
+TEST_CASE("a person that is here by several connections is muted, and may hold again, by all") {
+  Class room;
+  const auto first = room.come(7, "Max"), second = room.come(7, "Max"), lea = room.come(8, "Lea"),
+             unnamed = room.come(9), same = room.come(9);
+  room.say("mute", first);
+  CHECK_FALSE(room.holds(second));
+  CHECK(room.holds(lea));
+  room.say("give_hand", second);
+  CHECK(room.holds(first));
+  room.say("mute", unnamed);
+  CHECK(room.holds(same));
+}
+
 }  // namespace weft::server

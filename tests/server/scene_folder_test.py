@@ -184,8 +184,19 @@ class HostileMeshes(unittest.TestCase):
     def test_the_child_answers_counts_numbers_and_indices(self):
         answer = subprocess.run([PROGRAM, "mesh-child", "square.obj"], input=SQUARE.encode(),
                                 capture_output=True, timeout=60).stdout
-        self.assertEqual(struct.unpack_from("<cQQQ", answer), (b"M", 4, 2, 0))
-        self.assertEqual(len(answer), 25 + 4 * 24 + 2 * 12)
+        self.assertEqual(struct.unpack_from("<cQQQQ", answer), (b"M", 4, 2, 0, 0))
+        self.assertEqual(len(answer), 33 + 4 * 24 + 2 * 12)
+
+    def test_the_child_answers_the_uv_of_corners_at_a_seam(self):
+        # Two triangles of a square, whose common edge has other uv on each side.
+        seam = SQUARE.split("f ")[0] + "".join(
+            f"vt {u} {v}\n" for u, v in ((0, 0), (1, 0), (1, 1), (5, 5), (6, 6), (5, 6)))
+        seam += "f 1/1 2/2 3/3\nf 1/4 3/5 4/6\n"
+        answer = subprocess.run([PROGRAM, "mesh-child", "seam.obj"], input=seam.encode(),
+                                capture_output=True, timeout=60).stdout
+        self.assertEqual(struct.unpack_from("<cQQQQ", answer), (b"M", 4, 2, 4, 2))
+        corners = struct.unpack("<12d", answer[-96:])
+        self.assertEqual(corners, (0, 0, 1, 0, 1, 1, 5, 5, 6, 6, 5, 6))
 
 
 if __name__ == "__main__":
