@@ -129,15 +129,36 @@ template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius) {
   assert(centre >= 0 && centre < model.particle_count());
   assert(radius >= 0);
+  if (radius == 0) return {centre};
   const auto& middle = model.material[static_cast<std::size_t>(centre)];
-  const IndexRange& part = part_of_particle(model, centre).particles;
-  std::vector<Index> inside;
-  for (Index i = part.first; i < part.end(); ++i) {
+  const ClothPart<Real>& part = part_of_particle(model, centre);
+  const auto is_near = [&](Index i) {
     const auto& m = model.material[static_cast<std::size_t>(i)];
     const double du = static_cast<double>(m[0] - middle[0]),
                  dv = static_cast<double>(m[1] - middle[1]);
-    if (i == centre || du * du + dv * dv <= radius * radius) inside.push_back(i);
+    return i == centre || du * du + dv * dv <= radius * radius;
+  };
+  // What lies at the same place of the fabric, in another piece or on the far side of a projected
+  // mesh, is not joined to the centre near the disc.
+  std::vector<Edge> near;
+  for (Index e = part.edges.first; e < part.edges.end(); ++e) {
+    const Edge& edge = model.edges[static_cast<std::size_t>(e)];
+    if (is_near(edge[0]) || is_near(edge[1])) near.push_back(edge);
   }
+  std::vector<char> reached(model.mass.size(), 0);
+  reached[static_cast<std::size_t>(centre)] = 1;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const Edge& edge : near) {
+      char &a = reached[static_cast<std::size_t>(edge[0])],
+           &b = reached[static_cast<std::size_t>(edge[1])];
+      grows = grows || a != b;
+      a = b = a | b;
+    }
+  }
+  std::vector<Index> inside;
+  for (Index i = part.particles.first; i < part.particles.end(); ++i)
+    if (reached[static_cast<std::size_t>(i)] && is_near(i)) inside.push_back(i);
   return inside;
 }
 

@@ -260,8 +260,8 @@ ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs);
 template <class Real>
 const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index particle);
 
-/// The particles of the same part within material distance `radius` [m] of particle `centre`, in
-/// ascending order; at least the centre itself.
+/// The particles of the same part within material distance `radius` [m] of particle `centre` that
+/// edges near there join to it, in ascending order; at radius 0 the centre alone.
 template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius);
 

@@ -72,8 +72,12 @@ inline constexpr double kTellsApart = 5e-4;
 /// Larger: nothing, on meshes that are wide enough. Smaller: slopes at corners are not exact.
 inline constexpr int kSlopeRounds = 2;
 
-/// Weight of a link of bending, over those of its two particles themselves, that is left out [1].
-/// Larger: what is flat pulls at itself. Smaller: rounded vertices of a regular mesh make each
+/// Neighbours of a particle beyond which they have no say in slopes beside it [1]. Larger: fans
+/// take long to build. Smaller: slopes at dense vertices are not exact.
+inline constexpr std::size_t kMostSpokes = 32;
+
+/// Weight of a link of bending, over the lesser of those of its two particles, that is left out
+/// [1]. Larger: what is flat pulls at itself. Smaller: rounded vertices of a regular mesh make each
 /// particle bend with half as many more.
 inline constexpr double kLeastLink = 1e-8;
 

@@ -114,10 +114,12 @@ EdgeSlopes::Members EdgeSlopes::nearest(const EdgeSides& edge) const {
   return members;
 }
 
-/// Those and all that an edge joins to them.
+/// Those and all that an edge joins to them. The neighbours of a hub lie far from each other, and
+/// would make the time of a fan grow with the square of its triangles.
 EdgeSlopes::Members EdgeSlopes::grown(const Members& members) const {
   Members more = members;
   for (const Index i : members) {
+    if (neighbours_.of(static_cast<std::size_t>(i)).size() > kMostSpokes) continue;
     for (const auto& neighbour : neighbours_.of(static_cast<std::size_t>(i)))
       add_member(neighbour.particle, more);
   }

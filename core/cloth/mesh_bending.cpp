@@ -167,7 +167,7 @@ class BendingMatrix {
       std::sort(rows_[i].begin(), rows_[i].end(),
                 [](const auto& a, const auto& b) { return a.particle < b.particle; });
       for (const auto& [j, weight] : rows_[i]) {
-        const double scale = std::sqrt(diagonal_[i] * diagonal_[static_cast<std::size_t>(j)]);
+        const double scale = std::min(diagonal_[i], diagonal_[static_cast<std::size_t>(j)]);
         if (std::abs(weight) > kLeastLink * scale)
           links.push_back({static_cast<Index>(i), j, weight});
       }

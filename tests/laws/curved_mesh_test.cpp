@@ -367,3 +367,19 @@ TEST_CASE("a sharply pleated mesh hangs and comes to rest alike by every solver"
   // XPBD's sweeps leave its threads softer.
   CHECK(lowest(SolverKind::relaxation) == Approx(verlet).epsilon(0.05));
 }
+
+TEST_CASE("a fan of 1200 triangles around one particle has no more links than a strip of as many") {
+  constexpr int kSpokes = 1200;
+  ClothDef def;
+  ClothMesh& fan = def.mesh.emplace();
+  fan.mesh.positions.push_back(Vec3d::Zero());
+  for (int k = 0; k < kSpokes; ++k) {
+    const double turn = 2 * kPi * k / kSpokes;
+    fan.mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0.3 * std::sin(3 * turn));
+    fan.mesh.triangles.push_back({0, k + 1, (k + 1) % kSpokes + 1});
+  }
+  const ClothModel<double> model = build_cloth<double>(def);
+  CHECK(model.parts[0].curved_at_rest);
+  // Each particle is bent by those a few spokes away, and by the hub.
+  CHECK(model.parts[0].bending_links.size() < 12 * kSpokes);
+}

@@ -141,6 +141,37 @@ TEST_CASE("a point of the fabric is its nearest particle, at any resolution") {
   }
 }
 
+TEST_CASE(
+    "a pin holds its own piece of a mesh, where another one has the same place in the fabric") {
+  ClothDef def;
+  ClothMesh& pieces = def.mesh.emplace();
+  constexpr int kSide = 7;
+  for (const double z : {0.0, 0.1}) {
+    const auto first = static_cast<Index>(pieces.mesh.positions.size());
+    for (int r = 0; r < kSide; ++r) {
+      for (int c = 0; c < kSide; ++c) {
+        pieces.mesh.positions.emplace_back(0.1 * c, 0.1 * r, z);
+        pieces.uv.push_back({0.1 * c, 0.1 * r});
+        if (r + 1 == kSide || c + 1 == kSide) continue;
+        const Index a = first + r * kSide + c, b = a + kSide;
+        pieces.mesh.triangles.push_back({a, a + 1, b});
+        pieces.mesh.triangles.push_back({a + 1, b + 1, b});
+      }
+    }
+  }
+  const ClothModel<double> model = build_cloth<double>(def);
+  for (const double radius : {0.0, 0.05, 0.15}) {
+    INFO("radius " << radius);
+    for (const Index centre : {Index{20}, Index{60}}) {
+      const double z = model.rest_positions[static_cast<std::size_t>(centre)][2];
+      const std::vector<Index> held = find_pinned(model, {centre, radius, {}}).particles;
+      CHECK(held.size() == (radius < 0.1 ? 1 : held.size()));
+      CHECK(std::find(held.begin(), held.end(), centre) != held.end());
+      for (const Index i : held) CHECK(model.rest_positions[static_cast<std::size_t>(i)][2] == z);
+    }
+  }
+}
+
 TEST_CASE("a place that does not exist is refused by its field") {
   CHECK(refused_field({Index(-1), 0, ""}) == "pin.particle");
   CHECK(refused_field({Index(47), 0, ""}) == "pin.particle");
