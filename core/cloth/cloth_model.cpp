@@ -10,6 +10,7 @@
 #include "core/cloth/cut_grid.h"
 #include "core/cloth/grid_cloth.h"
 #include "core/cloth/mesh_cloth.h"
+#include "core/cloth/pieces.h"
 #include "core/cloth/stability_bound.h"
 #include "core/cloth/thread_locks.h"
 #include "core/error.h"
@@ -145,20 +146,11 @@ std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre
     const Edge& edge = model.edges[static_cast<std::size_t>(e)];
     if (is_near(edge[0]) || is_near(edge[1])) near.push_back(edge);
   }
-  std::vector<char> reached(model.mass.size(), 0);
-  reached[static_cast<std::size_t>(centre)] = 1;
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (const Edge& edge : near) {
-      char &a = reached[static_cast<std::size_t>(edge[0])],
-           &b = reached[static_cast<std::size_t>(edge[1])];
-      grows = grows || a != b;
-      a = b = a | b;
-    }
-  }
+  const std::vector<Index> piece_of = pieces_along(near, model.mass.size());
+  const auto piece = [&](Index i) { return piece_of[static_cast<std::size_t>(i)]; };
   std::vector<Index> inside;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
-    if (reached[static_cast<std::size_t>(i)] && is_near(i)) inside.push_back(i);
+    if (piece(i) == piece(centre) && is_near(i)) inside.push_back(i);
   return inside;
 }
 

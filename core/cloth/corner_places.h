@@ -18,6 +18,11 @@ std::array<std::array<Real, 2>, 3> stored_corners(const ClothModel<Real>& model,
 template <class Real>
 CornerUv corner_places(const ClothModel<Real>& model, Index triangle);
 
+/// (u, v) of an edge's ends as one of its triangles has them, in the order of that [m].
+template <class Real>
+std::array<std::array<Real, 2>, 2> stored_ends(const ClothModel<Real>& model,
+                                               const TriangleSide& side);
+
 /// Whether the one part of a model rests so; false while it has none.
 template <class Real>
 bool rests_by_triangle(const ClothModel<Real>& model);
@@ -30,7 +35,8 @@ double rest_length2(const ClothModel<Real>& model, const TriangleSide& first,
                     const TriangleSide& second);
 
 /// Of a part that rests by triangle the corners of each hinge as both triangles lie flat beside
-/// each other [m], in the order of Hinge::x; by the edge's ends. Areas are those of the triangles.
+/// each other [m], those of the edge in the order of its ends, by which they are listed. Areas are
+/// those of the triangles.
 template <class Real>
 std::map<Edge, std::array<Vec3d, 4>> unrolled_hinges(const ClothModel<Real>& model,
                                                      const ClothPart<Real>& part);

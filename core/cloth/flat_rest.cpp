@@ -5,33 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/pieces.h"
 
 namespace weft {
 namespace {
-
-/// The first particle of each particle's piece: what hangs together by edges.
-template <class Real>
-std::vector<Index> pieces_of(const ClothModel<Real>& model) {
-  std::vector<Index> first(model.rest_positions.size());
-  std::iota(first.begin(), first.end(), 0);
-  const auto root = [&](Index i) {
-    for (;;) {
-      Index& up = first[static_cast<std::size_t>(i)];
-      if (up == i) return i;
-      up = first[static_cast<std::size_t>(up)];
-      i = up;
-    }
-  };
-  for (const Edge& edge : model.edges) {
-    const auto [low, high] = std::minmax({root(edge[0]), root(edge[1])});
-    first[static_cast<std::size_t>(high)] = low;
-  }
-  for (Index& i : first) i = root(i);
-  return first;
-}
 
 /// What a piece of a mesh is compared with a plane by.
 struct PieceShape {
@@ -45,7 +24,7 @@ struct PieceShape {
 
 template <class Real>
 bool lies_flat(const ClothModel<Real>& model) {
-  const std::vector<Index> piece_of = pieces_of(model);
+  const std::vector<Index> piece_of = pieces_along(model.edges, model.rest_positions.size());
   std::vector<PieceShape> pieces(piece_of.size());
   const auto at = [&](Index i) -> Vec3d {
     return model.rest_positions[static_cast<std::size_t>(i)].template cast<double>();

@@ -17,10 +17,9 @@ namespace {
 template <class Real>
 double rigidity_at(const TriangleSide& side, const HingeSettings& settings,
                    const ClothModel<Real>& model) {
-  const CornerUv corners = corner_places(model, side.triangle);
-  const auto &a = corners[static_cast<std::size_t>(side.corner + 1) % 3],
-             &b = corners[static_cast<std::size_t>(side.corner + 2) % 3];
-  return settings.rigidity(std::abs(b[0] - a[0]), std::abs(b[1] - a[1]));
+  const auto [a, b] = stored_ends(model, side);
+  return settings.rigidity(std::abs(static_cast<double>(b[0]) - static_cast<double>(a[0])),
+                           std::abs(static_cast<double>(b[1]) - static_cast<double>(a[1])));
 }
 
 template <class Real>

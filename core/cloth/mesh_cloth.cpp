@@ -151,9 +151,7 @@ void lump_masses(const ClothDef& def, ClothModel<Real>& model) {
 template <class Real>
 double stiffness_at(const TriangleSide& side, const FabricDef& fabric,
                     const ClothModel<Real>& model) {
-  const auto corners = stored_corners(model, side.triangle);
-  const auto &a = corners[static_cast<std::size_t>(side.corner + 1) % 3],
-             &b = corners[static_cast<std::size_t>(side.corner + 2) % 3];
+  const auto [a, b] = stored_ends(model, side);
   return stiffness_along(
       fabric, squared_cosine(static_cast<double>(b[0] - a[0]), static_cast<double>(b[1] - a[1])));
 }

@@ -114,9 +114,11 @@ void bound_hinges(const ClothModel<Real>& model, ClothPart<Real>& part) {
   for (Index k = part.hinges.first; k < part.hinges.end(); ++k) {
     const Hinge<Real>& h = model.hinges[static_cast<std::size_t>(k)];
     const auto at = [&](int corner) -> Vec3d {
-      if (part.rests_by_triangle)
-        return unrolled.at(
-            {std::min(h.x[0], h.x[1]), std::max(h.x[0], h.x[1])})[static_cast<std::size_t>(corner)];
+      if (part.rests_by_triangle) {
+        const Edge ends = {std::min(h.x[0], h.x[1]), std::max(h.x[0], h.x[1])};
+        const bool runs_back = corner < 2 && h.x[0] > h.x[1];
+        return unrolled.at(ends)[static_cast<std::size_t>(runs_back ? 1 - corner : corner)];
+      }
       return model.rest_positions[static_cast<std::size_t>(h.x[corner])].template cast<double>();
     };
     const HingeAngle<double> angle = hinge_angle<double>(at(0), at(1), at(2), at(3));

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/types.h"
+
+// What hangs together by edges.
+
+namespace weft {
+
+/// The first particle of each particle's piece; a particle without an edge is one of its own.
+std::vector<Index> pieces_along(const std::vector<Edge>& edges, std::size_t particles);
+
+}  // namespace weft
