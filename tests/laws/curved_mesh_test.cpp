@@ -111,7 +111,7 @@ struct QuarterTube {
     const double length = kLength / (1 - 1.5 / rows()), line = length / rows();
     const double cell = length / (segments + 2);
     ClothDef strip = test::triangle_sheet(cut, 4 * cell, length, cell);
-    straighten(cell, *strip.mesh);
+    test::straighten(cut, cell, *strip.mesh);
     for (Vec3d& p : strip.mesh->mesh.positions) {
       const double turn = (-p[1] - 1.5 * line) / kArc;
       p = Vec3d(p[0], -kArc * std::sin(turn), kArc * (1 - std::cos(turn)));
@@ -151,24 +151,10 @@ struct QuarterTube {
   }
 
  private:
-  double rows() const {
-    if (cut != Cut::equilateral) return segments + 2;
-    return static_cast<double>(std::lround((segments + 2) / 0.8660254));
-  }
+  double rows() const { return test::rows_of(cut, segments + 2); }
 
   double arc_of(const ClothModel<double>& model, std::size_t i) const {
     return static_cast<double>(model.material[i][1]);
-  }
-
-  void straighten(double cell, ClothMesh& mesh) const {
-    if (cut != Cut::irregular) return;
-    for (std::size_t i = 0; i < mesh.uv.size(); ++i) {
-      Vec3d& p = mesh.mesh.positions[i];
-      for (const int k : {1, 2}) {
-        if (std::abs(p[1] + k * cell) < 0.3 * cell) p[1] = -k * cell;
-      }
-      mesh.uv[i] = {p[0], -p[1]};
-    }
   }
 
   /// Of an arc's end downwards and onwards, by Castigliano: the integral over the arc of the moment

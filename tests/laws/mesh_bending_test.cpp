@@ -87,7 +87,7 @@ struct Overhang {
     const double length = kLength / (1 - 1.5 / rows()), line = length / rows();
     const double cell = length / (segments + 2);
     ClothDef strip = test::triangle_sheet(cut, 4 * cell, length, cell);
-    straighten(cell, *strip.mesh);
+    test::straighten(cut, cell, *strip.mesh);
     FabricDef& f = strip.fabric;
     f.areal_density = kDensity;
     f.bending_warp = f.bending_weft = kDensity * kGravity * std::pow(kLength, 3) / kGamma;
@@ -121,23 +121,7 @@ struct Overhang {
 
  private:
   /// Rows of triangles, of which the first two are held.
-  double rows() const {
-    if (cut != Cut::equilateral) return segments + 2;
-    return static_cast<double>(std::lround((segments + 2) / 0.8660254));
-  }
-
-  /// Puts the pinned lines of an irregular strip back where they were, as one cannot say else where
-  /// it is clamped.
-  void straighten(double cell, ClothMesh& mesh) const {
-    if (cut != Cut::irregular) return;
-    for (Vec3d& p : mesh.mesh.positions) {
-      for (const int k : {1, 2}) {
-        if (std::abs(p[1] + k * cell) < 0.3 * cell) p[1] = -k * cell;
-      }
-    }
-    for (std::size_t i = 0; i < mesh.uv.size(); ++i)
-      mesh.uv[i] = {mesh.mesh.positions[i][0], -mesh.mesh.positions[i][1]};
-  }
+  double rows() const { return test::rows_of(cut, segments + 2); }
 };
 
 }  // namespace

@@ -105,6 +105,26 @@ inline ClothDef triangle_sheet(Cut cut, double width, double height, double h, d
   return def;
 }
 
+/// Rows of triangles of a strip that is cut into `segments` of the edges' length.
+inline double rows_of(Cut cut, int segments) {
+  if (cut != Cut::equilateral) return segments;
+  return static_cast<double>(std::lround(segments / 0.8660254));
+}
+
+/// Puts the second and third line of an irregular strip back where they were, so that one can say
+/// where it is clamped if these are pinned.
+/// @param cell  length of an edge [m]
+inline void straighten(Cut cut, double cell, ClothMesh& mesh) {
+  if (cut != Cut::irregular) return;
+  for (std::size_t i = 0; i < mesh.uv.size(); ++i) {
+    Vec3d& p = mesh.mesh.positions[i];
+    for (const int k : {1, 2}) {
+      if (std::abs(p[1] + k * cell) < 0.3 * cell) p[1] = -k * cell;
+    }
+    mesh.uv[i] = {p[0], -p[1]};
+  }
+}
+
 /// Pins on the border of such a sheet at y = 0, whose particles have their own numbers.
 inline std::vector<PinDef> upper_border(const ClothDef& sheet) {
   std::vector<PinDef> pins;
