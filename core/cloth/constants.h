@@ -81,6 +81,16 @@ inline constexpr std::size_t kMostSpokes = 32;
 /// particle bend with half as many more.
 inline constexpr double kLeastLink = 1e-8;
 
+/// Height of a triangle over an edge, over how far what lies around reaches from the edge's line,
+/// below which it is a needle [1]. Larger: triangles of graded meshes are fitted to their
+/// surroundings. Smaller: needles bend stiffly, and take more substeps.
+inline constexpr double kNeedle = 0.15;
+
+/// Largest weight of a slope, times the distance of the particles that it is taken from, beyond
+/// which these are fitted all alike; 1 to 3 on regular meshes [1]. Larger: edges between oblique
+/// triangles take more substeps. Smaller: slopes are taken from further away.
+inline constexpr double kLoudSlope = 5;
+
 /// Triangles around an edge that are unfolded at most [1]. Larger: time where a vertex joins what
 /// no edge joins. Smaller: particles that slopes need are left out.
 inline constexpr std::size_t kMostUnfolded = 512;

@@ -6,11 +6,11 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <utility>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/field_fit.h"
+#include "core/cloth/pieces.h"
 
 namespace weft {
 namespace {
@@ -40,7 +40,9 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 EdgeSlopes::EdgeSlopes(const Vec3Array<double>& x, const std::vector<Triangle>& triangles,
                        const FlatShapes* shapes)
     : x_(x), edges_(sides_of(triangles)), of_(edges_of_triangles(edges_, triangles)),
-      neighbours_(x.size(), ends_of(edges_)), shapes_(shapes) {}
+      neighbours_(x.size(), ends_of(edges_)), shapes_(shapes) {
+  find_needles();
+}
 
 /// Coordinates in the plane of an edge, from its middle.
 struct EdgeSlopes::Frame {
@@ -49,11 +51,6 @@ struct EdgeSlopes::Frame {
   double height = 0;                  ///< mean of its triangles' [m]
   std::array<double, 2> foot{}, y{};  ///< along and across, of the triangles' third corners [m]
   std::optional<Unfolding> around;    ///< of a mesh that is not flat as a whole
-
-  /// In units of the edge's length and height [1].
-  Eigen::Vector2d place(const Vec3d& p) const {
-    return {(p - middle).dot(along) / length, (p - middle).dot(across) / height};
-  }
 };
 
 EdgeSlopes::Frame EdgeSlopes::frame_of(const EdgeSides& edge) const {
@@ -92,12 +89,21 @@ EdgeSlopes::Frame EdgeSlopes::unfolded_frame(const EdgeSides& edge) const {
   return frame;
 }
 
-/// Of a particle, in the edge's plane and in units of its length and height [1].
-Eigen::Vector2d EdgeSlopes::place_of(Index particle, const Frame& frame) const {
-  if (shapes_ == nullptr) return frame.place(x_[static_cast<std::size_t>(particle)]);
+/// Of a particle, in the edge's plane from its middle [m].
+Eigen::Vector2d EdgeSlopes::laid_out(Index particle, const Frame& frame) const {
+  if (shapes_ == nullptr) {
+    const Vec3d p = x_[static_cast<std::size_t>(particle)] - frame.middle;
+    return {p.dot(frame.along), p.dot(frame.across)};
+  }
   const Eigen::Vector2d* const place = frame.around->place(particle);
   assert(place != nullptr && "only particles that were laid out have a place");
-  return {(*place)[0] / frame.length, (*place)[1] / frame.height};
+  return *place;
+}
+
+/// The same in units of the edge's length and height [1].
+Eigen::Vector2d EdgeSlopes::place_of(Index particle, const Frame& frame) const {
+  const Eigen::Vector2d place = laid_out(particle, frame);
+  return {place[0] / frame.length, place[1] / frame.height};
 }
 
 /// Corners of the edge's triangles and of those beside them.
@@ -132,70 +138,9 @@ Eigen::Vector3d squares_at(const Eigen::Vector2d& p) {
   return {p[0] * p[0] / 2, p[0] * p[1], p[1] * p[1] / 2};
 }
 
-/// A fit of Fields fields, besides the linear ones, to some particles. The nearer ones count more.
-template <int Fields>
-class FieldFit {
- public:
-  using Values = Eigen::Matrix<double, Fields, 1>;
-
-  /// @param places  of the particles, in units such that nearby ones are about 1 away
-  /// @param values  of the fields there, about 1 too
-  FieldFit(const std::vector<Eigen::Vector2d>& places, const std::vector<Values>& values)
-      : places_(places), values_(values) {
-    assert(places.size() == values.size());
-    Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
-    Mixed mixed = Mixed::Zero();
-    Square square = Square::Zero();
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const double near = nearness(places_[k]);
-      const Eigen::Vector3d a = linear_part(places_[k]);
-      linear += near * a * a.transpose();
-      mixed += near * a * values_[k].transpose();
-      square += near * values_[k] * values_[k].transpose();
-    }
-    linear_of_fields_ = linear.ldlt().solve(mixed);
-    const Square own = square - mixed.transpose() * linear_of_fields_;
-    if constexpr (Fields == 1)
-      solver_.compute(own);
-    else
-      solver_.computeDirect(own);
-  }
-
-  /// Whether the particles tell all the fields apart.
-  bool is_determined() const { return solver_.eigenvalues()[0] > kTellsApart; }
-
-  /// The least weights that vanish for linear fields and give these values for the others, as far
-  /// as determined.
-  std::vector<double> weights(const Values& wanted) const {
-    Values of_modes = solver_.eigenvectors().transpose() * wanted;
-    for (int k = 0; k < Fields; ++k) {
-      const double own = solver_.eigenvalues()[k];
-      of_modes[k] = own > kTellsApart ? of_modes[k] / own : 0;
-    }
-    const Values factors = solver_.eigenvectors() * of_modes;
-    std::vector<double> weights;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const Values rest = values_[k] - linear_of_fields_.transpose() * linear_part(places_[k]);
-      weights.push_back(nearness(places_[k]) * rest.dot(factors));
-    }
-    return weights;
-  }
-
- private:
-  using Mixed = Eigen::Matrix<double, 3, Fields>;
-  using Square = Eigen::Matrix<double, Fields, Fields>;
-
-  static Eigen::Vector3d linear_part(const Eigen::Vector2d& p) { return {1, p[0], p[1]}; }
-  static double nearness(const Eigen::Vector2d& p) {
-    const double root = 1 + p.squaredNorm();
-    return 1 / (root * root);
-  }
-
-  const std::vector<Eigen::Vector2d>& places_;
-  const std::vector<Values>& values_;
-  Mixed linear_of_fields_;
-  Eigen::SelfAdjointEigenSolver<Square> solver_;
-};
+Eigen::Vector3d slope_of_squares(const Eigen::Vector2d& p, const Eigen::Vector2d& direction) {
+  return {direction[0] * p[0], direction[0] * p[1] + direction[1] * p[0], direction[1] * p[1]};
+}
 
 /// Mean of what is positive of a quantity that goes evenly from one value to another.
 double mean_positive(double from, double to) {
@@ -222,47 +167,54 @@ std::vector<ParticleWeight> EdgeSlopes::inside(const EdgeSides& edge, std::size_
   return slope;
 }
 
-/// The mean of the slopes in both triangles, in which the curvature across drops out.
+/// The mean of the slopes in both triangles, each by its height: what the third corners differ by.
+/// The curvature across drops out where the heights are alike, and a low triangle is not heard.
 std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
                                                     const Frame& frame) const {
   std::vector<ParticleWeight> slope;
   const double whole = frame.y[0] - frame.y[1];  // of a border edge y[1] is 0
   for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side) {
-    const double share = edge.is_border() ? 1 : std::abs(frame.y[1 - side]) / whole;
-    add_inside(edge, frame, side, share, slope);
+    add_inside(edge, frame, side, std::abs(frame.y[side]) / whole, slope);
   }
   return slope;
 }
 
+/// Fits fields to particles around an edge, and joins neighbours until these tell the fields apart.
+/// @param value    of the fields at a particle, about 1 nearby
+/// @param members  to begin with; those of the fit then
+template <int Fields, class ValueAt>
+FieldFit<Fields> EdgeSlopes::fit_around(Frame& frame, const ValueAt& value,
+                                        Members& members) const {
+  for (int round = 0;; ++round) {
+    if (frame.around) frame.around->lay_out(members);
+    std::vector<Eigen::Vector2d> places;
+    std::vector<Eigen::Matrix<double, Fields, 1>> values;
+    for (const Index i : members) {
+      places.push_back(place_of(i, frame));
+      values.push_back(value(i));
+    }
+    FieldFit<Fields> fit(std::move(places), std::move(values));
+    if (fit.is_determined() || round == kSlopeRounds) return fit;
+    members = grown(members);
+  }
+}
+
 /// Changes a slope, by the least weights, by what fields lack.
-/// @param value   of the fields at a particle, about 1 nearby
+/// @param value   as above
 /// @param wanted  change of the slopes of the fields
 template <int Fields, class ValueAt>
 void EdgeSlopes::amend(const EdgeSides& edge, Frame& frame, const ValueAt& value,
                        const Eigen::Matrix<double, Fields, 1>& wanted,
                        std::vector<ParticleWeight>& slope) const {
   Members members = nearest(edge);
-  std::vector<Eigen::Vector2d> places;
-  std::vector<Eigen::Matrix<double, Fields, 1>> values;
-  for (int round = 0;; ++round) {
-    places.clear(), values.clear();
-    if (frame.around) frame.around->lay_out(members);
-    for (const Index i : members) {
-      places.push_back(place_of(i, frame));
-      values.push_back(value(i));
-    }
-    const FieldFit<Fields> fit(places, values);
-    if (!fit.is_determined() && round < kSlopeRounds) {
-      members = grown(members);
-      continue;
-    }
-    const std::vector<double> more = fit.weights(wanted);
-    for (std::size_t k = 0; k < more.size(); ++k) add_weight(members[k], more[k], slope);
-    return;
-  }
+  const std::vector<double> more = fit_around<Fields>(frame, value, members).weights(wanted);
+  for (std::size_t k = 0; k < more.size(); ++k) add_weight(members[k], more[k], slope);
 }
 
-std::vector<ParticleWeight> EdgeSlopes::across(const EdgeSides& edge) const {
+std::vector<ParticleWeight> EdgeSlopes::across(std::size_t number) const {
+  if (needle_of_[number] != kNone)
+    return across_best_fit(number, needles_[static_cast<std::size_t>(needle_of_[number])]);
+  const EdgeSides& edge = edges_[number];
   Frame frame = frame_of(edge);
   std::vector<ParticleWeight> slope = mean_inside(edge, frame);
   const auto value = [&](Index i) { return squares_at(place_of(i, frame)); };
@@ -270,7 +222,85 @@ std::vector<ParticleWeight> EdgeSlopes::across(const EdgeSides& edge) const {
   for (const ParticleWeight& one : slope) wrong += one.weight * value(one.particle);
   if (wrong.cwiseAbs().maxCoeff() * frame.height > kRightSlope)
     amend<3>(edge, frame, value, -wrong, slope);
+  Members members;
+  double loudest = 0;
+  for (const ParticleWeight& one : slope) {
+    members.push_back(one.particle);
+    loudest = std::max(loudest, std::abs(one.weight));
+  }
+  if (loudest * spread(members, frame) < kLoudSlope) return slope;
+  return across_best_fit(number, {static_cast<Index>(number)});
+}
+
+/// The slope of the quadratic field that fits best around some edges, one of which it is.
+std::vector<ParticleWeight> EdgeSlopes::across_best_fit(std::size_t number,
+                                                        const std::vector<Index>& edges) const {
+  const EdgeSides& edge = edges_[number];
+  Frame frame = frame_of(edges_[static_cast<std::size_t>(edges.front())]);
+  Members members = {edge.ends[0], edge.ends[1], edge.opposite[0]};
+  if (frame.around) frame.around->lay_out(members);
+  if (members.size() < 3) return across_best_fit(number, {static_cast<Index>(number)});
+  for (const Index e : edges) {
+    for (const Index i : nearest(edges_[static_cast<std::size_t>(e)])) add_member(i, members);
+  }
+  if (frame.around) frame.around->lay_out(members);
+  frame.length = frame.height = spread(members, frame);
+  const auto value = [&](Index i) { return squares_at(place_of(i, frame)); };
+  const FieldFit<3> fit = fit_around<3>(frame, value, members);
+  const Eigen::Vector2d from = place_of(edge.ends[0], frame), to = place_of(edge.ends[1], frame),
+                        middle = 0.5 * (from + to);
+  Eigen::Vector2d in = Eigen::Vector2d(from[1] - to[1], to[0] - from[0]).normalized();
+  if (in.dot(place_of(edge.opposite[0], frame) - middle) < 0) in = -in;
+  const std::vector<double> weights = fit.slope(in, slope_of_squares(middle, in));
+  std::vector<ParticleWeight> slope;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    slope.push_back({members[k], weights[k] / frame.length});
   return slope;
+}
+
+/// How far an edge's particles lie from its middle: the root of the mean square [m].
+double EdgeSlopes::spread(const Members& members, const Frame& frame) const {
+  double square = 0;
+  for (const Index i : members) square += laid_out(i, frame).squaredNorm();
+  return std::sqrt(square / static_cast<double>(members.size()));
+}
+
+/// How low a triangle is over its edge, compared with how far from the edge's line that lies which
+/// is nearest to it [1].
+double EdgeSlopes::lowness(std::size_t number, Index triangle) const {
+  const EdgeSides& edge = edges_[number];
+  Frame frame = frame_of(edge);
+  Members members = nearest(edge);
+  if (frame.around) frame.around->lay_out(members);
+  double reach = 0;
+  for (const Index i : members) reach = std::max(reach, std::abs(laid_out(i, frame)[1]));
+  return std::abs(frame.y[edge.triangle[0] == triangle ? 0 : 1]) / reach;
+}
+
+/// Joins the long edges of each triangle that is a needle beside what lies around it.
+void EdgeSlopes::find_needles() {
+  std::vector<Edge> joins;
+  for (std::size_t t = 0; t < of_.size(); ++t) {
+    Index first = kNone;
+    for (const Index e : of_[t]) {
+      if (lowness(static_cast<std::size_t>(e), static_cast<Index>(t)) >= kNeedle) continue;
+      if (first == kNone) first = e;
+      joins.push_back({first, e});
+    }
+  }
+  needle_of_.assign(edges_.size(), kNone);
+  const std::vector<Index> roots = pieces_along(joins, edges_.size());
+  for (const Edge& join : joins) {
+    for (const Index e : join) {
+      Index& root = needle_of_[static_cast<std::size_t>(roots[static_cast<std::size_t>(e)])];
+      if (root == kNone) {
+        root = static_cast<Index>(needles_.size());
+        needles_.emplace_back();
+      }
+      needle_of_[static_cast<std::size_t>(e)] = root;
+      add_member(e, needles_[static_cast<std::size_t>(root)]);
+    }
+  }
 }
 
 bool EdgeSlopes::meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloth/edge_sides.h"
+#include "core/cloth/field_fit.h"
 #include "core/cloth/neighbours.h"
 #include "core/cloth/unfolding.h"
 #include "core/types.h"
@@ -23,9 +24,16 @@ struct ParticleWeight {
 void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list);
 
 /// Finds the slopes across the edges of a mesh. The mean of the slopes in both triangles, weighted
-/// such that the curvature across drops out, is exact for quadratic fields where the triangles make
-/// a parallelogram. Elsewhere, and on the border, the least change of weights within the triangles'
-/// surroundings makes it so.
+/// by their heights, is exact for quadratic fields where the triangles make a parallelogram.
+/// Elsewhere, and on the border, the least change of weights within the triangles' surroundings
+/// makes it so.
+///
+/// A triangle much lower than what lies around it is a needle. Its own slope, and what the slopes
+/// across its long edges differ by, are what its particles differ by over its height: as loud as it
+/// is low. So the long edges of a needle, and those of needles that share one, have the slopes of
+/// one quadratic field, that of the least squares around them all. By that a needle bends as what
+/// lies around it, and its weights do not grow as it gets lower. An edge whose slope is loud by
+/// itself has that of the least squares too.
 class EdgeSlopes {
  public:
   /// @param x       of the particles of a mesh whose triangles are flat together wherever they
@@ -43,7 +51,8 @@ class EdgeSlopes {
   /// Weights that give the slope at the middle of the edge in its plane and at right angles to it,
   /// into its first triangle [1/m]. They are exact for linear fields, and for quadratic ones as far
   /// as the mesh around the edge tells these apart.
-  std::vector<ParticleWeight> across(const EdgeSides& edge) const;
+  /// @param edge  number of it
+  std::vector<ParticleWeight> across(std::size_t edge) const;
 
   /// The mean slope across an edge beside a clamp, in the same sense: exact for the field whose
   /// only curvature is across the clamp's border and which is zero and level up to that.
@@ -63,22 +72,32 @@ class EdgeSlopes {
 
   Frame frame_of(const EdgeSides& edge) const;
   Frame unfolded_frame(const EdgeSides& edge) const;
+  Eigen::Vector2d laid_out(Index particle, const Frame& frame) const;
+  Eigen::Vector2d place_of(Index particle, const Frame& frame) const;
+  Members nearest(const EdgeSides& edge) const;
+  Members grown(const Members& members) const;
+  double spread(const Members& members, const Frame& frame) const;
   void add_inside(const EdgeSides& edge, const Frame& frame, std::size_t side, double share,
                   std::vector<ParticleWeight>& slope) const;
   std::vector<ParticleWeight> mean_inside(const EdgeSides& edge, const Frame& frame) const;
-  Eigen::Vector2d place_of(Index particle, const Frame& frame) const;
+  template <int Fields, class ValueAt>
+  FieldFit<Fields> fit_around(Frame& frame, const ValueAt& value, Members& members) const;
   template <int Fields, class ValueAt>
   void amend(const EdgeSides& edge, Frame& frame, const ValueAt& value,
              const Eigen::Matrix<double, Fields, 1>& wanted,
              std::vector<ParticleWeight>& slope) const;
-  Members nearest(const EdgeSides& edge) const;
-  Members grown(const Members& members) const;
+  std::vector<ParticleWeight> across_best_fit(std::size_t number,
+                                              const std::vector<Index>& edges) const;
+  double lowness(std::size_t number, Index triangle) const;
+  void find_needles();
 
   const Vec3Array<double>& x_;
   std::vector<EdgeSides> edges_;
   std::vector<std::array<Index, 3>> of_;  // edges of each triangle
   Neighbours neighbours_;
   const FlatShapes* shapes_;
+  std::vector<std::vector<Index>> needles_;  // long edges of each, or of several that share some
+  std::vector<Index> needle_of_;             // of each edge; else none
 };
 
 }  // namespace weft

@@ -104,9 +104,10 @@ struct PartMesh {
 /// The slope across an edge: that of a held triangle if one of the two is held.
 /// @param free    part of each triangle that no strip holds
 /// @param beyond  distance of each particle beyond each strip's border [m]
-std::vector<ParticleWeight> slope_at(const EdgeSides& edge, const std::vector<double>& free,
+std::vector<ParticleWeight> slope_at(std::size_t number, const std::vector<double>& free,
                                      const std::vector<std::vector<double>>& beyond,
                                      const EdgeSlopes& mesh) {
+  const EdgeSides& edge = mesh.edges()[number];
   for (std::size_t side = 0; side < 2; ++side) {
     const Index t = edge.triangle[side];
     if (t != kNone && free[static_cast<std::size_t>(t)] == 0) return mesh.inside(edge, side);
@@ -114,7 +115,7 @@ std::vector<ParticleWeight> slope_at(const EdgeSides& edge, const std::vector<do
   for (const std::vector<double>& distances : beyond) {
     if (mesh.meets_held(edge, distances)) return mesh.across_clamped(edge, distances);
   }
-  return mesh.across(edge);
+  return mesh.across(number);
 }
 
 /// The curvature of a triangle: over its area, the sum over its edges of by how much the slope
@@ -244,8 +245,8 @@ void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
   std::vector<double> free;
   for (const FlatTriangle& flat : mesh.flat) free.push_back(flat.free);
   Slopes slopes;
-  for (const EdgeSides& edge : edges.edges())
-    slopes.push_back(slope_at(edge, free, mesh.beyond, edges));
+  for (std::size_t e = 0; e < edges.edges().size(); ++e)
+    slopes.push_back(slope_at(e, free, mesh.beyond, edges));
   BendingMatrix matrix(mesh.x.size());
   const FabricDef& fabric = part.fabric;
   const Eigen::Vector3d rigidity(fabric.bending_warp, fabric.bending_weft,
