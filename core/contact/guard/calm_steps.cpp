@@ -6,6 +6,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/travel.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -70,13 +71,6 @@ void note_ends(const ClothState<Real>& state, Real dt, Real elapsed, Slack<Real>
   for (std::size_t i = 0; i < slack.ends.size(); ++i) slack.ends[i] = state.x[i] + state.v[i] * dt;
 }
 
-#define WEFT_INSTANTIATE(Real)                                    \
-  template decltype(stays_calm<Real>) stays_calm<Real>;           \
-  template decltype(note_calm_paths<Real>) note_calm_paths<Real>; \
-  template decltype(has_slack<Real>) has_slack<Real>;             \
-  template decltype(note_ends<Real>) note_ends<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(stays_calm, note_calm_paths, has_slack, note_ends)
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/contact/guard/constants.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -219,12 +220,6 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   critical.tight.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                    \
-  template decltype(forget_critical<Real>) forget_critical<Real>; \
-  template decltype(stop_crossings<Real>) stop_crossings<Real>;   \
-  template decltype(truncate<Real>) truncate<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(forget_critical, stop_crossings, truncate)
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/geometry/triangle_sides.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -122,13 +123,6 @@ bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, I
                       [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(guarded_cloths<Real>) guarded_cloths<Real>; \
-  template decltype(cloth_of<Real>) cloth_of<Real>;             \
-  template decltype(kept_distance<Real>) kept_distance<Real>;   \
-  template decltype(owns_nearest<Real>) owns_nearest<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, kept_distance, owns_nearest)
 
 }  // namespace weft

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
 template <class Real>
@@ -117,15 +119,7 @@ void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs) {
   });
 }
 
-#define WEFT_INSTANTIATE(Real)                                    \
-  template decltype(forget_pairs<Real>) forget_pairs<Real>;       \
-  template decltype(drop_all_pairs<Real>) drop_all_pairs<Real>;   \
-  template decltype(list_all_pairs<Real>) list_all_pairs<Real>;   \
-  template decltype(list_pairs_from<Real>) list_pairs_from<Real>; \
-  template decltype(drop_pairs_of<Real>) drop_pairs_of<Real>;     \
-  template decltype(note_arrivals<Real>) note_arrivals<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(forget_pairs, drop_all_pairs, list_all_pairs, list_pairs_from,
+                           drop_pairs_of, note_arrivals)
 
 }  // namespace weft

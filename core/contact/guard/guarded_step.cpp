@@ -5,6 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
 template <class Real>
@@ -36,12 +38,6 @@ void halt(const std::vector<char>& is_active, GuardedStep<Real>& step, Vec3Array
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                    \
-  template decltype(measure_lengths<Real>) measure_lengths<Real>; \
-  template decltype(count_motion<Real>) count_motion<Real>;       \
-  template decltype(halt<Real>) halt<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(measure_lengths, count_motion, halt)
 
 }  // namespace weft

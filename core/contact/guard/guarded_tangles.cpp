@@ -7,6 +7,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/patch_boxes.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -142,13 +143,6 @@ std::vector<std::array<Index, 2>> tangled_cloths(const GuardedTangles<Real>& tan
   return list;
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(forget_tangles<Real>) forget_tangles<Real>; \
-  template decltype(find_tangles<Real>) find_tangles<Real>;     \
-  template decltype(note_touches<Real>) note_touches<Real>;     \
-  template decltype(tangled_cloths<Real>) tangled_cloths<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(forget_tangles, find_tangles, note_touches, tangled_cloths)
 
 }  // namespace weft

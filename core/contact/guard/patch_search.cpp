@@ -8,6 +8,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/parts.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -209,14 +210,7 @@ void test_near_patches(PatchSearch<Real>& search, const GuardedCloths<Real>& clo
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                              \
-  template decltype(patch_search<Real>) patch_search<Real>;                 \
-  template decltype(forget_found<Real>) forget_found<Real>;                 \
-  template decltype(find_near_patches<Real>) find_near_patches<Real>;       \
-  template decltype(find_near_patches_of<Real>) find_near_patches_of<Real>; \
-  template decltype(test_near_patches<Real>) test_near_patches<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(patch_search, forget_found, find_near_patches, find_near_patches_of,
+                           test_near_patches)
 
 }  // namespace weft

@@ -9,6 +9,7 @@
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/stray_pass.h"
 #include "core/contact/smallest_gap.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -151,15 +152,7 @@ Real smallest_gap_at(const QuadArray<Real>& x) {
   return smallest_gap_for(largest);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                \
-  template decltype(begin_paths<Real>) begin_paths<Real>;                     \
-  template decltype(begin_paths_of_strays<Real>) begin_paths_of_strays<Real>; \
-  template decltype(predict<Real>) predict<Real>;                             \
-  template decltype(find_strays<Real>) find_strays<Real>;                     \
-  template decltype(allows_for_common<Real>) allows_for_common<Real>;         \
-  template decltype(smallest_gap_at<Real>) smallest_gap_at<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(begin_paths, begin_paths_of_strays, predict, find_strays,
+                           allows_for_common, smallest_gap_at)
 
 }  // namespace weft

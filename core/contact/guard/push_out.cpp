@@ -8,6 +8,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/row_blocks.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -86,13 +87,6 @@ void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
   push.v.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                            \
-  template decltype(push_out<Real>) push_out<Real>;       \
-  template decltype(forget_push<Real>) forget_push<Real>; \
-  template decltype(add_push<Real>) add_push<Real>;       \
-  template decltype(take_back_push<Real>) take_back_push<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(push_out, forget_push, add_push, take_back_push)
 
 }  // namespace weft

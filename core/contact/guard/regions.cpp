@@ -9,6 +9,7 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/parts.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -320,16 +321,7 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(forget_waves<Real>) forget_waves<Real>;     \
-  template decltype(anchor_anew<Real>) anchor_anew<Real>;       \
-  template decltype(share_all_gaps<Real>) share_all_gaps<Real>; \
-  template decltype(admit_pairs<Real>) admit_pairs<Real>;       \
-  template decltype(find_loose<Real>) find_loose<Real>;         \
-  template decltype(measure<Real>) measure<Real>;               \
-  template decltype(anchor_loose<Real>) anchor_loose<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(forget_waves, anchor_anew, share_all_gaps, admit_pairs, find_loose,
+                           measure, anchor_loose)
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/row_turns.h"
 #include "core/contact/parts.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -234,15 +235,7 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
   pairs.arrived.clear();
 }
 
-#define WEFT_INSTANTIATE(Real)                                            \
-  template decltype(row_making<Real>) row_making<Real>;                   \
-  template decltype(forget_making<Real>) forget_making<Real>;             \
-  template decltype(place_new_particles<Real>) place_new_particles<Real>; \
-  template decltype(find_moved<Real>) find_moved<Real>;                   \
-  template decltype(renew_rows<Real>) renew_rows<Real>;                   \
-  template decltype(add_arrived<Real>) add_arrived<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(row_making, forget_making, place_new_particles, find_moved, renew_rows,
+                           add_arrived)
 
 }  // namespace weft

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
 template <class Real>
@@ -53,14 +55,6 @@ bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair) {
   return r != kNone;
 }
 
-#define WEFT_INSTANTIATE(Real)                            \
-  template decltype(row_set<Real>) row_set<Real>;         \
-  template decltype(forget_rows<Real>) forget_rows<Real>; \
-  template decltype(list_row<Real>) list_row<Real>;       \
-  template decltype(add_row<Real>) add_row<Real>;         \
-  template decltype(has_row<Real>) has_row<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(row_set, forget_rows, list_row, add_row, has_row)
 
 }  // namespace weft

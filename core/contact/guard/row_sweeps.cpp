@@ -11,6 +11,7 @@
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/row_blocks.h"
 #include "core/contact/parts.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -134,16 +135,7 @@ Real sweep_once(const QuadArray<Real>& x, RowSet<Real>& rows, RowSweeps<Real>& s
                             [&](auto blocks) { return sweep_rows(blocks, upwards, pass); });
 }
 
-#define WEFT_INSTANTIATE(Real)                                        \
-  template decltype(copy_in<Real>) copy_in<Real>;                     \
-  template decltype(load_velocities<Real>) load_velocities<Real>;     \
-  template decltype(store_velocities<Real>) store_velocities<Real>;   \
-  template decltype(find_busy_rows<Real>) find_busy_rows<Real>;       \
-  template decltype(measure_pressures<Real>) measure_pressures<Real>; \
-  template decltype(warm_start<Real>) warm_start<Real>;               \
-  template decltype(sweep_once<Real>) sweep_once<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(copy_in, load_velocities, store_velocities, find_busy_rows,
+                           measure_pressures, warm_start, sweep_once)
 
 }  // namespace weft

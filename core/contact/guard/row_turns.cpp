@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/contact/guard/constants.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -106,11 +107,6 @@ void remember(const QuadArray<Real>& x, RowMaking<Real>& making, GuardRow<Real>&
   old->apart = apart;
 }
 
-#define WEFT_INSTANTIATE(Real)                        \
-  template decltype(turn_rows<Real>) turn_rows<Real>; \
-  template decltype(remember<Real>) remember<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(turn_rows, remember)
 
 }  // namespace weft

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/contact/objects/constants.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -129,11 +130,6 @@ void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& 
   add(exit->direction, -distance_out(source.shapes, collider, x, exit->direction));
 }
 
-#define WEFT_INSTANTIATE(Real)                              \
-  template decltype(still_leaves<Real>) still_leaves<Real>; \
-  template decltype(add_inside<Real>) add_inside<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(still_leaves, add_inside)
 
 }  // namespace weft

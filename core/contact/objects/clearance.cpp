@@ -10,6 +10,7 @@
 #include "core/contact/objects/corners.h"
 #include "core/contact/parts.h"
 #include "core/contact/smallest_gap.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -185,13 +186,6 @@ void take_to_own(const ObjectShapes<Real>& shapes, const Vec3Array<Real>& x,
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                        \
-  template decltype(measure_clearance<Real>) measure_clearance<Real>; \
-  template decltype(mark_near<Real>) mark_near<Real>;                 \
-  template decltype(renew_clearance<Real>) renew_clearance<Real>;     \
-  template decltype(take_to_own<Real>) take_to_own<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(measure_clearance, mark_near, renew_clearance, take_to_own)
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/geometry/aabb.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -109,7 +110,6 @@ ClothPatches make_patches(const Vec3Array<Real>& positions, const std::vector<Ed
   return patches;
 }
 
-template decltype(make_patches<float>) make_patches<float>;
-template decltype(make_patches<double>) make_patches<double>;
+WEFT_INSTANTIATE_FUNCTIONS(make_patches)
 
 }  // namespace weft

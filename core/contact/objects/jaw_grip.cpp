@@ -6,6 +6,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/row_response.h"
 #include "core/contact/objects/row_values.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -76,7 +77,6 @@ void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
   }
 }
 
-template decltype(share_squeeze<float>) share_squeeze<float>;
-template decltype(share_squeeze<double>) share_squeeze<double>;
+WEFT_INSTANTIATE_FUNCTIONS(share_squeeze)
 
 }  // namespace weft

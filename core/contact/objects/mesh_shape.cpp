@@ -9,6 +9,7 @@
 #include <initializer_list>
 
 #include "core/contact/objects/apart.h"
+#include "core/instantiate.h"
 #include "core/math/angle.h"
 
 namespace weft {
@@ -299,12 +300,6 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   return distance_to_triangle(mesh, best, p);
 }
 
-#define WEFT_INSTANTIATE(Real)                                              \
-  template decltype(prepare_mesh<Real>) prepare_mesh<Real>;                 \
-  template decltype(distance_to_triangle<Real>) distance_to_triangle<Real>; \
-  template decltype(distance_to_mesh<Real>) distance_to_mesh<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(prepare_mesh, distance_to_triangle, distance_to_mesh)
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/moving_rows.h"
 #include "core/contact/objects/object_certificate.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -133,7 +134,6 @@ void certify_with_movers(ObjectCertificate<Real>& c) {
   }
 }
 
-template decltype(certify_with_movers<float>) certify_with_movers<float>;
-template decltype(certify_with_movers<double>) certify_with_movers<double>;
+WEFT_INSTANTIATE_FUNCTIONS(certify_with_movers)
 
 }  // namespace weft

@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "core/contact/objects/moving_rows.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -109,7 +110,6 @@ bool stand_before_stopped(StoppedStep<Real>& step, MoverStops<Real>& stops) {
   return false;
 }
 
-template decltype(stand_before_stopped<float>) stand_before_stopped<float>;
-template decltype(stand_before_stopped<double>) stand_before_stopped<double>;
+WEFT_INSTANTIATE_FUNCTIONS(stand_before_stopped)
 
 }  // namespace weft

@@ -4,6 +4,8 @@
 
 #include <cassert>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
 template <class Real>
@@ -32,11 +34,6 @@ void turn_with_objects(const ObjectShapes<Real>& shapes, ContactLog& log, Object
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                \
-  template decltype(take_reaction<Real>) take_reaction<Real>; \
-  template decltype(turn_with_objects<Real>) turn_with_objects<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(take_reaction, turn_with_objects)
 
 }  // namespace weft

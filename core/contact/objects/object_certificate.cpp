@@ -10,6 +10,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/moving_rows.h"
 #include "core/contact/travel.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -174,14 +175,6 @@ void certify(ObjectCertificate<Real>& c, bool others) {
   hold_within_reach(c);
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(measure_travel<Real>) measure_travel<Real>; \
-  template decltype(rows_hold<Real>) rows_hold<Real>;           \
-  template decltype(log_stop<Real>) log_stop<Real>;             \
-  template decltype(keep_off<Real>) keep_off<Real>;             \
-  template decltype(certify<Real>) certify<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(measure_travel, rows_hold, log_stop, keep_off, certify)
 
 }  // namespace weft

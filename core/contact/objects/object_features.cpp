@@ -10,6 +10,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/corners.h"
 #include "core/contact/objects/object_rows.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -220,7 +221,6 @@ void add_features_on_meshes(const ObjectRowSource<Real>& source, const RowScratc
   profile[Stage::narrow_phase].work += tests;
 }
 
-template decltype(add_features_on_meshes<float>) add_features_on_meshes<float>;
-template decltype(add_features_on_meshes<double>) add_features_on_meshes<double>;
+WEFT_INSTANTIATE_FUNCTIONS(add_features_on_meshes)
 
 }  // namespace weft

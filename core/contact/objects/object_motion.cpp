@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "core/contact/objects/constants.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -116,13 +117,6 @@ void block_object(std::size_t collider, ObjectShapes<Real>& shapes, ObjectMotion
     motion.since_rows = std::max(motion.since_rows, frame.travel_since_rows + frame.travel);
 }
 
-#define WEFT_INSTANTIATE(Real)                                    \
-  template decltype(begin_motion<Real>) begin_motion<Real>;       \
-  template decltype(plan_objects<Real>) plan_objects<Real>;       \
-  template decltype(advance_objects<Real>) advance_objects<Real>; \
-  template decltype(block_object<Real>) block_object<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(begin_motion, plan_objects, advance_objects, block_object)
 
 }  // namespace weft

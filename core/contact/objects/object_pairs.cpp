@@ -12,6 +12,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/feature_distance.h"
 #include "core/contact/parts.h"
+#include "core/instantiate.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -308,13 +309,6 @@ void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sh
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                                \
-  template decltype(object_pairs<Real>) object_pairs<Real>;                   \
-  template decltype(forget_neighbourhoods<Real>) forget_neighbourhoods<Real>; \
-  template decltype(collect_pairs<Real>) collect_pairs<Real>;                 \
-  template decltype(mark_paired<Real>) mark_paired<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(object_pairs, forget_neighbourhoods, collect_pairs, mark_paired)
 
 }  // namespace weft

@@ -12,6 +12,7 @@
 #include "core/contact/objects/corners.h"
 #include "core/contact/objects/object_rows.h"
 #include "core/geometry/distance.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -180,7 +181,6 @@ void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real
   for (const ObjectRod<Real>& rod : shapes.rods) add({rod, false});
 }
 
-template decltype(add_features_on_rounds<float>) add_features_on_rounds<float>;
-template decltype(add_features_on_rounds<double>) add_features_on_rounds<double>;
+WEFT_INSTANTIATE_FUNCTIONS(add_features_on_rounds)
 
 }  // namespace weft

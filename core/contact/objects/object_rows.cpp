@@ -10,6 +10,7 @@
 #include "core/contact/objects/apart.h"
 #include "core/contact/objects/bad_starts.h"
 #include "core/contact/objects/constants.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -285,15 +286,7 @@ void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, Objec
   }
 }
 
-#define WEFT_INSTANTIATE(Real)                                        \
-  template decltype(allow_rows<Real>) allow_rows<Real>;               \
-  template decltype(add_row<Real>) add_row<Real>;                     \
-  template decltype(add_particle_rows<Real>) add_particle_rows<Real>; \
-  template decltype(corners_of<Real>) corners_of<Real>;               \
-  template decltype(kept_height<Real>) kept_height<Real>;             \
-  template decltype(finish_rows<Real>) finish_rows<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(allow_rows, add_row, add_particle_rows, corners_of, kept_height,
+                           finish_rows)
 
 }  // namespace weft

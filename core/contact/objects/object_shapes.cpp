@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "core/contact/objects/constants.h"
+#include "core/instantiate.h"
 
 namespace weft {
 namespace {
@@ -189,17 +190,7 @@ double top_of(const ObjectShapes<Real>& shapes, std::size_t mesh, const Vec3<Rea
   return top;
 }
 
-#define WEFT_INSTANTIATE(Real)                                          \
-  template decltype(object_shapes<Real>) object_shapes<Real>;           \
-  template decltype(place_collider<Real>) place_collider<Real>;         \
-  template decltype(analytic_clearance<Real>) analytic_clearance<Real>; \
-  template decltype(clearance_of<Real>) clearance_of<Real>;             \
-  template decltype(least_clearance<Real>) least_clearance<Real>;       \
-  template decltype(signed_distance<Real>) signed_distance<Real>;       \
-  template decltype(distance_from<Real>) distance_from<Real>;           \
-  template decltype(top_of<Real>) top_of<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(object_shapes, place_collider, analytic_clearance, clearance_of,
+                           least_clearance, signed_distance, distance_from, top_of)
 
 }  // namespace weft

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "core/instantiate.h"
+
 namespace weft {
 namespace {
 
@@ -131,13 +133,6 @@ void list_blocks(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
   list(mesh.corner_blocks, about.corners);
 }
 
-#define WEFT_INSTANTIATE(Real)                                  \
-  template decltype(load_particles<Real>) load_particles<Real>; \
-  template decltype(load_edges<Real>) load_edges<Real>;         \
-  template decltype(load_triangles<Real>) load_triangles<Real>; \
-  template decltype(list_blocks<Real>) list_blocks<Real>;
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(load_particles, load_edges, load_triangles, list_blocks)
 
 }  // namespace weft
