@@ -19,14 +19,13 @@ template <class Real>
 Real farthest_off(const ClothState<Real>& state, Real dt, const Vec3Array<Real>& base,
                   const Vec3Array<Real>& velocity, Real time) {
   assert(base.size() == state.x.size() && velocity.size() == state.x.size());
-  PathPass<Real> pass;
-  pass.particles = state.x.size();
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.base = base.data()->data();
-  pass.velocity = velocity.data()->data();
-  pass.time = time;
+  const PathPass<Real> pass{state.x.size(),
+                            state.x.data()->data(),
+                            state.v.data()->data(),
+                            dt,
+                            base.data()->data(),
+                            velocity.data()->data(),
+                            time};
   return largest_deviation(pass) * static_cast<Real>(kDiagonal);
 }
 

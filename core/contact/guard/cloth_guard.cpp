@@ -48,10 +48,30 @@ void open_touching(std::size_t first, bool unseen, const QuadArray<Real>& x, Rea
 
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
-    : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)),
-      making_(row_making<Real>(model.mass.size())), rows_(row_set<Real>(model.mass.size())),
-      push_(push_out<Real>(model.mass.size())) {
-  const std::size_t n = model.mass.size(), cloths = cloths_.particles_of.size();
+    : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)) {
+  tangled_.tangles = ClothTangles<Real>(model);
+  awake_.resting.assign(search_.tree.patch_count(), 0);
+  reset();
+  let_rest({});
+}
+
+template <class Real>
+void ClothGuard<Real>::reset() {
+  const std::size_t n = cloths_.rest_positions.size(), cloths = cloths_.particles_of.size();
+  phase_ = GuardPhase::between_steps;
+  forget_found(search_);
+  step_ = {};
+  paths_ = {};
+  pairs_ = {};
+  regions_ = {};
+  critical_ = {};
+  slack_ = {};
+  calm_ = {};
+  making_ = row_making<Real>(n);
+  rows_ = row_set<Real>(n);
+  sweeps_ = {};
+  push_ = push_out<Real>(n);
+  settled_ = true;
   for (QuadArray<Real>* array : {&step_.from, &step_.displacement, &paths_.from, &paths_.velocity,
                                  &regions_.anchor, &sweeps_.v})
     array->assign(n, {});
@@ -65,28 +85,11 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
   regions_.anchored_at.assign(n, 0);
   regions_.parts.resize(kMostParts);
   calm_.paths.reach = cloths_.reach;
-  tangled_.tangles = ClothTangles<Real>(model);
+  tangled_.tangles.reset();
   tangled_.is_heap.assign(cloths, 0);
   tangled_.crossings_of.assign(cloths, 0);
-  awake_.resting.assign(search_.tree.patch_count(), 0);
-  let_rest({});
-}
-
-template <class Real>
-void ClothGuard<Real>::reset() {
-  phase_ = GuardPhase::between_steps;
-  paths_.collected = false;
-  forget_found(search_);
-  forget_making(making_);
-  forget_waves(regions_);
-  forget_critical(critical_);
-  forget_rows(rows_);
-  forget_pairs(pairs_);
-  forget_push(push_);
-  forget_tangles(tangled_);
-  sweeps_.kicked = 0;
-  sweeps_.upwards = false;
-  settled_ = true;
+  tangled_.heaps = 0;
+  tangled_.unseen = true;
 }
 
 template <class Real>

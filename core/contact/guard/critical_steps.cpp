@@ -151,14 +151,6 @@ void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
 }  // namespace
 
 template <class Real>
-void forget_critical(CriticalSteps<Real>& critical) {
-  critical.pairs.clear();
-  critical.tight.clear();
-  std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
-  std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
-}
-
-template <class Real>
 void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
                     CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts) {
   while (find_critical(pairs, step, regions, critical)) {
@@ -220,6 +212,6 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   critical.tight.clear();
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(forget_critical, stop_crossings, truncate)
+WEFT_INSTANTIATE_FUNCTIONS(stop_crossings, truncate)
 
 }  // namespace weft

@@ -33,10 +33,6 @@ struct CriticalSteps {
   std::vector<Real> fraction;  ///< of each one's displacement that is allowed
 };
 
-/// Allows all displacements, as each step does at its end: one may have been ended from outside.
-template <class Real>
-void forget_critical(CriticalSteps<Real>& critical);
-
 /// Certifies or stops the displacements of particles that are too long for their regions. Particles
 /// of pairs that these endanger are anchored first.
 template <class Real>

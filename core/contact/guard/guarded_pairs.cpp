@@ -10,15 +10,6 @@
 namespace weft {
 
 template <class Real>
-void forget_pairs(GuardedPairs<Real>& pairs) {
-  pairs.all.clear();
-  pairs.active.clear();
-  pairs.arrived.clear();
-  pairs.open_keys.clear();
-  pairs.open = 0;
-}
-
-template <class Real>
 void drop_all_pairs(GuardedPairs<Real>& pairs) {
   pairs.open_keys.clear();
   if (pairs.open > 0) {
@@ -119,7 +110,7 @@ void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs) {
   });
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(forget_pairs, drop_all_pairs, list_all_pairs, list_pairs_from,
-                           drop_pairs_of, note_arrivals)
+WEFT_INSTANTIATE_FUNCTIONS(drop_all_pairs, list_all_pairs, list_pairs_from, drop_pairs_of,
+                           note_arrivals)
 
 }  // namespace weft

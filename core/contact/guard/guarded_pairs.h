@@ -77,10 +77,6 @@ void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
   }
 }
 
-/// Forgets all pairs.
-template <class Real>
-void forget_pairs(GuardedPairs<Real>& pairs);
-
 /// Drops all pairs, and notes the keys of those that were open.
 template <class Real>
 void drop_all_pairs(GuardedPairs<Real>& pairs);

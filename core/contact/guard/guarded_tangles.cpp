@@ -66,14 +66,6 @@ void count_crossings(std::size_t cloth, std::size_t particles, std::size_t count
 }  // namespace
 
 template <class Real>
-void forget_tangles(GuardedTangles<Real>& tangled) {
-  tangled.tangles.reset();
-  tangled.is_heap.assign(tangled.is_heap.size(), 0);
-  tangled.heaps = 0;
-  tangled.unseen = true;
-}
-
-template <class Real>
 void find_tangles(const PatchTree<Real>& tree, const GuardedCloths<Real>& cloths,
                   const std::vector<char>& resting, const QuadArray<Real>& x,
                   const std::vector<Real>& inverse_mass, GuardedTangles<Real>& tangled) {
@@ -143,6 +135,6 @@ std::vector<std::array<Index, 2>> tangled_cloths(const GuardedTangles<Real>& tan
   return list;
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(forget_tangles, find_tangles, note_touches, tangled_cloths)
+WEFT_INSTANTIATE_FUNCTIONS(find_tangles, note_touches, tangled_cloths)
 
 }  // namespace weft

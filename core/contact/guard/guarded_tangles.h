@@ -31,10 +31,6 @@ struct GuardedTangles {
   std::size_t open() const { return tangles.size() + heaps; }
 };
 
-/// Forgets what was found.
-template <class Real>
-void forget_tangles(GuardedTangles<Real>& tangled);
-
 /// Searches for edges that pass through triangles now.
 /// @param tree     fitted
 /// @param resting  1 for each patch of a cloth that sleeps

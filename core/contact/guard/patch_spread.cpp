@@ -270,25 +270,18 @@ SpreadPass<Real> PatchTree<Real>::spread_pass(const QuadArray<Real>& x, const Pl
   return pass;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                     \
-  template void PatchTree<Real>::sum_changed(const std::vector<char>&);                            \
-  template bool PatchTree<Real>::has_changed(Index, const CellRange&) const;                       \
-  template typename PatchTree<Real>::CellRange PatchTree<Real>::grown(const Node&) const;          \
-  template Real PatchTree<Real>::least_spread(const Node&, Real) const;                            \
-  template void PatchTree<Real>::mark_spread(Index, const PredictedMotion<Real>&);                 \
-  template void PatchTree<Real>::renew_spread(Index, const PredictedMotion<Real>&,                 \
-                                              const std::vector<char>&);                           \
-  template bool PatchTree<Real>::find_spread(Index, const PredictedMotion<Real>&);                 \
-  template bool PatchTree<Real>::are_spread(Index, Index, const PredictedMotion<Real>&);           \
-  template const typename PatchTree<Real>::SpreadCells& PatchTree<Real>::spread_around(            \
-      Index, const PredictedMotion<Real>&);                                                        \
-  template bool PatchTree<Real>::stays_spread(Index, const PredictedMotion<Real>&,                 \
-                                              const std::vector<char>&) const;                     \
-  template void PatchTree<Real>::give_spread(Index, const CellRange&);                             \
-  template bool PatchTree<Real>::find_plane(const PredictedMotion<Real>&, const CellRange&, Index, \
-                                            Plane&) const;                                         \
-  template SpreadPass<Real> PatchTree<Real>::spread_pass(const QuadArray<Real>&, const Plane&,     \
-                                                         const CellRange&, Index, Real) const;
+template <class Real>
+bool PatchTree<Real>::is_spread(const QuadArray<Real>& x, const Plane& plane,
+                                const CellRange& cells, Index p, Real least) const {
+  return weft::is_spread(spread_pass(x, plane, cells, p, least));
+}
+
+#define WEFT_INSTANTIATE(Real)                                                     \
+  template void PatchTree<Real>::sum_changed(const std::vector<char>&);            \
+  template void PatchTree<Real>::mark_spread(Index, const PredictedMotion<Real>&); \
+  template void PatchTree<Real>::renew_spread(Index, const PredictedMotion<Real>&, \
+                                              const std::vector<char>&);           \
+  template bool PatchTree<Real>::are_spread(Index, Index, const PredictedMotion<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

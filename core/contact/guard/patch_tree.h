@@ -161,9 +161,7 @@ class PatchTree {
   SpreadPass<Real> spread_pass(const QuadArray<Real>& x, const Plane& plane, const CellRange& cells,
                                Index part, Real least) const;
   bool is_spread(const QuadArray<Real>& x, const Plane& plane, const CellRange& cells, Index part,
-                 Real least) const {
-    return weft::is_spread(spread_pass(x, plane, cells, part, least));
-  }
+                 Real least) const;
   bool is_apart(const Node& a, const Node& b) const {
     if (a.part == kNone || a.part != b.part) return false;
     return (a.spread.cells() > 0 && a.spread.holds(b.cells)) ||
@@ -212,8 +210,5 @@ class PatchTree {
   /// Of each grid, the number of changed particles before a row and a column.
   std::vector<std::vector<int>> changed_sums_;
 };
-
-extern template class PatchTree<float>;
-extern template class PatchTree<double>;
 
 }  // namespace weft

@@ -95,19 +95,18 @@ Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const Awake
                  GuardedStep<Real>& step, PredictedPaths<Real>& paths) {
   assert(state.x.size() == step.from.size() && state.v.size() == step.from.size());
   const Real limit2 = reach * reach;
-  StrayPass<Real> pass;
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.from = step.from.data();
-  pass.displacement = step.displacement.data();
-  pass.path = paths.from.data();
-  pass.velocity = paths.velocity.data();
-  pass.since = paths.since.data();
-  pass.elapsed = paths.elapsed;
-  pass.off = paths.off;
-  pass.soon2 = limit2 * static_cast<Real>(kSoon * kSoon);
-  pass.limit2 = limit2;
+  const StrayPass<Real> pass{state.x.data()->data(),
+                             state.v.data()->data(),
+                             dt,
+                             step.from.data(),
+                             step.displacement.data(),
+                             paths.from.data(),
+                             paths.velocity.data(),
+                             paths.since.data(),
+                             paths.elapsed,
+                             paths.off,
+                             limit2 * static_cast<Real>(kSoon * kSoon),
+                             limit2};
   paths.strays.clear();
   Quad<Real> sum;
   Real farthest2 = 0;

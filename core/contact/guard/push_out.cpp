@@ -43,14 +43,6 @@ PushOut<Real> push_out(std::size_t particles) {
 }
 
 template <class Real>
-void forget_push(PushOut<Real>& push) {
-  std::fill(push.extra.begin(), push.extra.end(), Quad<Real>());
-  std::fill(push.is_pushed.begin(), push.is_pushed.end(), 0);
-  push.particles.clear();
-  push.v.clear();
-}
-
-template <class Real>
 void add_push(RowSet<Real>& rows, PushOut<Real>& push, Vec3Array<Real>& v, Executor* executor) {
   assert(push.particles.empty() && "the last push was taken back");
   const Real most = rows.deals.largest(executor, true, [&](std::span<const RowBlock<Real>> blocks) {
@@ -87,6 +79,6 @@ void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
   push.v.clear();
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(push_out, forget_push, add_push, take_back_push)
+WEFT_INSTANTIATE_FUNCTIONS(push_out, add_push, take_back_push)
 
 }  // namespace weft

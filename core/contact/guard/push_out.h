@@ -24,10 +24,6 @@ struct PushOut {
 template <class Real>
 PushOut<Real> push_out(std::size_t particles);
 
-/// Forgets a push, and one that was ended from outside before its particles were listed.
-template <class Real>
-void forget_push(PushOut<Real>& push);
-
 /// Adds to the velocities what leads lacking rows apart.
 template <class Real>
 void add_push(RowSet<Real>& rows, PushOut<Real>& push, Vec3Array<Real>& v, Executor* executor);

@@ -214,16 +214,6 @@ void anchor_all(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real
 }  // namespace
 
 template <class Real>
-void forget_waves(Regions<Real>& regions) {
-  regions.dirty.clear();
-  regions.columns.clear();
-  for (AnchorPart<Real>& part : regions.parts) {
-    part.columns.clear();
-    part.next.clear();
-  }
-}
-
-template <class Real>
 void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  Regions<Real>& regions) {
   for (const Index k : pairs.active) {
@@ -321,7 +311,7 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
   }
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(forget_waves, anchor_anew, share_all_gaps, admit_pairs, find_loose,
-                           measure, anchor_loose)
+WEFT_INSTANTIATE_FUNCTIONS(anchor_anew, share_all_gaps, admit_pairs, find_loose, measure,
+                           anchor_loose)
 
 }  // namespace weft

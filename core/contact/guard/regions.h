@@ -53,10 +53,6 @@ struct Regions {
   ColumnsByKind<Real> columns;             ///< pairs that are measured together
 };
 
-/// Empties what each wave leaves empty: one may have been ended from outside.
-template <class Real>
-void forget_waves(Regions<Real>& regions);
-
 /// Anchors all particles in pairs where they are.
 template <class Real>
 void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,

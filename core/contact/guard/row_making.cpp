@@ -131,18 +131,6 @@ RowMaking<Real> row_making(std::size_t particles) {
 }
 
 template <class Real>
-void forget_making(RowMaking<Real>& making) {
-  making.made = false;
-  making.passed.clear();
-  std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
-  for (RowPart<Real>& part : making.parts) {
-    part.columns.clear();
-    part.passed.clear();
-    for (std::vector<GuardRow<Real>>& rows : part.rows) rows.clear();
-  }
-}
-
-template <class Real>
 void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
                          const QuadArray<Real>& x, RowMaking<Real>& making) {
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
@@ -235,7 +223,6 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
   pairs.arrived.clear();
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(row_making, forget_making, place_new_particles, find_moved, renew_rows,
-                           add_arrived)
+WEFT_INSTANTIATE_FUNCTIONS(row_making, place_new_particles, find_moved, renew_rows, add_arrived)
 
 }  // namespace weft

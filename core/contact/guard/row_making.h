@@ -56,10 +56,6 @@ struct RowMaking {
 template <class Real>
 RowMaking<Real> row_making(std::size_t particles);
 
-/// Forgets which rows exist, and what a making of rows that was ended from outside has left.
-template <class Real>
-void forget_making(RowMaking<Real>& making);
-
 /// Whether it is time to choose the busy rows and turn those that push.
 template <class Real>
 bool is_time_to_look(const RowMaking<Real>& making) {

@@ -238,7 +238,8 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   if (log_.wanted()) log_.see(rows_.all, state);
   measure_travel(state, dt, executor_, reach_);
   find_busy_rows(rows_, motion_, reach_.travel2, log_, response_);
-  if (response_.lone_apart) response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt));
+  if (response_.lone_apart)
+    response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt, false), executor_);
   aim_rows(solve, shapes_, dt);
   if (motion_.any_jaw) share_squeeze(solve, dt / 2);
   solve_rows(solve, dt, guard);

@@ -47,46 +47,40 @@ class ContactLog {
   void clear();
 
   /// Call before impulses of these rows, each time that rows were built or a tick began.
-  template <class Row, class Real>
-  void see(const std::vector<Row>& rows, const ClothState<Real>& state) {
+  void see(const auto& rows, const auto& state) {
     if (sums_.size() == rows.size()) return;
     sums_.clear();
-    for (const Row& row : rows) sums_.push_back({Vec3d::Zero(), mass_of(row, state)});
+    for (const auto& row : rows) sums_.push_back({Vec3d::Zero(), mass_of(row, state)});
   }
 
   /// Notes that row `r` got an impulse from an object.
   /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
-  template <class Row, class Real>
-  void add(const std::vector<Row>& rows, std::size_t r, const Vec3<Real>& change) {
+  void add(const auto& rows, std::size_t r, const auto& change) {
     assert(r < sums_.size());
     add_impulse(rows, r, change.template cast<double>() * sums_[r].mass);
   }
 
   /// The same, with the impulse [N s].
-  template <class Row>
-  void add_impulse(const std::vector<Row>& rows, std::size_t r, const Vec3d& impulse) {
+  void add_impulse(const auto& rows, std::size_t r, const Vec3d& impulse) {
     assert(sums_.size() == rows.size() && "see comes first");
     sums_[r].impulse += impulse;
     if (each_wanted_) entries_.push_back({entry_of(rows[r]), impulse});
   }
 
   /// Notes what is not one of the rows: it got a change of velocity [m/s].
-  template <class Row, class Real>
-  void add_apart(const Row& row, const Vec3<Real>& change, const ClothState<Real>& state) {
+  void add_apart(const auto& row, const auto& change, const auto& state) {
     const Vec3d impulse = change.template cast<double>() * mass_of(row, state);
     book(row, impulse);
     if (each_wanted_) entries_.push_back({entry_of(row), impulse});
   }
 
   /// Call before the normal of row `r` turns: what it got belongs to the old one.
-  template <class Row>
-  void before_turn(const std::vector<Row>& rows, std::size_t r) {
+  void before_turn(const auto& rows, std::size_t r) {
     if (sums_.size() == rows.size()) book_sum(rows[r], sums_[r]);
   }
 
   /// Call before rows go.
-  template <class Row>
-  void before_rebuild(const std::vector<Row>& rows) {
+  void before_rebuild(const auto& rows) {
     if (sums_.size() == rows.size()) {
       for (std::size_t r = 0; r < rows.size(); ++r) book_sum(rows[r], sums_[r]);
     }
@@ -95,8 +89,7 @@ class ContactLog {
 
   /// Calls visit(contact, impulse) for each that was noted from `first` on, which then is the next
   /// [N s].
-  template <class Visit>
-  void visit_from(std::size_t& first, Visit&& visit) const {
+  void visit_from(std::size_t& first, auto&& visit) const {
     for (; first < entries_.size(); ++first) visit(entries_[first].first, entries_[first].second);
   }
 
@@ -105,9 +98,7 @@ class ContactLog {
   /// @param x        positions now [m]
   /// @param reach    touching is what is nearer than this part of the thickness
   /// @param seconds  of the tick; forces are means over it
-  template <class Real, class Row>
-  std::vector<ContactPoint> contacts(const std::vector<Row>& rows, const Vec3Array<Real>& x,
-                                     double reach, double seconds);
+  std::vector<ContactPoint> contacts(const auto& rows, const auto& x, double reach, double seconds);
 
  private:
   /// What a row got since it was booked last.
@@ -125,8 +116,7 @@ class ContactLog {
     Index next = kNone;             ///< another with the same first particle
   };
 
-  template <class Row>
-  static ContactPoint entry_of(const Row& row) {
+  static ContactPoint entry_of(const auto& row) {
     ContactPoint c;
     c.collider = row.collider;
     c.count = c.first_side = row.count;
@@ -135,15 +125,13 @@ class ContactLog {
     take_plane(row, c);
     return c;
   }
-  template <class Row>
-  static void take_plane(const Row& row, ContactPoint& c) {
+  static void take_plane(const auto& row, ContactPoint& c) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
       c.weight[k] = static_cast<double>(row.weight[k]);
     c.normal = row.normal.template cast<double>();
   }
   /// 0 if no impulse can move the row's point.
-  template <class Row, class Real>
-  static double mass_of(const Row& row, const ClothState<Real>& state) {
+  static double mass_of(const auto& row, const auto& state) {
     double mobility = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
       const double weight = row.weight[k];
@@ -153,30 +141,26 @@ class ContactLog {
     }
     return mobility > 0 ? 1 / mobility : 0;
   }
-  template <class Row>
-  static bool is_of(const ContactPoint& c, const Row& row) {
+  static bool is_of(const ContactPoint& c, const auto& row) {
     if (c.collider != row.collider || c.count != row.count) return false;
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
       if (c.particle[k] != row.particle[k]) return false;
     }
     return true;
   }
-  template <class Row>
-  void book_sum(const Row& row, RowSum& sum) {
+  void book_sum(const auto& row, RowSum& sum) {
     if (sum.impulse.isZero(0)) return;
     book(row, sum.impulse);
     sum.impulse.setZero();
   }
   /// Adds an impulse to the slot of a row.
-  template <class Row>
-  void book(const Row& row, const Vec3d& impulse) {
+  void book(const auto& row, const Vec3d& impulse) {
     Slot& slot = slot_of(row);
     slot.impulse += impulse;
     slot.along += slot.contact.normal * slot.contact.normal.dot(impulse);
   }
   /// The slot of a row, new or old, with the row's plane.
-  template <class Row>
-  Slot& slot_of(const Row& row) {
+  Slot& slot_of(const auto& row) {
     const auto first = static_cast<std::size_t>(row.particle[0]);
     if (first >= first_slot_.size()) first_slot_.resize(first + 1, kNone);
     Index at = first_slot_[first];
@@ -202,12 +186,10 @@ class ContactLog {
   std::vector<std::pair<ContactPoint, Vec3d>> entries_;  ///< all impulses, if they are wanted
 };
 
-template <class Real, class Row>
-std::vector<ContactPoint> ContactLog::contacts(const std::vector<Row>& rows,
-                                               const Vec3Array<Real>& x, double reach,
+std::vector<ContactPoint> ContactLog::contacts(const auto& rows, const auto& x, double reach,
                                                double seconds) {
   before_rebuild(rows);
-  for (const Row& row : rows) {
+  for (const auto& row : rows) {
     if (!row.responds) continue;
     Vec3d point = Vec3d::Zero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)

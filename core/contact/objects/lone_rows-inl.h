@@ -61,7 +61,7 @@ HWY_INLINE Triple<V> velocity_change(const Triple<V>& n, const Triple<V>& v, V v
 /// Sets the normal velocity that each row must reach, and moves out what lacks thickness; what is
 /// pushed still lacks some then, and has no room.
 /// @return which are pushed
-template <bool Pushes, class D, class Real = hn::TFromD<D>>
+template <class D, class Real = hn::TFromD<D>>
 HWY_INLINE hn::Mask<D> aim(D d, LoneBlock<Real>& rows, const LonePass<Real>& pass, std::size_t k,
                            hn::Mask<D> acts, const Triple<hn::Vec<D>>& n, Triple<hn::Vec<D>>& x) {
   const auto gap = hn::Sub(dot_as_single(n, x), hn::LoadU(d, rows.offset + k));
@@ -71,7 +71,7 @@ HWY_INLINE hn::Mask<D> aim(D d, LoneBlock<Real>& rows, const LonePass<Real>& pas
   const auto any = hn::Set(d, -std::numeric_limits<Real>::infinity());
   const auto least = hn::Div(hn::Neg(room), hn::Set(d, pass.dt));
   hn::StoreU(hn::IfThenElse(acts, least, any), d, rows.least_speed + k);
-  if constexpr (!Pushes) return hn::Gt(zero, zero);
+  if (pass.push_part == 0) return hn::Gt(zero, zero);
   const auto lack = hn::Sub(thickness, gap);
   const auto pushed = hn::And(acts, hn::Gt(lack, slack));
   if (hn::AllFalse(d, pushed)) return pushed;
@@ -113,7 +113,7 @@ HWY_INLINE bool measure(D d, const LonePass<Real>& pass, std::size_t i, M moved,
   return hn::AllTrue(d, hn::Or(hn::Le(end2, hn::Mul(reach, reach)), hn::Not(moved)));
 }
 
-template <bool Pushes, class Real>
+template <class Real>
 HWY_INLINE LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {
   LoneResponse<Real> result;
   for_each_vector(
@@ -125,7 +125,7 @@ HWY_INLINE LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const Lone
         }
         const auto n = normals(d, rows, k);
         auto x = load_particles(d, pass.x + 3 * i), v = load_particles(d, pass.v + 3 * i);
-        const auto pushed = aim<Pushes>(d, rows, pass, k, acts, n, x);
+        const auto pushed = aim(d, rows, pass, k, acts, n, x);
         const auto responds = respond(d, rows, k, n, v, result);
         const auto moved = hn::Or(pushed, responds);
         if (hn::AllFalse(d, moved)) return;
@@ -162,22 +162,18 @@ HWY_INLINE std::size_t next_crossing(std::span<const LoneBlock<Real>> blocks, co
   return blocks.size();
 }
 
-#define WEFT_LONE_KERNELS(Real, Kind)                                                    \
-  HWY_ATTR LoneResponse<Real> push_and_respond_##Kind(std::span<LoneBlock<Real>> blocks, \
-                                                      const LonePass<Real>& pass) {      \
-    return step<true>(blocks, pass);                                                     \
-  }                                                                                      \
-  HWY_ATTR LoneResponse<Real> respond_##Kind(std::span<LoneBlock<Real>> blocks,          \
-                                             const LonePass<Real>& pass) {               \
-    return step<false>(blocks, pass);                                                    \
-  }                                                                                      \
-  HWY_ATTR LoneResponse<Real> sweep_##Kind(std::span<LoneBlock<Real>> blocks,            \
-                                           const LonePass<Real>& pass) {                 \
-    return sweep(blocks, pass);                                                          \
-  }                                                                                      \
-  HWY_ATTR std::size_t next_crossing_##Kind(std::span<const LoneBlock<Real>> blocks,     \
-                                            const Real* travel2, std::size_t from) {     \
-    return next_crossing(blocks, travel2, from);                                         \
+#define WEFT_LONE_KERNELS(Real, Kind)                                                \
+  HWY_ATTR LoneResponse<Real> respond_##Kind(std::span<LoneBlock<Real>> blocks,      \
+                                             const LonePass<Real>& pass) {           \
+    return step(blocks, pass);                                                       \
+  }                                                                                  \
+  HWY_ATTR LoneResponse<Real> sweep_##Kind(std::span<LoneBlock<Real>> blocks,        \
+                                           const LonePass<Real>& pass) {             \
+    return sweep(blocks, pass);                                                      \
+  }                                                                                  \
+  HWY_ATTR std::size_t next_crossing_##Kind(std::span<const LoneBlock<Real>> blocks, \
+                                            const Real* travel2, std::size_t from) { \
+    return next_crossing(blocks, travel2, from);                                     \
   }
 WEFT_LONE_KERNELS(float, f32)
 WEFT_LONE_KERNELS(double, f64)

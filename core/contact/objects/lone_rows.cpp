@@ -21,14 +21,9 @@ namespace weft {
 namespace {
 
 #define WEFT_DISPATCH(Real, Kind)                                                                 \
-  HWY_EXPORT(push_and_respond_##Kind);                                                            \
   HWY_EXPORT(respond_##Kind);                                                                     \
   HWY_EXPORT(sweep_##Kind);                                                                       \
   HWY_EXPORT(next_crossing_##Kind);                                                               \
-  LoneResponse<Real> run_push_and_respond(std::span<LoneBlock<Real>> blocks,                      \
-                                          const LonePass<Real>& pass) {                           \
-    return HWY_DYNAMIC_DISPATCH(push_and_respond_##Kind)(blocks, pass);                           \
-  }                                                                                               \
   LoneResponse<Real> run_respond(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) { \
     return HWY_DYNAMIC_DISPATCH(respond_##Kind)(blocks, pass);                                    \
   }                                                                                               \
@@ -97,16 +92,15 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
 }
 
 template <class Real>
-LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass,
-                                                    Executor* executor) {
+LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass, Executor* executor) {
   // The last block may have particles of the one before, which are in the same part.
   constexpr std::size_t kParts = 4, kFewBlocks = 256;
   static_assert(kFewBlocks >= 2 * kParts);
   const std::span<LoneBlock<Real>> blocks = blocks_;
-  if (!executor || blocks.size() < kFewBlocks) return run_push_and_respond(blocks, pass);
+  if (!executor || blocks.size() < kFewBlocks) return run_respond(blocks, pass);
   std::array<LoneResponse<Real>, kParts> of_part;
   const auto work = [&](std::size_t part, std::size_t first, std::size_t last) {
-    of_part[part] = run_push_and_respond(blocks.subspan(first, last - first), pass);
+    of_part[part] = run_respond(blocks.subspan(first, last - first), pass);
   };
   run_parts(executor, blocks.size(), kParts, work);
   LoneResponse<Real> whole;
@@ -116,11 +110,6 @@ LoneResponse<Real> LoneRows<Real>::push_and_respond(const LonePass<Real>& pass,
     whole.friction_evaluations += part.friction_evaluations;
   }
   return whole;
-}
-
-template <class Real>
-LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass) {
-  return run_respond(blocks_, pass);
 }
 
 template <class Real>

@@ -23,7 +23,7 @@ struct LonePass {
   Real* v = nullptr;            ///< [m/s]
   Real dt = 0;                  ///< of the substep [s]
   Real slack = 0;               ///< a gap wider than the thickness by this still touches [m]
-  Real push_part = 0;           ///< part of a lack that is pushed out in a step
+  Real push_part = 0;           ///< part of a lack that is pushed out in a step; 0: nothing is
   Real push_most = 0;           ///< but no farther than this [m]
   const Real* from = nullptr;   ///< where ways begin [m]
   const Real* reach = nullptr;  ///< how far each particle may go [m]
@@ -76,11 +76,9 @@ class LoneRows {
   /// Works out the normal velocity that each row must reach, which is no farther down than the
   /// thickness within the step, lets each respond once (see sweep_rows), and measures the
   /// ways of those anew that have. Rows that are farther from touching than their particles go do
-  /// nothing.
-  LoneResponse<Real> respond(const LonePass<Real>& pass);
-  /// The same after moving out particles that lack thickness.
+  /// nothing. Particles that lack thickness are moved out before, if that is asked for.
   /// @param executor  shares many rows out to its threads; may be null
-  LoneResponse<Real> push_and_respond(const LonePass<Real>& pass, Executor* executor);
+  LoneResponse<Real> respond(const LonePass<Real>& pass, Executor* executor);
   /// One more response, after others have changed velocities. Ways are not measured.
   LoneResponse<Real> sweep(const LonePass<Real>& pass);
   /// Calls visit(row) for rows whose particles could cross their planes.

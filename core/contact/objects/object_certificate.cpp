@@ -92,14 +92,9 @@ template <class Real>
 bool measure_travel(const ClothState<Real>& state, Real dt, Executor* executor,
                     RowReach<Real>& reach) {
   assert(reach.x.size() == state.x.size() && reach.travel2.size() == state.x.size());
-  TravelPass<Real> pass;
-  pass.particles = state.x.size();
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.from = reach.x.data()->data();
-  pass.reach = reach.reach.data();
-  pass.travel2 = reach.travel2.data();
+  const TravelPass<Real> pass{
+      state.x.size(),         state.x.data()->data(), state.v.data()->data(), dt,
+      reach.x.data()->data(), reach.reach.data(),     reach.travel2.data()};
   return measure_travel(pass, executor);
 }
 

@@ -50,29 +50,27 @@ void find_near(const PairFeatures<Real>& cloth, const FeatureBlocks<Real>& mesh,
                std::vector<Real>& free) {
   static_assert(sizeof(Aabb<Real>) == 6 * sizeof(Real));
   assert(cloth.reach2.size() == cloth.number.size());
-  FeatureTable<Real> table;
-  table.count = cloth.number.size();
-  if (table.count == 0) return;
-  table.stride = near.list.size();
-  const std::size_t most = table.count * table.stride * kFeatureLanes;
-  if (found.hits.size() < most) {
-    found.hits.resize(most);
-    found.hits2.resize(most);
-  }
-  found.ends.resize(table.count);
-  found.beyond2.resize(table.count);
-  table.cloth = cloth.values.data();
-  table.cloth_boxes = cloth.boxes.front().lower.data();
-  table.reach2 = cloth.reach2.data();
-  table.blocks = near.list.data();
-  table.boxes = near.boxes.data();
-  table.mesh = mesh.values.data();
-  table.hits = found.hits.data();
-  table.hits2 = found.hits2.data();
-  table.ends = found.ends.data();
-  table.beyond2 = found.beyond2.data();
+  const std::size_t count = cloth.number.size(), stride = near.list.size();
+  if (count == 0) return;
+  const std::size_t most = std::max(found.hits.size(), count * stride * kFeatureLanes);
+  found.hits.resize(most);
+  found.hits2.resize(most);
+  found.ends.resize(count);
+  found.beyond2.resize(count);
+  const FeatureTable<Real> table{count,
+                                 cloth.values.data(),
+                                 cloth.boxes.front().lower.data(),
+                                 cloth.reach2.data(),
+                                 stride,
+                                 near.list.data(),
+                                 near.boxes.data(),
+                                 mesh.values.data(),
+                                 found.hits.data(),
+                                 found.hits2.data(),
+                                 found.ends.data(),
+                                 found.beyond2.data()};
   tests += measure(table) * kFeatureLanes;
-  for (std::size_t f = 0; f < table.count; ++f) {
+  for (std::size_t f = 0; f < count; ++f) {
     const Real beyond =
         std::min(std::sqrt(found.beyond2[f]), distance_to_border(cloth.boxes[f], box));
     Real& known = free[static_cast<std::size_t>(cloth.number[f])];

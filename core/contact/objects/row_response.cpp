@@ -206,18 +206,16 @@ void find_busy_rows(const ObjectRows<Real>& rows, const ObjectMotion<Real>& moti
 }
 
 template <class Real>
-LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt) {
-  LonePass<Real> pass;
-  pass.x = state.x.data()->data();
-  pass.v = state.v.data()->data();
-  pass.dt = dt;
-  pass.slack = Real(kTouchSlack);
-  pass.push_part = Real(kPushOutPart);
-  pass.push_most = Real(kPushOutSpeed) * dt;
-  pass.from = reach.x.data()->data();
-  pass.reach = reach.reach.data();
-  pass.travel2 = reach.travel2.data();
-  return pass;
+LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt, bool pushes) {
+  return {state.x.data()->data(),
+          state.v.data()->data(),
+          dt,
+          Real(kTouchSlack),
+          pushes ? Real(kPushOutPart) : Real(0),
+          Real(kPushOutSpeed) * dt,
+          reach.x.data()->data(),
+          reach.reach.data(),
+          reach.travel2.data()};
 }
 
 template <class Real>
@@ -238,7 +236,7 @@ void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& 
   if (!response.pushed.empty()) take_back_pushes(rows, response.x_unpushed, smallest_gap, state.x);
   // A lone particle leaves the only plane that it could come too near to.
   if (response.lone_apart)
-    response.lone = rows.lone.push_and_respond(lone_pass(reach, state, dt), executor);
+    response.lone = rows.lone.respond(lone_pass(reach, state, dt, true), executor);
 }
 
 template <class Real>
@@ -261,7 +259,8 @@ Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
   ObjectRows<Real>& rows = solve.rows;
   Real largest = 0;
   if (solve.response.lone_apart && !again) {
-    const LoneResponse<Real> lone = rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0)));
+    const LoneResponse<Real> lone =
+        rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0), false));
     largest = lone.largest;
     solve.friction_evaluations += lone.friction_evaluations;
   }

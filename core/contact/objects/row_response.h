@@ -83,8 +83,9 @@ void find_busy_rows(const ObjectRows<Real>& rows, const ObjectMotion<Real>& moti
                     RowResponse<Real>& response);
 
 /// What lone rows work on.
+/// @param pushes  whether they push particles out
 template <class Real>
-LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt);
+LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt, bool pushes);
 
 /// Pushes particles out that lack thickness, slowly and without giving them velocity.
 template <class Real>
