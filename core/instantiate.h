@@ -9,7 +9,7 @@
 #define WEFT_RESCAN_2(...) WEFT_RESCAN_3(WEFT_RESCAN_3(WEFT_RESCAN_3(__VA_ARGS__)))
 #define WEFT_RESCAN_3(...) __VA_ARGS__
 #define WEFT_INSTANTIATE_NEXT() WEFT_INSTANTIATE_FIRST
-#define WEFT_INSTANTIATE_FIRST(name, ...)     \
+#define WEFT_INSTANTIATE_FIRST(name, ...)       \
   template decltype(name<float>) name<float>;   \
   template decltype(name<double>) name<double>; \
   __VA_OPT__(WEFT_INSTANTIATE_NEXT WEFT_PARENTHESES(__VA_ARGS__))

@@ -48,15 +48,14 @@ struct BothSides {
 };
 
 /// The largest value(particle) on each side of a pair, and at least 0.
-template <class Real, class Value>
-BothSides<Real> largest_on_sides(const GuardedPair<Real>& pair, Value&& value) {
-  BothSides<Real> most;
-  const std::size_t middle = first_side(pair.kind);
-  for (std::size_t k = 0; k < 4; ++k) {
-    Real& side = k < middle ? most.first : most.second;
-    side = std::max(side, value(static_cast<std::size_t>(pair.particle[k])));
-  }
-  return most;
+template <class Real>
+[[gnu::always_inline]] inline BothSides<Real> largest_on_sides(const GuardedPair<Real>& pair,
+                                                               auto&& value) {
+  const auto of = [&](std::size_t k) { return value(static_cast<std::size_t>(pair.particle[k])); };
+  const Real second = std::max({Real(0), of(2), of(3)}), first = std::max(Real(0), of(0)),
+             either = of(1);
+  if (pair.kind == PairKind::vertex_triangle) return {first, std::max(second, either)};
+  return {std::max(first, either), second};
 }
 
 }  // namespace weft

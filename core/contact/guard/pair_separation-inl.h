@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/guard/pair_separation.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -137,8 +138,8 @@ HWY_INLINE V gap_of(PairKind kind, const Triple<V>& b, const Triple<V>& c, const
 }
 
 template <class Real>
-HWY_INLINE void separate(const Real* x, const Real* end, std::size_t first, std::size_t last,
-                         PairColumns<Real>& pairs) {
+HWY_ATTR void separate(const Real* x, const Real* end, std::size_t first, std::size_t last,
+                       PairColumns<Real>& pairs) {
   const hn::CappedTag<Real, kPairPadding> d;
   using V = hn::Vec<decltype(d)>;
   const V zero = hn::Zero(d);
@@ -167,14 +168,7 @@ HWY_INLINE void separate(const Real* x, const Real* end, std::size_t first, std:
   }
 }
 
-HWY_ATTR void separate_f32(const float* x, const float* end, std::size_t first, std::size_t last,
-                           PairColumns<float>& pairs) {
-  separate(x, end, first, last, pairs);
-}
-HWY_ATTR void separate_f64(const double* x, const double* end, std::size_t first, std::size_t last,
-                           PairColumns<double>& pairs) {
-  separate(x, end, first, last, pairs);
-}
+WEFT_KERNEL(separate);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -11,6 +11,8 @@
 #include "core/contact/guard/pair_separation-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 namespace {
 
@@ -69,22 +71,17 @@ PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const QuadArra
   return s;
 }
 
-HWY_EXPORT(separate_f32);
-HWY_EXPORT(separate_f64);
+WEFT_EXPORT_KERNEL(separate);
 
-void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs, Executor* executor) {
+template <class Real>
+void separate_pairs(const QuadArray<Real>& x, const QuadArray<Real>& end, PairColumns<Real>& pairs,
+                    Executor* executor) {
   for_blocks(pairs.size(), executor, [&](std::size_t first, std::size_t last) {
-    HWY_DYNAMIC_DISPATCH(separate_f32)(numbers_of(x), numbers_of(end), first, last, pairs);
-  });
-}
-void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs, Executor* executor) {
-  for_blocks(pairs.size(), executor, [&](std::size_t first, std::size_t last) {
-    HWY_DYNAMIC_DISPATCH(separate_f64)(numbers_of(x), numbers_of(end), first, last, pairs);
+    WEFT_RUN(separate, Real)(numbers_of(x), numbers_of(end), first, last, pairs);
   });
 }
 
+WEFT_INSTANTIATE_FUNCTIONS(separate_pairs)
 template struct PairColumns<float>;
 template struct PairColumns<double>;
 

@@ -72,9 +72,8 @@ class ColumnsByKind {
 /// @param x         positions [m]
 /// @param end       positions for `end_gap`; if it is x, that column is left as it is
 /// @param executor  works through many pairs in chunks; may be null
-void separate_pairs(const QuadArray<float>& x, const QuadArray<float>& end,
-                    PairColumns<float>& pairs, Executor* executor = nullptr);
-void separate_pairs(const QuadArray<double>& x, const QuadArray<double>& end,
-                    PairColumns<double>& pairs, Executor* executor = nullptr);
+template <class Real>
+void separate_pairs(const QuadArray<Real>& x, const QuadArray<Real>& end, PairColumns<Real>& pairs,
+                    Executor* executor = nullptr);
 
 }  // namespace weft

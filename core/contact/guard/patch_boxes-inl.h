@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/guard/patch_boxes.h"
+#include "core/math/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
@@ -61,9 +62,9 @@ HWY_INLINE void overlap(const BoxColumns<Real>& a, const BoxColumns<Real>& b, co
 }
 
 template <class Real>
-HWY_INLINE void overlap_all(const PatchColumns<Real>& p, const PatchColumns<Real>& q,
-                            const PatchMarks& marked_p, const PatchMarks& marked_q,
-                            PatchOverlaps& overlaps) {
+HWY_ATTR void overlap_all(const PatchColumns<Real>& p, const PatchColumns<Real>& q,
+                          const PatchMarks& marked_p, const PatchMarks& marked_q,
+                          PatchOverlaps& overlaps) {
   overlap(p.vertices, q.triangles, q.whole, marked_p.vertices, marked_q.triangles,
           overlaps.first_vertices);
   overlap(q.vertices, p.triangles, p.whole, marked_q.vertices, marked_p.triangles,
@@ -71,16 +72,7 @@ HWY_INLINE void overlap_all(const PatchColumns<Real>& p, const PatchColumns<Real
   overlap(p.edges, q.edges, q.whole, marked_p.edges, marked_q.edges, overlaps.first_edges);
 }
 
-HWY_ATTR void overlap_f32(const PatchColumns<float>& p, const PatchColumns<float>& q,
-                          const PatchMarks& marked_p, const PatchMarks& marked_q,
-                          PatchOverlaps& overlaps) {
-  overlap_all(p, q, marked_p, marked_q, overlaps);
-}
-HWY_ATTR void overlap_f64(const PatchColumns<double>& p, const PatchColumns<double>& q,
-                          const PatchMarks& marked_p, const PatchMarks& marked_q,
-                          PatchOverlaps& overlaps) {
-  overlap_all(p, q, marked_p, marked_q, overlaps);
-}
+WEFT_KERNEL(overlap_all);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -13,6 +13,8 @@
 #include "core/contact/guard/patch_boxes-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 namespace {
 
@@ -160,20 +162,16 @@ void leave_out_incident(const typename PatchTree<Real>::Patch& p,
   }
 }
 
-HWY_EXPORT(overlap_f32);
-HWY_EXPORT(overlap_f64);
+WEFT_EXPORT_KERNEL(overlap_all);
 
-void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
+template <class Real>
+void overlap_patches(const PatchColumns<Real>& p, const PatchColumns<Real>& q,
                      const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps) {
-  HWY_DYNAMIC_DISPATCH(overlap_f32)(p, q, marked_p, marked_q, overlaps);
-}
-void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
-                     const PatchMarks& marked_p, const PatchMarks& marked_q,
-                     PatchOverlaps& overlaps) {
-  HWY_DYNAMIC_DISPATCH(overlap_f64)(p, q, marked_p, marked_q, overlaps);
+  WEFT_RUN(overlap_all, Real)(p, q, marked_p, marked_q, overlaps);
 }
 
+WEFT_INSTANTIATE_FUNCTIONS(overlap_patches)
 template void leave_out_incident<float>(const PatchTree<float>::Patch&,
                                         const PatchTree<float>::Patch&, PatchOverlaps&);
 template void leave_out_incident<double>(const PatchTree<double>::Patch&,

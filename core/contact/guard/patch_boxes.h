@@ -39,10 +39,8 @@ struct PatchOverlaps {
 /// Tests the features of two patches, many at a time: first those of the one with the box around
 /// the other, as patches mostly touch with an edge or a corner.
 /// @param marked_p, marked_q  pairs without a marked feature are left out
-void overlap_patches(const PatchColumns<float>& p, const PatchColumns<float>& q,
-                     const PatchMarks& marked_p, const PatchMarks& marked_q,
-                     PatchOverlaps& overlaps);
-void overlap_patches(const PatchColumns<double>& p, const PatchColumns<double>& q,
+template <class Real>
+void overlap_patches(const PatchColumns<Real>& p, const PatchColumns<Real>& q,
                      const PatchMarks& marked_p, const PatchMarks& marked_q,
                      PatchOverlaps& overlaps);
 

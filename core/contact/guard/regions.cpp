@@ -41,18 +41,6 @@ void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Reg
   }
 }
 
-/// Both sides' largest of a number of each particle, from 0 on.
-/// @param at  one number a particle
-template <class Real>
-[[gnu::always_inline]] inline BothSides<Real> sides_of(const GuardedPair<Real>& pair,
-                                                       const std::vector<Real>& at) {
-  const auto of = [&](std::size_t k) { return at[static_cast<std::size_t>(pair.particle[k])]; };
-  const Real second = std::max(std::max(Real(0), of(2)), of(3)), first = std::max(Real(0), of(0)),
-             either = of(1);
-  if (pair.kind == PairKind::vertex_triangle) return {first, std::max(second, either)};
-  return {std::max(first, either), second};
-}
-
 /// Lists the pairs of a particle with the radii that others have in them, and for measuring those
 /// whose bound may not be enough for a particle that is being anchored: the first of these in the
 /// pair asks for all.
@@ -65,8 +53,10 @@ void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedS
   const Real ahead = ahead_of(step.length[static_cast<std::size_t>(particle)]);
   for_pairs_of(pairs, static_cast<std::size_t>(particle), [&](const GuardedPair<Real>& pair) {
     // Those that are being anchored have none yet.
-    const auto [first, second] = sides_of(pair, regions.radius);
-    const auto [first_length, second_length] = sides_of(pair, step.length);
+    const auto [first, second] =
+        largest_on_sides(pair, [&](std::size_t i) { return regions.radius[i]; });
+    const auto [first_length, second_length] =
+        largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
     const std::array<Index, 4>& p = pair.particle;
     const bool on_first =
         particle == p[0] || (pair.kind == PairKind::edge_edge && particle == p[1]);

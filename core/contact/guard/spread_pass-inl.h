@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/guard/spread_pass.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -104,7 +105,7 @@ HWY_INLINE bool visit_columns(const SpreadPass<Real>& p, Visit&& visit) {
 }
 
 template <class Real>
-HWY_INLINE bool spread(const SpreadPass<Real>& p) {
+HWY_ATTR bool spread(const SpreadPass<Real>& p) {
   return visit_columns(p, [&](auto d, std::ptrdiff_t c) HWY_ATTR {
     return visit_rows(d, p, c,
                       [&](std::ptrdiff_t, auto mask) HWY_ATTR { return hn::AllTrue(d, mask); });
@@ -112,7 +113,7 @@ HWY_INLINE bool spread(const SpreadPass<Real>& p) {
 }
 
 template <class Real>
-HWY_INLINE std::uint64_t spread_ones(const SpreadPass<Real>& p) {
+HWY_ATTR std::uint64_t spread_ones(const SpreadPass<Real>& p) {
   std::uint64_t found = 0;
   visit_columns(p, [&](auto d, std::ptrdiff_t c) HWY_ATTR {
     return visit_rows(d, p, c, [&](std::ptrdiff_t r, auto mask) HWY_ATTR {
@@ -125,18 +126,8 @@ HWY_INLINE std::uint64_t spread_ones(const SpreadPass<Real>& p) {
   return found;
 }
 
-HWY_ATTR bool spread_f32(const SpreadPass<float>& pass) {
-  return spread(pass);
-}
-HWY_ATTR bool spread_f64(const SpreadPass<double>& pass) {
-  return spread(pass);
-}
-HWY_ATTR std::uint64_t spread_ones_f32(const SpreadPass<float>& pass) {
-  return spread_ones(pass);
-}
-HWY_ATTR std::uint64_t spread_ones_f64(const SpreadPass<double>& pass) {
-  return spread_ones(pass);
-}
+WEFT_KERNEL(spread);
+WEFT_KERNEL(spread_ones);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

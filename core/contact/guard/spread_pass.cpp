@@ -14,34 +14,27 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(spread_f32);
-HWY_EXPORT(spread_f64);
-HWY_EXPORT(spread_ones_f32);
-HWY_EXPORT(spread_ones_f64);
+WEFT_EXPORT_KERNEL(spread);
+WEFT_EXPORT_KERNEL(spread_ones);
 
-bool is_spread(const SpreadPass<float>& pass) {
+template <class Real>
+bool is_spread(const SpreadPass<Real>& pass) {
   assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
-  return HWY_DYNAMIC_DISPATCH(spread_f32)(pass);
+  return WEFT_RUN(spread, Real)(pass);
 }
 
-bool is_spread(const SpreadPass<double>& pass) {
-  assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
-  return HWY_DYNAMIC_DISPATCH(spread_f64)(pass);
-}
-
-std::uint64_t spread_cells(const SpreadPass<float>& pass) {
+template <class Real>
+std::uint64_t spread_cells(const SpreadPass<Real>& pass) {
   assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
   assert(std::max(pass.rows, pass.columns) <= kMostSpreadCells);
-  return HWY_DYNAMIC_DISPATCH(spread_ones_f32)(pass);
+  return WEFT_RUN(spread_ones, Real)(pass);
 }
 
-std::uint64_t spread_cells(const SpreadPass<double>& pass) {
-  assert(pass.x && pass.falls && pass.rows > 0 && pass.columns > 0);
-  assert(std::max(pass.rows, pass.columns) <= kMostSpreadCells);
-  return HWY_DYNAMIC_DISPATCH(spread_ones_f64)(pass);
-}
+WEFT_INSTANTIATE_FUNCTIONS(is_spread, spread_cells)
 
 }  // namespace weft
 #endif

@@ -29,15 +29,15 @@ struct SpreadPass {
 
 /// Whether the least eigenvalue of the symmetric part of the gradient in a plane is above `least`
 /// all over a rectangle.
-bool is_spread(const SpreadPass<float>& pass);
-bool is_spread(const SpreadPass<double>& pass);
+template <class Real>
+bool is_spread(const SpreadPass<Real>& pass);
 
 /// A rectangle that is asked for its cells has at most this many rows and columns.
 inline constexpr int kMostSpreadCells = 8;
 
 /// In which cells of a rectangle it is above `least`: of cell (r, c) bit
 /// kMostSpreadCells r + c.
-std::uint64_t spread_cells(const SpreadPass<float>& pass);
-std::uint64_t spread_cells(const SpreadPass<double>& pass);
+template <class Real>
+std::uint64_t spread_cells(const SpreadPass<Real>& pass);
 
 }  // namespace weft

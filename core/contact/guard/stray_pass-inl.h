@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/guard/stray_pass.h"
+#include "core/math/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
@@ -58,8 +59,8 @@ HWY_INLINE void look_at(D d, const StrayPass<Real>& p, std::size_t n, V* sum, V&
 }
 
 template <class Real>
-HWY_INLINE StrayLook<Real> look(const StrayPass<Real>& p, std::size_t first, std::size_t end,
-                                std::vector<Index>& strays) {
+HWY_ATTR StrayLook<Real> look(const StrayPass<Real>& p, std::size_t first, std::size_t end,
+                              std::vector<Index>& strays) {
   const hn::CappedTag<Real, kStrayColumns> wide;
   const hn::CappedTag<Real, 1> single;
   using V = hn::Vec<decltype(wide)>;
@@ -90,14 +91,7 @@ HWY_INLINE StrayLook<Real> look(const StrayPass<Real>& p, std::size_t first, std
   return found;
 }
 
-HWY_ATTR StrayLook<float> look_f32(const StrayPass<float>& pass, std::size_t first, std::size_t end,
-                                   std::vector<Index>& strays) {
-  return look(pass, first, end, strays);
-}
-HWY_ATTR StrayLook<double> look_f64(const StrayPass<double>& pass, std::size_t first,
-                                    std::size_t end, std::vector<Index>& strays) {
-  return look(pass, first, end, strays);
-}
+WEFT_KERNEL(look);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

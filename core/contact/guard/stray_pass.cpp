@@ -13,22 +13,20 @@
 #if HWY_ONCE
 #include <cassert>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(look_f32);
-HWY_EXPORT(look_f64);
+WEFT_EXPORT_KERNEL(look);
 
-StrayLook<float> look_for_strays(const StrayPass<float>& pass, std::size_t first, std::size_t end,
-                                 std::vector<Index>& strays) {
+template <class Real>
+StrayLook<Real> look_for_strays(const StrayPass<Real>& pass, std::size_t first, std::size_t end,
+                                std::vector<Index>& strays) {
   assert(first <= end && pass.soon2 <= pass.limit2);
-  return HWY_DYNAMIC_DISPATCH(look_f32)(pass, first, end, strays);
+  return WEFT_RUN(look, Real)(pass, first, end, strays);
 }
 
-StrayLook<double> look_for_strays(const StrayPass<double>& pass, std::size_t first, std::size_t end,
-                                  std::vector<Index>& strays) {
-  assert(first <= end && pass.soon2 <= pass.limit2);
-  return HWY_DYNAMIC_DISPATCH(look_f64)(pass, first, end, strays);
-}
+WEFT_INSTANTIATE_FUNCTIONS(look_for_strays)
 
 }  // namespace weft
 #endif

@@ -37,9 +37,8 @@ struct StrayLook {
 
 /// Looks at particles `first` to `end` (exclusive), and adds those to `strays` that are farther
 /// than `soon2` from where they are expected, or at no number.
-StrayLook<float> look_for_strays(const StrayPass<float>& pass, std::size_t first, std::size_t end,
-                                 std::vector<Index>& strays);
-StrayLook<double> look_for_strays(const StrayPass<double>& pass, std::size_t first, std::size_t end,
-                                  std::vector<Index>& strays);
+template <class Real>
+StrayLook<Real> look_for_strays(const StrayPass<Real>& pass, std::size_t first, std::size_t end,
+                                std::vector<Index>& strays);
 
 }  // namespace weft

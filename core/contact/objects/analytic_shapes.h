@@ -15,26 +15,13 @@ struct ObjectPlane {
   std::size_t collider;
 };
 
+/// A ball or a capsule: all points within a radius of the core from a to b.
 template <class Real>
-struct ObjectBall {
-  Vec3<Real> centre;  ///< [m]
-  Real radius;        ///< [m]
-  std::size_t collider;
-};
-
-/// A capsule: all points within a radius of the core from a to b.
-template <class Real>
-struct ObjectRod {
+struct RoundObject {
   Vec3<Real> a, b;  ///< [m]
   Real radius;      ///< [m]
   std::size_t collider;
-};
-
-/// A rod, or a ball, whose core is a point.
-template <class Real>
-struct RoundObject {
-  ObjectRod<Real> rod;
-  bool is_ball = false;
+  bool is_ball;  ///< its core is a point
 };
 
 }  // namespace weft

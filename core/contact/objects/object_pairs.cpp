@@ -300,7 +300,7 @@ void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sh
       for (const Index i : patches.triangles[static_cast<std::size_t>(pair.cloth)]) mark(i);
     }
   }
-  if (shapes.balls.empty() && shapes.rods.empty()) return;
+  if (shapes.rounds.empty()) return;
   // Edges and triangles meet round shapes without pairs, so all near ones may.
   for (const Index e : near.edges) {
     for (const Index i : patches.edges[static_cast<std::size_t>(e)]) mark(i);

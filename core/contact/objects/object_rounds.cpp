@@ -50,11 +50,11 @@ CornerBound<Real> bound_of(const ObjectRowSource<Real>& source, std::span<const 
 /// Distance of each active particle from the core of a round object, now and while the rows hold: a
 /// particle within reach of the object is kept over a plane.
 template <class Real>
-void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>& round,
+void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>& rod,
                    RowScratch<Real>& scratch) {
   const ClothState<Real>& state = source.state;
-  const Vec3<Real>&a = round.rod.a, &b = round.rod.b;
-  const Real radius = round.rod.radius;
+  const Vec3<Real>&a = rod.a, &b = rod.b;
+  const Real radius = rod.radius;
   const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kCoreRoundings);
   scratch.core.resize(state.x.size());
   scratch.least_core.resize(state.x.size());
@@ -62,8 +62,7 @@ void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>&
     const auto i = static_cast<std::size_t>(k);
     Real &core = scratch.core[i], &least = scratch.least_core[i];
     const Vec3<Real> from = state.x[i] - a;
-    core = round.is_ball ? from.norm()
-                         : (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
+    core = (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
     least = core - source.reach[i] - source.cloths.thickness * Real(kRoomForPush);
     if (state.inverse_mass[i] > 0 && core > radius)
       least = std::max(
@@ -73,9 +72,8 @@ void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>&
 }
 
 template <class Real>
-void add_edges_on(const RoundObject<Real>& round, const ObjectRowSource<Real>& source,
+void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source,
                   const RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
-  const ObjectRod<Real>& rod = round.rod;
   const Vec3d base = in_double(rod.a), tip = in_double(rod.b);
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
@@ -109,7 +107,7 @@ void add_edges_on(const RoundObject<Real>& round, const ObjectRowSource<Real>& s
 /// @param reach  of the triangle while the rows hold [m]
 template <class Real>
 void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Real reach,
-                      const ObjectRod<Real>& rod, const Vec3<Real>& centre, bool responds,
+                      const RoundObject<Real>& rod, const Vec3<Real>& centre, bool responds,
                       ObjectRows<Real>& rows) {
   const auto at = [&](std::size_t n) {
     return in_double(source.state.x[static_cast<std::size_t>(t[n])]);
@@ -129,9 +127,8 @@ void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Re
 
 /// Adds the rows of the centre of a ball, or of both ends of a rod, with the inside of triangles.
 template <class Real>
-void add_triangles_on(const RoundObject<Real>& round, const ObjectRowSource<Real>& source,
+void add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source,
                       const RowScratch<Real>& scratch, ObjectRows<Real>& rows, Profile& profile) {
-  const ObjectRod<Real>& rod = round.rod;
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
   for (std::size_t n = 0; n < source.near.triangles.size(); ++n) {
@@ -150,7 +147,7 @@ void add_triangles_on(const RoundObject<Real>& round, const ObjectRowSource<Real
       add_triangle_row(source, t, corners.reach, rod, centre, responds, rows);
     };
     add(rod.a);
-    if (!round.is_ball) add(rod.b);
+    if (!rod.is_ball) add(rod.b);
   }
 }
 
@@ -160,7 +157,7 @@ template <class Real>
 void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
                             ObjectRows<Real>& rows, Profile& profile) {
   const ObjectShapes<Real>& shapes = source.shapes;
-  if (shapes.balls.empty() && shapes.rods.empty()) return;
+  if (shapes.rounds.empty()) return;
   assert(scratch.inside.size() == source.state.x.size() && "rows of particles come first");
   const ClothPatches& patches = source.cloths.patches;
   scratch.edge_bounds.clear();
@@ -171,14 +168,11 @@ void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real
   for (const Index k : source.near.triangles)
     scratch.triangle_bounds.push_back(
         bound_of<Real>(source, patches.triangles[static_cast<std::size_t>(k)]));
-  const auto add = [&](const RoundObject<Real>& round) {
-    measure_cores(source, round, scratch);
-    add_edges_on(round, source, scratch, rows);
-    add_triangles_on(round, source, scratch, rows, profile);
-  };
-  for (const ObjectBall<Real>& ball : shapes.balls)
-    add({{ball.centre, ball.centre, ball.radius, ball.collider}, true});
-  for (const ObjectRod<Real>& rod : shapes.rods) add({rod, false});
+  for (const RoundObject<Real>& rod : shapes.rounds) {
+    measure_cores(source, rod, scratch);
+    add_edges_on(rod, source, scratch, rows);
+    add_triangles_on(rod, source, scratch, rows, profile);
+  }
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(add_features_on_rounds)

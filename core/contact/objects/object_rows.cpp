@@ -113,7 +113,7 @@ std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, 
 
 /// Row of one particle with a ball or a rod.
 template <class Real>
-void add_round_row(const ObjectRowSource<Real>& source, Index i, const ObjectRod<Real>& rod,
+void add_round_row(const ObjectRowSource<Real>& source, Index i, const RoundObject<Real>& rod,
                    RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
   const Vec3<Real>& x = source.state.x[static_cast<std::size_t>(i)];
   const Vec3<Real>&from = rod.a, &to = rod.b;
@@ -144,7 +144,7 @@ bool allow_rows(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sha
                 const Clearance<Real>& clearance, const NearFeatures<Real>& near,
                 std::vector<Real>& moved, std::vector<Real>& reach) {
   assert(clearance.collected && reach.size() == state.x.size());
-  const bool edges_matter = !(shapes.balls.empty() && shapes.rods.empty() && shapes.meshes.empty());
+  const bool edges_matter = !(shapes.rounds.empty() && shapes.meshes.empty());
   const Real thickness = cloths.thickness;
   bool enough = true;
   for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -226,11 +226,8 @@ void add_particle_rows(const ObjectRowSource<Real>& source, RowScratch<Real>& sc
                 {plane.normal, static_cast<double>(plane.offset), distance}, plane.collider, true,
                 rows);
     }
-    for (const ObjectBall<Real>& ball : shapes.balls)
-      add_round_row(source, i, {ball.centre, ball.centre, ball.radius, ball.collider}, scratch,
-                    rows);
-    for (const ObjectRod<Real>& rod : shapes.rods) add_round_row(source, i, rod, scratch, rows);
-    tests += shapes.planes.size() + shapes.balls.size() + shapes.rods.size();
+    for (const RoundObject<Real>& rod : shapes.rounds) add_round_row(source, i, rod, scratch, rows);
+    tests += shapes.planes.size() + shapes.rounds.size();
     for (std::size_t m = 0; m < shapes.meshes.size(); ++m)
       tests += add_mesh_rows(source, m, i, scratch, rows);
   }

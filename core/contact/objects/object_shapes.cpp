@@ -31,11 +31,14 @@ void add_shape(const ShapeDef& shape, std::size_t collider, MeshStore* store,
     const Vec3d n = plane->normal.normalized();
     shapes.planes.push_back({n.cast<Real>(), static_cast<Real>(n.dot(plane->point)), collider});
   } else if (const auto* sphere = std::get_if<SphereDef>(&shape)) {
-    shapes.balls.push_back(
-        {sphere->centre.cast<Real>(), static_cast<Real>(sphere->radius), collider});
+    const auto first_rod = std::find_if(shapes.rounds.begin(), shapes.rounds.end(),
+                                        [](const auto& r) { return !r.is_ball; });
+    const Vec3<Real> centre = sphere->centre.cast<Real>();
+    shapes.rounds.insert(first_rod,
+                         {centre, centre, static_cast<Real>(sphere->radius), collider, true});
   } else if (const auto* capsule = std::get_if<CapsuleDef>(&shape)) {
-    shapes.rods.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
-                           static_cast<Real>(capsule->radius), collider});
+    shapes.rounds.push_back({capsule->a.cast<Real>(), capsule->b.cast<Real>(),
+                             static_cast<Real>(capsule->radius), collider, false});
   } else {
     const auto* box = std::get_if<BoxDef>(&shape);
     shapes.meshes.push_back(
@@ -45,7 +48,7 @@ void add_shape(const ShapeDef& shape, std::size_t collider, MeshStore* store,
 }
 
 template <class Real>
-Vec3<Real> nearest_on_core(const ObjectRod<Real>& rod, const Vec3<Real>& p) {
+Vec3<Real> nearest_on_core(const RoundObject<Real>& rod, const Vec3<Real>& p) {
   return rod.a + (rod.b - rod.a) * closest_on_segment(p, rod.a, rod.b);
 }
 
@@ -63,8 +66,7 @@ ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders, Mesh
     frame.pose = rest_pose(colliders[k].shape);
   }
   shapes.own_planes = shapes.planes;
-  shapes.own_balls = shapes.balls;
-  shapes.own_rods = shapes.rods;
+  shapes.own_rounds = shapes.rounds;
   for (const auto& mesh : shapes.meshes)
     shapes.widest_skin = std::min(shapes.widest_skin, mesh->triangle_size);
   return shapes;
@@ -82,14 +84,10 @@ void place_collider(std::size_t collider, const Pose& pose, ObjectShapes<Real>& 
     plane.offset = shapes.own_planes[k].offset;
     if (frame.displaced) plane.offset += plane.normal.dot(frame.shift);
   }
-  for (std::size_t k = 0; k < shapes.balls.size(); ++k) {
-    if (shapes.balls[k].collider == collider)
-      shapes.balls[k].centre = frame.world(shapes.own_balls[k].centre);
-  }
-  for (std::size_t k = 0; k < shapes.rods.size(); ++k) {
-    if (shapes.rods[k].collider != collider) continue;
-    shapes.rods[k].a = frame.world(shapes.own_rods[k].a);
-    shapes.rods[k].b = frame.world(shapes.own_rods[k].b);
+  for (std::size_t k = 0; k < shapes.rounds.size(); ++k) {
+    if (shapes.rounds[k].collider != collider) continue;
+    shapes.rounds[k].a = frame.world(shapes.own_rounds[k].a);
+    shapes.rounds[k].b = frame.world(shapes.own_rounds[k].b);
   }
 }
 
@@ -98,9 +96,7 @@ Real analytic_clearance(const ObjectShapes<Real>& shapes, const Vec3<Real>& p, R
   Real nearest = reach;
   for (const ObjectPlane<Real>& plane : shapes.planes)
     nearest = std::min(nearest, plane.normal.dot(p) - plane.offset);
-  for (const ObjectBall<Real>& ball : shapes.balls)
-    nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
-  for (const ObjectRod<Real>& rod : shapes.rods)
+  for (const RoundObject<Real>& rod : shapes.rounds)
     nearest = std::min(nearest, (p - nearest_on_core(rod, p)).norm() - rod.radius);
   return nearest;
 }
@@ -160,11 +156,7 @@ template <class Real>
 Real distance_from(const ObjectShapes<Real>& shapes, std::size_t collider, const Vec3<Real>& p) {
   assert(collider < shapes.frames.size());
   Real nearest = Real(kFarAway);
-  for (const ObjectBall<Real>& ball : shapes.balls) {
-    if (ball.collider == collider)
-      nearest = std::min(nearest, (p - ball.centre).norm() - ball.radius);
-  }
-  for (const ObjectRod<Real>& rod : shapes.rods) {
+  for (const RoundObject<Real>& rod : shapes.rounds) {
     if (rod.collider == collider)
       nearest = std::min(nearest, (p - nearest_on_core(rod, p)).norm() - rod.radius);
   }

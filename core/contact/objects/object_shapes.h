@@ -20,16 +20,15 @@ namespace weft {
 /// frames.
 template <class Real>
 struct ObjectShapes {
-  std::vector<ObjectPlane<Real>> planes, own_planes;  ///< where they are, and as defined
-  std::vector<ObjectBall<Real>> balls, own_balls;
-  std::vector<ObjectRod<Real>> rods, own_rods;
+  std::vector<ObjectPlane<Real>> planes, own_planes;           ///< where they are, and as defined
+  std::vector<RoundObject<Real>> rounds, own_rounds;           ///< balls before capsules
   std::vector<std::shared_ptr<const MeshShape<Real>>> meshes;  ///< shared by copies of a world
   std::vector<std::size_t> mesh_collider;                      ///< the collider of each mesh
   std::vector<ColliderFrame<Real>> frames;                     ///< of each collider
   /// Beyond the size of a mesh's triangle the pairs grow with the square of a particle's skin [m].
   Real widest_skin = std::numeric_limits<Real>::infinity();
 
-  bool empty() const { return planes.empty() && balls.empty() && rods.empty() && meshes.empty(); }
+  bool empty() const { return planes.empty() && rounds.empty() && meshes.empty(); }
   const ColliderFrame<Real>& mesh_frame(std::size_t mesh) const {
     assert(mesh < mesh_collider.size());
     return frames[mesh_collider[mesh]];

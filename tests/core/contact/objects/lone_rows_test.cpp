@@ -123,7 +123,7 @@ struct Layer {
     pass.from = from.data();
     pass.reach = reach.data();
     pass.travel2 = travel2.data();
-    return lone.push_and_respond(pass, executor);
+    return lone.respond(pass, executor);
   }
   SeededRandom random{7};
   std::vector<float> x, v, from, reach, travel2;
