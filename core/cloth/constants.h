@@ -111,10 +111,13 @@ inline constexpr double kAlongThread = 1e-9;
 /// cloth may start sheared. Smaller: directions in a file need more digits.
 inline constexpr double kMostAxisCosine = 1e-6;
 
-/// Least doubled area of a triangle in a mesh's texture coordinates, as a fraction of the mean area
-/// [1]. With a smaller one the coordinates are ignored, and the mesh is projected along an axis
-/// instead. Larger: unevenly stretched coordinates are ignored too. Smaller: threads of a triangle
-/// may have directions that are rounding.
+/// Least doubled area of a triangle in a mesh's texture coordinates, as a fraction of the mean
+/// area, below which it is a hole in them [1]. Larger: unevenly stretched coordinates are ignored
+/// too. Smaller: threads of a triangle may have directions that are rounding.
 inline constexpr double kLeastUvArea = 1e-9;
+
+/// Least part of a mesh's area that has texture coordinates, so that holes are filled [1]. Larger:
+/// more meshes are projected along an axis instead. Smaller: most threads are a guess.
+inline constexpr double kLeastUvPart = 0.5;
 
 }  // namespace weft

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/edge_sides.h"
 #include "core/error.h"
 
 namespace weft {
@@ -48,6 +49,108 @@ Uv projected(const TriangleMesh& mesh) {
   return uv;
 }
 
+double area_of(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto x = [&](std::size_t k) -> const Vec3d& {
+    return mesh.positions[static_cast<std::size_t>(mesh.triangles[triangle][k])];
+  };
+  return 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
+}
+
+/// Places of a mesh's corners, some of which are holes: triangles without an area.
+struct UvHoles {
+  std::vector<CornerUv> corners;  ///< by triangle
+  std::vector<bool> hole;         ///< likewise
+  double area = 0, filled = 0;    ///< of the other triangles, in space and in (u, v)
+
+  explicit UvHoles(const ClothMesh& cloth) {
+    double whole = 0;
+    for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t) {
+      corners.push_back(corners_of(cloth, t));
+      whole += std::abs(doubled_area(corners[t]));
+    }
+    const double least = kLeastUvArea * whole / static_cast<double>(corners.size());
+    for (std::size_t t = 0; t < corners.size(); ++t) {
+      const double own = std::abs(doubled_area(corners[t]));
+      hole.push_back(!(own > least));
+      if (hole[t]) continue;
+      area += area_of(cloth.mesh, t);
+      filled += 0.5 * own;
+    }
+  }
+
+  bool any() const { return std::find(hole.begin(), hole.end(), true) != hole.end(); }
+};
+
+/// Where a corner of a triangle stands in it.
+std::size_t corner_of(const Triangle& triangle, Index particle) {
+  return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), particle) -
+                                  triangle.begin());
+}
+
+/// Lays a triangle out beside its neighbour at an edge, with its own shape and at the scale that
+/// the edge has in the neighbour.
+/// @param side  of the edge that the triangle is on, 0 or 1
+void continue_beyond(const EdgeSides& edge, std::size_t side, const TriangleMesh& mesh,
+                     std::vector<CornerUv>& corners) {
+  const auto own = static_cast<std::size_t>(edge.triangle[side]),
+             other = static_cast<std::size_t>(edge.triangle[1 - side]);
+  const auto there = [&](Index i) {
+    const auto& p = corners[other][corner_of(mesh.triangles[other], i)];
+    return Eigen::Vector2d(p[0], p[1]);
+  };
+  const auto here = [&](Index i) -> const Vec3d& {
+    return mesh.positions[static_cast<std::size_t>(i)];
+  };
+  const auto [a, b] = edge.ends;
+  const Vec3d along = here(b) - here(a), to = here(edge.opposite[side]) - here(a);
+  const double foot = to.dot(along) / along.squaredNorm(),
+               height = along.cross(to).norm() / along.squaredNorm();
+  const Eigen::Vector2d start = there(a), line = there(b) - start;
+  Eigen::Vector2d out(-line[1], line[0]);
+  if (out.dot(there(edge.opposite[1 - side]) - start) > 0) out = -out;
+  const auto put = [&](Index i, const Eigen::Vector2d& place) {
+    corners[own][corner_of(mesh.triangles[own], i)] = {place[0], place[1]};
+  };
+  put(a, start);
+  put(b, start + line);
+  put(edge.opposite[side], start + foot * line + height * out);
+}
+
+/// Gives holes the places that continue those beside them. The ones that no way leads to stay as
+/// they are.
+/// @returns whether none is left
+bool fill(const TriangleMesh& mesh, UvHoles& uv) {
+  const std::vector<EdgeSides> edges = sides_of(mesh.triangles);
+  for (bool more = true; more;) {
+    more = false;
+    for (const EdgeSides& edge : edges) {
+      if (edge.is_border()) continue;
+      const auto first = static_cast<std::size_t>(edge.triangle[0]),
+                 second = static_cast<std::size_t>(edge.triangle[1]);
+      if (uv.hole[first] == uv.hole[second]) continue;
+      continue_beyond(edge, uv.hole[first] ? 0 : 1, mesh, uv.corners);
+      uv.hole[first] = uv.hole[second] = false;
+      more = true;
+    }
+  }
+  return !uv.any();
+}
+
+/// Gives vertices that only holes meet at the place of the first one's corner.
+void place_inner_vertices(const TriangleMesh& mesh, const std::vector<bool>& hole,
+                          MeshMaterial& material) {
+  std::vector<bool> known(mesh.positions.size(), false);
+  for (const bool holes : {false, true}) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3 && hole[t] == holes; ++k) {
+        const auto i = static_cast<std::size_t>(mesh.triangles[t][k]);
+        if (holes && !known[i]) material.of_vertices[i] = material.of_corners[t][k];
+        known[i] = true;
+      }
+    }
+  }
+}
+
 DefinitionError not_laid_out(std::size_t triangle, const char* with, const char* hint) {
   return {"cloth.rest_shape", "uv", std::string("placed where a triangle has ") + with,
           "triangle " + std::to_string(triangle) + hint};
@@ -80,17 +183,17 @@ bool has_seams(const ClothMesh& cloth) {
 }
 
 MeshMaterial material_of(const ClothMesh& cloth) {
-  const double area = surface_area(cloth.mesh);
-  double whole = 0, least = INFINITY;
-  for (std::size_t t = 0; !cloth.uv.empty() && t < cloth.mesh.triangles.size(); ++t) {
-    const double a = std::abs(doubled_area(corners_of(cloth, t)));
-    whole += 0.5 * a;
-    least = std::min(least, a);
-  }
-  const double mean = whole / static_cast<double>(cloth.mesh.triangles.size());
-  if (!(whole > 0) || !(least > kLeastUvArea * mean)) return {projected(cloth.mesh), {}};
+  if (cloth.uv.empty()) return {projected(cloth.mesh), {}};
+  UvHoles uv(cloth);
+  const double scale = std::sqrt(uv.area / uv.filled);
   MeshMaterial material{cloth.uv, cloth.corner_uv};
-  const double scale = std::sqrt(area / whole);
+  if (uv.any()) {
+    const bool most = uv.area > kLeastUvPart * surface_area(cloth.mesh);
+    const std::vector<bool> hole = uv.hole;
+    if (!most || !fill(cloth.mesh, uv)) return {projected(cloth.mesh), {}};
+    material.of_corners = uv.corners;
+    place_inner_vertices(cloth.mesh, hole, material);
+  }
   for (auto& point : material.of_vertices) {
     for (double& x : point) x *= scale;
   }

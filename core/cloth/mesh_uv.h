@@ -22,8 +22,9 @@ void refuse_other_uv(const ClothMesh& cloth);
 bool has_seams(const ClothMesh& cloth);
 
 /// Places in the fabric of a mesh that is at rest as it lies: the (u, v), scaled equally in both
-/// directions so that the areas agree; or, without usable ones, the projection along the axis that
-/// the mesh faces most, with v downwards.
+/// directions so that the areas agree. Triangles without an area there, of at most half of the mesh
+/// in all, continue the threads of what lies beside them. Without usable ones it is the projection
+/// along the axis that the mesh faces most, with v downwards.
 MeshMaterial material_of(const ClothMesh& cloth);
 
 /// The same mesh, laid flat as its (u, v) say; it must have no seams. Throws DefinitionError if a

@@ -148,13 +148,25 @@ class Welder {
       file_.mesh.triangles.push_back(triangle);
       check("triangles", file_.mesh.triangles.size(), limits_.triangles);
     }
-    all_have_uv_ = all_have_uv_ && has_uv;
+    any_has_uv_ = any_has_uv_ || has_uv;
   }
 
+  /// A face without uv has all three in one place. Its vertices have those of the first other face.
   void finish() {
-    if (all_have_uv_) return;
-    file_.uv.clear();
-    file_.corner_uv.clear();
+    if (!any_has_uv_) {
+      file_.uv.clear();
+      file_.corner_uv.clear();
+    }
+    std::vector<bool> known(file_.uv.size(), false);
+    for (std::size_t t = 0; t < file_.corner_uv.size(); ++t) {
+      const CornerUv& corners = file_.corner_uv[t];
+      if (corners[0] == corners[1] && corners[1] == corners[2]) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto vertex = static_cast<std::size_t>(file_.mesh.triangles[t][k]);
+        if (!known[vertex]) file_.uv[vertex] = corners[k];
+        known[vertex] = true;
+      }
+    }
   }
 
  private:
@@ -173,10 +185,9 @@ class Welder {
 
   /// Keeps the uv of the next triangle's corners from the first seam on.
   void add_corners(const aiMesh& mesh, const aiFace& face, const Triangle& triangle, bool has_uv) {
-    CornerUv corners = of_vertices(triangle);
-    const CornerUv first = corners;
+    CornerUv corners = {};
     for (unsigned k = 0; has_uv && k < 3; ++k) corners[k] = uv_of(mesh, face.mIndices[k]);
-    if (file_.corner_uv.empty() && corners == first) return;
+    if (file_.corner_uv.empty() && corners == of_vertices(triangle)) return;
     if (file_.corner_uv.empty()) {
       for (const Triangle& earlier : file_.mesh.triangles)
         file_.corner_uv.push_back(of_vertices(earlier));
@@ -211,7 +222,7 @@ class Welder {
   const std::string& name_;
   const MeshFileLimits& limits_;
   std::map<std::array<float, 3>, Index> places_;
-  bool all_have_uv_ = true;
+  bool any_has_uv_ = false;
 };
 
 }  // namespace

@@ -37,7 +37,8 @@ bool is_mesh_file_name(std::string_view name);
 /// Reads OBJ, PLY, STL or GLB. All meshes of the file are merged, with their nodes' transformations
 /// applied; polygons are triangulated, points and lines dropped; vertices at exactly the same
 /// position are merged, in the order of first use in the file. Their uv is that of the first; where
-/// others have another, at a seam, `corner_uv` keeps what each triangle has at its corners.
+/// others have another, at a seam, `corner_uv` keeps what each triangle has at its corners. A face
+/// without uv in a file with some has all three corners in one place there.
 ///
 /// The parser is not safe for every file: one from an untrusted source is parsed in a separate
 /// process with limits (server/scene/mesh_child.h).

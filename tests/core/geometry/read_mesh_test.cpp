@@ -183,6 +183,26 @@ TEST_CASE("a vertex with several uv is one vertex, and each triangle keeps those
   CHECK(cut.corner_uv[3] == CornerUv{{{5, 5}, {1, 2}, {0, 2}}});
 }
 
+TEST_CASE("a face without uv has all three in one place, and the others keep theirs") {
+  const std::string vertices =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 2 0\nv 1 2 0\n"
+      "vt 1 1\nvt 2 1\nvt 1 2\nvt 2 2\nvt 1 3\nvt 2 3\n";
+  const MeshFile file =
+      read_mesh(vertices + "f 1 2 4\nf 1/1 4/4 3/3\nf 3/3 4/4 6/6\nf 3/3 6/6 5/5\n", "strip.obj");
+  REQUIRE(file.uv.size() == 6);
+  REQUIRE(file.corner_uv.size() == 4);
+  const CornerUv& hole = file.corner_uv[0];
+  CHECK((hole[0] == hole[1] && hole[1] == hole[2]));
+  for (std::size_t t = 1; t < 4; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d p = corner(file.mesh, t, k);
+      CHECK(file.corner_uv[t][k] == std::array<double, 2>{p[0] + 1, p[1] + 1});
+      const auto i = static_cast<std::size_t>(file.mesh.triangles[t][k]);
+      CHECK(file.uv[i] == file.corner_uv[t][k]);  // though the hole came first
+    }
+  }
+}
+
 TEST_CASE("polygons are cut into triangles of the same area; points and lines are left out") {
   const MeshFile file =
       read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1 2 3 4\nl 5 6\np 5\n",
