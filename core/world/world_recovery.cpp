@@ -113,8 +113,7 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   return d;
 }
 
-/// Whether verlet has to do a tick of implicit again. What diverged counts as violent: a pin that
-/// moves between two of its steps may bring stiff cloth more energy than can be explained.
+/// Whether verlet has to do a tick of implicit again. What diverged counts as violent.
 template <class Real>
 bool World<Real>::leaves_to_verlet(const AdvanceResult& result, int substeps) {
   if (!solvers_.implicit.refuses) return false;
@@ -135,8 +134,9 @@ void World<Real>::advance_or_recover(int substeps) {
     solvers_.implicit.refuses = without_loss <= kMostSubsteps &&
                                 refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
     solvers_.implicit.status = ImplicitStatus::done;
-    if (solvers_.touching && solvers_.implicit.refuses) {
-      solvers_.implicit.status = ImplicitStatus::touching;
+    const bool driven = pins_.any_moving();
+    if ((solvers_.touching || driven) && solvers_.implicit.refuses) {
+      solvers_.implicit.status = driven ? ImplicitStatus::driven : ImplicitStatus::touching;
       kind = SolverKind::verlet;
       substeps = without_loss;
     }

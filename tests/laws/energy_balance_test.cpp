@@ -140,6 +140,46 @@ TEST_CASE("a pin that lifts a cloth does the work of its weight, to 0.5 %") {
         Approx(mass * 9.81 * 0.2).epsilon(5e-3));
 }
 
+TEST_CASE("with implicit too a moving pin's work is its force times its way, and little is lost") {
+  for (const int substeps : {1, 8, 32}) {
+    INFO(substeps << " substeps");
+    ClothDef cloth = test::flat_cloth(13, 17, 0.4, 0.3);
+    cloth.fabric.stretch_damping = 2e-3;
+    WorldDef def = test::empty_world(cloth);
+    def.environment.gravity = Vec3d(0, -9.81, 0);
+    def.solver.kind = SolverKind::implicit;
+    def.implicit.substeps = substeps;
+    def.pins = {{0, 0.03}, {16, 0.03}};
+    World<double> world(def);
+    world.measure_energy(true);
+    world.measure_forces(true);
+    for (const Pin& pin : world.pins().list) {
+      PinMove move;
+      move.target = world.state().x[static_cast<std::size_t>(pin.centre)] + Vec3d(0.2, 0.1, 0.3);
+      move.speed = 1;
+      REQUIRE(world.move_pin(pin.id, move));
+    }
+    double work = 0;
+    std::array<Vec3d, 2> at;
+    const auto place = [&](std::size_t k) {
+      return world.state().x[static_cast<std::size_t>(world.pins().list[k].centre)];
+    };
+    while (world.pins().any_moving()) {
+      REQUIRE(world.tick() < 60);
+      for (std::size_t k = 0; k < 2; ++k) at[k] = place(k);
+      world.step();
+      for (std::size_t k = 0; k < 2; ++k)
+        work += world.reactions()->pins[k].force.dot(place(k) - at[k]);
+    }
+    const EnergyBalance& balance = *world.energy_balance();
+    REQUIRE(work > 0.03);
+    CHECK(balance.flows.pins == Approx(work).epsilon(0.03));
+    CHECK(std::abs(balance.lost()) < 0.05 * work);
+    CHECK(world.report().implicit == ImplicitStatus::driven);
+    CHECK(world.step().implicit == ImplicitStatus::done);
+  }
+}
+
 TEST_CASE("the air gets from a cloth at rest in a fan's jet all the work of the fan") {
   WorldDef def = test::empty_world(test::flat_cloth(7, 7));
   for (Index i = 0; i < 49; ++i) def.pins.push_back({i, 0});
