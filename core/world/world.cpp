@@ -220,7 +220,10 @@ template <class Real>
 void World<Real>::end_tick() {
   report_.tick = ++tick_;
   report_.time = static_cast<double>(tick_) / def_.tick_rate;
-  if (supports_.wanted) take_reactions();
+  if (supports_.wanted)
+    take_reactions();
+  else
+    supports_.told.reset();
   watch_swing();
 }
 

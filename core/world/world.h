@@ -197,7 +197,8 @@ class World {
   /// same.
   ComingStarts coming_bad_starts() const;
 
-  /// Switches measuring contacts and forces in each tick; changes no result.
+  /// Switches measuring contacts and forces in each tick; changes no result. What the last tick
+  /// measured is told until the next one ends.
   void measure_forces(bool wanted);
   /// Looks one tick ahead, once, if forces are wanted and no tick has measured them since the state
   /// was set: `reactions` then returns those of `coming_reactions`.

@@ -14,8 +14,8 @@ template <class Real>
 void World<Real>::measure_forces(bool wanted) {
   supports_.wanted = wanted;
   contact_.objects.log_impulses(wanted, energy_.has_value());
-  if (!wanted) supports_.told.reset();
-  if (wanted && rests()) supports_.told = coming_reactions();  // no tick will measure them
+  // No tick of a resting world will measure them.
+  if (wanted && !supports_.told && rests()) supports_.told = coming_reactions();
 }
 
 template <class Real>

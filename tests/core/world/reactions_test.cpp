@@ -179,3 +179,24 @@ TEST_CASE("pins that hold the same particles share their force evenly, as if one
   CHECK(unlike[1].norm() > 0.01);
   CHECK((unlike[0] + unlike[1] + unlike[2] - alone).norm() < 1e-12 * alone.norm());
 }
+
+TEST_CASE("what a tick measured is told until the next tick, though no more is wanted") {
+  WorldDef def = test::empty_world(test::flat_cloth(9, 9));
+  def.environment.gravity = kGravity;
+  def.pins = {{0, 0}};
+  World<double> world(def);
+  world.measure_forces(true);
+  test::advance(world, 0.2);
+  const Vec3d force = world.reactions()->pins[0].force;
+  world.measure_forces(false);
+  REQUIRE(world.reactions());
+  world.measure_forces(true);
+  world.measure_present_forces();
+  CHECK(world.reactions()->pins[0].force == force);
+  world.measure_forces(false);
+  world.step();
+  CHECK_FALSE(world.reactions());
+  world.measure_forces(true);
+  world.measure_present_forces();  // of the coming tick: the cloth swings
+  CHECK((world.reactions()->pins[0].force - force).norm() > 1e-6 * force.norm());
+}
