@@ -147,3 +147,17 @@ TEST_CASE("a hand keeps its grip through a change of fabric, with the damping of
   made.grab(def);
   CHECK(changed->grabs().list[0].damping == made.grabs().list[0].damping);
 }
+
+TEST_CASE("a disc holds the same particles whether its cloth bends or not, so also live") {
+  ClothDef cloth = test::flat_cloth(21, 31, 0.6, 0.4);
+  WorldDef def = test::empty_world(cloth);
+  def.pins = {{10 * 31 + 15, 0.08}};
+  const auto held = [](const World<float>& world) { return world.pins().list.at(0).particles; };
+  const World<float> bends(def);
+  FabricDef limp = def.cloths[0].fabric;
+  limp.bending_warp = limp.bending_weft = 0;
+  CHECK(held(*bends.with_fabric(0, limp)) == held(bends));
+  def.cloths[0].fabric = limp;
+  const World<float> falls(def);
+  CHECK(held(falls) == held(bends));
+}
