@@ -21,7 +21,7 @@ struct GuardedPair {
   std::array<Index, 4> particle = {0, 0, 0, 0};
   Index a = 0, b = 0;        ///< particle and triangle, or two edges, the lower one first
   Real bound = 0;            ///< the features at their anchors are at least this far apart [m]
-  std::uint32_t listed = 0;  ///< last listing that met it; see GuardedPairs
+  std::uint64_t listed = 0;  ///< last listing that met it; see GuardedPairs
 };
 
 /// Names a pair.

@@ -26,7 +26,7 @@ struct GuardedPairs {
   std::vector<std::array<Index, 4>> links;
   std::vector<Index> active;                ///< particles in pairs
   std::vector<char> is_active;              ///< of each particle
-  std::uint32_t listing = 0;                ///< number of the last pass that visits each pair once
+  std::uint64_t listing = 0;                ///< number of the last pass that visits each pair once
   std::vector<std::uint64_t> dropped_keys;  ///< of those that went last, ascending
   std::vector<std::uint64_t> open_keys;     ///< of those that went last and were open, ascending
   std::vector<GuardedPair<Real>> arrived;   ///< came since rows were made

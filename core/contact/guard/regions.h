@@ -46,8 +46,8 @@ struct Regions {
   std::vector<Index> anchored;             ///< particles anchored in this step
   std::vector<Index> dirty;                ///< particles to be anchored in any case
   std::vector<Index> loose;                ///< particles that would leave their regions
-  std::uint32_t wave = 0;                  ///< number of the last pass that marks particles
-  std::vector<std::uint32_t> wave_of;      ///< the last pass that marked each
+  std::uint64_t wave = 0;                  ///< number of the last pass that marks particles
+  std::vector<std::uint64_t> wave_of;      ///< the last pass that marked each
   std::vector<Index> in_wave, next;        ///< particles of this wave of anchoring, and the next
   std::vector<AnchorPart<Real>> parts;     ///< of a wave
   ColumnsByKind<Real> columns;             ///< pairs that are measured together

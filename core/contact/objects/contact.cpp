@@ -163,7 +163,10 @@ Real Contact<Real>::calm_room(const ClothState<Real>& state) const {
 template <class Real>
 void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
                             ClothGuard<Real>* guard) {
-  if (shapes_.empty()) return;
+  if (shapes_.empty()) {
+    if (guard) guard->respond_alone(state, dt);
+    return;
+  }
   assert((!resolved_ || !motion_.any_tracked) && "move_objects follows resolve");
   resolved_ = true;
   plan_objects(dt, shapes_, motion_);
