@@ -321,7 +321,6 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     if (attempt == kMostRetries) break;
   }
   // New pairs are looked for in the next step.
-  ++counts_.halts;
   halt(pairs_.is_active, step_, state.x, state.v);
   paths_.strays.clear();
   regions_.dirty.clear();

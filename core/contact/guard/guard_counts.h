@@ -14,7 +14,6 @@ struct GuardCounts {
   std::uint64_t renewals = 0;     ///< of the pairs of some particles
   std::uint64_t anchored = 0, critical = 0;
   std::uint64_t quiet = 0;  ///< steps that one bound for all particles certified
-  std::uint64_t halts = 0;  ///< steps in which nothing moved, as no way was found to let some move
   std::uint64_t calm = 0;   ///< steps along calm paths, in which no particle was examined
 };
 

@@ -148,13 +148,13 @@ void move_anchors(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regi
   }
 }
 
-/// Anchors the particles of a wave, and lists those of the next one.
+/// Anchors the particles of a wave, and puts those of the next one in their place.
 /// @param first  it is the first wave
 template <class Real>
 void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  Regions<Real>& regions, Executor* executor, GuardCounts& counts) {
   move_anchors(pairs, step, regions, counts);
-  const std::vector<Index>& in_wave = regions.in_wave;
+  std::vector<Index>& in_wave = regions.in_wave;
   const std::size_t count = in_wave.size(), parts = parts_of(count, kAnchoredAtLeast);
   run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
     AnchorPart<Real>& part = regions.parts[n];
@@ -179,12 +179,14 @@ void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>&
       begin = end;
     }
   });
-  regions.next.clear();
+  in_wave.clear();
   for (std::size_t n = 0; n < parts; ++n) {
     std::vector<Index>& next = regions.parts[n].next;
-    regions.next.insert(regions.next.end(), next.begin(), next.end());
+    in_wave.insert(in_wave.end(), next.begin(), next.end());
     next.clear();
   }
+  std::sort(in_wave.begin(), in_wave.end());
+  in_wave.erase(std::unique(in_wave.begin(), in_wave.end()), in_wave.end());
 }
 
 /// Anchors and measures everything.
@@ -294,10 +296,6 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
     }
     ++regions.wave;
     anchor_wave(wave == 0, pairs, step, regions, executor, counts);
-    std::vector<Index>& next = regions.next;
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
-    regions.in_wave = next;
   }
 }
 

@@ -48,7 +48,7 @@ struct Regions {
   std::vector<Index> loose;                ///< particles that would leave their regions
   std::uint64_t wave = 0;                  ///< number of the last pass that marks particles
   std::vector<std::uint64_t> wave_of;      ///< the last pass that marked each
-  std::vector<Index> in_wave, next;        ///< particles of this wave of anchoring, and the next
+  std::vector<Index> in_wave;              ///< particles of this wave of anchoring
   std::vector<AnchorPart<Real>> parts;     ///< of a wave
   ColumnsByKind<Real> columns;             ///< pairs that are measured together
 };
