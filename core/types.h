@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +25,12 @@ using Vec3d = Vec3<double>;
 /// Index of a particle, edge, triangle or hinge. Signed, so that -1 can mean "none".
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
+
+/// An index as standard containers take it.
+constexpr std::size_t at_index(Index i) {
+  assert(i >= 0);
+  return static_cast<std::size_t>(i);
+}
 
 /// Corner particles of a triangle, counter-clockwise seen from the side its normal points to.
 using Triangle = std::array<Index, 3>;

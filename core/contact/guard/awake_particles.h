@@ -24,7 +24,7 @@ template <class Real, class Value>
 Quad<Real> mean_awake(const AwakeParticles& awake, Value&& value) {
   Quad<Real> sum;
   for (const IndexRange& range : awake.ranges) {
-    for (Index i = range.first; i < range.end(); ++i) sum += value(static_cast<std::size_t>(i));
+    for (Index i = range.first; i < range.end(); ++i) sum += value(at_index(i));
   }
   return sum * (Real(1) / static_cast<Real>(std::max<std::size_t>(awake.count, 1)));
 }

@@ -21,8 +21,7 @@ bool touches(const GuardedPair<Real>& pair, const QuadArray<Real>& x, Real small
   if (pair.bound >= smallest_gap) return false;
   Real largest = 0;
   for (const Index i : pair.particle) {
-    for (int k = 0; k < 3; ++k)
-      largest = std::max(largest, std::abs(x[static_cast<std::size_t>(i)][k]));
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(x[at_index(i)][k]));
   }
   return !(pair.bound > largest * std::numeric_limits<Real>::epsilon() * Real(kRoundingsOfNoGap));
 }
@@ -99,7 +98,7 @@ void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
   const auto sleeps = [&](std::size_t cloth) { return !asleep.empty() && asleep[cloth] != 0; };
   for (std::size_t p = 0; p < awake_.resting.size(); ++p) {
     const Index particle = search_.tree.patch(static_cast<Index>(p)).particles.front();
-    awake_.resting[p] = sleeps(static_cast<std::size_t>(cloth_of(cloths_, particle))) ? 1 : 0;
+    awake_.resting[p] = sleeps(at_index(cloth_of(cloths_, particle))) ? 1 : 0;
   }
   awake_.ranges.clear();
   awake_.count = 0;
@@ -199,9 +198,8 @@ template <class Real>
 void ClothGuard<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile) {
   assert(phase_ == GuardPhase::between_steps && dt > 0);
   if (rows_.all.empty()) return;
-  rows_.slabs.visit_particles(nullptr, [&](Index k) {
-    step_.from[static_cast<std::size_t>(k)] = to_quad(state.x[static_cast<std::size_t>(k)]);
-  });
+  rows_.slabs.visit_particles(
+      nullptr, [&](Index k) { step_.from[at_index(k)] = to_quad(state.x[at_index(k)]); });
   load_velocities(state.v, rows_.slabs, sweeps_.v, executor_);
   start_rows(state, dt, dt / 2, profile);
   settled_ = true;
@@ -308,7 +306,7 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     collected = true;
     slack_.left = std::min(slack_.left, find_loose(pairs_.active, step_, regions_));
     if (regions_.loose.empty()) return;
-    for (const Index i : regions_.anchored) regions_.anchored_at[static_cast<std::size_t>(i)] = 0;
+    for (const Index i : regions_.anchored) regions_.anchored_at[at_index(i)] = 0;
     regions_.anchored.clear();
     const std::uint64_t before = counts_.anchored;
     anchor_loose(pairs_, step_, regions_, executor_, counts_);

@@ -34,10 +34,10 @@ bool is_critical(const GuardedStep<Real>& step, const Regions<Real>& regions,
 template <class Real>
 void find_tight(const GuardedStep<Real>& step, const Regions<Real>& regions,
                 CriticalSteps<Real>& critical) {
-  for (const Index i : regions.anchored) critical.is_tight[static_cast<std::size_t>(i)] = 0;
+  for (const Index i : regions.anchored) critical.is_tight[at_index(i)] = 0;
   critical.tight.clear();
   for (const Index k : regions.anchored) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     const Quad<Real>& way = step.displacement[i];
     if (dot(way, way) <= regions.radius[i] * regions.radius[i]) continue;
     critical.is_tight[i] = 1;
@@ -56,13 +56,13 @@ bool find_critical(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Reg
   loose.clear();
   ++pairs.listing;
   for (const Index k : critical.tight) {
-    for_pairs_of(pairs, static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+    for_pairs_of(pairs, at_index(k), [&](GuardedPair<Real>& pair) {
       if (pair.listed == pairs.listing) return;
       pair.listed = pairs.listing;
       if (!is_critical(step, regions, critical.is_tight, pair)) return;
       critical.pairs.push_back({pairs.number_of(pair)});
       for (const Index j : pair.particle) {
-        if (regions.anchored_at[static_cast<std::size_t>(j)] != step.number) loose.push_back(j);
+        if (regions.anchored_at[at_index(j)] != step.number) loose.push_back(j);
       }
     });
   }
@@ -80,7 +80,7 @@ bool holds(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
   Real side[2] = {0, 0};
   PairPoints<Real> end;
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const auto i = at_index(pair.particle[k]);
     const Quad<Real> allowed = step.displacement[i] * fraction[i];
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
     most = std::max(most, dot(allowed, allowed));
@@ -107,12 +107,12 @@ PairHeights<Real> heights_of(const CriticalPair<Real>& c, const GuardedPair<Real
                              const GuardedStep<Real>& step, const std::vector<Real>& fraction) {
   constexpr Real kFar = std::numeric_limits<Real>::infinity();
   const Quad<Real> normal = to_quad(c.normal);
-  const Quad<Real>& origin = step.from[static_cast<std::size_t>(pair.particle[0])];
+  const Quad<Real>& origin = step.from[at_index(pair.particle[0])];
   PairHeights<Real> h;
   h.front = {kFar, kFar};
   Real goal[2] = {kFar, kFar};
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const auto i = at_index(pair.particle[k]);
     const std::size_t s = k < first_side(pair.kind) ? 0 : 1;
     const Real sign = s == 0 ? Real(1) : Real(-1);
     h.height[k] = sign * dot(normal, step.from[i] - origin);
@@ -134,7 +134,7 @@ void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
   Real part = both > 0 ? h.wish[0] / both : Real(0.5);
   part = std::clamp(part, static_cast<Real>(kLeastPart), static_cast<Real>(1 - kLeastPart));
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const auto i = at_index(pair.particle[k]);
     const std::size_t s = k < first_side(pair.kind) ? 0 : 1;
     const Real wanted = h.displacement[k];
     if (!(spare > 0)) {
@@ -187,7 +187,7 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   paths.strays.clear();
   ++regions.wave;
   const auto visit = [&](Index k) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     if (regions.wave_of[i] == regions.wave) return;
     regions.wave_of[i] = regions.wave;
     critical.is_tight[i] = 0;

@@ -20,9 +20,8 @@ std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3A
     for (std::size_t k = 0; k < 4; ++k) {
       c.particle[k] = row.particle[k];
       c.weight[k] = static_cast<double>(row.weight[k]);
-      const Vec3d part =
-          x[static_cast<std::size_t>(row.particle[k])].template cast<double>() * c.weight[k];
-      (k < static_cast<std::size_t>(c.first_side) ? c.point : other) += part;
+      const Vec3d part = x[at_index(row.particle[k])].template cast<double>() * c.weight[k];
+      (k < at_index(c.first_side) ? c.point : other) += part;
     }
     c.gap = c.normal.dot(c.point + other);
     c.normal_force = static_cast<double>(row.push) * per_time;

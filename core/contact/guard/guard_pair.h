@@ -36,8 +36,7 @@ std::uint64_t key_of(const GuardedPair<Real>& pair) {
 template <class Real>
 PairPoints<Real> points_of(const GuardedPair<Real>& pair, const QuadArray<Real>& x) {
   PairPoints<Real> points;
-  for (std::size_t k = 0; k < 4; ++k)
-    points[k] = to_vector(x[static_cast<std::size_t>(pair.particle[k])]);
+  for (std::size_t k = 0; k < 4; ++k) points[k] = to_vector(x[at_index(pair.particle[k])]);
   return points;
 }
 
@@ -51,7 +50,7 @@ struct BothSides {
 template <class Real>
 [[gnu::always_inline]] inline BothSides<Real> largest_on_sides(const GuardedPair<Real>& pair,
                                                                auto&& value) {
-  const auto of = [&](std::size_t k) { return value(static_cast<std::size_t>(pair.particle[k])); };
+  const auto of = [&](std::size_t k) { return value(at_index(pair.particle[k])); };
   const Real second = std::max({Real(0), of(2), of(3)}), first = std::max(Real(0), of(0)),
              either = of(1);
   if (pair.kind == PairKind::vertex_triangle) return {first, std::max(second, either)};

@@ -38,9 +38,8 @@ inline constexpr int kStepsBetweenLooks = 4;
 /// sum w of what the particles of a row have.
 template <class Real>
 Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
-  Quad<Real> sum = values[static_cast<std::size_t>(row.particle[0])] * row.weight[0];
-  for (std::size_t k = 1; k < 4; ++k)
-    sum += values[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
+  Quad<Real> sum = values[at_index(row.particle[0])] * row.weight[0];
+  for (std::size_t k = 1; k < 4; ++k) sum += values[at_index(row.particle[k])] * row.weight[k];
   return sum;
 }
 

@@ -17,7 +17,7 @@ std::vector<std::array<Index, 3>> particles_across(const std::vector<Triangle>& 
   std::vector<std::array<Index, 3>> across(triangles.size(), {kNone, kNone, kNone});
   const std::vector<TriangleSide> sides = sorted_sides(triangles);
   const auto at = [](const TriangleSide& side, auto& list) -> auto& {
-    return list[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.corner)];
+    return list[at_index(side.triangle)][at_index(side.corner)];
   };
   for (std::size_t n = 0; n + 1 < sides.size(); ++n) {
     const TriangleSide &one = sides[n], &other = sides[n + 1];
@@ -33,10 +33,9 @@ template <class Real>
 Real cell_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   double sum = 0;
   for (Index e = part.edges.first; e < part.edges.end(); ++e) {
-    const Edge& edge = model.edges[static_cast<std::size_t>(e)];
-    sum += static_cast<double>((model.rest_positions[static_cast<std::size_t>(edge[0])] -
-                                model.rest_positions[static_cast<std::size_t>(edge[1])])
-                                   .norm());
+    const Edge& edge = model.edges[at_index(e)];
+    sum += static_cast<double>(
+        (model.rest_positions[at_index(edge[0])] - model.rest_positions[at_index(edge[1])]).norm());
   }
   const double cell =
       part.rows > 0 ? std::min(static_cast<double>(part.cell_u), static_cast<double>(part.cell_v))
@@ -65,7 +64,7 @@ GuardedCloths<Real> guarded_cloths(const ClothModel<Real>& model) {
     cloths.finest = std::min(cloths.finest, cloths.cell.back());
     for (Index i = part.particles.first; i < part.particles.end(); ++i)
       cloths.inverse_area.push_back(static_cast<Real>(part.fabric.areal_density) /
-                                    model.mass[static_cast<std::size_t>(i)]);
+                                    model.mass[at_index(i)]);
   }
   cloths.reach = std::min(cloths.thickest * Real(kReachPart), cloths.finest * Real(kMostReach));
   cloths.reach = std::max(cloths.reach, cloths.finest * Real(kLeastReach));
@@ -83,13 +82,11 @@ Index cloth_of(const GuardedCloths<Real>& cloths, Index particle) {
 template <class Real>
 Real kept_distance(const GuardedCloths<Real>& cloths, const GuardedPair<Real>& pair, Index p,
                    Index q) {
-  Real distance = (cloths.thickness[static_cast<std::size_t>(p)] +
-                   cloths.thickness[static_cast<std::size_t>(q)]) /
-                  2;
+  Real distance = (cloths.thickness[at_index(p)] + cloths.thickness[at_index(q)]) / 2;
   if (pair.kind == PairKind::edge_edge) distance *= Real(kEdgeRadius);
   if (p != q) return distance;
   const PairPoints<Real> rest = points_of(pair, cloths.rest_positions);
-  const Real near = 2 * distance + 2 * cloths.cell[static_cast<std::size_t>(p)];
+  const Real near = 2 * distance + 2 * cloths.cell[at_index(p)];
   if ((rest[0] - rest[2]).squaredNorm() > near * near) return distance;
   return std::min(distance, separate_pair(pair.kind, rest).gap * Real(kFabricPart));
 }
@@ -97,11 +94,11 @@ Real kept_distance(const GuardedCloths<Real>& cloths, const GuardedPair<Real>& p
 template <class Real>
 bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
                   const std::array<Index, 4>& particles, const PairSeparation<Real>& s) {
-  assert(triangle >= 0 && static_cast<std::size_t>(triangle) < cloths.across.size());
+  assert(at_index(triangle) < cloths.across.size());
   Quad<Real> nearest;
   std::size_t corner = 3, zeros = 0, kept = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    nearest += x[static_cast<std::size_t>(particles[k + 1])] * -s.weight[k + 1];
+    nearest += x[at_index(particles[k + 1])] * -s.weight[k + 1];
     if (s.weight[k + 1] == 0) {
       corner = k;
       ++zeros;
@@ -109,16 +106,16 @@ bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, I
       kept = k;
     }
   }
-  const Quad<Real> away = x[static_cast<std::size_t>(particles[0])] - nearest;
+  const Quad<Real> away = x[at_index(particles[0])] - nearest;
   const auto leads_nearer = [&](Index i) {
-    return i != particles[0] && dot(away, x[static_cast<std::size_t>(i)] - nearest) > 0;
+    return i != particles[0] && dot(away, x[at_index(i)] - nearest) > 0;
   };
   if (zeros == 1) {
-    const Index other = cloths.across[static_cast<std::size_t>(triangle)][corner];
+    const Index other = cloths.across[at_index(triangle)][corner];
     return other == kNone || !leads_nearer(other);
   }
   if (zeros != 2) return true;
-  const auto around = cloths.neighbours.of(static_cast<std::size_t>(particles[kept + 1]));
+  const auto around = cloths.neighbours.of(at_index(particles[kept + 1]));
   return std::none_of(around.begin(), around.end(),
                       [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }

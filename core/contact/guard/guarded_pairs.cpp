@@ -27,20 +27,19 @@ void list_all_pairs(std::size_t n, GuardedPairs<Real>& pairs) {
   std::vector<Index>&begin = pairs.begin, &end = pairs.end;
   begin.assign(n + 1, 0);
   for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
-    for (const Index i : pair.particle) ++begin[static_cast<std::size_t>(i) + 1];
+    for (const Index i : pair.particle) ++begin[at_index(i) + 1];
   });
   pairs.active.clear();
   for (std::size_t i = 0; i < n; ++i) {
     if (begin[i + 1] > 0) pairs.active.push_back(static_cast<Index>(i));
     begin[i + 1] += begin[i];
   }
-  pairs.of.resize(static_cast<std::size_t>(begin[n]));
+  pairs.of.resize(at_index(begin[n]));
   for (std::size_t k = pairs.all.size(); k-- > 0;) {
     if (pairs.all[k].open) continue;
     // Filled from the back of each particle's list, whose begin then stands where it shall.
     for (const Index i : pairs.all[k].particle)
-      pairs.of[static_cast<std::size_t>(--begin[static_cast<std::size_t>(i) + 1])] =
-          static_cast<Index>(k);
+      pairs.of[at_index(--begin[at_index(i) + 1])] = static_cast<Index>(k);
   }
   end.resize(n);
   for (std::size_t i = 0; i < n; ++i) begin[i] = begin[i + 1];
@@ -62,8 +61,8 @@ void list_pairs_from(std::size_t first, GuardedPairs<Real>& pairs) {
   for_pairs_from(pairs, first, [&](GuardedPair<Real>& pair) {
     const Index number = pairs.number_of(pair);
     for (std::size_t m = 0; m < 4; ++m) {
-      const auto i = static_cast<std::size_t>(pair.particle[m]);
-      pairs.links[static_cast<std::size_t>(number) - pairs.listed][m] =
+      const auto i = at_index(pair.particle[m]);
+      pairs.links[at_index(number) - pairs.listed][m] =
           std::exchange(pairs.later[i], 4 * number + static_cast<Index>(m));
       if (!std::exchange(pairs.is_active[i], 1)) pairs.active.push_back(pair.particle[m]);
     }
@@ -77,7 +76,7 @@ void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>&
   pairs.dropped_keys.clear();
   pairs.open_keys.clear();
   for (const Index k : particles) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     assert(changed[i] != 0);
     if (!pairs.is_active[i]) continue;
     for_pairs_of(pairs, i, [&](GuardedPair<Real>& pair) {
@@ -93,7 +92,7 @@ void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>&
   for (GuardedPair<Real>& pair : pairs.all) {
     if (!pair.open || pair.gone) continue;
     pair.gone = std::any_of(pair.particle.begin(), pair.particle.end(),
-                            [&](Index i) { return changed[static_cast<std::size_t>(i)] != 0; });
+                            [&](Index i) { return changed[at_index(i)] != 0; });
     if (!pair.gone) continue;
     --pairs.open;
     pairs.open_keys.push_back(key_of(pair));

@@ -32,12 +32,12 @@ struct GuardedPairs {
   std::vector<GuardedPair<Real>> arrived;   ///< came since rows were made
 
   const GuardedPair<Real>& operator[](Index number) const {
-    assert(number >= 0 && static_cast<std::size_t>(number) < all.size());
-    return all[static_cast<std::size_t>(number)];
+    assert(at_index(number) < all.size());
+    return all[at_index(number)];
   }
   GuardedPair<Real>& operator[](Index number) {
-    assert(number >= 0 && static_cast<std::size_t>(number) < all.size());
-    return all[static_cast<std::size_t>(number)];
+    assert(at_index(number) < all.size());
+    return all[at_index(number)];
   }
   Index number_of(const GuardedPair<Real>& pair) const {
     return static_cast<Index>(&pair - all.data());
@@ -53,17 +53,15 @@ inline constexpr std::size_t kPairsAhead = 8;
 template <class Pairs, class Visit>
 void for_pairs_of(Pairs& pairs, std::size_t particle, Visit&& visit) {
   assert(particle < pairs.end.size() && particle < pairs.later.size());
-  const auto end = static_cast<std::size_t>(pairs.end[particle]);
-  for (auto k = static_cast<std::size_t>(pairs.begin[particle]); k < end; ++k) {
-    if (k + kPairsAhead < end)
-      __builtin_prefetch(&pairs.all[static_cast<std::size_t>(pairs.of[k + kPairsAhead])]);
-    auto& pair = pairs.all[static_cast<std::size_t>(pairs.of[k])];
+  const auto end = at_index(pairs.end[particle]);
+  for (auto k = at_index(pairs.begin[particle]); k < end; ++k) {
+    if (k + kPairsAhead < end) __builtin_prefetch(&pairs.all[at_index(pairs.of[k + kPairsAhead])]);
+    auto& pair = pairs.all[at_index(pairs.of[k])];
     if (!pair.gone) visit(pair);
   }
   for (Index link = pairs.later[particle]; link != kNone;) {
-    auto& pair = pairs.all[static_cast<std::size_t>(link / 4)];
-    link = pairs.links[static_cast<std::size_t>(link / 4) - pairs.listed]
-                      [static_cast<std::size_t>(link % 4)];
+    auto& pair = pairs.all[at_index(link / 4)];
+    link = pairs.links[at_index(link / 4) - pairs.listed][at_index(link % 4)];
     if (!pair.gone) visit(pair);
   }
 }

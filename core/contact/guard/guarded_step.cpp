@@ -20,7 +20,7 @@ template <class Real>
 void count_motion(const std::vector<Index>& active, GuardedStep<Real>& step, GuardCounts& counts) {
   step.allowed = 0;
   for (const Index k : active)
-    step.allowed += static_cast<double>(length(step.displacement[static_cast<std::size_t>(k)]));
+    step.allowed += static_cast<double>(length(step.displacement[at_index(k)]));
   counts.truncated += step.lost;
   counts.wanted += step.allowed + step.lost;
   step.lost = 0;

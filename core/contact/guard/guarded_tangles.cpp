@@ -21,7 +21,7 @@ bool share_particle(const Edge& edge, const Triangle& t) {
 template <class Real, class Particles>
 QuadBox<Real> box_of(const Particles& particles, const QuadArray<Real>& x) {
   QuadBox<Real> box;
-  for (const Index i : particles) box.add(x[static_cast<std::size_t>(i)]);
+  for (const Index i : particles) box.add(x[at_index(i)]);
   return box;
 }
 
@@ -35,18 +35,17 @@ void look_through(const GuardedCloths<Real>& cloths, const typename PatchTree<Re
   std::array<QuadBox<Real>, kMostPatchFeatures> boxes;
   QuadBox<Real> all;
   for (std::size_t k = 0; k < triangles.size(); ++k) {
-    boxes[k] = box_of<Real>(cloths.triangles[static_cast<std::size_t>(triangles[k])], x);
+    boxes[k] = box_of<Real>(cloths.triangles[at_index(triangles[k])], x);
     all.add(boxes[k].lower);
     all.add(boxes[k].upper);
   }
   for (const Index e : first.edges) {
-    const Edge& edge = cloths.edges[static_cast<std::size_t>(e)];
+    const Edge& edge = cloths.edges[at_index(e)];
     const QuadBox<Real> box = box_of<Real>(edge, x);
     if (!box.overlaps(all)) continue;
     for (std::size_t k = 0; k < triangles.size(); ++k) {
       const Index t = triangles[k];
-      if (box.overlaps(boxes[k]) &&
-          !share_particle(edge, cloths.triangles[static_cast<std::size_t>(t)]))
+      if (box.overlaps(boxes[k]) && !share_particle(edge, cloths.triangles[at_index(t)]))
         tangles.look_at(e, t, x);
     }
   }
@@ -77,7 +76,7 @@ void find_tangles(const PatchTree<Real>& tree, const GuardedCloths<Real>& cloths
   tangled.heaps = 0;
   std::size_t looked = 0;
   tree.for_each_near_pair([&](Index p, Index q) {
-    if (resting[static_cast<std::size_t>(p)] && resting[static_cast<std::size_t>(q)]) return;
+    if (resting[at_index(p)] && resting[at_index(q)]) return;
     const auto &first = tree.patch(p), &second = tree.patch(q);
     if (in_heap(tangled, cloths, first) || in_heap(tangled, cloths, second)) return;
     stop_point(looked++);
@@ -86,18 +85,18 @@ void find_tangles(const PatchTree<Real>& tree, const GuardedCloths<Real>& cloths
     if (p != q) look_through(cloths, second, first, x, tangles);
     if (tangles.size() == before) return;
     for (const auto* patch : {&first, &second}) {
-      const auto cloth = static_cast<std::size_t>(cloth_of(cloths, patch->particles.front()));
+      const auto cloth = at_index(cloth_of(cloths, patch->particles.front()));
       count_crossings(cloth, static_cast<std::size_t>(cloths.particles_of[cloth].count),
                       tangles.size() - before, tangled);
     }
   });
   const auto is_left_out = [&](Index particle) {
-    return tangled.is_heap[static_cast<std::size_t>(cloth_of(cloths, particle))] != 0;
+    return tangled.is_heap[at_index(cloth_of(cloths, particle))] != 0;
   };
   if (tangled.heaps > 0) {
     tangles.leave_out([&](const TangleCrossing& c) {
-      return is_left_out(cloths.edges[static_cast<std::size_t>(c.edge)][0]) ||
-             is_left_out(cloths.triangles[static_cast<std::size_t>(c.triangle)][0]);
+      return is_left_out(cloths.edges[at_index(c.edge)][0]) ||
+             is_left_out(cloths.triangles[at_index(c.triangle)][0]);
     });
   }
   tangles.decide(x, inverse_mass);
@@ -122,8 +121,7 @@ std::vector<std::array<Index, 2>> tangled_cloths(const GuardedTangles<Real>& tan
     list.push_back({p, q});
   };
   for (const TangleCrossing& c : tangled.tangles.crossings())
-    add(cloths.edges[static_cast<std::size_t>(c.edge)][0],
-        cloths.triangles[static_cast<std::size_t>(c.triangle)][0]);
+    add(cloths.edges[at_index(c.edge)][0], cloths.triangles[at_index(c.triangle)][0]);
   for (const GuardedPair<Real>& pair : pairs.all) {
     if (pair.open && !pair.gone) add(pair.particle[0], pair.particle[3]);
   }

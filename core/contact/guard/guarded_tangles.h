@@ -45,7 +45,7 @@ template <class Real>
 bool in_heap(const GuardedTangles<Real>& tangled, const GuardedCloths<Real>& cloths,
              const typename PatchTree<Real>::Patch& patch) {
   if (tangled.heaps == 0) return false;
-  return tangled.is_heap[static_cast<std::size_t>(cloth_of(cloths, patch.particles.front()))] != 0;
+  return tangled.is_heap[at_index(cloth_of(cloths, patch.particles.front()))] != 0;
 }
 
 /// Pairs that touch do not cross, and nothing tells their sides: they are drawn apart too.

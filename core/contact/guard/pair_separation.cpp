@@ -54,13 +54,12 @@ template <class Real>
 PairSeparation<Real> PairColumns<Real>::separation(std::size_t k, const QuadArray<Real>& x) const {
   if (!(gap[k] > static_cast<Real>(kCloseGap))) {
     PairPoints<Real> points;
-    for (std::size_t n = 0; n < 4; ++n)
-      points[n] = to_vector(x[static_cast<std::size_t>(particle[n][k])]);
+    for (std::size_t n = 0; n < 4; ++n) points[n] = to_vector(x[at_index(particle[n][k])]);
     return separate_pair(kind, points);
   }
   PairSeparation<Real> s;
   s.gap = gap[k];
-  for (int n = 0; n < 3; ++n) s.normal[n] = normal[static_cast<std::size_t>(n)][k];
+  for (int n = 0; n < 3; ++n) s.normal[n] = normal[at_index(n)][k];
   for (std::size_t n = 0; n < 4; ++n) s.weight[n] = weight[n][k];
   const auto between = [](Real t) {
     return t > static_cast<Real>(kEdgeEnd) && t < static_cast<Real>(1 - kEdgeEnd);

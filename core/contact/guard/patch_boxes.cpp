@@ -41,11 +41,11 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
     Shape shape;
     for (const Index i : patch.vertices) shape.vertices.push_back({place(i)});
     for (const Index e : patch.edges) {
-      const Edge& edge = edges[static_cast<std::size_t>(e)];
+      const Edge& edge = edges[at_index(e)];
       shape.edges.push_back({place(edge[0]), place(edge[1])});
     }
     for (const Index t : patch.triangles) {
-      const Triangle& corners = triangles[static_cast<std::size_t>(t)];
+      const Triangle& corners = triangles[at_index(t)];
       shape.triangles.push_back({place(corners[0]), place(corners[1]), place(corners[2])});
     }
     shape.begin = numbers;
@@ -66,8 +66,8 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
 
 template <class Real>
 PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
-  const Shape& shape = shapes_[static_cast<std::size_t>(p)];
-  assert(static_cast<std::size_t>(p) < fits_.size());
+  const Shape& shape = shapes_[at_index(p)];
+  assert(at_index(p) < fits_.size());
   const Real* at = numbers_.data() + shape.begin;
   const auto take = [&](std::size_t count) {
     const BoxColumns<Real> kind{at, count, padded(count)};
@@ -100,8 +100,8 @@ std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& feature
     }
     marks |= (corners & 1) << f;
     for (int c = 0; c < 3; ++c) {
-      numbers[static_cast<std::size_t>(c) * pitch + f] = box.lower[c];
-      numbers[static_cast<std::size_t>(c + 3) * pitch + f] = box.upper[c];
+      numbers[at_index(c) * pitch + f] = box.lower[c];
+      numbers[at_index(c + 3) * pitch + f] = box.upper[c];
     }
   }
   return marks;
@@ -110,13 +110,13 @@ std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& feature
 template <class Real>
 void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch,
                            const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
-  const auto number = static_cast<std::size_t>(p);
+  const auto number = at_index(p);
   assert(number < shapes_.size() && patch.particles.size() <= kMostPatchFeatures);
   CornerBoxes corner;
   QuadBox<Real> whole;
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < patch.particles.size(); ++k) {
-    const auto i = static_cast<std::size_t>(patch.particles[k]);
+    const auto i = at_index(patch.particles[k]);
     QuadBox<Real> box;
     box.add(motion.start[i]);
     box.add(motion.end[i]);

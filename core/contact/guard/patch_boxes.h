@@ -61,12 +61,10 @@ class PatchBoxes {
   /// Says that the motion in all patches is another one.
   void forget() { fits_.assign(fits_.size(), 0); }
   /// Says that it is in one.
-  void forget(Index patch) { fits_[static_cast<std::size_t>(patch)] = 0; }
+  void forget(Index patch) { fits_[at_index(patch)] = 0; }
   /// Says that the boxes of a patch are about to be fitted.
   /// @return whether they fitted already
-  bool mark_fitted(Index patch) {
-    return std::exchange(fits_[static_cast<std::size_t>(patch)], 1) != 0;
-  }
+  bool mark_fitted(Index patch) { return std::exchange(fits_[at_index(patch)], 1) != 0; }
 
   /// Fits the boxes of a patch. Several patches may be fitted at once.
   /// @param patch    its features
@@ -75,7 +73,7 @@ class PatchBoxes {
            const PredictedMotion<Real>& motion, const std::vector<char>& changed);
 
   /// Which features had a particle with a changed motion when the patch was fitted.
-  const PatchMarks& changed(Index p) const { return changed_[static_cast<std::size_t>(p)]; }
+  const PatchMarks& changed(Index p) const { return changed_[at_index(p)]; }
 
   /// The boxes, which must fit.
   PatchColumns<Real> columns(Index p) const;

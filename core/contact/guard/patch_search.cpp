@@ -94,7 +94,7 @@ void test_triangles(const SearchPass<Real>& pass, Index p, Index q,
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     for_each_bit(overlaps[k], [&](std::size_t n) {
       const Index v = vertices[k], t = triangles[n];
-      const Triangle& c = pass.cloths.triangles[static_cast<std::size_t>(t)];
+      const Triangle& c = pass.cloths.triangles[at_index(t)];
       test_pair(pass, PairKind::vertex_triangle, v, t, {v, c[0], c[1], c[2]});
     });
   }
@@ -112,7 +112,7 @@ void test_edges(const SearchPass<Real>& pass, Index p, Index q) {
     if (p == q) near &= ~0u << k << 1;  // each two once
     for_each_bit(near, [&](std::size_t n) {
       const auto [e, f] = std::minmax(first[k], second[n]);
-      const Edge &c = edges[static_cast<std::size_t>(e)], &d = edges[static_cast<std::size_t>(f)];
+      const Edge &c = edges[at_index(e)], &d = edges[at_index(f)];
       test_pair(pass, PairKind::edge_edge, e, f, {c[0], c[1], d[0], d[1]});
     });
   }
@@ -124,7 +124,7 @@ void test_patches(const SearchPass<Real>& pass, Index p, Index q) {
   const auto& [search, cloths, left_out, part] = pass;
   const auto &first = search.tree.patch(p), &second = search.tree.patch(q);
   const std::vector<char>& resting = left_out.resting;
-  if (resting[static_cast<std::size_t>(p)] && resting[static_cast<std::size_t>(q)]) return;
+  if (resting[at_index(p)] && resting[at_index(q)]) return;
   if (in_heap(left_out.tangled, cloths, first) || in_heap(left_out.tangled, cloths, second)) return;
   overlap_patches(search.boxes.columns(p), search.boxes.columns(q),
                   changed_in(search, p, left_out.all), changed_in(search, q, left_out.all),
@@ -176,7 +176,7 @@ void find_near_patches(PatchSearch<Real>& search) {
 template <class Real>
 void find_near_patches_of(const std::vector<Index>& particles, PatchSearch<Real>& search) {
   search.changed.assign(search.motion.start.size(), 0);
-  for (const Index i : particles) search.changed[static_cast<std::size_t>(i)] = 1;
+  for (const Index i : particles) search.changed[at_index(i)] = 1;
   search.tree.refit_changed(search.motion, particles, search.changed);
   for (const Index p : search.tree.marked()) search.boxes.forget(p);
   list_near_patches(search, [&](auto&& visit) { search.tree.for_each_changed_pair(visit); });

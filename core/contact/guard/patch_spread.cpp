@@ -34,7 +34,7 @@ void PatchTree<Real>::sum_changed(const std::vector<char>& changed) {
     if (part.rows * part.columns != part.particles.count) continue;  // no whole grid
     const auto width = static_cast<std::size_t>(part.columns) + 1;
     sums.assign((static_cast<std::size_t>(part.rows) + 1) * width, 0);
-    auto i = static_cast<std::size_t>(part.particles.first);
+    auto i = at_index(part.particles.first);
     for (std::size_t at = width; at < sums.size(); at += width) {
       for (std::size_t c = 1; c < width; ++c, ++i)
         sums[at + c] = sums[at + c - 1] + sums[at - width + c] - sums[at - width + c - 1] +
@@ -46,9 +46,9 @@ void PatchTree<Real>::sum_changed(const std::vector<char>& changed) {
 /// Whether a particle of these cells changed its motion, or may have.
 template <class Real>
 bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
-  const std::vector<int>& sums = changed_sums_[static_cast<std::size_t>(p)];
+  const std::vector<int>& sums = changed_sums_[at_index(p)];
   if (sums.empty()) return true;
-  const int width = parts_[static_cast<std::size_t>(p)].columns + 1;
+  const int width = parts_[at_index(p)].columns + 1;
   const auto before = [&](int row, int column) {
     return sums[static_cast<std::size_t>(row * width + column)];
   };
@@ -62,7 +62,7 @@ bool PatchTree<Real>::has_changed(Index p, const CellRange& cells) const {
 /// adjoin the node.
 template <class Real>
 typename PatchTree<Real>::CellRange PatchTree<Real>::grown(const Node& node) const {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+  const ClothPart<Real>& part = parts_[at_index(node.part)];
   return {std::max(node.cells.row - kPatchCells, 0),
           std::min(node.cells.row_end + kPatchCells, part.rows - 1),
           std::max(node.cells.column - kPatchCells, 0),
@@ -73,7 +73,7 @@ typename PatchTree<Real>::CellRange PatchTree<Real>::grown(const Node& node) con
 /// these are at least the height of a triangle apart in the fabric.
 template <class Real>
 Real PatchTree<Real>::least_spread(const Node& node, Real radius) const {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+  const ClothPart<Real>& part = parts_[at_index(node.part)];
   const Real nearest =
       part.cell_u * part.cell_v / std::sqrt(part.cell_u * part.cell_u + part.cell_v * part.cell_v);
   return 2 * radius / nearest * Real(1 + kCullSlack) + Real(kCullSlack);
@@ -84,12 +84,12 @@ Real PatchTree<Real>::least_spread(const Node& node, Real radius) const {
 /// these.
 template <class Real>
 bool PatchTree<Real>::find_spread(Index n, const PredictedMotion<Real>& motion) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
+  Node& node = nodes_[at_index(n)];
   if (node.wait > 0) {
     --node.wait;
     return false;
   }
-  Plane& plane = planes_[static_cast<std::size_t>(n)];
+  Plane& plane = planes_[at_index(n)];
   const Real least = least_spread(node, motion.radius);
   const CellRange cells = grown(node);
   const bool spread = least < 1 && find_plane(motion, cells, node.part, plane) &&
@@ -103,7 +103,7 @@ bool PatchTree<Real>::find_spread(Index n, const PredictedMotion<Real>& motion) 
 /// Tries the rectangle of a node, and else those of its children.
 template <class Real>
 void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
+  Node& node = nodes_[at_index(n)];
   if (is_grid(node) && find_spread(n, motion)) {
     give_spread(n, grown(node));
     return;
@@ -118,10 +118,10 @@ void PatchTree<Real>::mark_spread(Index n, const PredictedMotion<Real>& motion) 
 template <class Real>
 const typename PatchTree<Real>::SpreadCells& PatchTree<Real>::spread_around(
     Index p, const PredictedMotion<Real>& motion) {
-  SpreadCells& found = around_[static_cast<std::size_t>(p)];
+  SpreadCells& found = around_[at_index(p)];
   if (std::exchange(found.refit, refits_) == refits_) return found;
   const Node& node = node_of(p);
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+  const ClothPart<Real>& part = parts_[at_index(node.part)];
   const Real least = least_spread(node, motion.radius);
   // Widened, so that it fills a vector.
   CellRange cells = grown(node);
@@ -165,7 +165,7 @@ template <class Real>
 void PatchTree<Real>::renew_spread(Index n, const PredictedMotion<Real>& motion,
                                    const std::vector<char>& changed) {
   assert(motion.start.size() == changed.size() && motion.end.size() == changed.size());
-  Node& node = nodes_[static_cast<std::size_t>(n)];
+  Node& node = nodes_[at_index(n)];
   if (is_grid(node)) {
     const CellRange cells = grown(node);
     if (!has_changed(node.part, cells)) return;
@@ -185,10 +185,10 @@ void PatchTree<Real>::renew_spread(Index n, const PredictedMotion<Real>& motion,
 template <class Real>
 bool PatchTree<Real>::stays_spread(Index n, const PredictedMotion<Real>& motion,
                                    const std::vector<char>& changed) const {
-  const Node& node = nodes_[static_cast<std::size_t>(n)];
-  const Plane& plane = planes_[static_cast<std::size_t>(n)];
+  const Node& node = nodes_[at_index(n)];
+  const Plane& plane = planes_[at_index(n)];
   const Real least = least_spread(node, motion.radius);
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(node.part)];
+  const ClothPart<Real>& part = parts_[at_index(node.part)];
   const auto has = [&](int r, int c) {  // of both rows of a cell
     const auto i = static_cast<std::size_t>(part.particles.first + r * part.columns + c);
     return (changed[i] | changed[i + static_cast<std::size_t>(part.columns)]) != 0;
@@ -212,7 +212,7 @@ bool PatchTree<Real>::stays_spread(Index n, const PredictedMotion<Real>& motion,
 
 template <class Real>
 void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
+  Node& node = nodes_[at_index(n)];
   node.spread = cells;
   node.misses = node.wait = 0;
   if (node.patch != kNone) return;
@@ -226,7 +226,7 @@ void PatchTree<Real>::give_spread(Index n, const CellRange& cells) {
 template <class Real>
 bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const CellRange& cells,
                                  Index p, Plane& plane) const {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[at_index(p)];
   const auto at = [&](int r, int c) {
     return static_cast<std::size_t>(part.particles.first + r * part.columns + c);
   };
@@ -254,18 +254,18 @@ bool PatchTree<Real>::find_plane(const PredictedMotion<Real>& motion, const Cell
 template <class Real>
 SpreadPass<Real> PatchTree<Real>::spread_pass(const QuadArray<Real>& x, const Plane& plane,
                                               const CellRange& cells, Index p, Real least) const {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[at_index(p)];
   SpreadPass<Real> pass;
   pass.particles = part.columns;
   pass.cells = part.columns - 1;
   pass.x = x.data() + part.particles.first + cells.row * pass.particles + cells.column;
-  pass.falls = falls_[static_cast<std::size_t>(p)].data() + cells.row * pass.cells + cells.column;
+  pass.falls = falls_[at_index(p)].data() + cells.row * pass.cells + cells.column;
   pass.rows = cells.row_end - cells.row;
   pass.columns = cells.column_end - cells.column;
   const Real per_u = Real(1) / part.cell_u, per_v = Real(1) / part.cell_v;
   for (int k = 0; k < 3; ++k)
-    pass.axes[static_cast<std::size_t>(k)] = {plane.u[k] * per_u, plane.v[k] * per_u,
-                                              plane.u[k] * per_v, plane.v[k] * per_v};
+    pass.axes[at_index(k)] = {plane.u[k] * per_u, plane.v[k] * per_u, plane.u[k] * per_v,
+                              plane.v[k] * per_v};
   pass.least = least;
   return pass;
 }

@@ -28,11 +28,10 @@ void mark_features(const std::vector<Edge>& edges, const std::vector<Triangle>& 
   for (std::size_t k = 0; k < patch.vertices.size(); ++k)
     marks(patch.vertices[k]).vertices |= 1u << k;
   for (std::size_t k = 0; k < patch.edges.size(); ++k) {
-    for (const Index i : edges[static_cast<std::size_t>(patch.edges[k])]) marks(i).edges |= 1u << k;
+    for (const Index i : edges[at_index(patch.edges[k])]) marks(i).edges |= 1u << k;
   }
   for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
-    for (const Index i : triangles[static_cast<std::size_t>(patch.triangles[k])])
-      marks(i).triangles |= 1u << k;
+    for (const Index i : triangles[at_index(patch.triangles[k])]) marks(i).triangles |= 1u << k;
   }
 }
 
@@ -43,7 +42,7 @@ PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) 
   const auto count = static_cast<Index>(parts_.size());
   falls_.resize(parts_.size());
   for (Index p = 0; p < count; ++p) {
-    if (parts_[static_cast<std::size_t>(p)].rows > 0) build_grid(model, p);
+    if (parts_[at_index(p)].rows > 0) build_grid(model, p);
   }
   // Recursively: a node over all parts from `first`, `count` of them.
   const auto build = [&](auto&& self, Index first, Index parts_left) -> Index {
@@ -52,14 +51,13 @@ PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) 
       nodes_.emplace_back();
       const Index left = self(self, first, parts_left / 2);
       const Index right = self(self, first + parts_left / 2, parts_left - parts_left / 2);
-      Node& made = nodes_[static_cast<std::size_t>(node)];
+      Node& made = nodes_[at_index(node)];
       made.left = left;
       made.right = right;
-      made.triangles = nodes_[static_cast<std::size_t>(left)].triangles +
-                       nodes_[static_cast<std::size_t>(right)].triangles;
+      made.triangles = nodes_[at_index(left)].triangles + nodes_[at_index(right)].triangles;
       return node;
     }
-    const ClothPart<Real>& part = parts_[static_cast<std::size_t>(first)];
+    const ClothPart<Real>& part = parts_[at_index(first)];
     if (part.rows > 0) return split_grid(model, first, {0, part.rows - 1, 0, part.columns - 1});
     std::vector<Index> list;
     for (Index t = part.triangles.first; t < part.triangles.end(); ++t) list.push_back(t);
@@ -68,7 +66,7 @@ PatchTree<Real>::PatchTree(const ClothModel<Real>& model) : parts_(model.parts) 
   if (count > 0) build(build, 0, count);
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     for (const Index below : {nodes_[n].left, nodes_[n].right}) {
-      if (below != kNone) nodes_[static_cast<std::size_t>(below)].above = static_cast<Index>(n);
+      if (below != kNone) nodes_[at_index(below)].above = static_cast<Index>(n);
     }
   }
   planes_.resize(nodes_.size());
@@ -82,15 +80,14 @@ template <class Real>
 void PatchTree<Real>::give_patches(std::size_t particles) {
   patches_begin_.assign(particles + 1, 0);
   for (const Patch& patch : patches_) {
-    for (const Index i : patch.particles) ++patches_begin_[static_cast<std::size_t>(i) + 1];
+    for (const Index i : patch.particles) ++patches_begin_[at_index(i) + 1];
   }
   std::partial_sum(patches_begin_.begin(), patches_begin_.end(), patches_begin_.begin());
   patches_with_.resize(static_cast<std::size_t>(patches_begin_.back()));
   std::vector<Index> next = patches_begin_;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     for (const Index i : patches_[p].particles)
-      patches_with_[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] =
-          static_cast<Index>(p);
+      patches_with_[at_index(next[at_index(i)]++)] = static_cast<Index>(p);
   }
 }
 
@@ -98,8 +95,8 @@ void PatchTree<Real>::give_patches(std::size_t particles) {
 /// last.
 template <class Real>
 void PatchTree<Real>::build_grid(const ClothModel<Real>& model, Index p) {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
-  std::vector<Real>& falls = falls_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[at_index(p)];
+  std::vector<Real>& falls = falls_[at_index(p)];
   const int cells = (part.rows - 1) * (part.columns - 1);
   assert(part.triangles.count == 2 * cells);
   for (int cell = 0; cell < cells; ++cell) {
@@ -114,7 +111,7 @@ void PatchTree<Real>::build_grid(const ClothModel<Real>& model, Index p) {
 
 template <class Real>
 Index PatchTree<Real>::split_grid(const ClothModel<Real>& model, Index p, const CellRange& cells) {
-  const ClothPart<Real>& part = parts_[static_cast<std::size_t>(p)];
+  const ClothPart<Real>& part = parts_[at_index(p)];
   const int rows = cells.row_end - cells.row, columns = cells.column_end - cells.column;
   if (rows <= kPatchCells && columns <= kPatchCells) {
     std::vector<Index> triangles;
@@ -125,7 +122,7 @@ Index PatchTree<Real>::split_grid(const ClothModel<Real>& model, Index p, const 
       }
     }
     const Index node = add_patch(model, p, triangles);
-    nodes_[static_cast<std::size_t>(node)].cells = cells;
+    nodes_[at_index(node)].cells = cells;
     return node;
   }
   const auto node = static_cast<Index>(nodes_.size());
@@ -136,7 +133,7 @@ Index PatchTree<Real>::split_grid(const ClothModel<Real>& model, Index p, const 
   else
     first.column_end = second.column = cells.column + columns / 2;
   const Index left = split_grid(model, p, first), right = split_grid(model, p, second);
-  Node& made = nodes_[static_cast<std::size_t>(node)];
+  Node& made = nodes_[at_index(node)];
   made.left = left;
   made.right = right;
   made.part = p;
@@ -154,8 +151,7 @@ Index PatchTree<Real>::split_mesh(const ClothModel<Real>& model, Index p, std::v
   if (end - begin <= kPatchTriangles) return add_patch(model, p, std::vector<Index>(from, to));
   const auto sum_of = [&](Index t) -> Vec3<Real> {
     Vec3<Real> sum = Vec3<Real>::Zero();
-    for (const Index i : model.triangles[static_cast<std::size_t>(t)])
-      sum += model.rest_positions[static_cast<std::size_t>(i)];
+    for (const Index i : model.triangles[at_index(t)]) sum += model.rest_positions[at_index(i)];
     return sum;
   };
   QuadBox<Real> box;
@@ -171,7 +167,7 @@ Index PatchTree<Real>::split_mesh(const ClothModel<Real>& model, Index p, std::v
   const std::size_t middle = begin + (end - begin) / 2;
   const Index left = split_mesh(model, p, list, begin, middle);
   const Index right = split_mesh(model, p, list, middle, end);
-  Node& made = nodes_[static_cast<std::size_t>(node)];
+  Node& made = nodes_[at_index(node)];
   made.left = left;
   made.right = right;
   made.part = p;
@@ -185,7 +181,7 @@ Index PatchTree<Real>::add_patch(const ClothModel<Real>& model, Index part,
   Patch patch;
   patch.triangles = triangles;
   for (const Index t : triangles) {
-    const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+    const Triangle& corners = model.triangles[at_index(t)];
     patch.particles.insert(patch.particles.end(), corners.begin(), corners.end());
   }
   std::sort(patch.particles.begin(), patch.particles.end());
@@ -208,14 +204,13 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
   std::vector<char> given(model.mass.size(), 0), edge_given(model.edges.size(), 0);
   for (Patch& patch : patches_) {
     for (const Index i : patch.particles) {
-      if (!std::exchange(given[static_cast<std::size_t>(i)], 1)) patch.vertices.push_back(i);
+      if (!std::exchange(given[at_index(i)], 1)) patch.vertices.push_back(i);
     }
     for (const Index t : patch.triangles) {
-      const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
+      const Triangle& corners = model.triangles[at_index(t)];
       for (std::size_t k = 0; k < 3; ++k) {
-        for (const auto& [edge, other] : neighbours.of(static_cast<std::size_t>(corners[k]))) {
-          if (other == corners[(k + 1) % 3] &&
-              !std::exchange(edge_given[static_cast<std::size_t>(edge)], 1))
+        for (const auto& [edge, other] : neighbours.of(at_index(corners[k]))) {
+          if (other == corners[(k + 1) % 3] && !std::exchange(edge_given[at_index(edge)], 1))
             patch.edges.push_back(edge);
         }
       }
@@ -228,13 +223,13 @@ template <class Real>
 void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) const {
   node.box = {};
   if (node.patch == kNone) {
-    node.box.add(nodes_[static_cast<std::size_t>(node.left)].box);
-    node.box.add(nodes_[static_cast<std::size_t>(node.right)].box);
+    node.box.add(nodes_[at_index(node.left)].box);
+    node.box.add(nodes_[at_index(node.right)].box);
     return;
   }
-  for (const Index i : patches_[static_cast<std::size_t>(node.patch)].particles) {
-    node.box.add(motion.start[static_cast<std::size_t>(i)]);
-    node.box.add(motion.end[static_cast<std::size_t>(i)]);
+  for (const Index i : patches_[at_index(node.patch)].particles) {
+    node.box.add(motion.start[at_index(i)]);
+    node.box.add(motion.end[at_index(i)]);
   }
   node.box = node.box.grown(motion.radius);
 }
@@ -258,8 +253,8 @@ void PatchTree<Real>::forget() {
 template <class Real>
 void PatchTree<Real>::mark(const std::vector<Index>& particles) {
   const auto mark_up = [&](Index patch, bool marked) {
-    for (Index n = node_of_[static_cast<std::size_t>(patch)]; n != kNone;) {
-      Node& node = nodes_[static_cast<std::size_t>(n)];
+    for (Index n = node_of_[at_index(patch)]; n != kNone;) {
+      Node& node = nodes_[at_index(n)];
       if (node.marked == marked) return;
       node.marked = marked;
       n = node.above;
@@ -268,9 +263,9 @@ void PatchTree<Real>::mark(const std::vector<Index>& particles) {
   for (const Index p : marked_) mark_up(p, false);
   marked_.clear();
   for (const Index k : particles) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     for (Index at = patches_begin_[i]; at < patches_begin_[i + 1]; ++at) {
-      const Index p = patches_with_[static_cast<std::size_t>(at)];
+      const Index p = patches_with_[at_index(at)];
       if (!is_marked(p)) marked_.push_back(p);
       mark_up(p, true);
     }
@@ -280,7 +275,7 @@ void PatchTree<Real>::mark(const std::vector<Index>& particles) {
 /// Fits boxes around the marked nodes, from below.
 template <class Real>
 void PatchTree<Real>::fit_marked(Index n, const PredictedMotion<Real>& motion) {
-  Node& node = nodes_[static_cast<std::size_t>(n)];
+  Node& node = nodes_[at_index(n)];
   if (!node.marked) return;
   if (node.patch == kNone) {
     fit_marked(node.left, motion);

@@ -70,7 +70,7 @@ class PatchTree {
     std::vector<Index> particles;                   ///< of its triangles, ascending
     std::vector<PatchMarks> having;                 ///< of each of these, the features that have it
   };
-  const Patch& patch(Index p) const { return patches_[static_cast<std::size_t>(p)]; }
+  const Patch& patch(Index p) const { return patches_[at_index(p)]; }
   std::size_t patch_count() const { return patches_.size(); }
 
   /// Whether a patch has a changed particle.
@@ -134,9 +134,7 @@ class PatchTree {
   Index add_patch(const ClothModel<Real>& model, Index part, const std::vector<Index>& triangles);
   void give_features(const ClothModel<Real>& model);
 
-  const Node& node_of(Index patch) const {
-    return nodes_[static_cast<std::size_t>(node_of_[static_cast<std::size_t>(patch)])];
-  }
+  const Node& node_of(Index patch) const { return nodes_[at_index(node_of_[at_index(patch)])]; }
   void give_patches(std::size_t particles);
   void fit_box(Node& node, const PredictedMotion<Real>& motion) const;
   void mark(const std::vector<Index>& particles);
@@ -144,7 +142,7 @@ class PatchTree {
   void sum_changed(const std::vector<char>& changed);
   bool has_changed(Index part, const CellRange& cells) const;
   bool is_grid(const Node& node) const {
-    return node.part != kNone && parts_[static_cast<std::size_t>(node.part)].rows > 0;
+    return node.part != kNone && parts_[at_index(node.part)].rows > 0;
   }
   CellRange grown(const Node& node) const;
   const SpreadCells& spread_around(Index patch, const PredictedMotion<Real>& motion);
@@ -170,7 +168,7 @@ class PatchTree {
 
   template <bool MarkedOnly, class Visit>
   void visit_inside(Index n, Visit&& visit) const {
-    const Node& node = nodes_[static_cast<std::size_t>(n)];
+    const Node& node = nodes_[at_index(n)];
     if (node.spread.cells() > 0 || (MarkedOnly && !node.marked)) return;
     if (node.patch != kNone) {
       visit(node.patch, node.patch);
@@ -182,7 +180,7 @@ class PatchTree {
   }
   template <bool MarkedOnly, class Visit>
   void visit_between(Index a, Index b, Visit&& visit) const {
-    const Node &p = nodes_[static_cast<std::size_t>(a)], &q = nodes_[static_cast<std::size_t>(b)];
+    const Node &p = nodes_[at_index(a)], &q = nodes_[at_index(b)];
     if (MarkedOnly && !p.marked && !q.marked) return;
     if (!p.box.overlaps(q.box) || is_apart(p, q)) return;
     if (p.patch != kNone && q.patch != kNone) {

@@ -69,7 +69,7 @@ void begin_paths_of_strays(const GuardedStep<Real>& step, Real dt, Real reach,
                            PredictedPaths<Real>& paths) {
   assert(paths.collected);
   for (const Index k : paths.strays) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     paths.velocity[i] = path_velocity(paths, step, i, dt, reach);
     paths.from[i] = step.from[i] - paths.off_before;
     paths.since[i] = paths.elapsed - dt;
@@ -119,8 +119,7 @@ Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const Awake
   };
   std::size_t i = 0;
   for (const IndexRange& range : awake.ranges) {
-    const auto first = static_cast<std::size_t>(range.first),
-               end = static_cast<std::size_t>(range.end());
+    const auto first = at_index(range.first), end = at_index(range.end());
     look(i, first, false);
     look(first, end, true);
     i = end;

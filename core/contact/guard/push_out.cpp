@@ -50,10 +50,10 @@ void add_push(RowSet<Real>& rows, PushOut<Real>& push, Vec3Array<Real>& v, Execu
   });
   if (!(most > 0)) return;
   rows.slabs.visit_particles(nullptr, [&](Index i) {
-    if (push.is_pushed[static_cast<std::size_t>(i)]) push.particles.push_back(i);
+    if (push.is_pushed[at_index(i)]) push.particles.push_back(i);
   });
   for (const Index k : push.particles) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     v[i] += to_vector(push.extra[i]);
     push.v.push_back(v[i]);
   }
@@ -63,7 +63,7 @@ template <class Real>
 void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
   assert(push.v.size() == push.particles.size());
   for (std::size_t n = 0; n < push.particles.size(); ++n) {
-    const auto i = static_cast<std::size_t>(push.particles[n]);
+    const auto i = at_index(push.particles[n]);
     const Vec3<Real> extra = to_vector(push.extra[i]);
     // What was stopped keeps no more of the push than it had, and gets no velocity against it.
     Real part = 1;

@@ -34,7 +34,7 @@ void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Reg
       largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
   const Real share = share_of(first, second);
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = static_cast<std::size_t>(pair.particle[k]);
+    const auto i = at_index(pair.particle[k]);
     if (!takes(i)) continue;
     const Real own = gap * (k < first_side(pair.kind) ? share : 1 - share);
     regions.radius[i] = std::min(regions.radius[i], own);
@@ -50,8 +50,8 @@ void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedS
   const auto ahead_of = [&](Real length) {
     return length * Real(2 * kStepsOfRoom) + regions.smallest_gap;
   };
-  const Real ahead = ahead_of(step.length[static_cast<std::size_t>(particle)]);
-  for_pairs_of(pairs, static_cast<std::size_t>(particle), [&](const GuardedPair<Real>& pair) {
+  const Real ahead = ahead_of(step.length[at_index(particle)]);
+  for_pairs_of(pairs, at_index(particle), [&](const GuardedPair<Real>& pair) {
     // Those that are being anchored have none yet.
     const auto [first, second] =
         largest_on_sides(pair, [&](std::size_t i) { return regions.radius[i]; });
@@ -70,7 +70,7 @@ void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedS
     claim.other_length = on_first ? second_length : first_length;
     Real ahead_on[2] = {-1, -1};
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto j = static_cast<std::size_t>(p[k]);
+      const auto j = at_index(p[k]);
       if (regions.wave_of[j] != regions.wave) continue;
       if (ahead_on[0] < 0 && ahead_on[1] < 0 && p[k] != particle) return;
       Real& side = ahead_on[k < first_side(pair.kind) ? 0 : 1];
@@ -102,7 +102,7 @@ Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, boo
                   const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                   const Regions<Real>& regions, std::vector<Index>& next) {
   Real radius = std::numeric_limits<Real>::infinity();
-  const Real length = step.length[static_cast<std::size_t>(particle)];
+  const Real length = step.length[at_index(particle)];
   for (const AnchorClaim<Real>& claim : claims) {
     const GuardedPair<Real>& pair = pairs[claim.pair];
     const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
@@ -119,8 +119,8 @@ Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, boo
     const bool greedy = first && left < share && left < 2 * length;
     if (!too_much && !greedy) continue;
     for (const Index j : pair.particle) {
-      if (regions.wave_of[static_cast<std::size_t>(j)] != regions.wave &&
-          (regions.radius[static_cast<std::size_t>(j)] > 0 || greedy))
+      if (regions.wave_of[at_index(j)] != regions.wave &&
+          (regions.radius[at_index(j)] > 0 || greedy))
         next.push_back(j);
     }
     next.push_back(particle);
@@ -133,7 +133,7 @@ template <class Real>
 void move_anchors(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
                   GuardCounts& counts) {
   for (const Index k : regions.in_wave) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     regions.wave_of[i] = regions.wave;
     regions.radius[i] = 0;
     if (regions.anchored_at[i] == step.number) continue;
@@ -174,7 +174,7 @@ void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>&
     const std::span<const AnchorClaim<Real>> claims = part.claims;
     for (std::size_t k = from, begin = 0; k < to; ++k) {
       const std::size_t end = part.ends[k - from];
-      regions.radius[static_cast<std::size_t>(in_wave[k])] = share_claims<Real>(
+      regions.radius[at_index(in_wave[k])] = share_claims<Real>(
           in_wave[k], claims.subspan(begin, end - begin), first, pairs, step, regions, part.next);
       begin = end;
     }
@@ -194,7 +194,7 @@ template <class Real>
 void anchor_all(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions) {
   ++regions.wave;
   for (const Index k : pairs.active) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     if (regions.anchored_at[i] != step.number) regions.anchored.push_back(k);
     regions.anchored_at[i] = step.number;
     regions.anchor[i] = step.from[i];
@@ -209,7 +209,7 @@ template <class Real>
 void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  Regions<Real>& regions) {
   for (const Index k : pairs.active) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     regions.anchor[i] = step.from[i];
     regions.anchored_at[i] = 0;
   }
@@ -220,7 +220,7 @@ void share_all_gaps(const GuardedPairs<Real>& pairs, GuardedStep<Real>& step,
                     Regions<Real>& regions) {
   measure_lengths(step);
   for (const Index k : pairs.active)
-    regions.radius[static_cast<std::size_t>(k)] = std::numeric_limits<Real>::infinity();
+    regions.radius[at_index(k)] = std::numeric_limits<Real>::infinity();
   for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
     share_gap(pair, step, regions, [](std::size_t) { return true; });
   });
@@ -234,7 +234,7 @@ void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
   const auto is_new = [&](std::size_t i) { return !pairs.is_active[i]; };
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
     for (const Index k : pair.particle) {
-      const auto i = static_cast<std::size_t>(k);
+      const auto i = at_index(k);
       if (!is_new(i)) continue;
       regions.anchor[i] = step.from[i];
       regions.radius[i] = std::numeric_limits<Real>::infinity();
@@ -265,9 +265,9 @@ Real find_loose(const std::vector<Index>& active, const GuardedStep<Real>& step,
   Real least = std::numeric_limits<Real>::infinity();
   regions.loose.clear();
   ++regions.wave;
-  for (const Index i : regions.dirty) regions.wave_of[static_cast<std::size_t>(i)] = regions.wave;
+  for (const Index i : regions.dirty) regions.wave_of[at_index(i)] = regions.wave;
   for (const Index k : active) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     const Real radius = regions.radius[i];
     const Quad<Real> off = step.from[i] + step.displacement[i] - regions.anchor[i];
     const Real spare2 = radius * radius - dot(off, off);

@@ -39,13 +39,13 @@ HWY_INLINE void take(const RowBatch& batch, std::span<const GuardRow<float>> row
                 offsetof(Row, push) == offsetof(Row, least_speed) + 4 &&
                 sizeof(Row) >= offsetof(Row, least_speed) + 16);
   const auto first_number = [](std::size_t offset) { return offset / sizeof(float); };
-  const Row none = idle_row(rows[static_cast<std::size_t>(batch[0])]);
+  const Row none = idle_row(rows[at_index(batch[0])]);
   std::array<const Row*, kBatchRows> of;
   block.row = batch;
   block.lacks = 0;
   block.count = 0;
   for (std::size_t k = 0; k < kBatchRows; ++k) {
-    of[k] = batch[k] == kNone ? &none : &rows[static_cast<std::size_t>(batch[k])];
+    of[k] = batch[k] == kNone ? &none : &rows[at_index(batch[k])];
     block.count += batch[k] == kNone ? 0 : 1;
   }
   for (std::size_t k = 0; k < kBatchRows; k += hn::Lanes(d)) {

@@ -44,10 +44,10 @@ template <class Real>
 RowBlock<Real>::RowBlock(const RowBatch& batch, std::span<const GuardRow<Real>> rows)
     : row(batch), lacks(0), count(0) {
   assert(batch[0] != kNone);
-  const GuardRow<Real> none = idle_row(rows[static_cast<std::size_t>(batch[0])]);
+  const GuardRow<Real> none = idle_row(rows[at_index(batch[0])]);
   for (std::size_t k = 0; k < kBatchRows; ++k) {
     const bool any = batch[k] != kNone;
-    const GuardRow<Real>& from = any ? rows[static_cast<std::size_t>(batch[k])] : none;
+    const GuardRow<Real>& from = any ? rows[at_index(batch[k])] : none;
     count += any ? 1 : 0;
     for (std::size_t n = 0; n < 4; ++n) {
       place[n][k] = 4 * static_cast<std::uint32_t>(from.particle[n]);
@@ -55,7 +55,7 @@ RowBlock<Real>::RowBlock(const RowBatch& batch, std::span<const GuardRow<Real>> 
       share[n][k] = from.share[n];
     }
     for (int c = 0; c < 3; ++c) {
-      const auto axis = static_cast<std::size_t>(c);
+      const auto axis = at_index(c);
       normal[axis][k] = from.normal[c];
       drag[axis][k] = from.drag[c];
       slip[axis][k] = from.slip[c];
@@ -73,7 +73,7 @@ RowBlock<Real>::RowBlock(const RowBatch& batch, std::span<const GuardRow<Real>> 
 template <class Real>
 void RowBlock<Real>::give_back(std::span<GuardRow<Real>> rows) const {
   for (std::size_t k = 0; k < count; ++k) {
-    GuardRow<Real>& to = rows[static_cast<std::size_t>(row[k])];
+    GuardRow<Real>& to = rows[at_index(row[k])];
     to.drag = quad(drag, k);
     to.slip = quad(slip, k);
     to.apart = quad(apart, k);

@@ -23,7 +23,7 @@ RowBatch batch_of(Index row) {
 /// @param open  of each batch itself or a later one, up to which there is no room
 std::size_t first_open(std::vector<Index>& open, std::size_t at) {
   while (at < open.size() && open[at] != static_cast<Index>(at)) {
-    const auto next = static_cast<std::size_t>(open[at]);
+    const auto next = at_index(open[at]);
     if (next < open.size()) open[at] = open[next];
     at = next;
   }
@@ -96,9 +96,7 @@ void RowDeals<Real>::deal(std::size_t number, const RowSlabs<Real>& slabs,
   const bool is_long = number == kPairs;
   const std::vector<Index>& a = slabs.list(is_long ? RowSlabs<Real>::kSlabs : number);
   const std::vector<Index>& b = is_long ? no_rows : slabs.list(number + kPairs);
-  const auto deal_row = [&](Index row) {
-    deal(number, row, rows[static_cast<std::size_t>(row)].particle);
-  };
+  const auto deal_row = [&](Index row) { deal(number, row, rows[at_index(row)].particle); };
   for (std::size_t k = 0; k < std::max(a.size(), b.size()); ++k) {
     if (k < a.size()) deal_row(a[k]);
     if (k < b.size()) deal_row(b[k]);
@@ -113,8 +111,7 @@ void RowDeals<Real>::deal(std::size_t number, Index row, const std::array<Index,
   std::vector<Index>& open = open_[number];
   const std::uint32_t first = first_batch_[number];
   std::uint32_t behind = first;
-  for (const Index i : particles)
-    behind = std::max(behind, next_batch_[static_cast<std::size_t>(i)]);
+  for (const Index i : particles) behind = std::max(behind, next_batch_[at_index(i)]);
   const std::size_t at = first_open(open, behind - first);
   if (at == batches.size()) {
     open.push_back(static_cast<Index>(at));
@@ -124,12 +121,12 @@ void RowDeals<Real>::deal(std::size_t number, Index row, const std::array<Index,
   }
   if (batches[at].back() != kNone) open[at] = static_cast<Index>(at + 1);
   for (const Index i : particles)
-    next_batch_[static_cast<std::size_t>(i)] = first + static_cast<std::uint32_t>(at) + 1;
+    next_batch_[at_index(i)] = first + static_cast<std::uint32_t>(at) + 1;
 }
 
 template <class Real>
 void RowDeals<Real>::add(std::size_t list, Index row, std::span<const GuardRow<Real>> rows) {
-  assert(list < RowSlabs<Real>::kLists && static_cast<std::size_t>(row) < rows.size());
+  assert(list < RowSlabs<Real>::kLists && at_index(row) < rows.size());
   blocks_[deal_of(list)].emplace_back(batch_of(row), rows);
 }
 
@@ -138,8 +135,7 @@ void RowDeals<Real>::give_back(std::span<GuardRow<Real>> rows, Executor* executo
   if (!changed_) return;
   changed_ = false;
   run_chunks(few_ ? nullptr : executor, static_cast<int>(kDeals), [&](int number) {
-    for (const RowBlock<Real>& block : blocks_[static_cast<std::size_t>(number)])
-      block.give_back(rows);
+    for (const RowBlock<Real>& block : blocks_[at_index(number)]) block.give_back(rows);
   });
 }
 

@@ -20,7 +20,7 @@ bool weigh(const std::vector<Real>& inverse_mass, const PairSeparation<Real>& s,
   Real mobility = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     row.weight[k] = s.weight[k];
-    row.share[k] = s.weight[k] * inverse_mass[static_cast<std::size_t>(row.particle[k])];
+    row.share[k] = s.weight[k] * inverse_mass[at_index(row.particle[k])];
     mobility += row.share[k] * row.weight[k];
   }
   assert(!(mobility < 0));
@@ -50,7 +50,7 @@ template <class Real>
 void turn_list(const RowSource<Real>& source, const std::vector<Index>& list, RowPart<Real>& part,
                std::vector<GuardRow<Real>>& rows) {
   for (const Index k : list) {
-    const GuardRow<Real>& row = rows[static_cast<std::size_t>(k)];
+    const GuardRow<Real>& row = rows[at_index(k)];
     if (row.push > 0) part.columns[kind_of(row)].add(k, 0, row.particle);
   }
   for (PairColumns<Real>& columns : part.columns) {
@@ -76,9 +76,7 @@ GuardRow<Real>* row_before(const GuardRow<Real>& row, RowMaking<Real>& making) {
   const auto from = [&](std::uint64_t key) {
     return std::lower_bound(keys.begin(), keys.end(), std::pair<std::uint64_t, Index>{key, 0});
   };
-  const auto at = [&](auto found) {
-    return &making.old_rows[static_cast<std::size_t>(found->second)];
-  };
+  const auto at = [&](auto found) { return &making.old_rows[at_index(found->second)]; };
   const auto same = from(row.key);
   if (same != keys.end() && same->first == row.key) return at(same);
   if (kind_of(row) == PairKind::edge_edge) return nullptr;
@@ -123,8 +121,7 @@ bool make_row(const RowSource<Real>& source, const GuardedPair<Real>& pair,
     return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
-    approach -=
-        s.weight[k] * s.normal.dot(source.state.v[static_cast<std::size_t>(pair.particle[k])]);
+    approach -= s.weight[k] * s.normal.dot(source.state.v[at_index(pair.particle[k])]);
   const Real soon = std::max(Real(0), approach) * Real(2 * kLongestRows);
   const Real margin = std::max(cloths.thickest * Real(kRowMargin), soon);
   if (s.gap > cloths.thickest + margin) return false;
@@ -133,9 +130,7 @@ bool make_row(const RowSource<Real>& source, const GuardedPair<Real>& pair,
   if (s.gap > row.radius + margin) return false;
   row.particle = pair.particle;
   if (!weigh(source.state.inverse_mass, s, row)) return false;
-  row.friction = (cloths.friction[static_cast<std::size_t>(p)] +
-                  cloths.friction[static_cast<std::size_t>(q)]) /
-                 2;
+  row.friction = (cloths.friction[at_index(p)] + cloths.friction[at_index(q)]) / 2;
   row.key = key_of(pair);
   row.apart = weighted(row, source.x);
   return true;
@@ -159,7 +154,7 @@ void make_near_rows(const RowSource<Real>& source, const GuardedPairs<Real>& pai
 template <class Real>
 bool has_moved(const RowMaking<Real>& making, const std::array<Index, 4>& particles) {
   return std::any_of(particles.begin(), particles.end(),
-                     [&](Index i) { return making.is_moved[static_cast<std::size_t>(i)] != 0; });
+                     [&](Index i) { return making.is_moved[at_index(i)] != 0; });
 }
 
 /// Drops the rows of particles that have moved, and keeps in mind what they pushed.
@@ -183,7 +178,7 @@ template <class Real>
 void list_moved_pairs(GuardedPairs<Real>& pairs, RowMaking<Real>& making) {
   ++pairs.listing;
   for (const Index k : making.moved) {
-    for_pairs_of(pairs, static_cast<std::size_t>(k), [&](GuardedPair<Real>& pair) {
+    for_pairs_of(pairs, at_index(k), [&](GuardedPair<Real>& pair) {
       if (std::exchange(pair.listed, pairs.listing) != pairs.listing)
         making.candidates.push_back(pairs.number_of(pair));
     });
@@ -226,7 +221,7 @@ void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
                          const QuadArray<Real>& x, RowMaking<Real>& making) {
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
     for (const Index k : pair.particle) {
-      const auto i = static_cast<std::size_t>(k);
+      const auto i = at_index(k);
       if (!pairs.is_active[i]) making.x[i] = x[i];
     }
   });
@@ -248,7 +243,7 @@ bool find_moved(const std::vector<Index>& active, const QuadArray<Real>& x, Real
   if (old) making.time = 0;
   const Real most = thickest * static_cast<Real>(old ? kRestMotion : kRowMotion);
   for (const Index k : active) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     const Quad<Real> moved = x[i] - making.x[i];
     if (!(dot(moved, moved) <= most * most)) making.moved.push_back(k);
   }
@@ -263,10 +258,10 @@ void renew_rows(const RowSource<Real>& source, const QuadArray<Real>& anchor,
                 Executor* executor, Profile& profile) {
   assert(anchor.size() == source.x.size() && making.x.size() == source.x.size());
   const StageTimer timer(profile, Stage::narrow_phase, 0);
-  for (const Index k : making.moved) making.is_moved[static_cast<std::size_t>(k)] = 1;
+  for (const Index k : making.moved) making.is_moved[at_index(k)] = 1;
   drop_moved_rows(making, rows);
   for (const Index k : pairs.active) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     making.off_anchor[i] = length(source.x[i] - anchor[i]);
   }
   making.candidates.clear();
@@ -286,7 +281,7 @@ void renew_rows(const RowSource<Real>& source, const QuadArray<Real>& anchor,
     make_near_rows(source, pairs, making.parts[n]);
   });
   for (const Index k : making.moved) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     making.is_moved[i] = 0;
     making.x[i] = source.x[i];
   }

@@ -29,12 +29,12 @@ template <class Real>
 void list_row(std::size_t r, RowSet<Real>& rows) {
   assert(r == rows.next.size() && r < rows.all.size());
   const GuardRow<Real>& row = rows.all[r];
-  Index& last = rows.first[static_cast<std::size_t>(row.particle[0])];
+  Index& last = rows.first[at_index(row.particle[0])];
   rows.next.push_back(std::exchange(last, static_cast<Index>(r)));
   for (const Index i : row.particle) {
-    if (std::exchange(rows.has_particle[static_cast<std::size_t>(i)], 1)) continue;
+    if (std::exchange(rows.has_particle[at_index(i)], 1)) continue;
     rows.slabs.add_particle(i);
-    rows.pressure[static_cast<std::size_t>(i)] = 0;
+    rows.pressure[at_index(i)] = 0;
   }
 }
 
@@ -48,10 +48,9 @@ void add_row(const GuardRow<Real>& row, RowSet<Real>& rows) {
 template <class Real>
 bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair) {
   const std::uint64_t key = key_of(pair);
-  Index r = rows.first[static_cast<std::size_t>(pair.particle[0])];
-  assert(r == kNone || static_cast<std::size_t>(r) < rows.all.size());
-  while (r != kNone && rows.all[static_cast<std::size_t>(r)].key != key)
-    r = rows.next[static_cast<std::size_t>(r)];
+  Index r = rows.first[at_index(pair.particle[0])];
+  assert(r == kNone || at_index(r) < rows.all.size());
+  while (r != kNone && rows.all[at_index(r)].key != key) r = rows.next[at_index(r)];
   return r != kNone;
 }
 

@@ -64,7 +64,7 @@ void keep_rows(RowSet<Real>& rows, Keeps&& keeps) {
   }
   rows.all.resize(kept);
   rows.slabs.visit_particles(nullptr, [&](Index k) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     rows.has_particle[i] = 0;
     rows.first[i] = kNone;
   });

@@ -20,10 +20,10 @@ void RowSlabs<Real>::cut(const std::vector<Index>& particles, const QuadArray<Re
   int longest = 0;
   Real most = -1;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Real>& samples = samples_[static_cast<std::size_t>(axis)];
+    std::vector<Real>& samples = samples_[at_index(axis)];
     samples.clear();
     for (std::size_t k = 0; k < particles.size(); k += step) {
-      const Real at = x[static_cast<std::size_t>(particles[k])][axis];
+      const Real at = x[at_index(particles[k])][axis];
       if (std::isfinite(at)) samples.push_back(at);
     }
     if (samples.size() < kSlabs) return;
@@ -33,7 +33,7 @@ void RowSlabs<Real>::cut(const std::vector<Index>& particles, const QuadArray<Re
     most = extent;
     longest = axis;
   }
-  const std::vector<Real>& samples = samples_[static_cast<std::size_t>(longest)];
+  const std::vector<Real>& samples = samples_[at_index(longest)];
   for (std::size_t cut = 1; cut < kSlabs; ++cut) {
     const Real border = samples[cut * samples.size() / kSlabs];
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -62,7 +62,7 @@ std::uint8_t RowSlabs<Real>::list_of(const std::array<Index, 4>& particles) cons
   assert(!slab_of_.empty() && "cut comes first");
   std::uint8_t first = kSlabs, last = 0;
   for (const Index i : particles) {
-    const std::uint8_t slab = slab_of_[static_cast<std::size_t>(i)];
+    const std::uint8_t slab = slab_of_[at_index(i)];
     first = std::min(first, slab);
     last = std::max(last, slab);
   }

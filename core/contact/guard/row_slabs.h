@@ -86,9 +86,8 @@ class RowSlabs {
 
   /// Lists a particle that rows have, once.
   void add_particle(Index particle) {
-    assert(slab_of_.empty() || static_cast<std::size_t>(particle) < slab_of_.size());
-    particles_[slab_of_.empty() ? 0 : slab_of_[static_cast<std::size_t>(particle)]].push_back(
-        particle);
+    assert(slab_of_.empty() || at_index(particle) < slab_of_.size());
+    particles_[slab_of_.empty() ? 0 : slab_of_[at_index(particle)]].push_back(particle);
     ++particle_count_;
   }
   void clear_particles();
@@ -100,7 +99,7 @@ class RowSlabs {
   void visit_particles(Executor* executor, Visit&& visit) const {
     run_chunks(particle_count_ < kFewParticles ? nullptr : executor, static_cast<int>(kSlabs),
                [&](int slab) {
-                 for (const Index i : particles_[static_cast<std::size_t>(slab)]) visit(i);
+                 for (const Index i : particles_[at_index(slab)]) visit(i);
                });
   }
 

@@ -59,7 +59,7 @@ void load_velocities(const Vec3Array<Real>& from, const RowSlabs<Real>& slabs, Q
     return;
   }
   slabs.visit_particles(executor, [&](Index k) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     to[i] = to_quad(from[i]);
   });
 }
@@ -73,7 +73,7 @@ void store_velocities(const QuadArray<Real>& from, const RowSlabs<Real>& slabs, 
     return;
   }
   slabs.visit_particles(executor, [&](Index k) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     to[i] = to_vector(from[i]);
   });
 }
@@ -89,22 +89,21 @@ void find_busy_rows(const QuadArray<Real>& x, const QuadArray<Real>& v, Real dt,
   }
   const Real time = dt * Real(kStepsBetweenLooks * kBusyApproach);
   rows.slabs.choose(executor, [&x, &v, &rows, time](Index k) {
-    return is_busy(x, v, time, rows.all[static_cast<std::size_t>(k)]);
+    return is_busy(x, v, time, rows.all[at_index(k)]);
   });
 }
 
 template <class Real>
 void measure_pressures(const std::vector<Real>& inverse_area, Real kicked, RowSet<Real>& rows,
                        Executor* executor) {
-  rows.slabs.visit_particles(executor,
-                             [&](Index i) { rows.pressure[static_cast<std::size_t>(i)] = 0; });
+  rows.slabs.visit_particles(executor, [&](Index i) { rows.pressure[at_index(i)] = 0; });
   rows.most_pressure = rows.slabs.largest(executor, [&](Index k) {
-    const GuardRow<Real>& row = rows.all[static_cast<std::size_t>(k)];
+    const GuardRow<Real>& row = rows.all[at_index(k)];
     Real most = 0;
     if (row.push == 0) return most;
     const Real force = row.push / (2 * kicked);
     for (std::size_t n = 0; n < 4; ++n) {
-      const auto i = static_cast<std::size_t>(row.particle[n]);
+      const auto i = at_index(row.particle[n]);
       rows.pressure[i] += std::abs(row.weight[n]) * force * inverse_area[i];
       most = std::max(most, rows.pressure[i]);
     }

@@ -60,7 +60,7 @@ Vec3<Real> find_way_out(const ObjectRowSource<Real>& source, std::size_t collide
   Vec3<Real> normals = Vec3<Real>::Zero();
   Real area = 0;
   for (const Triangle& t : source.cloths.patches.triangles) {
-    const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
+    const auto at = [&](std::size_t k) { return at_index(t[k]); };
     if (!part.has[at(0)] && !part.has[at(1)] && !part.has[at(2)]) continue;
     const Vec3<Real> n = (x[at(1)] - x[at(0)]).cross(x[at(2)] - x[at(0)]);
     normals += n;
@@ -111,7 +111,7 @@ void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& 
                 ObjectRows<Real>& rows) {
   assert(distance < 0);
   const Index cloth = cloth_of(source.cloths, i);
-  const Vec3<Real>& x = source.state.x[static_cast<std::size_t>(i)];
+  const Vec3<Real>& x = source.state.x[at_index(i)];
   auto exit = std::find_if(rows.exits.begin(), rows.exits.end(), [&](const BadStart<Real>& e) {
     return e.collider == collider && e.cloth == cloth;
   });

@@ -15,15 +15,15 @@ inline constexpr Index kOutside = -1, kInsideSeveral = -2;
 
 /// Notes that a particle is inside a collider.
 inline void note_inside(Index particle, std::size_t collider, std::vector<Index>& inside) {
-  assert(static_cast<std::size_t>(particle) < inside.size());
-  Index& known = inside[static_cast<std::size_t>(particle)];
+  assert(at_index(particle) < inside.size());
+  Index& known = inside[at_index(particle)];
   const auto number = static_cast<Index>(collider);
   known = known == kOutside || known == number ? number : kInsideSeveral;
 }
 
 inline bool is_inside(Index particle, std::size_t collider, const std::vector<Index>& inside) {
-  assert(static_cast<std::size_t>(particle) < inside.size());
-  const Index known = inside[static_cast<std::size_t>(particle)];
+  assert(at_index(particle) < inside.size());
+  const Index known = inside[at_index(particle)];
   return known == static_cast<Index>(collider) || known == kInsideSeveral;
 }
 

@@ -28,7 +28,7 @@ void measure_spans(const std::vector<Edge>& edges, const Vec3Array<Real>& x,
                    std::vector<Real>& span) {
   span.assign(x.size(), Real(0));
   for (const Edge& e : edges) {
-    const auto i = static_cast<std::size_t>(e[0]), j = static_cast<std::size_t>(e[1]);
+    const auto i = at_index(e[0]), j = at_index(e[1]);
     const Real own = Real(kTriangleSpan) * (x[i] - x[j]).norm();
     span[i] = std::max(span[i], own);
     span[j] = std::max(span[j], own);
@@ -104,27 +104,26 @@ void mark_near(const ContactCloths<Real>& cloths, Clearance<Real>& clearance,
   near.triangles.clear();
   near.particles.clear();
   near.patches.clear();
-  const auto is_near = [&](Index i) { return c.near[static_cast<std::size_t>(i)] != 0; };
+  const auto is_near = [&](Index i) { return c.near[at_index(i)] != 0; };
   const auto number = [](const auto& list) { return static_cast<Index>(list.size()); };
   for (const Edge& ends : patches.edges) {
     if (is_near(ends[0]) || is_near(ends[1]))
-      near.active[static_cast<std::size_t>(ends[0])] =
-          near.active[static_cast<std::size_t>(ends[1])] = 1;
+      near.active[at_index(ends[0])] = near.active[at_index(ends[1])] = 1;
   }
   for (std::size_t p = 0; p < patches.list.size(); ++p) {
     const ClothPatch& patch = patches.list[p];
     NearPatch found{
         p, {number(near.particles), 0}, {number(near.edges), 0}, {number(near.triangles), 0}};
     for (Index k = patch.particles.first; k < patch.particles.end(); ++k) {
-      const Index i = patches.particles[static_cast<std::size_t>(k)];
-      if (near.active[static_cast<std::size_t>(i)]) near.particles.push_back(i);
+      const Index i = patches.particles[at_index(k)];
+      if (near.active[at_index(i)]) near.particles.push_back(i);
     }
     for (Index e = patch.edges.first; e < patch.edges.end(); ++e) {
-      const Edge& ends = patches.edges[static_cast<std::size_t>(e)];
+      const Edge& ends = patches.edges[at_index(e)];
       if (is_near(ends[0]) || is_near(ends[1])) near.edges.push_back(e);
     }
     for (Index t = patch.triangles.first; t < patch.triangles.end(); ++t) {
-      const Triangle& corners = patches.triangles[static_cast<std::size_t>(t)];
+      const Triangle& corners = patches.triangles[at_index(t)];
       if (std::any_of(corners.begin(), corners.end(), is_near)) near.triangles.push_back(t);
     }
     found.particles.count = number(near.particles) - found.particles.first;
@@ -146,7 +145,7 @@ bool renew_clearance(const ContactCloths<Real>& cloths, const ObjectShapes<Real>
   Clearance<Real>& c = clearance;
   const auto for_joined = [&](auto&& visit) {
     for (const auto& neighbour : cloths.patches.neighbours.of(i)) {
-      const auto j = static_cast<std::size_t>(neighbour.particle);
+      const auto j = at_index(neighbour.particle);
       visit(j, Real(kTriangleSpan) * (state.x[i] - state.x[j]).norm());
     }
   };
@@ -180,7 +179,7 @@ void take_to_own(const ObjectShapes<Real>& shapes, const Vec3Array<Real>& x,
     if (!frame.displaced) continue;
     near.x_own[m].resize(x.size());
     for (const Index i : near.particles) {
-      const auto p = static_cast<std::size_t>(i);
+      const auto p = at_index(i);
       near.x_own[m][p] = frame.own(x[p]);
     }
   }

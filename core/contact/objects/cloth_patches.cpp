@@ -22,7 +22,7 @@ class Grouping {
       : group_(triangles.size()) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       Vec3<Real> sum = Vec3<Real>::Zero();
-      for (const Index i : triangles[t]) sum += positions[static_cast<std::size_t>(i)];
+      for (const Index i : triangles[t]) sum += positions[at_index(i)];
       centres_.push_back(sum / Real(3));
       order_.push_back(t);
     }
@@ -73,7 +73,7 @@ std::vector<Feature> in_groups(const std::vector<Feature>& features,
   }
   std::vector<Feature> sorted(features.size());
   for (std::size_t k = 0; k < features.size(); ++k)
-    sorted[static_cast<std::size_t>(first[group[k]]++)] = features[k];
+    sorted[at_index(first[group[k]]++)] = features[k];
   return sorted;
 }
 
@@ -89,14 +89,14 @@ ClothPatches make_patches(const Vec3Array<Real>& positions, const std::vector<Ed
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     of_triangle.push_back(grouping.of(t));
     for (const Index i : triangles[t]) {
-      std::size_t& group = of_particle[static_cast<std::size_t>(i)];
+      std::size_t& group = of_particle[at_index(i)];
       if (group == kNoGroup) group = grouping.of(t);
     }
   }
   for (std::size_t& group : of_particle) {
     if (group == kNoGroup) group = groups++;
   }
-  for (const Edge& e : edges) of_edge.push_back(of_particle[static_cast<std::size_t>(e[0])]);
+  for (const Edge& e : edges) of_edge.push_back(of_particle[at_index(e[0])]);
 
   ClothPatches patches;
   patches.list.resize(groups);

@@ -55,7 +55,7 @@ void Contact<Real>::let_rest(const ClothState<Real>& state) {
   if (state.asleep.empty()) return;
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Index cloth = cloth_of(cloths_, static_cast<Index>(i));
-    clearance_.resting.push_back(state.asleep[static_cast<std::size_t>(cloth)]);
+    clearance_.resting.push_back(state.asleep[at_index(cloth)]);
   }
 }
 
@@ -268,8 +268,8 @@ bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
   return std::any_of(rows_.all.begin(), rows_.all.end(), [&x](const ContactRow<Real>& row) {
     if (!row.responds) return false;
     Real height = -row.offset;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-      height += row.normal.dot(x[static_cast<std::size_t>(row.particle[k])]) * row.weight[k];
+    for (std::size_t k = 0; k < row.count; ++k)
+      height += row.normal.dot(x[at_index(row.particle[k])]) * row.weight[k];
     return height <= row.thickness * static_cast<Real>(kTouching);
   });
 }
@@ -277,9 +277,8 @@ bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
 template <class Real>
 Real Contact<Real>::gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const {
   Vec3<Real> p = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-    p += x[static_cast<std::size_t>(row.particle[k])] * row.weight[k];
-  const Real distance = distance_from(shapes_, static_cast<std::size_t>(row.collider), p);
+  for (std::size_t k = 0; k < row.count; ++k) p += x[at_index(row.particle[k])] * row.weight[k];
+  const Real distance = distance_from(shapes_, at_index(row.collider), p);
   return distance < Real(kFarAway) ? distance : row.normal.dot(p) - row.offset;
 }
 
@@ -292,7 +291,7 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
     // measuring.
     Real known = 0, edge = 0;
     for (const auto& neighbour : cloths_.patches.neighbours.of(i)) {
-      const auto j = static_cast<std::size_t>(neighbour.particle);
+      const auto j = at_index(neighbour.particle);
       if (j >= i) continue;
       edge = std::max(edge, (x[i] - x[j]).norm());
       known = std::max(known, distance[j] - (x[i] - x[j]).norm());
@@ -301,7 +300,7 @@ double Contact<Real>::deepest_penetration(const Vec3Array<Real>& x) const {
     least = std::min(least, distance.back());
   }
   for (const Edge& edge : cloths_.patches.edges) {
-    const auto i = static_cast<std::size_t>(edge[0]), j = static_cast<std::size_t>(edge[1]);
+    const auto i = at_index(edge[0]), j = at_index(edge[1]);
     const Vec3<Real> along = x[j] - x[i];
     const Real length = along.norm();
     for (const Real t : {Real(0.25), Real(0.5), Real(0.75)}) {

@@ -32,13 +32,13 @@ Index cloth_of(const ContactCloths<Real>& cloths, Index particle) {
 /// Settings of the cloth of a row.
 template <class Real>
 const ContactDef& settings_of(const ContactCloths<Real>& cloths, const ContactRow<Real>& row) {
-  return cloths.defs[static_cast<std::size_t>(row.cloth)];
+  return cloths.defs[at_index(row.cloth)];
 }
 
 /// Thickness of a particle's cloth [m].
 template <class Real>
 Real thickness_at(const ContactCloths<Real>& cloths, Index particle) {
-  const auto cloth = static_cast<std::size_t>(cloth_of(cloths, particle));
+  const auto cloth = at_index(cloth_of(cloths, particle));
   return static_cast<Real>(cloths.defs[cloth].thickness);
 }
 

@@ -15,8 +15,7 @@ void ContactLog::want(bool contacts, bool each) {
 }
 
 void ContactLog::clear() {
-  for (const Slot& slot : slots_)
-    first_slot_[static_cast<std::size_t>(slot.contact.particle[0])] = kNone;
+  for (const Slot& slot : slots_) first_slot_[at_index(slot.contact.particle[0])] = kNone;
   slots_.clear();
   sums_.clear();
   entries_.clear();

@@ -119,31 +119,28 @@ class ContactLog {
   static ContactPoint entry_of(const auto& row) {
     ContactPoint c;
     c.collider = row.collider;
-    c.count = c.first_side = row.count;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-      c.particle[k] = row.particle[k];
+    c.count = c.first_side = static_cast<int>(row.count);
+    for (std::size_t k = 0; k < row.count; ++k) c.particle[k] = row.particle[k];
     take_plane(row, c);
     return c;
   }
   static void take_plane(const auto& row, ContactPoint& c) {
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-      c.weight[k] = static_cast<double>(row.weight[k]);
+    for (std::size_t k = 0; k < row.count; ++k) c.weight[k] = static_cast<double>(row.weight[k]);
     c.normal = row.normal.template cast<double>();
   }
   /// 0 if no impulse can move the row's point.
   static double mass_of(const auto& row, const auto& state) {
     double mobility = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    for (std::size_t k = 0; k < row.count; ++k) {
       const double weight = row.weight[k];
       mobility +=
-          weight * weight *
-          static_cast<double>(state.inverse_mass[static_cast<std::size_t>(row.particle[k])]);
+          weight * weight * static_cast<double>(state.inverse_mass[at_index(row.particle[k])]);
     }
     return mobility > 0 ? 1 / mobility : 0;
   }
   static bool is_of(const ContactPoint& c, const auto& row) {
-    if (c.collider != row.collider || c.count != row.count) return false;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    if (c.collider != row.collider || static_cast<std::size_t>(c.count) != row.count) return false;
+    for (std::size_t k = 0; k < row.count; ++k) {
       if (c.particle[k] != row.particle[k]) return false;
     }
     return true;
@@ -161,18 +158,17 @@ class ContactLog {
   }
   /// The slot of a row, new or old, with the row's plane.
   Slot& slot_of(const auto& row) {
-    const auto first = static_cast<std::size_t>(row.particle[0]);
+    const auto first = at_index(row.particle[0]);
     if (first >= first_slot_.size()) first_slot_.resize(first + 1, kNone);
     Index at = first_slot_[first];
-    while (at != kNone && !is_of(slots_[static_cast<std::size_t>(at)].contact, row))
-      at = slots_[static_cast<std::size_t>(at)].next;
+    while (at != kNone && !is_of(slots_[at_index(at)].contact, row)) at = slots_[at_index(at)].next;
     if (at == kNone) {
       at = static_cast<Index>(slots_.size());
       slots_.emplace_back();
       slots_.back().contact = entry_of(row);
       slots_.back().next = std::exchange(first_slot_[first], at);
     }
-    Slot& slot = slots_[static_cast<std::size_t>(at)];
+    Slot& slot = slots_[at_index(at)];
     take_plane(row, slot.contact);
     slot.offset = static_cast<double>(row.offset);
     return slot;
@@ -192,9 +188,9 @@ std::vector<ContactPoint> ContactLog::contacts(const auto& rows, const auto& x, 
   for (const auto& row : rows) {
     if (!row.responds) continue;
     Vec3d point = Vec3d::Zero();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-      point += x[static_cast<std::size_t>(row.particle[k])].template cast<double>() *
-               static_cast<double>(row.weight[k]);
+    for (std::size_t k = 0; k < row.count; ++k)
+      point +=
+          x[at_index(row.particle[k])].template cast<double>() * static_cast<double>(row.weight[k]);
     const double gap =
         row.normal.template cast<double>().dot(point) - static_cast<double>(row.offset);
     if (gap <= static_cast<double>(row.thickness) * reach) slot_of(row);
@@ -203,7 +199,7 @@ std::vector<ContactPoint> ContactLog::contacts(const auto& rows, const auto& x, 
     ContactPoint& c = slot.contact;
     c.point.setZero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(c.count); ++k)
-      c.point += x[static_cast<std::size_t>(c.particle[k])].template cast<double>() * c.weight[k];
+      c.point += x[at_index(c.particle[k])].template cast<double>() * c.weight[k];
     c.gap = c.normal.dot(c.point) - slot.offset;
   }
   return sorted(seconds);

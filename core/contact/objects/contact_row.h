@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/types.h"
@@ -34,8 +35,8 @@ template <class Real>
 struct ContactRow {
   std::array<Index, 3> particle = {0, 0, 0};
   std::array<Real, 3> weight = {0, 0, 0};
-  std::array<Real, 3> share = {0, 0, 0};  ///< of each in a change of the row's velocity, by mass
-  int count = 0;
+  std::array<Real, 3> share = {0, 0, 0};   ///< of each in a change of the row's velocity, by mass
+  std::uint32_t count = 0;                 ///< of particles
   Vec3<Real> normal = Vec3<Real>::Zero();  ///< out of the object
   Real offset = 0;                         ///< [m]
   Real distance = 0;                       ///< when the row was built [m]
@@ -62,9 +63,8 @@ struct RowRoom {
 /// @param travel2  of each particle
 template <class Real>
 Real farthest2(const RowRoom<Real>& room, const std::vector<Real>& travel2) {
-  return std::max({travel2[static_cast<std::size_t>(room.particle[0])],
-                   travel2[static_cast<std::size_t>(room.particle[1])],
-                   travel2[static_cast<std::size_t>(room.particle[2])]});
+  return std::max({travel2[at_index(room.particle[0])], travel2[at_index(room.particle[1])],
+                   travel2[at_index(room.particle[2])]});
 }
 
 /// What a row with an object that moves has besides.

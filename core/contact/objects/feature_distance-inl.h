@@ -181,8 +181,8 @@ HWY_INLINE void search(D d, const FeatureTable<Real>& table, std::size_t f, std:
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, near, bits);
     for (unsigned rest = bits[0]; rest != 0; rest &= rest - 1) {
-      const auto block = static_cast<std::size_t>(
-          table.blocks[n + static_cast<std::size_t>(std::countr_zero(rest))]);
+      const auto block =
+          at_index(table.blocks[n + static_cast<std::size_t>(std::countr_zero(rest))]);
       const Real* at = table.mesh + block * numbers * kFeatureLanes;
       search_block(
           d, table, reach2, static_cast<Index>(block * kFeatureLanes),

@@ -30,7 +30,7 @@ HWY_INLINE void for_each_vector(std::span<LoneBlock<Real>> blocks, Body&& body) 
   const hn::CappedTag<Real, kLoneLanes> d;
   for (LoneBlock<Real>& block : blocks) {
     for (std::size_t k = 0; k < kLoneLanes; k += hn::Lanes(d))
-      body(d, block, k, static_cast<std::size_t>(block.first) + k);
+      body(d, block, k, at_index(block.first) + k);
   }
 }
 

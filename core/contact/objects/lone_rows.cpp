@@ -58,7 +58,7 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
   assert(rooms.size() == rows.size());
   constexpr Index kNoRow = -1, kSeveral = -2;
   const auto cloth = [&](const ContactRow<Real>& row) -> const ContactDef& {
-    return cloths[static_cast<std::size_t>(row.cloth)];
+    return cloths[at_index(row.cloth)];
   };
   blocks_.clear();
   is_lone_.assign(rows.size(), 0);
@@ -67,8 +67,8 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
     const ContactRow<Real>& row = rows[r];
     const bool alone =
         row.count == 1 && row.responds && row.mover == kNone && cloth(row).restitution == 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-      Index& known = row_of_[static_cast<std::size_t>(row.particle[k])];
+    for (std::size_t k = 0; k < row.count; ++k) {
+      Index& known = row_of_[at_index(row.particle[k])];
       known = known == kNoRow && alone ? static_cast<Index>(r) : kSeveral;
     }
   }
@@ -78,8 +78,8 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
     if (blocks_.empty() || i >= static_cast<std::size_t>(blocks_.back().first) + kLoneLanes)
       blocks_.push_back(empty_block<Real>(std::min(i, particles - kLoneLanes)));
     LoneBlock<Real>& block = blocks_.back();
-    const std::size_t k = i - static_cast<std::size_t>(block.first);
-    const auto r = static_cast<std::size_t>(row_of_[i]);
+    const std::size_t k = i - at_index(block.first);
+    const auto r = at_index(row_of_[i]);
     is_lone_[r] = 1;
     for (std::size_t c = 0; c < 3; ++c) block.normal[c][k] = rows[r].normal[static_cast<Index>(c)];
     block.offset[k] = rows[r].offset;

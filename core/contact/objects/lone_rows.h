@@ -101,8 +101,7 @@ void LoneRows<Real>::for_each_crossing(const Real* travel2, Visit&& visit) const
     const LoneBlock<Real>& block = blocks_[b];
     const Real* const way2 = travel2 + block.first;
     for (std::size_t k = 0; k < kLoneLanes; ++k)
-      if (block.row[k] != kNone && !(way2[k] < block.cross2[k]))
-        visit(static_cast<std::size_t>(block.row[k]));
+      if (block.row[k] != kNone && !(way2[k] < block.cross2[k])) visit(at_index(block.row[k]));
   }
 }
 

@@ -25,21 +25,20 @@ constexpr double kBoxRounding = 1 + 1e-5;
 /// Angle by which a closed surface turns outwards at an edge [rad]; negative if it is a groove.
 double outward_turn(const TriangleMesh& mesh, const MeshEdge& edge) {
   const Vec3d n1 = unit_normal(mesh, edge.triangle[0]), n2 = unit_normal(mesh, edge.triangle[1]);
-  const Triangle& second = mesh.triangles[static_cast<std::size_t>(edge.triangle[1])];
+  const Triangle& second = mesh.triangles[at_index(edge.triangle[1])];
   Index opposite = second[0];
   for (const Index i : second) {
     if (i != edge.a && i != edge.b) opposite = i;
   }
-  const Vec3d across = mesh.positions[static_cast<std::size_t>(opposite)] -
-                       mesh.positions[static_cast<std::size_t>(edge.a)];
+  const Vec3d across = mesh.positions[at_index(opposite)] - mesh.positions[at_index(edge.a)];
   const double turn = angle_of(n1.cross(n2).norm(), n1.dot(n2));
   return n1.dot(across) < 0 ? turn : -turn;
 }
 
 /// Width of a triangle across one of its edges [m].
 double width_across(const TriangleMesh& mesh, Index triangle, const MeshEdge& edge) {
-  const auto at = [&](Index i) { return mesh.positions[static_cast<std::size_t>(i)]; };
-  const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const auto at = [&](Index i) { return mesh.positions[at_index(i)]; };
+  const Triangle& t = mesh.triangles[at_index(triangle)];
   const double doubled_area = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
   return doubled_area / (at(edge.b) - at(edge.a)).norm();
 }
@@ -51,10 +50,10 @@ std::vector<double> slopes_at_vertices(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3d n = unit_normal(mesh, static_cast<Index>(t));
     for (const Index i : mesh.triangles[t]) {
-      const Vec3d& up = normals[static_cast<std::size_t>(i)];
+      const Vec3d& up = normals[at_index(i)];
       const double along = n.dot(up);
       const double slope = along > 0 ? n.cross(up).norm() / along : INFINITY;
-      slopes[static_cast<std::size_t>(i)] = std::max(slopes[static_cast<std::size_t>(i)], slope);
+      slopes[at_index(i)] = std::max(slopes[at_index(i)], slope);
     }
   }
   return slopes;
@@ -111,7 +110,7 @@ SharpFeatures find_sharp_features(const TriangleMesh& mesh, MeshShape<Real>& sha
         (sum.norm() > 1e-6 ? sum.normalized().eval() : n1).template cast<Real>());
     const bool solid = shape.closed && !rim;
     if (solid && outward_turn(mesh, edge) <= flat) continue;
-    const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
+    const auto a = at_index(edge.a), b = at_index(edge.b);
     const Rise<double> rise =
         solid ? rise_of(mesh, edge, std::max(slopes[a], slopes[b])) : Rise<double>{INFINITY, 0};
     shape.edge_rises[e] = {static_cast<Real>(rise.slope), static_cast<Real>(rise.curvature)};
@@ -131,7 +130,7 @@ void build_tree(MeshShape<Real>& shape) {
   std::vector<Aabb<Real>> boxes;
   for (const Triangle& t : shape.triangles) {
     boxes.emplace_back();
-    for (const Index i : t) boxes.back().add(shape.positions[static_cast<std::size_t>(i)]);
+    for (const Index i : t) boxes.back().add(shape.positions[at_index(i)]);
   }
   shape.triangle_tree.build(boxes);
 }
@@ -144,9 +143,7 @@ std::vector<Index> sorted_by_place(const std::vector<Index>& triangle_of,
   for (std::size_t f = 0; f < triangle_of.size(); ++f) {
     if (triangle_of[f] != kNone) sorted.push_back(static_cast<Index>(f));
   }
-  const auto place_of = [&](Index f) {
-    return place[static_cast<std::size_t>(triangle_of[static_cast<std::size_t>(f)])];
-  };
+  const auto place_of = [&](Index f) { return place[at_index(triangle_of[at_index(f)])]; };
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](Index f, Index g) { return place_of(f) < place_of(g); });
   return sorted;
@@ -160,10 +157,10 @@ void build_blocks(const SharpFeatures& sharp, MeshShape<Real>& shape) {
                                        [&](Index t) { order.push_back(t); });
   assert(order.size() == shape.triangles.size());
   std::vector<std::size_t> place(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = k;
-  const auto at = [&](Index v) { return shape.positions[static_cast<std::size_t>(v)]; };
-  const auto triangle = [&](Index t) { return shape.triangles[static_cast<std::size_t>(t)]; };
-  const auto edge = [&](Index e) { return shape.edges[static_cast<std::size_t>(e)]; };
+  for (std::size_t k = 0; k < order.size(); ++k) place[at_index(order[k])] = k;
+  const auto at = [&](Index v) { return shape.positions[at_index(v)]; };
+  const auto triangle = [&](Index t) { return shape.triangles[at_index(t)]; };
+  const auto edge = [&](Index e) { return shape.edges[at_index(e)]; };
   const auto box_of = [&](std::initializer_list<Index> vertices) {
     Aabb<Real> box;
     for (const Index v : vertices) box.add(at(v));
@@ -198,12 +195,10 @@ void build_blocks(const SharpFeatures& sharp, MeshShape<Real>& shape) {
 /// Normal of the feature of triangle t that is nearest: face, corner, or edge.
 template <class Real>
 Vec3<Real> feature_normal(const MeshShape<Real>& mesh, Index t, int feature) {
-  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-  if (feature == 0) return mesh.face_normals[static_cast<std::size_t>(t)];
-  if (feature <= 3)
-    return mesh
-        .vertex_normals[static_cast<std::size_t>(triangle[static_cast<std::size_t>(feature - 1)])];
-  const auto k = static_cast<std::size_t>(feature - 4);
+  const Triangle& triangle = mesh.triangles[at_index(t)];
+  if (feature == 0) return mesh.face_normals[at_index(t)];
+  if (feature <= 3) return mesh.vertex_normals[at_index(triangle[at_index(feature - 1)])];
+  const auto k = at_index(feature - 4);
   const Index i = triangle[k], j = triangle[(k + 1) % 3];
   // Edges are ordered by their ends.
   const auto found =
@@ -230,13 +225,11 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
     shape.face_normals.push_back(unit_normal(mesh, static_cast<Index>(t)).cast<Real>());
   shape.edges = edges_of(mesh);
   for (const MeshEdge& e : shape.edges) {
-    const double length = (mesh.positions[static_cast<std::size_t>(e.a)] -
-                           mesh.positions[static_cast<std::size_t>(e.b)])
-                              .norm();
+    const double length = (mesh.positions[at_index(e.a)] - mesh.positions[at_index(e.b)]).norm();
     shape.longest_edge = std::max(shape.longest_edge, static_cast<Real>(length));
   }
   for (const Triangle& t : mesh.triangles) {
-    const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(t[k])]; };
+    const auto at = [&](std::size_t k) { return mesh.positions[at_index(t[k])]; };
     const Vec3d ab = at(1) - at(0), ac = at(2) - at(0);
     const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
     shape.rounding = std::max(
@@ -252,10 +245,10 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
 /// In double precision: at a sharp ridge or corner a small error would change sides.
 template <class Real>
 MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
-  assert(t >= 0 && static_cast<std::size_t>(t) < mesh.triangles.size());
-  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  assert(at_index(t) < mesh.triangles.size());
+  const Triangle& triangle = mesh.triangles[at_index(t)];
   const auto corner = [&](std::size_t k) -> Vec3d {
-    return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
+    return mesh.positions[at_index(triangle[k])].template cast<double>();
   };
   const Vec3d point = p.template cast<double>();
   const auto nearest = closest_on_triangle<double>(point, corner(0), corner(1), corner(2));
@@ -284,9 +277,9 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   mesh.triangle_tree.nearest(
       reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
       [&](Index t, Real bound) {
-        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+        const Triangle& triangle = mesh.triangles[at_index(t)];
         const auto corner = [&](std::size_t k) -> Vec3d {
-          return mesh.positions[static_cast<std::size_t>(triangle[k])].template cast<double>();
+          return mesh.positions[at_index(triangle[k])].template cast<double>();
         };
         const double d2 =
             (point - closest_on_triangle<double>(point, corner(0), corner(1), corner(2)).point)

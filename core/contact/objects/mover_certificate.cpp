@@ -33,8 +33,8 @@ bool keep_off_mover(ObjectCertificate<Real>& c, const ContactRow<Real>& row) {
   ClothState<Real>& state = c.state;
   const ColliderFrame<Real>& frame = c.shapes.frames[c.rows.moving_of(row)->collider];
   bool kept = false;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-    const auto i = static_cast<std::size_t>(row.particle[k]);
+  for (std::size_t k = 0; k < row.count; ++k) {
+    const auto i = at_index(row.particle[k]);
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = height_after<Real>(c.rows, c.shapes, row, state.x[i] + state.v[i] * c.dt);
     const Real least = std::min(now, least_height(row, true, c.smallest_gap));
@@ -63,8 +63,8 @@ bool hold_row(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool carr
   const MovingRow<Real>* const mover = c.rows.moving_of(row);
   const std::size_t collider = mover ? mover->collider : 0;
   bool changed = false;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-    const auto i = static_cast<std::size_t>(row.particle[k]);
+  for (std::size_t k = 0; k < row.count; ++k) {
+    const auto i = at_index(row.particle[k]);
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = height_after<Real>(c.rows, c.shapes, row, state.x[i] + state.v[i] * c.dt);
     const bool moves = mover && c.shapes.frames[collider].moves;

@@ -30,7 +30,7 @@ bool find_stopped(const ClothState<Real>& state, MoverStops<Real>& stops) {
 /// shorter.
 template <class Real>
 bool ends_legally(const StoppedStep<Real>& step, const ContactRow<Real>& row, std::size_t k) {
-  const auto i = static_cast<std::size_t>(row.particle[k]);
+  const auto i = at_index(row.particle[k]);
   const Real start = row.normal.dot(step.x_unpushed[i]) - row.offset;
   const Real end =
       height_after<Real>(step.rows, step.shapes, row, step.state.x[i] + step.state.v[i] * step.dt);
@@ -41,7 +41,7 @@ bool ends_legally(const StoppedStep<Real>& step, const ContactRow<Real>& row, st
 template <class Real>
 bool hits_stopped(const StoppedStep<Real>& step, const std::vector<char>& is_stopped,
                   const ContactRow<Real>& row, std::size_t k) {
-  return is_stopped[static_cast<std::size_t>(row.particle[k])] && !ends_legally(step, row, k);
+  return is_stopped[at_index(row.particle[k])] && !ends_legally(step, row, k);
 }
 
 /// Stops the objects that would go into particles that were stopped.
@@ -53,7 +53,7 @@ bool block_before_stopped(StoppedStep<Real>& step, const std::vector<char>& is_s
     const ContactRow<Real>& row = step.rows.all[moving.row];
     if (!step.shapes.frames[moving.collider].moves) continue;
     ColliderState& collider = (*step.motion.colliders)[moving.collider];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    for (std::size_t k = 0; k < row.count; ++k) {
       if (!hits_stopped(step, is_stopped, row, k)) continue;
       if (collider.forced) {
         collider.voided = true;
@@ -73,7 +73,7 @@ bool may_stand(const StoppedStep<Real>& step) {
   for (const MovingRow<Real>& moving : step.rows.moving) {
     if (!step.shapes.frames[moving.collider].blocked) continue;
     const ContactRow<Real>& row = step.rows.all[moving.row];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+    for (std::size_t k = 0; k < row.count; ++k) {
       if (!ends_legally(step, row, k)) return false;
     }
   }
@@ -93,8 +93,7 @@ void halt_all(StoppedStep<Real>& step) {
       continue;
     }
     const ContactRow<Real>& row = step.rows.all[moving.row];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-      collider.voided |= !ends_legally(step, row, k);
+    for (std::size_t k = 0; k < row.count; ++k) collider.voided |= !ends_legally(step, row, k);
   }
 }
 

@@ -24,8 +24,8 @@ bool measure_pushed_travel(ObjectCertificate<Real>& c) {
   bool within = c.response.lone.within;
   for (const std::size_t r : c.response.pushed) {
     const ContactRow<Real>& row = c.rows.all[r];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-      const auto i = static_cast<std::size_t>(row.particle[k]);
+    for (std::size_t k = 0; k < row.count; ++k) {
+      const auto i = at_index(row.particle[k]);
       const Vec3<Real> moved = c.state.x[i] - reach.x[i];
       const Real end2 = (moved + c.state.v[i] * c.dt).squaredNorm();
       reach.travel2[i] = std::max(moved.squaredNorm(), end2);
@@ -45,8 +45,8 @@ void log_hold(ObjectCertificate<Real>& c, std::size_t i, const Vec3<Real>& befor
   for (const ContactRow<Real>& row : c.rows.all) {
     const Real room = row.normal.dot(c.state.x[i]) - row.offset;
     if (!(room < least)) continue;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-      if (static_cast<std::size_t>(row.particle[k]) != i) continue;
+    for (std::size_t k = 0; k < row.count; ++k) {
+      if (at_index(row.particle[k]) != i) continue;
       nearest = &row;
       place = k;
       least = room;
@@ -120,8 +120,8 @@ void log_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size
   single.particle = {row.particle[k], 0, 0};
   single.weight = {Real(1), 0, 0};
   single.count = 1;
-  assert(c.log.wanted() && k < static_cast<std::size_t>(row.count));
-  const Vec3<Real> change = c.state.v[static_cast<std::size_t>(row.particle[k])] - before;
+  assert(c.log.wanted() && k < row.count);
+  const Vec3<Real> change = c.state.v[at_index(row.particle[k])] - before;
   c.log.add_apart(single, change, c.state);
 }
 
@@ -129,8 +129,8 @@ template <class Real>
 bool keep_off(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool hold) {
   ClothState<Real>& state = c.state;
   bool kept = false;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-    const auto i = static_cast<std::size_t>(row.particle[k]);
+  for (std::size_t k = 0; k < row.count; ++k) {
+    const auto i = at_index(row.particle[k]);
     const Real now = row.normal.dot(state.x[i]) - row.offset;
     const Real end = row.normal.dot(state.x[i] + state.v[i] * c.dt) - row.offset;
     const Real least = least_end(row, now, c.smallest_gap);

@@ -43,7 +43,7 @@ ClothFeature<Real> look_at(Index number, const ObjectRowSource<Real>& source,
   feature.number = number;
   bool inside = false;
   for (const Index i : particles) {
-    const auto p = static_cast<std::size_t>(i);
+    const auto p = at_index(i);
     feature.reach = std::max(feature.reach, source.reach[p]);
     feature.moved = std::max(feature.moved, scratch.moved[p]);
     inside |= is_inside(i, collider, scratch.inside);
@@ -82,10 +82,6 @@ bool may_meet(const ObjectRowSource<Real>& source, const ClothFeature<Real>& fea
               const ContactCandidate<Real>& pair, bool carried) {
   assert(feature.number == pair.cloth && pair.distance <= feature.far);
   return !carried || pair.distance - feature.moved <= beyond(source, feature.reach);
-}
-
-std::size_t at_index(Index k) {
-  return static_cast<std::size_t>(k);
 }
 
 /// Calls visit(pair, feature, carried) for the pairs that could meet while the rows hold.
@@ -130,10 +126,8 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const Vec3Array<Real>& own = in_frame_of(source.shapes, source.near, m, source.state.x);
-  const auto at = [&](Index i) { return in_double(own[static_cast<std::size_t>(i)]); };
-  const auto corner = [&](Index v) {
-    return in_double(mesh.positions[static_cast<std::size_t>(v)]);
-  };
+  const auto at = [&](Index i) { return in_double(own[at_index(i)]); };
+  const auto corner = [&](Index v) { return in_double(mesh.positions[at_index(v)]); };
   const auto add = [&](const ContactCandidate<Real>& pair, const ClothFeature<Real>& feature,
                        bool carried) {
     const Edge& e = source.cloths.patches.edges[at_index(pair.cloth)];
@@ -181,7 +175,7 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   const Vec3Array<Real>& own = in_frame_of(source.shapes, source.near, m, source.state.x);
-  const auto at = [&](Index i) { return in_double(own[static_cast<std::size_t>(i)]); };
+  const auto at = [&](Index i) { return in_double(own[at_index(i)]); };
   const auto add = [&](const ContactCandidate<Real>& pair, const ClothFeature<Real>& feature,
                        bool carried) {
     const Triangle& t = source.cloths.patches.triangles[at_index(pair.cloth)];

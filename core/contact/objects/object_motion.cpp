@@ -20,7 +20,7 @@ void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& s
     if (!frame.tracked || !count_resistance(dt, colliders[k])) continue;
     frame.rest = std::max(frame.rest, 1);
     if (colliders[k].mate == kNone) continue;
-    ColliderFrame<Real>& mate = shapes.frames[static_cast<std::size_t>(colliders[k].mate)];
+    ColliderFrame<Real>& mate = shapes.frames[at_index(colliders[k].mate)];
     mate.rest = std::max(mate.rest, 1);
   }
 }
@@ -111,7 +111,7 @@ void block_object(std::size_t collider, ObjectShapes<Real>& shapes, ObjectMotion
   };
   stop(collider);
   const Index mate = (*motion.colliders)[collider].mate;
-  if (mate != kNone) stop(static_cast<std::size_t>(mate));
+  if (mate != kNone) stop(at_index(mate));
   motion.since_rows = 0;
   for (const ColliderFrame<Real>& frame : shapes.frames)
     motion.since_rows = std::max(motion.since_rows, frame.travel_since_rows + frame.travel);

@@ -27,8 +27,8 @@ template <class Real, class Visit>
 void for_each_near(const FoundFeatures<Real>& found, const FeatureBlocks<Real>& mesh, std::size_t f,
                    Visit&& visit) {
   for (Index n = f == 0 ? 0 : found.ends[f - 1]; n < found.ends[f]; ++n) {
-    const auto k = static_cast<std::size_t>(n);
-    const Index feature = mesh.feature[static_cast<std::size_t>(found.hits[k])];
+    const auto k = at_index(n);
+    const Index feature = mesh.feature[at_index(found.hits[k])];
     // The reach of cloth that flies apart includes what stands for no feature, however far.
     if (feature != kNone) visit(feature, std::sqrt(found.hits2[k]));
   }
@@ -73,7 +73,7 @@ void find_near(const PairFeatures<Real>& cloth, const FeatureBlocks<Real>& mesh,
   for (std::size_t f = 0; f < count; ++f) {
     const Real beyond =
         std::min(std::sqrt(found.beyond2[f]), distance_to_border(cloth.boxes[f], box));
-    Real& known = free[static_cast<std::size_t>(cloth.number[f])];
+    Real& known = free[at_index(cloth.number[f])];
     known = std::min(known, beyond - cloth.rounding[f] - thickness);
   }
 }
@@ -117,7 +117,7 @@ void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about
   find_near<Real>(particles, mesh.triangle_blocks, about.triangles, about.box, cloths.thickness,
                   measure_points_from_triangles, room.near, found.tests, free.particle);
   for (std::size_t f = 0; f < particles.number.size(); ++f) {
-    const auto p = static_cast<std::size_t>(particles.number[f]);
+    const auto p = at_index(particles.number[f]);
     const Real rounding = particles.rounding[f];
     const std::size_t first = pairs.size();
     Real least = std::numeric_limits<Real>::infinity();
@@ -192,19 +192,18 @@ template <class Real>
 void extend_skins(const ContactCloths<Real>& cloths, const NearFeatures<Real>& near,
                   FreeDistance<Real>& free, Clearance<Real>& clearance) {
   const auto limit = [&](Index i, Real most) {
-    Real& known = free.particle[static_cast<std::size_t>(i)];
+    Real& known = free.particle[at_index(i)];
     known = std::min(known, most);
   };
   for (const Index e : near.edges) {
-    for (const Index i : cloths.patches.edges[static_cast<std::size_t>(e)])
-      limit(i, free.edge[static_cast<std::size_t>(e)]);
+    for (const Index i : cloths.patches.edges[at_index(e)]) limit(i, free.edge[at_index(e)]);
   }
   for (const Index t : near.triangles) {
-    for (const Index i : cloths.patches.triangles[static_cast<std::size_t>(t)])
-      limit(i, free.triangle[static_cast<std::size_t>(t)]);
+    for (const Index i : cloths.patches.triangles[at_index(t)])
+      limit(i, free.triangle[at_index(t)]);
   }
   for (const Index i : near.particles) {
-    const auto p = static_cast<std::size_t>(i);
+    const auto p = at_index(i);
     Real most = free.particle[p];
     // A particle that is only joined to near ones has features that are in no list.
     if (!clearance.near[p])
@@ -244,7 +243,7 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
   std::vector<Real>& fresh = pairs.fresh;
   fresh.resize(x.size());
   for (const Index i : near.particles) {
-    const auto p = static_cast<std::size_t>(i);
+    const auto p = at_index(i);
     fresh[p] = analytic_clearance(shapes, x[p], thickness + clearance.skin[p]);
     clearance.has_pairs[p] = 0;
   }
@@ -273,7 +272,7 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
   }
   // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
   for (const Index i : near.particles) {
-    const auto p = static_cast<std::size_t>(i);
+    const auto p = at_index(i);
     Real& distance = clearance.distance[p];
     distance = fresh[p] < thickness + clearance.skin[p] ? fresh[p] : std::max(distance, fresh[p]);
   }
@@ -286,24 +285,24 @@ void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sh
                  NearFeatures<Real>& near) {
   const ClothPatches& patches = cloths.patches;
   near.paired.assign(near.active.size(), 0);
-  const auto mark = [&](Index i) { near.paired[static_cast<std::size_t>(i)] = 1; };
+  const auto mark = [&](Index i) { near.paired[at_index(i)] = 1; };
   for (const Index i : near.particles) {
-    const auto p = static_cast<std::size_t>(i);
+    const auto p = at_index(i);
     if (clearance.distance[p] <= cloths.thickness + clearance.skin[p]) mark(i);
   }
   for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
     for (const auto& pair : pairs.particle[m]) mark(pair.cloth);
     for (const auto& pair : pairs.edge[m]) {
-      for (const Index i : patches.edges[static_cast<std::size_t>(pair.cloth)]) mark(i);
+      for (const Index i : patches.edges[at_index(pair.cloth)]) mark(i);
     }
     for (const auto& pair : pairs.triangle[m]) {
-      for (const Index i : patches.triangles[static_cast<std::size_t>(pair.cloth)]) mark(i);
+      for (const Index i : patches.triangles[at_index(pair.cloth)]) mark(i);
     }
   }
   if (shapes.rounds.empty()) return;
   // Edges and triangles meet round shapes without pairs, so all near ones may.
   for (const Index e : near.edges) {
-    for (const Index i : patches.edges[static_cast<std::size_t>(e)]) mark(i);
+    for (const Index i : patches.edges[at_index(e)]) mark(i);
   }
 }
 

@@ -24,8 +24,8 @@ bool between_ends(double s) {
 /// The smallest of the corners' numbers.
 template <class Real, class Feature>
 Real nearest(const std::vector<Real>& numbers, const Feature& corners) {
-  Real least = numbers[static_cast<std::size_t>(corners[0])];
-  for (const Index i : corners) least = std::min(least, numbers[static_cast<std::size_t>(i)]);
+  Real least = numbers[at_index(corners[0])];
+  for (const Index i : corners) least = std::min(least, numbers[at_index(i)]);
   return least;
 }
 
@@ -37,8 +37,7 @@ CornerBound<Real> bound_of(const ObjectRowSource<Real>& source, std::span<const 
   const Real part = static_cast<Real>(count == 2 ? kEdgeSpan : kTriangleSpan);
   Real longest2 = 0, reach = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(corners[k]),
-               j = static_cast<std::size_t>(corners[(k + 1) % count]);
+    const auto i = at_index(corners[k]), j = at_index(corners[(k + 1) % count]);
     longest2 = std::max(longest2, (x[i] - x[j]).squaredNorm());
     reach = std::max(reach, source.reach[i]);
   }
@@ -59,7 +58,7 @@ void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>&
   scratch.core.resize(state.x.size());
   scratch.least_core.resize(state.x.size());
   for (const Index k : source.near.particles) {
-    const auto i = static_cast<std::size_t>(k);
+    const auto i = at_index(k);
     Real &core = scratch.core[i], &least = scratch.least_core[i];
     const Vec3<Real> from = state.x[i] - a;
     core = (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
@@ -78,7 +77,7 @@ void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& sou
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
   for (std::size_t n = 0; n < source.near.edges.size(); ++n) {
-    const Edge& e = source.cloths.patches.edges[static_cast<std::size_t>(source.near.edges[n])];
+    const Edge& e = source.cloths.patches.edges[at_index(source.near.edges[n])];
     const Real least = nearest(scratch.least_core, e);
     if (scratch.edge_bounds[n].clear(least, most)) continue;
     const Corners<Real> ends = corners_of<Real>(source, scratch.gap, e);
@@ -86,8 +85,8 @@ void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& sou
     if (is_inside(e[0], rod.collider, scratch.inside) ||
         is_inside(e[1], rod.collider, scratch.inside))
       continue;
-    const Vec3d from = in_double(source.state.x[static_cast<std::size_t>(e[0])]),
-                to = in_double(source.state.x[static_cast<std::size_t>(e[1])]);
+    const Vec3d from = in_double(source.state.x[at_index(e[0])]),
+                to = in_double(source.state.x[at_index(e[1])]);
     const SegmentPoints<double> c = closest_of_segments<double>(from, to, base, tip);
     const Apart side = apart(c.p, c.q);
     const Real distance = static_cast<Real>(side.distance) - rod.radius;
@@ -109,9 +108,7 @@ template <class Real>
 void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Real reach,
                       const RoundObject<Real>& rod, const Vec3<Real>& centre, bool responds,
                       ObjectRows<Real>& rows) {
-  const auto at = [&](std::size_t n) {
-    return in_double(source.state.x[static_cast<std::size_t>(t[n])]);
-  };
+  const auto at = [&](std::size_t n) { return in_double(source.state.x[at_index(t[n])]); };
   const Vec3d q = in_double(centre);
   const TrianglePoint<double> c = closest_on_triangle<double>(q, at(0), at(1), at(2));
   const Apart side = apart(c.point, q);
@@ -132,8 +129,7 @@ void add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>&
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
   for (std::size_t n = 0; n < source.near.triangles.size(); ++n) {
-    const Triangle& t =
-        source.cloths.patches.triangles[static_cast<std::size_t>(source.near.triangles[n])];
+    const Triangle& t = source.cloths.patches.triangles[at_index(source.near.triangles[n])];
     const Real least = nearest(scratch.least_core, t);
     if (scratch.triangle_bounds[n].clear(least, most)) continue;
     const Corners<Real> corners = corners_of<Real>(source, scratch.gap, t);
@@ -163,11 +159,9 @@ void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real
   scratch.edge_bounds.clear();
   scratch.triangle_bounds.clear();
   for (const Index k : source.near.edges)
-    scratch.edge_bounds.push_back(
-        bound_of<Real>(source, patches.edges[static_cast<std::size_t>(k)]));
+    scratch.edge_bounds.push_back(bound_of<Real>(source, patches.edges[at_index(k)]));
   for (const Index k : source.near.triangles)
-    scratch.triangle_bounds.push_back(
-        bound_of<Real>(source, patches.triangles[static_cast<std::size_t>(k)]));
+    scratch.triangle_bounds.push_back(bound_of<Real>(source, patches.triangles[at_index(k)]));
   for (const RoundObject<Real>& rod : shapes.rounds) {
     measure_cores(source, rod, scratch);
     add_edges_on(rod, source, scratch, rows);

@@ -18,11 +18,9 @@ namespace {
 /// Whether a triangle has the corner, or both corners of the edge, that another one is nearest at.
 template <class Real>
 bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, Index t) {
-  const Triangle &own = mesh.triangles[static_cast<std::size_t>(d.triangle)],
-                 &other = mesh.triangles[static_cast<std::size_t>(t)];
+  const Triangle &own = mesh.triangles[at_index(d.triangle)], &other = mesh.triangles[at_index(t)];
   const auto has = [&](int corner) {
-    return std::find(other.begin(), other.end(), own[static_cast<std::size_t>(corner % 3)]) !=
-           other.end();
+    return std::find(other.begin(), other.end(), own[at_index(corner % 3)]) != other.end();
   };
   if (d.feature == 0) return false;
   return d.feature <= 3 ? has(d.feature - 1) : has(d.feature - 4) && has(d.feature - 3);
@@ -37,7 +35,7 @@ void follow(const ContactRow<Real>& row, double top, const ColliderFrame<Real>& 
   const Vec3d shift = frame.pose.position - frame.pose.rotation * frame.pivot;
   MovingRow<Real> moving;
   moving.row = rows.all.size();
-  moving.collider = static_cast<std::size_t>(row.collider);
+  moving.collider = at_index(row.collider);
   moving.own_normal = frame.pose.rotation.conjugate() * normal;
   moving.own_offset = top - normal.dot(shift);
   moving.mobility = mobility;
@@ -46,7 +44,7 @@ void follow(const ContactRow<Real>& row, double top, const ColliderFrame<Real>& 
 
 template <class Real>
 Real reach_of(const ObjectRowSource<Real>& source, Index i) {
-  return source.cloths.thickness + source.reach[static_cast<std::size_t>(i)];
+  return source.cloths.thickness + source.reach[at_index(i)];
 }
 
 /// Finds the triangles of a mesh that a particle may touch while the rows hold.
@@ -54,7 +52,7 @@ Real reach_of(const ObjectRowSource<Real>& source, Index i) {
 template <class Real>
 std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Index i,
                         RowScratch<Real>& scratch) {
-  const auto p = static_cast<std::size_t>(i);
+  const auto p = at_index(i);
   const Vec3<Real>& x = in_frame_of(source.shapes, source.near, m, source.state.x)[p];
   const Real moved = scratch.moved[p] + source.shapes.mesh_frame(m).travel_since_pairs;
   // A particle that is inside looks for the way out, however far it is.
@@ -85,7 +83,7 @@ std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, 
   const std::size_t nearest = find_nearby(source, m, i, scratch);
   const std::vector<MeshDistance<Real>>& nearby = scratch.nearby;
   if (nearby.empty()) return 0;
-  Real& gap = scratch.gap[static_cast<std::size_t>(i)];
+  Real& gap = scratch.gap[at_index(i)];
   gap = std::min(gap, nearby[nearest].distance);
   if (nearby[nearest].distance < 0) {
     note_inside(i, collider, scratch.inside);
@@ -98,7 +96,7 @@ std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, 
     if (distance > reach_of(source, i)) continue;
     ContactBarrier<Real> barrier{
         frame.world_direction(d.distance < 0 ? (-d.normal).eval() : d.normal), 0, distance};
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(d.triangle)];
+    const Triangle& t = mesh.triangles[at_index(d.triangle)];
     barrier.top = top_of(source.shapes, m, barrier.normal, {t[0], t[1], t[2]});
     // Where the surface goes on from the border of a triangle, nearer to the particle, what lies
     // beyond carries: a plane at the border would stand in the way of whatever slides over it.
@@ -115,7 +113,7 @@ std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, 
 template <class Real>
 void add_round_row(const ObjectRowSource<Real>& source, Index i, const RoundObject<Real>& rod,
                    RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
-  const Vec3<Real>& x = source.state.x[static_cast<std::size_t>(i)];
+  const Vec3<Real>& x = source.state.x[at_index(i)];
   const Vec3<Real>&from = rod.a, &to = rod.b;
   const Real reach = reach_of(source, i);
   const Real far = rod.radius + reach + source.clearance.smallest_gap;
@@ -180,8 +178,8 @@ void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> p
   double least = std::numeric_limits<double>::infinity();
   const Vec3d normal = barrier.normal.template cast<double>();
   for (const Index i : particles) {
-    const auto k = static_cast<std::size_t>(row.count++);
-    const auto p = static_cast<std::size_t>(i);
+    const auto k = row.count++;
+    const auto p = at_index(i);
     row.particle[k] = i;
     row.weight[k] = weights[k];
     mobility += weights[k] * weights[k] * state.inverse_mass[p];
@@ -190,9 +188,8 @@ void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> p
   // What is pinned stops only what moves.
   const bool held = !(mobility > 0);
   if (held && !frame.tracked) return;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count) && !held; ++k)
-    row.share[k] =
-        row.weight[k] * state.inverse_mass[static_cast<std::size_t>(row.particle[k])] / mobility;
+  for (std::size_t k = 0; k < row.count && !held; ++k)
+    row.share[k] = row.weight[k] * state.inverse_mass[at_index(row.particle[k])] / mobility;
   row.least_height = static_cast<Real>(least);
   row.distance = barrier.distance;
   row.keep = std::max(barrier.keep, source.clearance.smallest_gap);
@@ -218,7 +215,7 @@ void add_particle_rows(const ObjectRowSource<Real>& source, RowScratch<Real>& sc
   scratch.cursor.assign(shapes.meshes.size(), 0);
   scratch.inside.assign(source.state.x.size(), kOutside);
   for (const Index i : source.near.particles) {
-    const Vec3<Real>& p = source.state.x[static_cast<std::size_t>(i)];
+    const Vec3<Real>& p = source.state.x[at_index(i)];
     for (const ObjectPlane<Real>& plane : shapes.planes) {
       const Real distance = plane.normal.dot(p) - plane.offset;
       if (distance <= reach_of(source, i))
@@ -244,8 +241,7 @@ Corners<Real> corners_of(const ObjectRowSource<Real>& source, const std::vector<
   corners.unseen = source.clearance.smallest_gap;
   Real longest = 0, reach = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(particles[k]),
-               j = static_cast<std::size_t>(particles[(k + 1) % count]);
+    const auto i = at_index(particles[k]), j = at_index(particles[(k + 1) % count]);
     longest = std::max(longest, (x[i] - x[j]).squaredNorm());
     reach = std::max(reach, source.reach[i]);
     corners.gap = std::min(corners.gap, gap[i] - source.reach[i]);
@@ -268,8 +264,7 @@ void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, Objec
   rows.rooms.clear();
   for (const ContactRow<Real>& row : rows.all) {
     RowRoom<Real> room;
-    for (std::size_t k = 0; k < 3; ++k)
-      room.particle[k] = row.particle[k < static_cast<std::size_t>(row.count) ? k : 0];
+    for (std::size_t k = 0; k < 3; ++k) room.particle[k] = row.particle[k < row.count ? k : 0];
     room.touch2 =
         row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * Real(kTouchPart))
                      : std::numeric_limits<Real>::infinity();

@@ -41,10 +41,10 @@ struct ObjectRows {
   std::vector<BadStart<Real>> exits;
 
   const MovingRow<Real>* moving_of(const ContactRow<Real>& row) const {
-    return row.mover == kNone ? nullptr : &moving[static_cast<std::size_t>(row.mover)];
+    return row.mover == kNone ? nullptr : &moving[at_index(row.mover)];
   }
   MovingRow<Real>* moving_of(const ContactRow<Real>& row) {
-    return row.mover == kNone ? nullptr : &moving[static_cast<std::size_t>(row.mover)];
+    return row.mover == kNone ? nullptr : &moving[at_index(row.mover)];
   }
 };
 

@@ -125,10 +125,8 @@ Real least_clearance(const ObjectShapes<Real>& shapes, const Vec3<Real>& p, Real
     bound = mesh.triangle_tree.nearest(
         bound, [&](const Aabb<Real>& box) { return box.squared_distance(own); },
         [&](Index t, Real best) {
-          const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-          const auto corner = [&](std::size_t k) {
-            return mesh.positions[static_cast<std::size_t>(triangle[k])];
-          };
+          const Triangle& triangle = mesh.triangles[at_index(t)];
+          const auto corner = [&](std::size_t k) { return mesh.positions[at_index(triangle[k])]; };
           const Real distance2 =
               (own - closest_on_triangle<Real>(own, corner(0), corner(1), corner(2)).point)
                   .squaredNorm();
@@ -176,7 +174,7 @@ double top_of(const ObjectShapes<Real>& shapes, std::size_t mesh, const Vec3<Rea
   const Vec3d n = normal.template cast<double>();
   double top = -std::numeric_limits<double>::infinity();
   for (const Index v : vertices) {
-    const Vec3<Real> at = frame.world(shapes.meshes[mesh]->positions[static_cast<std::size_t>(v)]);
+    const Vec3<Real> at = frame.world(shapes.meshes[mesh]->positions[at_index(v)]);
     top = std::max(top, n.dot(at.template cast<double>()));
   }
   return top;

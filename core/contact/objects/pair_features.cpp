@@ -41,8 +41,8 @@ void load_particles(const PairPass<Real>& pass, const NearPatch& patch, PairFeat
   clear_features(into);
   const Clearance<Real>& c = pass.clearance;
   for (Index k = patch.particles.first; k < patch.particles.end(); ++k) {
-    const Index i = pass.near.particles[static_cast<std::size_t>(k)];
-    const auto p = static_cast<std::size_t>(i);
+    const Index i = pass.near.particles[at_index(k)];
+    const auto p = at_index(i);
     const Real reach = pass.cloths.thickness + c.skin[p];
     if (c.distance[p] > reach) {
       pass.free.particle[p] = c.distance[p] - pass.cloths.thickness;
@@ -59,15 +59,15 @@ void load_edges(const PairPass<Real>& pass, const NearPatch& patch, PairFeatures
   clear_features(into);
   const Clearance<Real>& c = pass.clearance;
   for (Index k = patch.edges.first; k < patch.edges.end(); ++k) {
-    const Index e = pass.near.edges[static_cast<std::size_t>(k)];
-    const Edge& ends = pass.cloths.patches.edges[static_cast<std::size_t>(e)];
-    const auto i = static_cast<std::size_t>(ends[0]), j = static_cast<std::size_t>(ends[1]);
+    const Index e = pass.near.edges[at_index(k)];
+    const Edge& ends = pass.cloths.patches.edges[at_index(e)];
+    const auto i = at_index(ends[0]), j = at_index(ends[1]);
     const Real reach = pass.cloths.thickness + std::max(c.skin[i], c.skin[j]);
     const Vec3<Real> along = pass.x[j] - pass.x[i];
     // No point of the edge is nearer than this, by the clearances of its ends.
     const Real length = along.norm(), clear = (c.distance[i] + c.distance[j] - length) / 2;
     if (clear > reach) {
-      pass.free.edge[static_cast<std::size_t>(e)] = clear - pass.cloths.thickness;
+      pass.free.edge[at_index(e)] = clear - pass.cloths.thickness;
       continue;
     }
     Aabb<Real> box;
@@ -88,16 +88,15 @@ void load_triangles(const PairPass<Real>& pass, const NearPatch& patch, PairFeat
     return std::max({of[a], of[b], of[c]});
   };
   for (Index k = patch.triangles.first; k < patch.triangles.end(); ++k) {
-    const Index t = pass.near.triangles[static_cast<std::size_t>(k)];
-    const Triangle& corners = pass.cloths.patches.triangles[static_cast<std::size_t>(t)];
-    const auto a = static_cast<std::size_t>(corners[0]), b = static_cast<std::size_t>(corners[1]),
-               c = static_cast<std::size_t>(corners[2]);
+    const Index t = pass.near.triangles[at_index(k)];
+    const Triangle& corners = pass.cloths.patches.triangles[at_index(t)];
+    const auto a = at_index(corners[0]), b = at_index(corners[1]), c = at_index(corners[2]);
     const Real reach = pass.cloths.thickness + largest(clearance.skin, a, b, c);
     const std::vector<Real>& distance = clearance.distance;
     const Real clear =
         std::min({distance[a], distance[b], distance[c]}) - largest(clearance.span, a, b, c);
     if (clear > reach) {
-      pass.free.triangle[static_cast<std::size_t>(t)] = clear - pass.cloths.thickness;
+      pass.free.triangle[at_index(t)] = clear - pass.cloths.thickness;
       continue;
     }
     Aabb<Real> box;
@@ -121,7 +120,7 @@ void list_blocks(const MeshShape<Real>& mesh, Neighbourhood<Real>& about) {
     into.list.resize(stride, 0);
     into.boxes.assign(6 * stride, kPadding);
     for (std::size_t n = 0; n < count; ++n) {
-      const Aabb<Real>& box = of.boxes[static_cast<std::size_t>(into.list[n])];
+      const Aabb<Real>& box = of.boxes[at_index(into.list[n])];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         into.boxes[axis * stride + n] = box.lower[static_cast<Index>(axis)];
         into.boxes[(axis + 3) * stride + n] = box.upper[static_cast<Index>(axis)];

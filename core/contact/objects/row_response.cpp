@@ -41,8 +41,8 @@ void take_back_pushes(const ObjectRows<Real>& rows, const Vec3Array<Real>& x_unp
   for (const ContactRow<Real>& row : rows.all) {
     if (!rows.exits.empty() && leaves(row)) continue;
     const Real wanted = least_height(row, row.mover != kNone, smallest_gap);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-      const auto i = static_cast<std::size_t>(row.particle[k]);
+    for (std::size_t k = 0; k < row.count; ++k) {
+      const auto i = at_index(row.particle[k]);
       if (x[i] == x_unpushed[i]) continue;
       const Real before = row.normal.dot(x_unpushed[i]) - row.offset;
       if (row.normal.dot(x[i]) - row.offset < std::min(before, wanted)) x[i] = x_unpushed[i];
@@ -140,14 +140,14 @@ RowChange<Real> solve_row(ObjectSolve<Real>& solve, std::size_t r, bool rubs = t
     if (!moving || moving->grip == 0) return {};
     push = 0;
   } else if (row.impact != kNone) {
-    solve.bounces.impacts[static_cast<std::size_t>(row.impact)].taken +=
+    solve.bounces.impacts[at_index(row.impact)].taken +=
         vn * vn - row.least_speed * row.least_speed;
   }
   return {push, respond(solve, r, v, vn, push, rubs ? push : Real(0))};
 }
 
 std::span<const Index> particles_of(const auto& row) {
-  return std::span(row.particle).first(static_cast<std::size_t>(row.count));
+  return std::span(row.particle).first(row.count);
 }
 
 /// Sweeps on where jaws hold cloth, over the rows whose particles the last sweep has changed. The
@@ -165,7 +165,7 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
   std::vector<int>& changed = solve.response.changed;
   changed.assign(solve.state.v.size(), kNone);
   const auto note = [&changed](const ContactRow<Real>& row, int sweep) {
-    for (const Index i : particles_of(row)) changed[static_cast<std::size_t>(i)] = sweep;
+    for (const Index i : particles_of(row)) changed[at_index(i)] = sweep;
   };
   for (const MovingRow<Real>& row : moving)
     if (is_jaws_row(row)) note(solve.rows.all[row.row], 0);
@@ -173,12 +173,12 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
   for (int sweep = 1; any && sweep <= kJawSweeps; ++sweep) {
     stop_point();
     any = false;
-    const auto is_new = [&](Index i) { return changed[static_cast<std::size_t>(i)] + 1 >= sweep; };
+    const auto is_new = [&](Index i) { return changed[at_index(i)] + 1 >= sweep; };
     for (const std::size_t r : solve.response.busy) {
       const ContactRow<Real>& row = solve.rows.all[r];
       const auto particles = particles_of(row);
       if (std::none_of(particles.begin(), particles.end(), is_new)) continue;
-      const bool rubs = !is_of_jaw(static_cast<std::size_t>(row.collider));
+      const bool rubs = !is_of_jaw(at_index(row.collider));
       if (!(solve_row(solve, r, rubs).change.squaredNorm() > Real(kJawResidual * kJawResidual)))
         continue;
       note(row, sweep);

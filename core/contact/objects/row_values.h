@@ -16,7 +16,7 @@ template <class Real>
 [[gnu::always_inline]] inline Vec3<Real> weighted(const ContactRow<Real>& row,
                                                   const Vec3Array<Real>& values) {
   const auto at = [&](std::size_t k) -> const Vec3<Real>& {
-    return values[static_cast<std::size_t>(row.particle[k])];
+    return values[at_index(row.particle[k])];
   };
   assert(row.count >= 1 && row.count <= 3);
   if (row.count == 1) return at(0);
@@ -27,8 +27,8 @@ template <class Real>
 /// Moves the row's point by `change`, shared by mass.
 template <class Real>
 void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<Real>& values) {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k)
-    values[static_cast<std::size_t>(row.particle[k])] += change * row.share[k];
+  for (std::size_t k = 0; k < row.count; ++k)
+    values[at_index(row.particle[k])] += change * row.share[k];
 }
 
 }  // namespace weft

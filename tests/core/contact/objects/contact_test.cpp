@@ -243,7 +243,7 @@ template <class Real>
 bool has_row(const Contact<Real>& contact, const ClothState<Real>& state,
              std::initializer_list<Index> particles, double gap) {
   for (const ContactRow<Real>& row : contact.rows()) {
-    if (row.count != static_cast<int>(particles.size()) ||
+    if (row.count != particles.size() ||
         !std::equal(particles.begin(), particles.end(), row.particle.begin()))
       continue;
     double height = -static_cast<double>(row.offset);

@@ -58,7 +58,7 @@ Fall fall(const WorldDef& def, unsigned seed, bool told) {
 
 ContactRow<float> row_of(std::initializer_list<Index> particles) {
   ContactRow<float> row;
-  for (const Index i : particles) row.particle[static_cast<std::size_t>(row.count++)] = i;
+  for (const Index i : particles) row.particle[row.count++] = i;
   return row;
 }
 
