@@ -7,9 +7,9 @@
 // How vector code in both precisions is chosen for the processor when the program runs.
 
 /// For one instruction set: the kernel template `name` in both precisions.
-#define WEFT_KERNEL(name)                   \
-  constexpr auto& name##_f32 = name<float>; \
-  constexpr auto& name##_f64 = name<double>
+#define WEFT_KERNEL(name)                          \
+  static constexpr auto& name##_f32 = name<float>; \
+  static constexpr auto& name##_f64 = name<double>
 
 /// Lists it for all instruction sets, so that WEFT_RUN(name, Real) is the one for this processor.
 #define WEFT_EXPORT_KERNEL(name) \

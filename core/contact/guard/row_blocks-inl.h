@@ -15,6 +15,7 @@
 
 #include "core/contact/guard/row_blocks.h"
 #include "core/contact/guard/row_quads-inl.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -279,7 +280,7 @@ HWY_ATTR void take_f32(std::span<const RowBatch> batches, std::span<const GuardR
 }
 
 template <class Real>
-HWY_INLINE bool warm_blocks(std::span<RowBlock<Real>> blocks, const RowPass<Real>& pass) {
+HWY_ATTR bool warm_blocks(std::span<RowBlock<Real>> blocks, const RowPass<Real>& pass) {
   const RowsTag<Real> d;
   std::uint32_t lacks = 0;
   for (RowBlock<Real>& block : blocks) {
@@ -292,8 +293,8 @@ HWY_INLINE bool warm_blocks(std::span<RowBlock<Real>> blocks, const RowPass<Real
 }
 
 template <class Real>
-HWY_INLINE Real sweep_blocks(std::span<RowBlock<Real>> blocks, bool upwards,
-                             const RowPass<Real>& pass) {
+HWY_ATTR Real sweep_blocks(std::span<RowBlock<Real>> blocks, bool upwards,
+                           const RowPass<Real>& pass) {
   const RowsTag<Real> d;
   auto most = hn::Zero(d);
   for (std::size_t n = 0; n < blocks.size(); ++n) {
@@ -306,17 +307,8 @@ HWY_INLINE Real sweep_blocks(std::span<RowBlock<Real>> blocks, bool upwards,
   return hn::GetLane(hn::MaxOfLanes(d, most));
 }
 
-#define WEFT_ROW_KERNELS(Real, Kind)                                                       \
-  HWY_ATTR bool warm_##Kind(std::span<RowBlock<Real>> blocks, const RowPass<Real>& pass) { \
-    return warm_blocks(blocks, pass);                                                      \
-  }                                                                                        \
-  HWY_ATTR Real sweep_##Kind(std::span<RowBlock<Real>> blocks, bool upwards,               \
-                             const RowPass<Real>& pass) {                                  \
-    return sweep_blocks(blocks, upwards, pass);                                            \
-  }
-WEFT_ROW_KERNELS(float, f32)
-WEFT_ROW_KERNELS(double, f64)
-#undef WEFT_ROW_KERNELS
+WEFT_KERNEL(warm_blocks);
+WEFT_KERNEL(sweep_blocks);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -11,13 +11,13 @@
 #include "core/contact/guard/row_blocks-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
 HWY_EXPORT(take_f32);
-HWY_EXPORT(warm_f32);
-HWY_EXPORT(warm_f64);
-HWY_EXPORT(sweep_f32);
-HWY_EXPORT(sweep_f64);
+WEFT_EXPORT_KERNEL(warm_blocks);
+WEFT_EXPORT_KERNEL(sweep_blocks);
 
 void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<float>> rows,
                std::span<RowBlock<float>> blocks) {
@@ -27,17 +27,15 @@ void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<doubl
                std::span<RowBlock<double>> blocks) {
   for (std::size_t n = 0; n < batches.size(); ++n) blocks[n] = {batches[n], rows};
 }
-bool warm_rows(std::span<RowBlock<float>> blocks, const RowPass<float>& pass) {
-  return HWY_DYNAMIC_DISPATCH(warm_f32)(blocks, pass);
+
+template <class Real>
+bool warm_rows(std::span<RowBlock<Real>> blocks, const RowPass<Real>& pass) {
+  return WEFT_RUN(warm_blocks, Real)(blocks, pass);
 }
-bool warm_rows(std::span<RowBlock<double>> blocks, const RowPass<double>& pass) {
-  return HWY_DYNAMIC_DISPATCH(warm_f64)(blocks, pass);
-}
-float sweep_rows(std::span<RowBlock<float>> blocks, bool upwards, const RowPass<float>& pass) {
-  return HWY_DYNAMIC_DISPATCH(sweep_f32)(blocks, upwards, pass);
-}
-double sweep_rows(std::span<RowBlock<double>> blocks, bool upwards, const RowPass<double>& pass) {
-  return HWY_DYNAMIC_DISPATCH(sweep_f64)(blocks, upwards, pass);
+
+template <class Real>
+Real sweep_rows(std::span<RowBlock<Real>> blocks, bool upwards, const RowPass<Real>& pass) {
+  return WEFT_RUN(sweep_blocks, Real)(blocks, upwards, pass);
 }
 
 template <class Real>
@@ -83,6 +81,7 @@ void RowBlock<Real>::give_back(std::span<GuardRow<Real>> rows) const {
   }
 }
 
+WEFT_INSTANTIATE_FUNCTIONS(warm_rows, sweep_rows)
 template struct RowBlock<float>;
 template struct RowBlock<double>;
 

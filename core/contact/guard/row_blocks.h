@@ -112,15 +112,15 @@ void take_rows(std::span<const RowBatch> batches, std::span<const GuardRow<doubl
 /// of it is seen in a velocity. Each error adds to it and nothing takes from it, until its own
 /// errors drive the cloth. So it leaks away; what is needed comes back in the sweeps.
 /// @return whether any row lacks more of its radius than is let be, and is to be pushed apart
-bool warm_rows(std::span<RowBlock<float>> blocks, const RowPass<float>& pass);
-bool warm_rows(std::span<RowBlock<double>> blocks, const RowPass<double>& pass);
+template <class Real>
+bool warm_rows(std::span<RowBlock<Real>> blocks, const RowPass<Real>& pass);
 
 /// Projected Gauss-Seidel. Friction brings what sticks back to its anchor, and lets it slide where
 /// that takes more than Coulomb's bound.
 /// @param upwards  from the first block to the last, or the other way
 /// @return largest change of a normal velocity [m/s], and 0
-float sweep_rows(std::span<RowBlock<float>> blocks, bool upwards, const RowPass<float>& pass);
-double sweep_rows(std::span<RowBlock<double>> blocks, bool upwards, const RowPass<double>& pass);
+template <class Real>
+Real sweep_rows(std::span<RowBlock<Real>> blocks, bool upwards, const RowPass<Real>& pass);
 
 extern template struct RowBlock<float>;
 extern template struct RowBlock<double>;

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/objects/feature_distance.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -194,7 +195,7 @@ HWY_INLINE void search(D d, const FeatureTable<Real>& table, std::size_t f, std:
 }
 
 template <class Real>
-HWY_INLINE std::size_t segments(const FeatureTable<Real>& table) {
+HWY_ATTR std::size_t segments(const FeatureTable<Real>& table) {
   const hn::CappedTag<Real, kFeatureLanes> d;
   Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
@@ -209,7 +210,7 @@ HWY_INLINE std::size_t segments(const FeatureTable<Real>& table) {
 }
 
 template <class Real>
-HWY_INLINE void complete_triangles(std::size_t blocks, Real* values) {
+HWY_ATTR void complete_triangles(std::size_t blocks, Real* values) {
   const hn::CappedTag<Real, kFeatureLanes> d;
   for (std::size_t b = 0; b < blocks; ++b) {
     for (std::size_t lane = 0; lane < kFeatureLanes; lane += hn::Lanes(d)) {
@@ -233,7 +234,7 @@ HWY_INLINE PreparedTriangle<hn::Vec<D>> load_triangle(D d, const Real* at) {
 }
 
 template <class Real>
-HWY_INLINE std::size_t points_from_triangles(const FeatureTable<Real>& table) {
+HWY_ATTR std::size_t points_from_triangles(const FeatureTable<Real>& table) {
   const hn::CappedTag<Real, kFeatureLanes> d;
   Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
@@ -247,7 +248,7 @@ HWY_INLINE std::size_t points_from_triangles(const FeatureTable<Real>& table) {
 }
 
 template <class Real>
-HWY_INLINE std::size_t triangles_from_points(const FeatureTable<Real>& table) {
+HWY_ATTR std::size_t triangles_from_points(const FeatureTable<Real>& table) {
   const hn::CappedTag<Real, kFeatureLanes> d;
   Found<hn::Vec<decltype(d)>> found;
   for (std::size_t f = 0; f < table.count; ++f) {
@@ -261,24 +262,10 @@ HWY_INLINE std::size_t triangles_from_points(const FeatureTable<Real>& table) {
   return found.blocks;
 }
 
-#define WEFT_KERNEL(name)                                              \
-  HWY_ATTR std::size_t name##_f32(const FeatureTable<float>& table) {  \
-    return name(table);                                                \
-  }                                                                    \
-  HWY_ATTR std::size_t name##_f64(const FeatureTable<double>& table) { \
-    return name(table);                                                \
-  }
-WEFT_KERNEL(segments)
-WEFT_KERNEL(points_from_triangles)
-WEFT_KERNEL(triangles_from_points)
-#undef WEFT_KERNEL
-
-HWY_ATTR void complete_triangles_f32(std::size_t blocks, float* values) {
-  complete_triangles(blocks, values);
-}
-HWY_ATTR void complete_triangles_f64(std::size_t blocks, double* values) {
-  complete_triangles(blocks, values);
-}
+WEFT_KERNEL(segments);
+WEFT_KERNEL(points_from_triangles);
+WEFT_KERNEL(triangles_from_points);
+WEFT_KERNEL(complete_triangles);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

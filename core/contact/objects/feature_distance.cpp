@@ -9,31 +9,37 @@
 #include "core/contact/objects/feature_distance-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-#define WEFT_EXPORT(name)                                         \
-  HWY_EXPORT(name##_f32);                                         \
-  HWY_EXPORT(name##_f64);                                         \
-  std::size_t measure_##name(const FeatureTable<float>& table) {  \
-    return HWY_DYNAMIC_DISPATCH(name##_f32)(table);               \
-  }                                                               \
-  std::size_t measure_##name(const FeatureTable<double>& table) { \
-    return HWY_DYNAMIC_DISPATCH(name##_f64)(table);               \
-  }
-WEFT_EXPORT(segments)
-WEFT_EXPORT(points_from_triangles)
-WEFT_EXPORT(triangles_from_points)
-#undef WEFT_EXPORT
+WEFT_EXPORT_KERNEL(segments);
+WEFT_EXPORT_KERNEL(points_from_triangles);
+WEFT_EXPORT_KERNEL(triangles_from_points);
+WEFT_EXPORT_KERNEL(complete_triangles);
 
-HWY_EXPORT(complete_triangles_f32);
-HWY_EXPORT(complete_triangles_f64);
+template <class Real>
+std::size_t measure_segments(const FeatureTable<Real>& table) {
+  return WEFT_RUN(segments, Real)(table);
+}
 
-void prepare_triangles(std::size_t blocks, float* values) {
-  HWY_DYNAMIC_DISPATCH(complete_triangles_f32)(blocks, values);
+template <class Real>
+std::size_t measure_points_from_triangles(const FeatureTable<Real>& table) {
+  return WEFT_RUN(points_from_triangles, Real)(table);
 }
-void prepare_triangles(std::size_t blocks, double* values) {
-  HWY_DYNAMIC_DISPATCH(complete_triangles_f64)(blocks, values);
+
+template <class Real>
+std::size_t measure_triangles_from_points(const FeatureTable<Real>& table) {
+  return WEFT_RUN(triangles_from_points, Real)(table);
 }
+
+template <class Real>
+void prepare_triangles(std::size_t blocks, Real* values) {
+  WEFT_RUN(complete_triangles, Real)(blocks, values);
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(measure_segments, measure_points_from_triangles,
+                           measure_triangles_from_points, prepare_triangles)
 
 }  // namespace weft
 #endif

@@ -4,11 +4,11 @@
 
 #include "core/types.h"
 
-namespace weft {
-
 // Vector code that finds the features of a mesh within reach of a few features of the cloth, chosen
 // for the processor when the program runs. Each pair is computed by itself, so the choice does not
 // change a bit.
+
+namespace weft {
 
 /// Features of a mesh come in blocks of so many; no vector is longer.
 inline constexpr std::size_t kFeatureLanes = 8;
@@ -33,23 +33,23 @@ struct FeatureTable {
 
 /// Segments; six numbers each: an end, and the way to the other end [m].
 /// @return blocks looked at feature by feature
-std::size_t measure_segments(const FeatureTable<float>& table);
-std::size_t measure_segments(const FeatureTable<double>& table);
+template <class Real>
+std::size_t measure_segments(const FeatureTable<Real>& table);
 
 /// Numbers of a triangle of a mesh: a corner and the ways to the other two, which are given [m],
 /// and eight that prepare_triangles computes from them.
 inline constexpr std::size_t kTriangleNumbers = 17;
 
 /// Completes blocks of triangles.
-void prepare_triangles(std::size_t blocks, float* values);
-void prepare_triangles(std::size_t blocks, double* values);
+template <class Real>
+void prepare_triangles(std::size_t blocks, Real* values);
 
 /// Points of the cloth (three numbers) and prepared triangles of the mesh.
-std::size_t measure_points_from_triangles(const FeatureTable<float>& table);
-std::size_t measure_points_from_triangles(const FeatureTable<double>& table);
+template <class Real>
+std::size_t measure_points_from_triangles(const FeatureTable<Real>& table);
 
 /// Triangles of the cloth (nine numbers, not prepared) and points of the mesh.
-std::size_t measure_triangles_from_points(const FeatureTable<float>& table);
-std::size_t measure_triangles_from_points(const FeatureTable<double>& table);
+template <class Real>
+std::size_t measure_triangles_from_points(const FeatureTable<Real>& table);
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/objects/lone_rows.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -114,7 +115,7 @@ HWY_INLINE bool measure(D d, const LonePass<Real>& pass, std::size_t i, M moved,
 }
 
 template <class Real>
-HWY_INLINE LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {
+HWY_ATTR LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {
   LoneResponse<Real> result;
   for_each_vector(
       blocks, [&](auto d, LoneBlock<Real>& rows, std::size_t k, std::size_t i) HWY_ATTR {
@@ -137,7 +138,7 @@ HWY_INLINE LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const Lone
 }
 
 template <class Real>
-HWY_INLINE LoneResponse<Real> sweep(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {
+HWY_ATTR LoneResponse<Real> sweep(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {
   LoneResponse<Real> result;
   for_each_vector(blocks,
                   [&](auto d, LoneBlock<Real>& rows, std::size_t k, std::size_t i) HWY_ATTR {
@@ -150,8 +151,8 @@ HWY_INLINE LoneResponse<Real> sweep(std::span<LoneBlock<Real>> blocks, const Lon
 
 /// @return their number if there is none
 template <class Real>
-HWY_INLINE std::size_t next_crossing(std::span<const LoneBlock<Real>> blocks, const Real* travel2,
-                                     std::size_t from) {
+HWY_ATTR std::size_t next_crossing(std::span<const LoneBlock<Real>> blocks, const Real* travel2,
+                                   std::size_t from) {
   const hn::CappedTag<Real, kLoneLanes> d;
   for (std::size_t b = from; b < blocks.size(); ++b) {
     for (std::size_t k = 0; k < kLoneLanes; k += hn::Lanes(d)) {
@@ -162,22 +163,9 @@ HWY_INLINE std::size_t next_crossing(std::span<const LoneBlock<Real>> blocks, co
   return blocks.size();
 }
 
-#define WEFT_LONE_KERNELS(Real, Kind)                                                \
-  HWY_ATTR LoneResponse<Real> respond_##Kind(std::span<LoneBlock<Real>> blocks,      \
-                                             const LonePass<Real>& pass) {           \
-    return step(blocks, pass);                                                       \
-  }                                                                                  \
-  HWY_ATTR LoneResponse<Real> sweep_##Kind(std::span<LoneBlock<Real>> blocks,        \
-                                           const LonePass<Real>& pass) {             \
-    return sweep(blocks, pass);                                                      \
-  }                                                                                  \
-  HWY_ATTR std::size_t next_crossing_##Kind(std::span<const LoneBlock<Real>> blocks, \
-                                            const Real* travel2, std::size_t from) { \
-    return next_crossing(blocks, travel2, from);                                     \
-  }
-WEFT_LONE_KERNELS(float, f32)
-WEFT_LONE_KERNELS(double, f64)
-#undef WEFT_LONE_KERNELS
+WEFT_KERNEL(step);
+WEFT_KERNEL(sweep);
+WEFT_KERNEL(next_crossing);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -20,23 +20,9 @@ namespace weft {
 
 namespace {
 
-#define WEFT_DISPATCH(Real, Kind)                                                                 \
-  HWY_EXPORT(respond_##Kind);                                                                     \
-  HWY_EXPORT(sweep_##Kind);                                                                       \
-  HWY_EXPORT(next_crossing_##Kind);                                                               \
-  LoneResponse<Real> run_respond(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) { \
-    return HWY_DYNAMIC_DISPATCH(respond_##Kind)(blocks, pass);                                    \
-  }                                                                                               \
-  LoneResponse<Real> run_sweep(std::span<LoneBlock<Real>> blocks, const LonePass<Real>& pass) {   \
-    return HWY_DYNAMIC_DISPATCH(sweep_##Kind)(blocks, pass);                                      \
-  }                                                                                               \
-  std::size_t run_next_crossing(std::span<const LoneBlock<Real>> blocks, const Real* travel2,     \
-                                std::size_t from) {                                               \
-    return HWY_DYNAMIC_DISPATCH(next_crossing_##Kind)(blocks, travel2, from);                     \
-  }
-WEFT_DISPATCH(float, f32)
-WEFT_DISPATCH(double, f64)
-#undef WEFT_DISPATCH
+WEFT_EXPORT_KERNEL(step);
+WEFT_EXPORT_KERNEL(sweep);
+WEFT_EXPORT_KERNEL(next_crossing);
 
 /// Nothing is done to any of its particles.
 template <class Real>
@@ -97,10 +83,10 @@ LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass, Executor*
   constexpr std::size_t kParts = 4, kFewBlocks = 256;
   static_assert(kFewBlocks >= 2 * kParts);
   const std::span<LoneBlock<Real>> blocks = blocks_;
-  if (!executor || blocks.size() < kFewBlocks) return run_respond(blocks, pass);
+  if (!executor || blocks.size() < kFewBlocks) return WEFT_RUN(step, Real)(blocks, pass);
   std::array<LoneResponse<Real>, kParts> of_part;
   const auto work = [&](std::size_t part, std::size_t first, std::size_t last) {
-    of_part[part] = run_respond(blocks.subspan(first, last - first), pass);
+    of_part[part] = WEFT_RUN(step, Real)(blocks.subspan(first, last - first), pass);
   };
   run_parts(executor, blocks.size(), kParts, work);
   LoneResponse<Real> whole;
@@ -114,14 +100,14 @@ LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass, Executor*
 
 template <class Real>
 LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass) {
-  return run_sweep(blocks_, pass);
+  return WEFT_RUN(sweep, Real)(blocks_, pass);
 }
 
 /// The first block from number `block` on with a particle that could; their number if there is
 /// none.
 template <class Real>
 std::size_t LoneRows<Real>::next_crossing(const Real* travel2, std::size_t block) const {
-  return run_next_crossing(blocks_, travel2, block);
+  return WEFT_RUN(next_crossing, Real)(blocks_, travel2, block);
 }
 
 template class LoneRows<float>;

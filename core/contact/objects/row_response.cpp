@@ -316,7 +316,7 @@ void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
   template void push_out(Real, Real, Executor*, ObjectRows<Real>&, RowReach<Real>&,              \
                          RowResponse<Real>&, ClothState<Real>&);                                 \
   template decltype(aim_rows<Real>) aim_rows<Real>;                                              \
-  template decltype(sweep_rows<Real>) sweep_rows<Real>;                                          \
+  template Real sweep_rows(ObjectSolve<Real>&, bool);                                            \
   template decltype(solve_rows<Real>) solve_rows<Real>;                                          \
   template decltype(bounce<Real>) bounce<Real>;
 WEFT_INSTANTIATE(float)
