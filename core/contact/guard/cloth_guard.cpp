@@ -284,7 +284,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   keep_in_regions(state, dt, profile);
   note_ends(state, dt, paths_.elapsed, slack_);
   if (pairs_.active.empty()) note_calm_paths(paths_, calm_);
-  count_motion(pairs_.active, step_, counts_);
+  step_.count_motion(pairs_.active, counts_);
 }
 
 /// Collects the pairs that the step needs, anchors particles that would leave their regions, and
@@ -319,7 +319,7 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     if (attempt == kMostRetries) break;
   }
   // New pairs are looked for in the next step.
-  halt(pairs_.is_active, step_, state.x, state.v);
+  step_.halt(pairs_.is_active, state.x, state.v);
   paths_.strays.clear();
   regions_.dirty.clear();
   paths_.collected = false;

@@ -218,7 +218,7 @@ void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
 template <class Real>
 void share_all_gaps(const GuardedPairs<Real>& pairs, GuardedStep<Real>& step,
                     Regions<Real>& regions) {
-  measure_lengths(step);
+  step.measure_lengths();
   for (const Index k : pairs.active)
     regions.radius[at_index(k)] = std::numeric_limits<Real>::infinity();
   for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
@@ -248,7 +248,7 @@ void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
       pairs[columns.a[k]].bound = columns.certified_gap(k, regions.anchor);
     columns.clear();
   }
-  measure_lengths(step);
+  step.measure_lengths();
   for_pairs_from(pairs, first,
                  [&](const GuardedPair<Real>& pair) { share_gap(pair, step, regions, is_new); });
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
@@ -286,7 +286,7 @@ void measure(const Regions<Real>& regions, GuardedPair<Real>& pair) {
 template <class Real>
 void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
                   Executor* executor, GuardCounts& counts) {
-  measure_lengths(step);
+  step.measure_lengths();
   regions.in_wave = regions.loose;
   for (int wave = 0; !regions.in_wave.empty(); ++wave) {
     stop_point();
