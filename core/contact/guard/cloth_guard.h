@@ -10,7 +10,6 @@
 #include "core/contact/guard/awake_particles.h"
 #include "core/contact/guard/calm_steps.h"
 #include "core/contact/guard/critical_steps.h"
-#include "core/contact/guard/guard_counts.h"
 #include "core/contact/guard/guarded_cloths.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
-#include "core/contact/guard/guard_counts.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"
 #include "core/contact/guard/predicted_paths.h"

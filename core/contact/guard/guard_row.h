@@ -49,7 +49,7 @@ Quad<Real> tangential(const GuardRow<Real>& row, const Quad<Real>& v) {
   return v - row.normal * dot(row.normal, v);
 }
 
-/// Kind of the row's pair, which its key tells (see key_of in guard_pair.h).
+/// Kind of the row's pair, which its key tells (see key_of in guarded_pairs.h).
 template <class Real>
 PairKind kind_of(const GuardRow<Real>& row) {
   return (row.key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;

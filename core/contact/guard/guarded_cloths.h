@@ -6,7 +6,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/neighbours.h"
 #include "core/contact/feature_pair.h"
-#include "core/contact/guard/guard_pair.h"
+#include "core/contact/guard/guarded_pairs.h"
 #include "core/math/quad.h"
 #include "core/types.h"
 

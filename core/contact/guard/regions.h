@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/contact/guard/guard_counts.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"
 #include "core/contact/guard/pair_separation.h"

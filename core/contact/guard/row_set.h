@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/contact/guard/guard_pair.h"
 #include "core/contact/guard/guard_row.h"
+#include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/row_deals.h"
 #include "core/contact/guard/row_slabs.h"
 #include "core/types.h"

@@ -4,8 +4,8 @@
 #include <cassert>
 
 #include "core/contact/objects/constants.h"
+#include "core/contact/objects/contact_row.h"
 #include "core/contact/objects/row_response.h"
-#include "core/contact/objects/row_values.h"
 #include "core/instantiate.h"
 
 namespace weft {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/contact/colliders/collider_frame.h"
-#include "core/contact/objects/analytic_shapes.h"
 #include "core/contact/objects/mesh_shape.h"
 #include "core/contact/objects/mesh_store.h"
 #include "core/types.h"
@@ -15,6 +14,22 @@
 // The shapes of all objects, where they are now, and distances from them.
 
 namespace weft {
+
+template <class Real>
+struct ObjectPlane {
+  Vec3<Real> normal;  ///< out of the object, unit
+  Real offset;        ///< normal.x of its points [m]
+  std::size_t collider;
+};
+
+/// A ball or a capsule: all points within a radius of the core from a to b.
+template <class Real>
+struct RoundObject {
+  Vec3<Real> a, b;  ///< [m]
+  Real radius;      ///< [m]
+  std::size_t collider;
+  bool is_ball;  ///< its core is a point
+};
 
 /// Planes, balls and rods are given by formulas; boxes and meshes are triangles in their own
 /// frames.

@@ -11,7 +11,6 @@
 #include "core/contact/guard/cloth_guard.h"
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/moving_rows.h"
-#include "core/contact/objects/row_values.h"
 #include "core/stop_signal.h"
 
 namespace weft {
